@@ -3,10 +3,6 @@
 add_library(ripplenotch_options INTERFACE)
 target_compile_options(ripplenotch_options INTERFACE
     -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wnon-virtual-dtor -ffp-contract=off)
-# clang calls it shadowing where one file's name is a neighbour's local one; g++ looks at unnamed namespaces no further.
-if(RIPPLENOTCH_COMPILE_TOGETHER AND NOT CMAKE_CXX_COMPILER_ID STREQUAL GNU)
-    target_compile_options(ripplenotch_options INTERFACE -Wno-shadow)
-endif()
 # g++ 12 and 14 see overlapping and overlong copies inside std::string (its bugs 105651 and 105329) where more is inlined.
 if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
     target_compile_options(ripplenotch_options INTERFACE -Wno-restrict -Wno-array-bounds -Wno-stringop-overflow -Wno-stringop-overread)

@@ -35,8 +35,7 @@ function(ripplenotch_container_sources)
     set(sources_ZSTD log/unpack/zstd_unpacker.cpp)
     set(sources_LZ4 log/unpack/lz4_unpacker.cpp)
     set(sources_LZMA log/unpack/xz_unpacker.cpp)
-    set(sources_HDF5 log/formats/hdf5.cpp log/containers/hdf5_arrays.cpp log/containers/hdf5_numbers.cpp
-        log/containers/hdf5_files.cpp log/containers/hdf5_writer.cpp)
+    set(sources_HDF5 log/formats/hdf5.cpp log/containers/hdf5.cpp)
     set(sources_SQLITE log/formats/rosbag2.cpp log/messages/rosbag2_messages.cpp)
     foreach(name IN LISTS RIPPLENOTCH_CONTAINERS_FOUND)
         # A folder that the compiler knows by itself must keep its place among the others: <cmath> looks behind its own.

@@ -1,16 +1,198 @@
 // SPDX-License-Identifier: MIT
-#include "ripplenotch/chart/spectrum_figure.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "ripplenotch/chart/spectrum_figure.hpp"
+#include "ripplenotch/core/median.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/figure/min_max.hpp"
 
 namespace ripplenotch {
+
+namespace {
+
+constexpr std::size_t most_bins = 400;
+
+/// Columns of the figure: the map's speeds, with empty ones where no speed was measured.
+struct Columns {
+    std::vector<double> edges;
+    std::vector<std::optional<std::size_t>> row;  ///< of the map; empty: no speed here
+};
+
+Columns columns_of(const SpeedMap& map) {
+    Columns columns;
+    const double half = 0.5 * map.speed_step_deg_s;
+    const auto& speed = map.speed_deg_s;
+    for (std::size_t i = 0; i < speed.size(); ++i) {
+        double from = std::max(0.0, speed[i] - half), to = speed[i] + half;
+        if (i > 0) from = std::max(from, 0.5 * (speed[i - 1] + speed[i]));
+        if (i + 1 < speed.size()) to = std::min(to, 0.5 * (speed[i] + speed[i + 1]));
+        if (columns.edges.empty()) columns.edges.push_back(from);
+        if (from > columns.edges.back() + 1e-9 * to) {
+            columns.row.emplace_back();
+            columns.edges.push_back(from);
+        }
+        columns.row.emplace_back(i);
+        columns.edges.push_back(to);
+    }
+    return columns;
+}
+
+// Neighbouring bins become one that is as high as the higher, so that no line goes missing.
+HeatMap heat_map(const SpeedMap& map, const Columns& columns) {
+    HeatMap heat{"amplitude, zero to peak", "Nm", PlotScale::logarithmic};
+    const std::size_t bins = map.axis.size(), pool = (bins + most_bins - 1) / most_bins;
+    heat.x_edges = columns.edges;
+    for (std::size_t k = 0; k < bins; k += pool)
+        heat.y_edges.push_back(std::max(0.0, map.axis[k] - 0.5 * map.spacing));
+    heat.y_edges.push_back(map.axis.back() + 0.5 * map.spacing);
+    std::vector<double> values;
+    for (std::size_t k = 0; k < bins; k += pool) {
+        for (const auto& row : columns.row) {
+            double cell = not_a_number;
+            for (std::size_t j = k; row && j < std::min(k + pool, bins); ++j) {
+                const double amplitude = map.amplitude_nm[*row][j];
+                cell = std::isnan(cell) ? amplitude : std::max(cell, amplitude);
+            }
+            heat.cells.push_back(cell);
+            if (cell > 0.0) values.push_back(cell);
+        }
+    }
+    if (values.empty()) return heat;
+    heat.highest = *std::max_element(values.begin(), values.end());
+    // Colours begin at the noise, but never span more than three decades.
+    heat.lowest = std::min(std::max(median_in(values), 1e-3 * heat.highest), 0.1 * heat.highest);
+    return heat;
+}
+
+}  // namespace
+
+Figure speed_map_figure(const std::string& source, const SpeedMap& map, const MapLines& lines) {
+    const bool campbell = map.axis_kind == Axis::time;
+    Panel panel{.title = "", .x = {"joint speed", "deg/s"}, .y = {}};
+    panel.x.from = 0.0;
+    panel.y = campbell ? PlotAxis{"frequency", "Hz"}
+                       : PlotAxis{"order", lines.axis_per_motor_turn ? "cycles per motor turn"
+                                                                     : "cycles per output turn"};
+    panel.y.from = 0.0;
+    panel.map = heat_map(map, columns_of(map));
+    panel.y.to = panel.map->y_edges.back();
+    if (lines.gear) {
+        for (const Order order : lines.gear->orders) {
+            const double per_output_turn = order.value() * lines.gear->ratio.value();
+            NamedLine line{fmt::format("order {}", shortest(order.value())), NamedLine::Run::ray,
+                           per_output_turn / 360.0};
+            if (!campbell) {
+                line.run = NamedLine::Run::at_y;
+                line.value = lines.axis_per_motor_turn ? order.value() : per_output_turn;
+            }
+            panel.lines.push_back(std::move(line));
+        }
+    }
+    Figure figure{
+        campbell ? "campbell" : "order-map",
+        fmt::format("{} of the torque: {}", campbell ? "Campbell diagram" : "Order map", source),
+        fmt::format("{} speeds, resolution {:.3g} {}{}.", map.speed_deg_s.size(), map.resolution,
+                    campbell ? "Hz" : "orders",
+                    panel.lines.empty() ? std::string()
+                                        : fmt::format("; lines are orders of a gear ratio of {:.6g}",
+                                                      lines.gear->ratio.value())),
+        {}};
+    figure.panels.push_back(std::move(panel));
+    return figure;
+}
+
+namespace {
+
+std::string name_of(const Line& line) {
+    if (line.kind == LineKind::tone && line.hz) return fmt::format("tone {:.4g} Hz", *line.hz);
+    const std::string what =
+        line.kind == LineKind::order ? "" : std::string(line_kind_name(line.kind)) + ": ";
+    if (line.order) return fmt::format("{}order {}", what, shortest(*line.order));
+    if (line.order_output) return fmt::format("{}{:.5g} per output turn", what, *line.order_output);
+    return line.hz ? fmt::format("{}{:.4g} Hz", what, *line.hz) : "line";
+}
+
+Ink ink_of(const Line& line) {
+    if (line.kind == LineKind::tone) return tone_ink;
+    return line.kind == LineKind::order && line.order ? order_ink(*line.order) : unknown_ink;
+}
+
+// A line that is no order is told from orders by its mark, too.
+CurveStyle style_of(const Line& line) {
+    return line.kind == LineKind::order && line.order ? order_style(*line.order, CurveStyle::points)
+                                                      : other_mark(CurveStyle::points);
+}
+
+Curve points(const Line& line, double AmplitudeAtSpeed::*what) {
+    Curve curve{name_of(line), ink_of(line), style_of(line), {}, {}};
+    for (const AmplitudeAtSpeed& at : line.by_speed) {
+        curve.x.push_back(std::abs(at.speed_deg_s));
+        curve.y.push_back(at.*what);
+    }
+    return curve;
+}
+
+Panel frequency_panel(const Identification& found) {
+    Panel panel{.title = "Frequency of each line against joint speed",
+                .x = {"joint speed", "deg/s"},
+                .y = {"frequency", "Hz"}};
+    panel.x.from = panel.y.from = 0.0;
+    for (const Line& line : found.lines) {
+        panel.curves.push_back(points(line, &AmplitudeAtSpeed::hz));
+        if (line.kind == LineKind::tone && line.hz) {
+            panel.lines.push_back({name_of(line), NamedLine::Run::at_y, *line.hz, ink_of(line)});
+        } else if (line.kind == LineKind::order && found.gear_ratio.value && line.order) {
+            panel.lines.push_back({fmt::format("order {}", shortest(*line.order)), NamedLine::Run::ray,
+                                   *line.order * *found.gear_ratio.value / 360.0, ink_of(line)});
+        } else if (line.kind == LineKind::order && line.order_output) {
+            panel.lines.push_back({fmt::format("{:.5g} v / 360", *line.order_output), NamedLine::Run::ray,
+                                   *line.order_output / 360.0, ink_of(line)});
+        }
+    }
+    return panel;
+}
+
+Panel residual_panel(const GearRatioFit& fit) {
+    Panel panel{.title = "What the fit of the gear ratio leaves of the frequency",
+                .x = {"joint speed", "deg/s"},
+                .y = {"residual", "Hz"},
+                .height = 0.6};
+    panel.x.from = 0.0;
+    Curve curve{"", Ink::blue, CurveStyle::points, {}, {}};
+    for (const GearRatioFit::Residual& residual : fit.residuals) {
+        curve.x.push_back(std::abs(residual.speed_deg_s));
+        curve.y.push_back(residual.residual_hz);
+    }
+    panel.curves.push_back(std::move(curve));
+    panel.lines.push_back({"", NamedLine::Run::at_y, 0.0});
+    return panel;
+}
+
+}  // namespace
+
+Figure identification_figure(const std::string& source, const Identification& found) {
+    Figure figure{
+        "line-frequency",
+        fmt::format("Lines in the torque: {}{}", source, found.joint.empty() ? "" : ", joint " + found.joint),
+        found.verdict,
+        {frequency_panel(found)}};
+    if (!found.gear_ratio.residuals.empty()) figure.panels.push_back(residual_panel(found.gear_ratio));
+    Panel amplitude{.title = "Amplitude of each line against joint speed",
+                    .x = {"joint speed", "deg/s"},
+                    .y = {"amplitude, zero to peak", "Nm"},
+                    .height = 0.6};
+    amplitude.x.from = amplitude.y.from = 0.0;
+    amplitude.legend = false;
+    for (const Line& line : found.lines)
+        amplitude.curves.push_back(points(line, &AmplitudeAtSpeed::amplitude_nm));
+    if (!found.lines.empty()) figure.panels.push_back(std::move(amplitude));
+    return figure;
+}
+
 namespace {
 
 // The noise and a little below it; a spectrum without noise (simulated) must not fill the page with rounding.

@@ -1,15 +1,196 @@
 // SPDX-License-Identifier: MIT
-#include "ripplenotch/chart/track_figure.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
+#include "core/matrices/least_squares.hpp"
 #include "ripplenotch/analysis/track_report.hpp"
+#include "ripplenotch/chart/track_figure.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/figure/min_max.hpp"
 
 namespace ripplenotch {
+
+namespace {
+
+constexpr int steps = 40;
+
+/// Amplitude and error at one speed, the second comb and the joint's turn averaged out.
+struct At {
+    std::complex<double> value;
+    double error_nm = 0.0;
+};
+
+At at_speed(const MapFit& fit, std::size_t order, double speed_deg_s) {
+    const MapForm& form = fit.map.form;
+    std::vector<double> weights(form.columns());
+    map_weights(fit.map, {speed_deg_s, fit.map.zero_deg, fit.map.loads_nm.middle()}, weights);
+    At found;
+    double square = 0.0;
+    for (std::size_t c = 0; c < weights.size(); ++c) {
+        const std::size_t within = c % form.columns_a_direction(), speeds = form.speeds_deg_s.size();
+        if (within >= speeds && within < form.load_column()) continue;
+        found.value += weights[c] * fit.map.values[order][c];
+        square += weights[c] * weights[c] * 0.5 * std::norm(fit.errors[order][c]);
+    }
+    found.error_nm = std::sqrt(square);
+    return found;
+}
+
+void add_curves(const MapFit& fit, std::size_t order, double sign, const std::string& name, double ordinal,
+                Panel& amplitude, Panel& phase) {
+    // Backward has the colour of its order and the other mark.
+    const Ink ink = order_ink(ordinal);
+    const auto style = [&](CurveStyle one) {
+        return sign < 0.0 ? other_mark(one) : order_style(ordinal, one);
+    };
+    Curve size{name, ink, style(CurveStyle::line), {}, {}},
+        angle{name, ink, style(CurveStyle::points), {}, {}};
+    Ribbon ribbon{"", ink, {}, {}, {}}, doubt{"", ink, {}, {}, {}};
+    const MapRange& range = fit.map.speeds_deg_s;
+    for (int k = 0; k <= steps; ++k) {
+        const double speed = range.from + (range.to - range.from) * k / steps;
+        const At at = at_speed(fit, order, sign * speed);
+        const double nm = portable::hypot(at.value.real(), at.value.imag());
+        size.x.push_back(speed);
+        size.y.push_back(nm);
+        angle.x.push_back(speed);
+        // A phase goes on where it ended: at half a turn it does not jump to the other edge.
+        double deg = -portable::arg(at.value) * degrees_per_radian;
+        if (k > 0) deg += 360.0 * std::round((angle.y.back() - deg) / 360.0);
+        angle.y.push_back(deg);
+        // Of an amplitude that may be 0 any phase may be.
+        const double off = normal_95_errors * at.error_nm;
+        const double off_deg = off < nm ? portable::atan2(off, nm) * degrees_per_radian : 180.0;
+        doubt.x.push_back(speed);
+        doubt.low.push_back(deg - off_deg);
+        doubt.high.push_back(deg + off_deg);
+        ribbon.x.push_back(speed);
+        ribbon.low.push_back(std::max(0.0, nm - normal_95_errors * at.error_nm));
+        ribbon.high.push_back(nm + normal_95_errors * at.error_nm);
+    }
+    amplitude.ribbons.push_back(std::move(ribbon));
+    amplitude.curves.push_back(std::move(size));
+    phase.ribbons.push_back(std::move(doubt));
+    phase.curves.push_back(std::move(angle));
+}
+
+}  // namespace
+
+Figure map_figure(const std::string& source, const MapFit& fit) {
+    const PlotAxis speed{"joint speed", "deg/s"};
+    Panel amplitude{.title = "Amplitude", .x = speed, .y = {"amplitude, zero to peak", "Nm"}};
+    Panel phase{.title = "Phase against the motor's angle",
+                .x = speed,
+                .y = {"phase", "deg"},
+                .legend = false,
+                .height = 0.7};
+    amplitude.y.from = 0.0;
+    for (std::size_t i = 0; i < fit.map.orders.size(); ++i) {
+        const std::string order = "order " + shortest(fit.map.orders[i].value());
+        if (fit.map.form.directions == 1) {
+            add_curves(fit, i, 1.0, order, fit.map.orders[i].value(), amplitude, phase);
+        } else {
+            add_curves(fit, i, 1.0, order + " forward", fit.map.orders[i].value(), amplitude, phase);
+            add_curves(fit, i, -1.0, order + " backward", fit.map.orders[i].value(), amplitude, phase);
+        }
+    }
+    return {"ripple-map", fmt::format("Ripple over speed: {}", source), "", {amplitude, phase}};
+}
+
+namespace {
+
+constexpr double stretch_s = 0.5;
+constexpr std::size_t most_in_stretch = 4096, fewest_stretches = 3;
+
+}  // namespace
+
+void CloseUp::add(const CourseSample& sample) {
+    const auto& [time_s, speed_deg_s, before_nm, after_nm] = sample;
+    const bool full = now_.time_s.size() == most_in_stretch;
+    if (!now_.time_s.empty() && (full || time_s - now_.time_s.front() >= stretch_s)) end_stretch();
+    if (!now_.time_s.empty()) {
+        const double step = (before_nm - after_nm) - (now_.before_nm.back() - now_.after_nm.back());
+        if (std::isfinite(step)) now_.taken_off += step * step;
+    }
+    now_.time_s.push_back(time_s);
+    now_.before_nm.push_back(before_nm);
+    now_.after_nm.push_back(after_nm);
+}
+
+void CloseUp::end_stretch() {
+    ++ended_;
+    if (now_.taken_off > best_.taken_off) best_ = now_;
+    now_ = {};
+}
+
+std::optional<Panel> CloseUp::panel() const {
+    if (ended_ < fewest_stretches || best_.time_s.empty()) return std::nullopt;
+    Panel panel{
+        .title = "Close up, where the filter takes off most", .x = {"time", "s"}, .y = {"torque", "Nm"}};
+    panel.x.from = best_.time_s.front();
+    panel.x.to = best_.time_s.back();
+    panel.curves = {{"before", Ink::orange, CurveStyle::line, best_.time_s, best_.before_nm},
+                    {"after", Ink::blue, CurveStyle::line, best_.time_s, best_.after_nm}};
+    return panel;
+}
+
+void TorqueCourse::add(const CourseSample& sample) {
+    const auto& [time_s, speed_deg_s, before_nm, after_nm] = sample;
+    if (!any_) first_s_ = time_s;
+    any_ = true;
+    last_s_ = time_s;
+    speed_.add(time_s, speed_deg_s);
+    before_.add(time_s, before_nm);
+    after_.add(time_s, after_nm);
+    close_up_.add(sample);
+}
+
+Figure TorqueCourse::figure(const std::string& source, const std::string& method,
+                            const StreamReport& report) const {
+    PlotAxis time{"time", "s"};
+    time.from = first_s_;
+    time.to = last_s_;
+    Figure figure{"torque", fmt::format("{}: {}", source, method), "", {}};
+    if (std::optional<Panel> close_up = close_up_.panel()) figure.panels.push_back(std::move(*close_up));
+    Panel torque{.title = "Torque before and after", .x = time, .y = {"torque", "Nm"}};
+    torque.curves = {before_.curve("before", Ink::orange), after_.curve("after", Ink::blue)};
+    Panel speed{.title = "Joint speed", .x = time, .y = {"speed", "deg/s"}, .height = 0.5};
+    speed.curves = {speed_.curve("", Ink::black)};
+    figure.panels.push_back(std::move(torque));
+    figure.panels.push_back(std::move(speed));
+    if (report.switches.empty()) return figure;
+
+    Curve band{"",
+               Ink::green,
+               CurveStyle::steps,
+               {first_s_},
+               {static_cast<double>(report.switches[0].change.from_band)}};
+    Curve jump{"", Ink::vermilion, CurveStyle::stems, {}, {}};
+    for (const TimedSwitch& one : report.switches) {
+        band.x.push_back(one.time_s);
+        band.y.push_back(one.change.to_band);
+        jump.x.push_back(one.time_s);
+        jump.y.push_back(one.change.jump_nm);
+    }
+    band.x.push_back(last_s_);
+    band.y.push_back(band.y.back());
+    Panel in_force{.title = "Band in force (0: none)", .x = time, .y = {"band", ""}, .height = 0.5};
+    in_force.curves = {thinned(band)};
+    Panel jumps{.title = "Jump of the output at each switch", .x = time, .y = {"jump", "Nm"}, .height = 0.5};
+    jumps.curves = {thinned(jump)};
+    figure.panels.push_back(std::move(in_force));
+    figure.panels.push_back(std::move(jumps));
+    figure.sentence =
+        fmt::format("{}{}.", how_many(report.switch_count, "change of filter", "changes of filter"),
+                    report.switches.size() < report.switch_count
+                        ? fmt::format(", the first {} shown", report.switches.size())
+                        : "");
+    return figure;
+}
+
 namespace {
 
 constexpr std::size_t most_ribbon_rows = 2000;

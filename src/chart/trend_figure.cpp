@@ -8,7 +8,7 @@
 #include <limits>
 #include <set>
 
-#include "ripplenotch/fleet/log_date.hpp"
+#include "ripplenotch/fleet/features.hpp"
 
 namespace ripplenotch {
 namespace {

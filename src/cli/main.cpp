@@ -17,14 +17,13 @@
 #include "cli/command.hpp"
 #include "cli/options/options_implementation.hpp"
 #include "cli/out_of_memory.hpp"
-#include "cli/progress_bar.hpp"
 #include "cli/reference/reference.hpp"
 #include "cli/talk.hpp"
-#include "core/files/unfinished_files.hpp"
-#include "core/process/heap.hpp"
-#include "ripplenotch/core/inputs_read.hpp"
+#include "core/files/byte_sink.hpp"
+#include "core/process/memory.hpp"
+#include "ripplenotch/core/files.hpp"
+#include "ripplenotch/core/progress.hpp"
 #include "ripplenotch/core/spec.hpp"
-#include "ripplenotch/core/version.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -51,11 +50,9 @@ bool is_command(std::string_view word) {
 // CLI11 answers a mistyped command with "A subcommand is required"; people want to know which one they meant.
 ExitCode complain_unknown_command(const std::string& word) {
     const auto names = command_names();
-    const auto near = nearest_name(word, names);
-    return complain(
-        ExitCode::usage, "",
-        fmt::format("there is no command '{}'{}; commands: {}", word,
-                    near ? fmt::format(" (did you mean {}?)", *near) : "", fmt::join(names, ", ")));
+    return complain(ExitCode::usage, "",
+                    fmt::format("there is no command '{}'{}; commands: {}", word, did_you_mean(word, names),
+                                fmt::join(names, ", ")));
 }
 
 // CLI11 checks that required arguments are there before it looks at unknown options, and would answer a
@@ -75,9 +72,9 @@ std::string unknown_option_message(const CLI::App& command, const std::string& n
     for (const CLI::Option* option : command.get_options()) {
         for (const std::string& long_name : option->get_lnames()) known.push_back("--" + long_name);
     }
-    const auto near = nearest_name(name, known);
-    return fmt::format("there is no option {}{}; see {} {} --help", name,
-                       near ? fmt::format(" (did you mean {}?)", *near) : "", tool_name, command.get_name());
+    const std::string of = command.get_parent() == nullptr ? "" : command.get_name() + " ";
+    return fmt::format("there is no option {}{}{}; see {} {}--help", name,
+                       of.empty() ? " before a command" : "", did_you_mean(name, known), tool_name, of);
 }
 
 // The option of one value that came with several, if there is one.
@@ -181,6 +178,8 @@ ExitCode parse_and_work(CLI::App& app, CommandWords words, std::string& running)
         if (const auto unknown = unknown_option(chosen, words)) {
             return complain(ExitCode::usage, running, unknown_option_message(chosen, *unknown));
         }
+    } else if (const auto unknown = unknown_option(app, {words.front()})) {
+        return complain(ExitCode::usage, "", unknown_option_message(app, *unknown));
     }
     try {
         app.parse(CommandWords(words.rbegin(), words.rend()));  // the library wants the last word first

@@ -15,10 +15,10 @@
 #include <exception>
 #include <new>
 
-#include "core/files/unfinished_files.hpp"
+#include "core/files/byte_sink.hpp"
 #include "core/process/sanitized.hpp"
 #include "ripplenotch/core/error.hpp"
-#include "ripplenotch/core/version.hpp"
+#include "ripplenotch/core/progress.hpp"
 
 namespace ripplenotch {
 namespace {

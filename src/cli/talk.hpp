@@ -4,21 +4,45 @@
 // standard output. Nothing said can act on a terminal, and nothing that becomes of standard error changes
 // what a command does.
 
+#include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "ripplenotch/core/files.hpp"
 
 namespace ripplenotch {
+
+// Tables for people: columns as wide as their widest cell, two spaces between them.
+
+/// Rows of cells, header rows included. `alignment` has one letter a column, 'l' or 'r'; the last letter
+/// holds for all further columns. Cells are made visible. Rows may be of different length; no line ends in a
+/// space.
+[[nodiscard]] std::string text_table(const std::vector<std::vector<std::string>>& cells,
+                                     std::string_view alignment);
+
+// The bar on standard error for work that takes longer than a second; only on a terminal, and gone
+// afterwards.
+
+class ProgressBar {
+  public:
+    /// Shows nothing when standard error is no terminal, is one that cannot erase (TERM=dumb), or `words` of
+    /// the command line hold -q or --quiet. One at a time.
+    explicit ProgressBar(const std::vector<std::string>& words);
+    ~ProgressBar();
+    ProgressBar(const ProgressBar&) = delete;
+    ProgressBar& operator=(const ProgressBar&) = delete;
+
+  private:
+    struct Painter;
+    std::unique_ptr<Painter> painter_;
+};
 
 /// One line on standard error, made visible. Where nobody takes it (closed, full, gone), it is lost.
 void talk(std::string_view line);
 
 /// Several lines on standard error, each made visible.
 void talk_lines(std::string_view lines);
-
-/// Lines as people may see them: everything but their ends made visible.
-[[nodiscard]] std::string visible_lines(std::string_view lines);
 
 /// write_all() of visible_lines().
 void write_text(const std::string& path, std::string_view lines, ByteSink::Overwrite overwrite);

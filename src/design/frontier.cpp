@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "ripplenotch/design/frontier.hpp"
+#include "ripplenotch/design/guarantee.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <array>
 #include <cmath>
 
-#include "design/band_search.hpp"
+#include "design/band_fit.hpp"
 #include "ripplenotch/core/error.hpp"
 
 namespace ripplenotch {

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "design/band_search.hpp"
+#include "design/band_fit.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"

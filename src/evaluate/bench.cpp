@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "ripplenotch/evaluate/bench.hpp"
+#include "ripplenotch/evaluate/contender.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,6 @@
 
 #include "core/matrices/factorisations.hpp"
 #include "ripplenotch/core/error.hpp"
-#include "ripplenotch/core/phasor.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {

@@ -2,13 +2,86 @@
 #pragma once
 // Pieces of text that several targets write.
 
+#include <array>
+#include <cstddef>
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "ripplenotch/core/spec.hpp"
 #include "ripplenotch/export/filter_set.hpp"
 
 namespace ripplenotch {
+
+// Reads back what text targets wrote: walks from marker to marker and takes the numbers between brackets. It
+// knows no values, only text.
+
+enum class Comments { none, c, percent, hash };
+
+class TextReader {
+  public:
+    /// Comments are blanked, so that numbers in them are not taken for values. `precision` is that of the
+    /// target: its own compiler would round decimals to it, once.
+    TextReader(std::string_view text, std::string source, Comments comments, Precision precision);
+
+    /// Moves past the next `marker`. False, and nothing moved, when there is none.
+    [[nodiscard]] bool find(std::string_view marker);
+    /// The same; throws DataError naming source, line and marker when there is none.
+    void expect(std::string_view marker);
+    /// The next number, after blanks and '=' or ':' or ','.
+    [[nodiscard]] double number();
+    /// The numbers between the next `open` and its `close`; exactly `count` of them.
+    [[nodiscard]] std::vector<double> numbers(char open, char close, std::size_t count);
+    /// The next name or number, as text; empty at the end.
+    [[nodiscard]] std::string word();
+    [[nodiscard]] bool at_end();
+    [[noreturn]] void fail(std::string_view read, std::string_view expected) const;
+
+  private:
+    void blank_comments(Comments comments);
+    [[nodiscard]] std::string_view token();
+
+    std::string text_, source_;
+    Precision precision_;
+    std::size_t at_ = 0;
+};
+
+// Filters as firmware and drives describe them: by frequency, width and depth instead of coefficients.
+
+/// Q of a notch with its centre and lower -3 dB frequency: f fc / (f^2 - fc^2) (Betaflight), and back.
+[[nodiscard]] double q_from_cutoff(double center_hz, double cutoff_hz);
+[[nodiscard]] double cutoff_from_q(double center_hz, double q);
+
+/// Q of a notch whose -3 dB band begins half `bandwidth_hz` below its centre, over the octaves from there
+/// (ArduPilot); the same number as q_from_cutoff(f, f - bandwidth / 2). And back.
+[[nodiscard]] double q_from_bandwidth(double center_hz, double bandwidth_hz);
+[[nodiscard]] double bandwidth_from_q(double center_hz, double q);
+
+/// What all notches of a set share where a target has one width and one depth for all.
+struct SharedShape {
+    double q = 1.0;
+    double gain = 0.0;  ///< at the centre; 0 for a full null
+};
+/// Throws UsageError, naming `target`, for low-passes, for Q or depth that differ, and for the digital width
+/// rule, whose notches are no analogue prototypes.
+[[nodiscard]] SharedShape shared_shape(const FilterSet& filters, std::string_view target);
+
+/// Orders as whole numbers from 1 to `highest`, for a table; throws UsageError for others.
+[[nodiscard]] std::vector<int> whole_orders(const FilterSet& filters, int highest, std::string_view target);
+
+/// Whether the ranges of the firmware's own parameters are kept.
+inline constexpr std::array<std::string_view, 2> limit_choices = {"firmware", "none"};
+inline constexpr Key limits_key = {.name = "limits",
+                                   .kind = KeyKind::choice,
+                                   .default_text = "firmware",
+                                   .choices = limit_choices,
+                                   .help =
+                                       "firmware: refuse what its own parameters cannot hold; none: for "
+                                       "other firmware in this style"};
+/// Throws UsageError when `value` is outside lowest..highest and the limits are the firmware's.
+void check_range(const Settings& settings, std::string_view parameter, double value, double lowest,
+                 double highest, std::string_view remedy);
 
 /// Shortest text that reads back exactly, with a decimal point so that C takes it for a double.
 [[nodiscard]] std::string decimal(double value);

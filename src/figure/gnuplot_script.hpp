@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,6 +13,10 @@
 #include "ripplenotch/figure/figure.hpp"
 
 namespace ripplenotch {
+
+/// Runs gnuplot without anybody's settings on this script and gives what it printed; empty when there is no
+/// gnuplot. Throws FileError when it ends with another exit code than 0.
+[[nodiscard]] std::optional<std::string> run_gnuplot(const std::string& script);
 
 /// visible_text(text) as a string constant of gnuplot, quotes included.
 [[nodiscard]] std::string gnuplot_string(std::string_view text);

@@ -4,9 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "figure/gnuplot_process.hpp"
+#include "figure/gnuplot_picture.hpp"
 #include "figure/gnuplot_script.hpp"
-#include "figure/picture_layout.hpp"
 #include "ripplenotch/core/visible_text.hpp"
 #include "ripplenotch/figure/gnuplot.hpp"
 #include "ripplenotch/figure/min_max.hpp"

@@ -1,19 +1,199 @@
 // SPDX-License-Identifier: MIT
 // The front door: which format a log has, and which writer fits it.
 
-#include <fmt/format.h>
+#include "log/open.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
 #include <filesystem>
+#include <iterator>
+#include <utility>
+#include <vector>
 
 #include "log/clock/stamp.hpp"
-#include "log/columns/derived_velocity.hpp"
-#include "log/detect_format.hpp"
-#include "log/read_on.hpp"
+#include "log/columns/motion_reading.hpp"
+#include "log/formats.hpp"
+#include "log/read.hpp"
 #include "log/unpack/unpacked_source.hpp"
 #include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/files.hpp"
+#include "ripplenotch/core/spec.hpp"
+#include "ripplenotch/log/clock.hpp"
+#include "ripplenotch/log/format.hpp"
 #include "ripplenotch/log/log.hpp"
 
 namespace ripplenotch {
+
+namespace {
+
+constexpr std::size_t most_bytes = std::size_t{8} << 20;
+
+}  // namespace
+
+Opening read_opening(LogReader& reader) {
+    Opening opening;
+    std::size_t bytes = 0;
+    while (opening.time_s.size() < clock_rows && bytes < most_bytes) {
+        RowBlock block;
+        if (!reader.next(block)) {
+            opening.whole_log = true;
+            break;
+        }
+        std::size_t count = 0;
+        while (count < block.size() && opening.time_s.size() + count < clock_rows &&
+               (count >= block.row_end.size() || bytes + block.row_end[count] < most_bytes)) {
+            ++count;
+        }
+        opening.time_s.insert(opening.time_s.end(), block.time_s.begin(),
+                              block.time_s.begin() + static_cast<std::ptrdiff_t>(count));
+        opening.counts.push_back(count);
+        bytes += block.bytes.size();
+        opening.blocks.push_back(std::move(block));
+    }
+    return opening;
+}
+
+bool next_block(Opening& opening, LogReader& reader, RowBlock& block) {
+    if (opening.blocks.empty()) return reader.next(block);
+    block = std::move(opening.blocks.front());
+    opening.blocks.pop_front();
+    return true;
+}
+
+namespace {
+
+// Files that people hand over by mistake, told by their first bytes, and what to do with them. A format that
+// is listed comes first, so that a file in this table can become one.
+struct Stranger {
+    std::string_view magic, what, remedy;
+};
+constexpr std::array strangers = {
+    Stranger{"MDF     ", "an MDF file",
+             "convert it: python3 -c \"import asammdf; asammdf.MDF('{}').export('csv', 'run.csv', "
+             "single_time_base=True)\""},
+    Stranger{"TDSm", "a TDMS file",
+             "convert it: python3 -c \"import nptdms; "
+             "nptdms.TdmsFile.read('{}').as_dataframe().to_csv('run.csv')\""},
+    Stranger{"PAR1", "a Parquet file",
+             "convert it: duckdb -c \"copy (from '{}') to 'run.csv' (format csv)\""},
+    Stranger{"#ROSBAG", "a ROS 1 bag", "convert it: rosbags-convert --src {} --dst run"},
+    Stranger{"BZh", "a bzip2 file", "unpack it: bzcat {} | ripplenotch ... -"},
+    Stranger{"PK\x03\x04", "a ZIP archive (or .xlsx)",
+             "unpack it, or convert a workbook: libreoffice --headless --convert-to csv {}"},
+};
+
+bool is_plain_name(const std::string& name) {
+    constexpr std::string_view plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._/+-";
+    return !name.starts_with('-') && name.find_first_not_of(plain) == std::string::npos;
+}
+
+}  // namespace
+
+const LogFormat& detect_format(std::string_view first_bytes, const std::string& source,
+                               std::span<const LogFormat* const> formats) {
+    std::vector<std::string_view> names;
+    for (const LogFormat* format : formats) {
+        if (format->sniff != nullptr && format->sniff(first_bytes)) return *format;
+        names.push_back(format->name);
+    }
+    for (const Stranger& stranger : strangers) {
+        if (!first_bytes.starts_with(stranger.magic)) continue;
+        std::string remedy(stranger.remedy);
+        // The line is there to be pasted: a name that a shell or Python would read otherwise does not go in.
+        remedy.replace(remedy.find("{}"), 2, is_plain_name(source) ? source : "FILE");
+        raise<DataError>("{}: read {}, expected a log as {}; {}", source, stranger.what,
+                         fmt::join(names, " or "), remedy);
+    }
+    return formats::csv;
+}
+
+namespace {
+
+constexpr const LogFormat* const all_formats[] = {
+#define FORMAT(name) &formats::name,
+#include "log/formats/formats.def"
+#undef FORMAT
+};
+
+}  // namespace
+
+std::span<const LogFormat* const> log_formats() { return all_formats; }
+
+std::vector<std::string> formats_not_built() {
+    std::vector<std::string> missing;
+    for (const LogFormat* format : log_formats())
+        if (!format->lacks.empty()) missing.push_back(fmt::format("{} ({})", format->name, format->lacks));
+    for (const Packing* packing : all_packings())
+        if (!packing->lacks.empty()) missing.push_back(fmt::format("{} ({})", packing->name, packing->lacks));
+    return missing;
+}
+
+const LogFormat& find_log_format(std::string_view name) {
+    return find_entry(log_formats(), "log format", "formats", name);
+}
+
+std::string written_log_formats() {
+    std::string names;
+    for (const LogFormat* format : log_formats()) {
+        if (format->is_written()) names += fmt::format("{}{}", names.empty() ? "" : ", ", format->name);
+    }
+    return names;
+}
+
+void require_written(const LogFormat& format, const std::string& output) {
+    if (format.is_written()) return;
+    if (!format.lacks.empty()) {
+        raise<UsageError>("{}: this build was made without {}, which writes {}; install it and build again",
+                          output == "-" ? "standard output" : output, format.lacks, format.name);
+    }
+    raise<UsageError>("{}: format {} is read and not written; formats that are written: {}",
+                      output == "-" ? "standard output" : output, format.name, written_log_formats());
+}
+
+namespace {
+
+/// ".csv .npy": one for each format that is written.
+std::string written_extensions() {
+    std::string extensions;
+    for (const LogFormat* format : log_formats()) {
+        if (!format->is_written()) continue;
+        extensions += (extensions.empty() ? "" : " ") + std::string(format->extensions.front());
+    }
+    return extensions;
+}
+
+/// As `asked`, or by the extension; null where neither says it.
+const LogFormat* told_format(const std::string& path, std::optional<std::string_view> asked) {
+    if (asked) return &find_log_format(*asked);
+    const std::size_t dot = path.rfind('.');
+    std::string extension = dot == std::string::npos ? "" : path.substr(dot);
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    for (const LogFormat* format : log_formats()) {
+        const auto& known = format->extensions;
+        if (std::find(known.begin(), known.end(), extension) != known.end()) return format;
+    }
+    check_output_name(path, "a log", written_extensions());
+    return nullptr;
+}
+
+}  // namespace
+
+const LogFormat& output_format(const std::string& path, std::optional<std::string_view> asked) {
+    return output_format(path, asked, formats::csv);
+}
+
+const LogFormat& output_format(const std::string& path, std::optional<std::string_view> asked,
+                               const LogFormat& log) {
+    const LogFormat* told = told_format(path, asked);
+    require_written(told != nullptr ? *told : log, path);
+    return told != nullptr ? *told : formats::csv;
+}
+
 namespace {
 
 std::string clock_words(const Layout& layout) {

@@ -8,6 +8,7 @@
 #include "ripplenotch/core/progress.hpp"
 
 namespace ripplenotch {
+
 namespace {
 
 class Converter : public LogWriter {

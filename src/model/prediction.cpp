@@ -1,20 +1,25 @@
 // SPDX-License-Identifier: MIT
-#include "ripplenotch/model/prediction.hpp"
+#include "model/prediction.hpp"
 
 #include <algorithm>
 
-#include "model/prediction_state.hpp"
+#include "ripplenotch/model/prediction.hpp"
 
 namespace ripplenotch {
 
 Prediction::Prediction(Model model, const Motion& motion, Carriers* carriers)
     : state_(std::make_unique<State>(std::move(model), motion, carriers)) {}
+
 Prediction::Prediction(std::unique_ptr<State> state) : state_(std::move(state)) {}
+
 Prediction::~Prediction() = default;
+
 Prediction::Prediction(Prediction&&) noexcept = default;
+
 Prediction& Prediction::operator=(Prediction&&) noexcept = default;
 
 const Model& Prediction::model() const { return state_->model; }
+
 const std::vector<double>& Prediction::torque_nm() const { return state_->torque_nm; }
 
 std::size_t Prediction::applied() const { return state_->applied; }

@@ -1,12 +1,188 @@
 // SPDX-License-Identifier: MIT
 #include "page/json_table.hpp"
 
-#include <algorithm>
-#include <unordered_map>
+#include <fmt/format.h>
 
-#include "page/json_words.hpp"
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <utility>
+
+#include "document/json/json.hpp"
+#include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
+
+namespace {
+
+constexpr std::size_t most_cell = 80;
+constexpr int most_decimals = 12;
+
+// Endings of names that are units, the longer first where one ends in the other.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 13> units = {{{"_nm2_hz", "Nm²/Hz"},
+                                                                                  {"_kgm2", "kgm²"},
+                                                                                  {"_deg_s", "deg/s"},
+                                                                                  {"_nm_s", "Nm/s"},
+                                                                                  {"_percent", "%"},
+                                                                                  {"_bytes", "bytes"},
+                                                                                  {"_deg", "deg"},
+                                                                                  {"_hz", "Hz"},
+                                                                                  {"_nm", "Nm"},
+                                                                                  {"_db", "dB"},
+                                                                                  {"_ms", "ms"},
+                                                                                  {"_s", "s"},
+                                                                                  {"_rad", "rad"}}};
+
+std::optional<double> number_at(const Json& owner, const std::string& name) {
+    const auto found = owner.find(name);
+    if (found == owner.end() || !found->is_number()) return std::nullopt;
+    return found->get<double>();
+}
+
+// Decimals at which an error has two digits; empty for none or one that says nothing.
+std::optional<int> decimals_of(double error) {
+    if (!std::isfinite(error) || !(error > 0.0)) return std::nullopt;
+    return std::clamp(1 - static_cast<int>(std::floor(portable::log10(error))), 0, most_decimals);
+}
+
+// [from, to]
+bool is_span(const Json& json) {
+    return json.is_array() && json.size() == 2 && json[0].is_number() && json[1].is_number();
+}
+
+std::optional<int> decimals_of_span(const Json& ci95) {
+    if (!is_span(ci95)) return std::nullopt;
+    return decimals_of(0.5 * (ci95[1].get<double>() - ci95[0].get<double>()));
+}
+
+// Of a field by the error that stands beside it.
+std::optional<int> decimals_beside(const Json& owner, const std::string& name) {
+    const bool of_value = name == "value" || name == "stderr" || name == "ci95";
+    if (of_value && owner.contains("ci95")) return decimals_of_span(owner["ci95"]);
+    constexpr std::string_view ending = "_stderr";
+    const std::string error = of_value                 ? "stderr"
+                              : name.ends_with(ending) ? name
+                                                       : name + std::string(ending);
+    const auto found = number_at(owner, error);
+    return found ? decimals_of(*found) : std::nullopt;
+}
+
+// Both ends with the digits that the larger one needs: "-112.5 to 0" instead of "-112.501 to -0.000176435".
+std::string span_text(const Json& span) {
+    const double from = span[0].get<double>(), to = span[1].get<double>();
+    const double larger = std::max(std::abs(from), std::abs(to));
+    if (!(larger > 0.0) || !std::isfinite(larger)) return fmt::format("{:g} to {:g}", from, to);
+    const double unit = portable::pow(10.0, std::floor(portable::log10(larger)) - 3.0);
+    const auto shown = [unit](double value) {
+        return fmt::format("{:.6g}", unit * std::round(value / unit) + 0.0);
+    };
+    return fmt::format("{} to {}", shown(from), shown(to));
+}
+
+// "0.5 to 2.25; 4 to 5": stretches of time, of speed.
+std::string spans_text(const Json& spans) {
+    constexpr std::size_t most = 4;
+    std::string joined;
+    for (std::size_t i = 0; i < std::min(spans.size(), most); ++i)
+        joined += (i > 0 ? "; " : "") + span_text(spans[i]);
+    return spans.size() > most ? fmt::format("{}; and {} more", joined, spans.size() - most) : joined;
+}
+
+}  // namespace
+
+Spoken spoken(std::string name) {
+    if (name == "hz") return {"frequency", "Hz"};
+    if (name == "db") return {"level", "dB"};
+    std::string unit;
+    for (const auto& [ending, means] : units) {
+        if (name.size() > ending.size() && name.ends_with(ending)) {
+            name.resize(name.size() - ending.size());
+            unit = means;
+            break;
+        }
+    }
+    std::replace(name.begin(), name.end(), '_', ' ');
+    return {name, unit};
+}
+
+namespace {
+
+}  // namespace
+
+std::string value_text(const Json& json) {
+    if (json.is_null()) return "-";
+    if (json.is_string()) return json.get<std::string>();
+    if (json.is_number_float()) {
+        const double value = json.get<double>() + 0.0;
+        return std::abs(value) < 1.0 ? fmt::format("{:.4g}", value) : fmt::format("{:.6g}", value);
+    }
+    if (json.is_array() && !json.empty() && std::all_of(json.begin(), json.end(), is_span))
+        return spans_text(json);
+    if (json.is_array()) {
+        std::string joined;
+        for (const Json& entry : json) joined += (joined.empty() ? "" : ", ") + value_text(entry);
+        return joined.size() > most_cell ? fmt::format("{} values", json.size()) : joined;
+    }
+    if (json.is_object()) {
+        std::string joined;
+        for (const auto& [name, entry] : json.items())
+            joined +=
+                fmt::format("{}{} {}", joined.empty() ? "" : "; ", spoken(name).name, value_text(entry));
+        return joined;
+    }
+    return json.is_boolean() ? (json.get<bool>() ? "yes" : "no") : json.dump();
+}
+
+std::string coarse_text(double value) {
+    constexpr double dust = 1e-9;  // of Nm, dB, %, ms: what rounding leaves of nothing
+    return std::abs(value) < dust ? "0" : fmt::format("{:.4g}", value);
+}
+
+std::string field_text(const Json& owner, const std::string& name) {
+    const Json& json = owner.at(name);
+    const auto decimals = decimals_beside(owner, name);
+    if (decimals && is_span(json))
+        return fmt::format("{} to {}", rounded(json[0].get<double>(), *decimals),
+                           rounded(json[1].get<double>(), *decimals));
+    if (!json.is_number_float()) return value_text(json);
+    if (decimals) return rounded(json.get<double>(), *decimals);
+    constexpr std::array coarse = {"Nm", "dB", "%", "ms"};
+    const bool of_coarse = std::find(coarse.begin(), coarse.end(), spoken(name).unit) != coarse.end();
+    if (of_coarse || name.starts_with("residual")) return coarse_text(json.get<double>());
+    return value_text(json);
+}
+
+std::string parameters_text(const Json& parameters) {
+    std::string joined;
+    for (const auto& [name, entry] : parameters.items()) {
+        const Spoken said = spoken(name);
+        const bool fitted = entry.is_object() && entry.contains("value");
+        const std::string value = fitted ? field_text(entry, "value") : field_text(parameters, name);
+        const std::string interval = fitted && entry.contains("ci95") && is_span(entry["ci95"])
+                                         ? fmt::format(" ({})", field_text(entry, "ci95"))
+                                         : "";
+        joined += fmt::format("{}{} {}{}{}", joined.empty() ? "" : "; ", said.name, value, interval,
+                              said.unit.empty() ? "" : " " + said.unit);
+    }
+    return joined;
+}
+
+std::string where_text(const Json& where) {
+    std::string joined;
+    for (const auto& [name, entry] : where.items()) {
+        if (entry.is_null() || entry.empty()) continue;
+        const Spoken said = spoken(name);
+        joined += fmt::format("{}{} {}{}", joined.empty() ? "" : "; ", said.name, value_text(entry),
+                              said.unit.empty() ? "" : " " + said.unit);
+    }
+    return joined;
+}
+
 namespace {
 
 constexpr std::size_t most_rows = 200, most_columns = 100;

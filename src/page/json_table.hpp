@@ -9,6 +9,33 @@
 
 namespace ripplenotch {
 
+// Fields of a result as a page shows them to people: names without underscores, units apart, numbers with the
+// digits that their uncertainty allows. The JSON on the page has them all.
+
+/// "dc_delay_ms" is "dc delay" in "ms".
+struct Spoken {
+    std::string name, unit;
+};
+
+[[nodiscard]] Spoken spoken(std::string name);
+
+/// "-" for null; numbers with six significant digits, or four below 1, spans as "0.5 to 2.25; 4 to 5".
+[[nodiscard]] std::string value_text(const Json& json);
+
+/// Four significant digits; 0 for what rounding leaves of nothing (below 1e-9).
+[[nodiscard]] std::string coarse_text(double value);
+
+/// A field of `owner`: digits as far as its standard error (NAME_stderr, or stderr and ci95 beside a value)
+/// reaches, else four for torques, levels, shares and milliseconds, else as value_text.
+[[nodiscard]] std::string field_text(const Json& owner, const std::string& name);
+
+/// What parameters were fitted to: {"level_nm": {"value": 1, "ci95": [0.9, 1.1]}} is "level 1.00 (0.90 to
+/// 1.10) Nm".
+[[nodiscard]] std::string parameters_text(const Json& parameters);
+
+/// A diagnosis' where {} in one sentence: "speed -112 to 0 deg/s; direction negative".
+[[nodiscard]] std::string where_text(const Json& where);
+
 /// A list of objects, not empty.
 [[nodiscard]] bool is_table(const Json& json);
 

@@ -1,17 +1,290 @@
 // SPDX-License-Identifier: MIT
-#include "ripplenotch/page/plotly.hpp"
+#include "page/plotly.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
 
+#include "document/json/json.hpp"
+#include "figure/gnuplot_picture.hpp"
 #include "figure/gnuplot_script.hpp"
-#include "figure/picture_layout.hpp"
-#include "page/plotly_lines.hpp"
-#include "page/plotly_traces.hpp"
+#include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/core/visible_text.hpp"
+#include "ripplenotch/figure/figure.hpp"
+#include "ripplenotch/figure/min_max.hpp"
+#include "ripplenotch/page/page.hpp"
 
 namespace ripplenotch {
+
 namespace {
+
+// eight digits; null for what is not finite
+Json plotly_number(double value) {
+    if (!std::isfinite(value)) return nullptr;
+    return *parse_number(fmt::format("{:.8g}", value));
+}
+
+Json numbers_json(const std::vector<double>& values) {
+    Json array = Json::array();
+    for (const double value : values) array.push_back(plotly_number(value));
+    return array;
+}
+
+const char* dash_of(CurveStyle style) { return style == CurveStyle::dashed ? "dash" : "solid"; }
+
+// Text that plotly shows as it is: neither its markup nor a template's %{...}.
+std::string plotly_shown(const std::string& text) {
+    std::string escaped;
+    for (const char c : visible_text(text)) {
+        if (c == '&' || c == '<' || c == '>' || c == '%' || c == '$') {
+            escaped += fmt::format("&#{};", static_cast<int>(c));
+        } else {
+            escaped += c;
+        }
+    }
+    return escaped;
+}
+
+std::string hover(const Panel& panel) {
+    const auto unit = [](const PlotAxis& axis) {
+        return axis.unit.empty() ? "" : " " + plotly_shown(axis.unit);
+    };
+    return fmt::format("{}: %{{x:.6~g}}{}<br>{}: %{{y:.6~g}}{}", plotly_shown(panel.x.label), unit(panel.x),
+                       plotly_shown(panel.y.label), unit(panel.y));
+}
+
+// Each stem is a line from zero; the null after it keeps it apart from the next.
+void stems(Json& json, const Curve& curve) {
+    json["x"] = json["y"] = Json::array();
+    for (std::size_t i = 0; i < curve.x.size(); ++i) {
+        for (const Json& x : {plotly_number(curve.x[i]), plotly_number(curve.x[i]), Json(nullptr)})
+            json["x"].push_back(x);
+        for (const Json& y : {Json(0.0), plotly_number(curve.y[i]), Json(nullptr)}) json["y"].push_back(y);
+    }
+    json["mode"] = "lines";
+    json["line"] = {{"color", ink_rgb(curve.ink)}, {"width", 2}};
+}
+
+void colour_ticks(Json& bar, const HeatMap& map) {
+    bar["tickvals"] = bar["ticktext"] = Json::array();
+    for (double decade = portable::pow(10.0, std::floor(portable::log10(map.lowest))); decade <= map.highest;
+         decade *= 10.0) {
+        for (const double step : {1.0, 2.0, 5.0}) {
+            const double value = decade * step;
+            if (value < map.lowest || value > map.highest) continue;
+            bar["tickvals"].push_back(plotly_number(portable::log10(value)));
+            bar["ticktext"].push_back(fmt::format("{:.4g}", value));
+        }
+    }
+}
+
+}  // namespace
+
+Json curve_trace(Json json, const Panel& panel, const Curve& whole) {
+    const Curve curve = thinned(whole);
+    json["x"] = numbers_json(curve.x);
+    json["y"] = numbers_json(curve.y);
+    json["hovertemplate"] = hover(panel) + (curve.name.empty() ? "<extra></extra>" : "");
+    if (curve.style == CurveStyle::points || curve.style == CurveStyle::crosses) {
+        json["mode"] = "markers";
+        json["cliponaxis"] = false;
+        json["marker"] = {{"color", ink_rgb(curve.ink)}, {"size", 6}};
+        if (curve.style == CurveStyle::crosses) json["marker"]["symbol"] = "x";
+    } else if (curve.style == CurveStyle::stems) {
+        stems(json, curve);
+    } else {
+        json["mode"] = "lines";
+        json["line"] = {{"color", ink_rgb(curve.ink)}, {"width", 1.5}, {"dash", dash_of(curve.style)}};
+        if (curve.style == CurveStyle::steps) json["line"]["shape"] = "hv";
+    }
+    return json;
+}
+
+namespace {
+
+// The lower edge first, then the upper, which fills down to it.
+Json ribbon_trace(Json json, const Ribbon& ribbon, bool upper) {
+    json["x"] = numbers_json(ribbon.x);
+    json["y"] = numbers_json(upper ? ribbon.high : ribbon.low);
+    json["mode"] = "lines";
+    json["line"] = {{"width", 0}, {"color", ink_rgb(ribbon.ink)}};
+    json["hoverinfo"] = "skip";
+    if (upper) {
+        json["fill"] = "tonexty";
+        json["fillcolor"] = ink_rgb(ribbon.ink) + "40";
+    } else {
+        json["showlegend"] = false;
+    }
+    return json;
+}
+
+// The colour bar stands beside the panel, between `bottom` and `top` of the figure.
+Json map_trace(Json json, const Panel& panel, double bottom, double top) {
+    const HeatMap& map = *panel.map;
+    const std::size_t across = map.x_edges.size() - 1;
+    const bool log = map.scale == PlotScale::logarithmic;
+    json["x"] = numbers_json(map.x_edges);
+    json["y"] = numbers_json(map.y_edges);
+    Json z = Json::array(), said = Json::array();
+    for (std::size_t row = 0; row + 1 < map.y_edges.size(); ++row) {
+        Json z_row = Json::array(), said_row = Json::array();
+        for (std::size_t column = 0; column < across; ++column) {
+            const double cell = map.cells[row * across + column];
+            z_row.push_back(plotly_number(log ? portable::log10(within_colours(map, cell)) : cell));
+            said_row.push_back(plotly_number(cell));
+        }
+        z.push_back(std::move(z_row));
+        said.push_back(std::move(said_row));
+    }
+    json["z"] = std::move(z);
+    json["customdata"] = std::move(said);
+    json["zmin"] = log ? portable::log10(map.lowest) : map.lowest;
+    json["zmax"] = log ? portable::log10(map.highest) : map.highest;
+    json["colorscale"] = {{0, "#08112f"},   {0.2, "#17396e"}, {0.4, "#1d6d86"},
+                          {0.6, "#4aa27a"}, {0.8, "#b9c54b"}, {1, "#ffe94a"}};
+    json["hoverongaps"] = false;
+    json["hovertemplate"] = fmt::format("{}<br>{}: %{{customdata:.4~g}} {}<extra></extra>", hover(panel),
+                                        plotly_shown(map.label), plotly_shown(map.unit));
+    json["colorbar"] = {
+        {"thickness", 14},
+        {"len", top - bottom},
+        {"y", 0.5 * (bottom + top)},
+        {"outlinewidth", 0},
+        {"x", 1.01},
+        {"xanchor", "left"},
+        {"title", {{"text", plotly_shown(axis_text({map.label, map.unit}))}, {"side", "right"}}}};
+    if (log) colour_ticks(json["colorbar"], map);
+    return json;
+}
+
+// The named lines of a panel in a plotly figure: where a line leaves the panel its name stands, and names
+// that would lie on each other are pushed apart.
+
+constexpr double plot_px = 780.0;  ///< a page's width less the margins; narrower screens scale it
+
+constexpr double panel_px = 240.0;  ///< height of a panel of height 1
+
+class PlotlyLines {
+  public:
+    /// `suffix` of the panel's axes: empty, "2", "3", ...
+    PlotlyLines(const Panel& panel, std::string suffix);
+
+    /// Space for the names above the panel, or right of it.
+    [[nodiscard]] double names_px(bool on_top) const;
+    /// Adds shapes and annotations.
+    void write(Json& layout) const;
+
+  private:
+    [[nodiscard]] bool leaves_on_top(const NamedLine& line, const Segment& s) const;
+    void draw(Json& layout, const NamedLine& line, const Segment& s) const;
+    void label(Json& layout, const NamedLine& line, const Segment& s, bool on_top, double push_px) const;
+
+    const Panel& panel_;
+    std::string suffix_;
+    PlotRange x_, y_;
+};
+
+std::string shown_name(const NamedLine& line) { return cut_to(visible_text(line.name), 28); }
+
+PlotlyLines::PlotlyLines(const Panel& panel, std::string suffix)
+    : panel_(panel), suffix_(std::move(suffix)), x_(x_range(panel)), y_(y_range(panel)) {}
+
+double PlotlyLines::names_px(bool on_top) const {
+    double longest = 0.0;
+    for (const NamedLine& line : panel_.lines) {
+        Segment s{};
+        if (line.name.empty() || !segment_of(line, x_, y_, s) || on_top != leaves_on_top(line, s)) continue;
+        longest = std::max(longest, small_letter_px * static_cast<double>(text_width(shown_name(line))));
+    }
+    return longest > 0.0 ? longest + 22.0 : 0.0;
+}
+
+bool PlotlyLines::leaves_on_top(const NamedLine& line, const Segment& s) const {
+    if (line.run == NamedLine::Run::at_x) return true;
+    return line.run == NamedLine::Run::ray && s.y1 >= y_.to - 1e-9 * (y_.to - y_.from) &&
+           s.x1 < x_.to - 1e-9 * (x_.to - x_.from);
+}
+
+// The lines themselves, and their names pushed off each other at the edge where they leave.
+void PlotlyLines::write(Json& layout) const {
+    for (const bool on_top : {true, false}) {
+        std::vector<const NamedLine*> named;
+        std::vector<Segment> segments;
+        std::vector<double> wanted;
+        for (const NamedLine& line : panel_.lines) {
+            Segment s{};
+            if (!segment_of(line, x_, y_, s) || on_top != leaves_on_top(line, s)) continue;
+            draw(layout, line, s);
+            if (line.name.empty()) continue;
+            named.push_back(&line);
+            segments.push_back(s);
+            wanted.push_back(on_top
+                                 ? plot_px * share_along(x_, panel_.x.scale, s.x1)
+                                 : panel_px * panel_.height * (1.0 - share_along(y_, panel_.y.scale, s.y1)));
+        }
+        const auto placed = pushed_apart(wanted, 16.0, 0.0, on_top ? plot_px : panel_px * panel_.height);
+        for (std::size_t i = 0; i < named.size(); ++i)
+            label(layout, *named[i], segments[i], on_top, placed[i] - wanted[i]);
+    }
+}
+
+void PlotlyLines::draw(Json& layout, const NamedLine& line, const Segment& s) const {
+    layout["shapes"].push_back({{"type", "line"},
+                                {"layer", panel_.map ? "above" : "below"},
+                                {"xref", "x" + suffix_},
+                                {"yref", "y" + suffix_},
+                                {"x0", plotly_number(s.x0)},
+                                {"y0", plotly_number(s.y0)},
+                                {"x1", plotly_number(s.x1)},
+                                {"y1", plotly_number(s.y1)},
+                                {"line",
+                                 {{"color", panel_.map ? "#ffffffb0" : ink_rgb(line.ink)},
+                                  {"width", 1},
+                                  {"dash", line.dashed && !panel_.map ? "dash" : "solid"}}}});
+}
+
+// The name stands off its line's end by `push_px`; a leader ties them together.
+void PlotlyLines::label(Json& layout, const NamedLine& line, const Segment& s, bool on_top,
+                        double push_px) const {
+    const std::string x = "x" + suffix_, y = "y" + suffix_;
+    const bool log = (on_top ? panel_.x : panel_.y).scale == PlotScale::logarithmic;
+    const double where = on_top ? s.x1 : s.y1;
+    const bool inside = panel_.map && !on_top;
+    Json note{{"text", plotly_shown(shown_name(line))},
+              {"showarrow", false},
+              {"font", {{"size", 11}, {"color", inside ? "#ffffff" : "#1b1b1b"}}},
+              {"xref", on_top ? x : x + " domain"},
+              {"yref", on_top ? y + " domain" : y},
+              {"x", on_top ? plotly_number(log ? portable::log10(where) : where) : Json(1)},
+              {"y", on_top ? Json(1) : plotly_number(log ? portable::log10(where) : where)},
+              {"xanchor", on_top   ? "center"
+                          : inside ? "right"
+                                   : "left"},
+              {"yanchor", on_top || inside ? "bottom" : "middle"},
+              {"xshift", on_top   ? push_px
+                         : inside ? -2.0
+                                  : 14.0},
+              {"yshift", on_top ? 12.0 : -push_px},
+              {"textangle", on_top ? -90 : 0}};
+    if (inside) note["bgcolor"] = "#08112fb0";
+    layout["annotations"].push_back(std::move(note));
+    if (inside) return;
+    layout["shapes"].push_back({{"type", "line"},
+                                {"xref", on_top ? x : x + " domain"},
+                                {"yref", on_top ? y + " domain" : y},
+                                {"xsizemode", "pixel"},
+                                {"ysizemode", "pixel"},
+                                {"xanchor", on_top ? plotly_number(where) : Json(1)},
+                                {"yanchor", on_top ? Json(1) : plotly_number(where)},
+                                {"x0", 0},
+                                {"y0", 0},
+                                {"x1", on_top ? push_px : 11.0},
+                                {"y1", on_top ? 11.0 : -push_px},
+                                {"line", {{"color", "#888"}, {"width", 0.7}}}});
+}
 
 constexpr double left_margin_px = 84.0, tool_bar_px = 34.0;
 constexpr double axis_px = 56.0, row_px = 24.0;

@@ -10,6 +10,15 @@
 
 namespace ripplenotch {
 
+// Tables of a trend that lead to the reports of the logs.
+
+/// An alert a row: joint, cause, since when, surest sign, and the logs before and after it with links to
+/// their reports.
+[[nodiscard]] PageTable alert_table(const Json& alerts);
+
+/// A log a row, of the joints whose course is shown, each with a link to its report.
+[[nodiscard]] PageTable course_table(const Json& courses);
+
 /// The methods of a comparison under the labels A, B, C in the order given (a control keeps its name), with
 /// what each label stands for below, and why it does not fit where that was asked; columns that no method
 /// fills are left out.

@@ -1,21 +1,134 @@
 // SPDX-License-Identifier: MIT
-#include "ripplenotch/survey/survey.hpp"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 
 #include "ripplenotch/analysis/steady.hpp"
-#include "ripplenotch/log/passes.hpp"
-#include "survey/passing_rows.hpp"
+#include "ripplenotch/log/log.hpp"
+#include "ripplenotch/survey/survey.hpp"
 
 namespace ripplenotch {
+
 namespace {
+
+// Internal to the survey room: what is said of a joint's rows, found out while they go by.
+
+class PassingRows {
+  public:
+    /// `facts` of the log that will go by; the means are of as few rows as `most_means` allow.
+    PassingRows(const LogFacts& facts, std::size_t most_means);
+    void add(const TraceView& rows);
+
+    [[nodiscard]] std::optional<Range> speed_deg_s() const { return speed_.range(); }
+    [[nodiscard]] std::optional<Range> torque_nm() const { return torque_.range(); }
+    /// Of the joint, both directions added up.
+    [[nodiscard]] double turns() const;
+    /// Means of so many consecutive rows each, as a trace of its own, at a rate that is as much lower.
+    [[nodiscard]] Trace take_means();
+
+  private:
+    /// Of a signal whose first value is a number.
+    struct Extremes {
+        double low = std::numeric_limits<double>::infinity(), high = -low;
+        bool any = false, known = false;
+        void add(double value);
+        [[nodiscard]] std::optional<Range> range() const;
+    };
+    struct Sums {
+        std::size_t rows = 0;
+        double time_s = 0.0, velocity_deg_s = 0.0, torque_nm = 0.0, position_deg = 0.0;
+    };
+    void add_turns(const TraceView& rows, std::size_t k);
+    void end_mean();
+
+    std::size_t rows_, in_mean_, stride_, at_ = 0;
+    double rate_hz_;
+    Extremes speed_, torque_;
+    double moved_deg_ = 0.0, strode_from_deg_ = 0.0;
+    bool by_position_ = false, begins_run_ = false;
+    Sums sums_;
+    Trace means_;
+};
+
+constexpr double stride_s = 0.01;  // noise of a position at rest must not add up to turns
+
+PassingRows::PassingRows(const LogFacts& facts, std::size_t most_means)
+    : rows_(facts.rows),
+      in_mean_((facts.rows + most_means - 1) / most_means),
+      stride_(static_cast<std::size_t>(std::max(1.0, stride_s * facts.sample_rate.value()))),
+      rate_hz_(facts.sample_rate.value()) {
+    means_.sample_rate = Hertz(rate_hz_ / static_cast<double>(in_mean_));
+}
+
+}  // namespace
+
+void PassingRows::Extremes::add(double value) {
+    if (!any) known = std::isfinite(value);
+    any = true;
+    low = std::min(low, value);
+    high = std::max(high, value);
+}
+
+std::optional<Range> PassingRows::Extremes::range() const {
+    if (!known) return std::nullopt;
+    return Range{low, high};
+}
+
+namespace {
+
+// Each stride_-th row and the last, as in a log that is held.
+void PassingRows::add_turns(const TraceView& rows, std::size_t k) {
+    if (!rows.has_position()) {
+        if (rate_hz_ > 0.0 && speed_.known) moved_deg_ += std::abs(rows.velocity_deg_s[k]) / rate_hz_;
+        return;
+    }
+    by_position_ = true;
+    if (at_ == 0) strode_from_deg_ = rows.position_deg[k];
+    if (at_ % stride_ != 0 && at_ + 1 != rows_) return;
+    moved_deg_ += std::abs(rows.position_deg[k] - strode_from_deg_);
+    strode_from_deg_ = rows.position_deg[k];
+}
+
+void PassingRows::add(const TraceView& rows) {
+    begins_run_ = begins_run_ || (!rows.run_starts.empty() && at_ > 0);
+    for (std::size_t k = 0; k < rows.size(); ++k, ++at_) {
+        speed_.add(rows.velocity_deg_s[k]);
+        torque_.add(rows.torque_nm[k]);
+        add_turns(rows, k);
+        sums_.time_s += rows.time_s[k];
+        sums_.velocity_deg_s += rows.velocity_deg_s[k];
+        sums_.torque_nm += rows.torque_nm[k];
+        if (rows.has_position()) sums_.position_deg += rows.position_deg[k];
+        if (++sums_.rows == in_mean_) end_mean();
+    }
+}
+
+// A gap within the rows of a mean is told by the one before it, which is near enough for a stretch of
+// seconds.
+void PassingRows::end_mean() {
+    const auto rows = static_cast<double>(sums_.rows);
+    if (std::exchange(begins_run_, false) && means_.size() > 0) means_.run_starts.push_back(means_.size());
+    means_.time_s.push_back(sums_.time_s / rows);
+    means_.velocity_deg_s.push_back(sums_.velocity_deg_s / rows);
+    means_.torque_nm.push_back(sums_.torque_nm / rows);
+    if (by_position_) means_.position_deg.push_back(sums_.position_deg / rows);
+    sums_ = {};
+}
+
+double PassingRows::turns() const { return moved_deg_ / 360.0; }
+
+Trace PassingRows::take_means() {
+    if (sums_.rows > 0) end_mean();
+    return std::move(means_);
+}
 
 std::optional<Range> range_of(const std::vector<double>& values) {
     if (values.empty() || !std::isfinite(values.front())) return std::nullopt;

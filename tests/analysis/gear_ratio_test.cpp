@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "ripplenotch/analysis/gear_ratio.hpp"
+#include "ripplenotch/analysis/identification.hpp"
 
 #include <algorithm>
 #include <array>

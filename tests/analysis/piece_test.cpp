@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "analysis/spectrum/piece.hpp"
+#include "analysis/spectrum/stack.hpp"
 
-#include "analysis/spectrum/line_meter.hpp"
+#include "analysis/spectrum/order_map.hpp"
 #include "analysis/traces.hpp"
 #include "support/catch.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "analysis/spectrum/running_median.hpp"
+#include "analysis/spectrum/spectrum.hpp"
 
 #include <algorithm>
 

@@ -4,7 +4,7 @@
 #include <numbers>
 #include <random>
 
-#include "analysis/motion/line_removal.hpp"
+#include "analysis/motion/motion_lines.hpp"
 #include "ripplenotch/analysis/stack.hpp"
 #include "support/catch.hpp"
 

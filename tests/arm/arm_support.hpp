@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "ripplenotch/arm/arm_dynamics.hpp"
-#include "ripplenotch/arm/chain_files.hpp"
+#include "ripplenotch/arm/chain.hpp"
 
 namespace ripplenotch::test {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Chains as people have them: the same arm in every dialect is the same arm, and what is no arm is refused.
-#include "ripplenotch/arm/chain_files.hpp"
+#include "ripplenotch/arm/chain.hpp"
 
 #include <filesystem>
 #include <fstream>

@@ -5,10 +5,8 @@
 #include <cstring>
 #include <limits>
 
-#include "arm/fit/smooth_along.hpp"
+#include "arm/fit/stated_arm.hpp"
 #include "arm_support.hpp"
-#include "ripplenotch/arm/arm_term.hpp"
-#include "ripplenotch/arm/arm_travel.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "support/catch.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "ripplenotch/arm/joint_matching.hpp"
 
-#include "ripplenotch/arm/chain_files.hpp"
+#include "ripplenotch/arm/chain.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "support/catch.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // An arm whose values are stated gives the torque that its columns gave with the values they were fitted to.
-#include "ripplenotch/arm/stated_arm.hpp"
+#include "ripplenotch/arm/arm_fit.hpp"
 
 #include "arm/arm_support.hpp"
 #include "ripplenotch/core/error.hpp"

@@ -6,7 +6,7 @@
 #include "benchmark.hpp"
 #include "core/vectors/dispatch.hpp"
 #include "filter/bank/filter_bank.hpp"
-#include "filter/kernels/block_cascade.hpp"
+#include "filter/kernels/block_sections.hpp"
 #include "ripplenotch/core/spec.hpp"
 #include "ripplenotch/filter/method.hpp"
 

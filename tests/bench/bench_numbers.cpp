@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "benchmark.hpp"
-#include "core/text/fixed_texts.hpp"
+#include "core/text/print_fixed.hpp"
 #include "core/vectors/dispatch.hpp"
 #include "log/text/quick_rows.hpp"
 #include "ripplenotch/core/number.hpp"

@@ -6,14 +6,13 @@
 
 #include "analysis/traces.hpp"
 #include "filter/tables.hpp"
-#include "ripplenotch/analysis/motion_runs.hpp"
+#include "ripplenotch/analysis/sweeps.hpp"
 #include "ripplenotch/chart/comparison_figure.hpp"
-#include "ripplenotch/chart/identification_figure.hpp"
 #include "ripplenotch/chart/spectrum_figure.hpp"
 #include "ripplenotch/chart/table_figure.hpp"
-#include "ripplenotch/chart/torque_course.hpp"
-#include "ripplenotch/design/low_pass.hpp"
-#include "ripplenotch/evaluate/bench.hpp"
+#include "ripplenotch/chart/track_figure.hpp"
+#include "ripplenotch/design/notch.hpp"
+#include "ripplenotch/evaluate/contender.hpp"
 #include "support/catch.hpp"
 
 using namespace ripplenotch;

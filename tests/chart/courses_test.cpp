@@ -2,8 +2,7 @@
 #include <cmath>
 
 #include "ripplenotch/analysis/track_report.hpp"
-#include "ripplenotch/chart/compared_course.hpp"
-#include "ripplenotch/chart/torque_course.hpp"
+#include "ripplenotch/chart/comparison_figure.hpp"
 #include "ripplenotch/chart/track_figure.hpp"
 #include "support/catch.hpp"
 

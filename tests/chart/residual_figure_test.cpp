@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "ripplenotch/chart/residual_figure.hpp"
+#include "ripplenotch/chart/diagnosis_figure.hpp"
 
 #include <cmath>
 #include <tuple>
 
-#include "ripplenotch/chart/diagnosis_figure.hpp"
 #include "ripplenotch/chart/track_figure.hpp"
 #include "support/catch.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A log that goes by says what it says in memory, bit for bit: clock, warnings, speed and spectrum.
-#include "cli/spectrum/streamed_spectrum.hpp"
+#include "cli/spectrum/spectrum.hpp"
 
 #include <cmath>
 #include <numbers>

@@ -104,6 +104,21 @@ class Warm(Case):
         for method in "map", "oscillator":
             self.assertAlmostEqual(errors[method], self.left(f"{method},map={self.map}", slow), delta=1e-7)
 
+    def test_a_wrong_option_is_not_taken_for_a_missing_column(self):
+        self.write((20, 40))
+        self.made(self.log, *self.COLUMN)
+        method, out = f"map,map={self.map}", self.folder / "out.csv"
+        for words, code, message in ((("--joint", "elbow"), 2, "--joint elbow"), (("--unit", "velocity=Nm"), 2, "velocity=Nm"),
+                                     (("--columns", "torque=torque_nm,velocity=nix"), 2, "'nix'")):
+            done = run("filter", self.log, "--method", method, "-o", out, "--force", *words)
+            self.assertEqual(done.returncode, code, done.stderr)
+            self.assertIn(message, done.stderr)
+            self.assertNotIn("drive_degc", done.stderr)
+        self.log.write_text(self.log.read_text().replace("drive_degc", "motor_current"))
+        done = run("filter", self.log, "--method", method, "-o", out, "--force")
+        self.assertEqual(done.returncode, 3)
+        self.assertIn("read no column 'drive_degc', expected the temperature", done.stderr)
+
     def test_cells_without_a_temperature_are_those_before_them_and_counted(self):
         self.write((20, 40))
         self.made(self.log, *self.COLUMN)

@@ -10,8 +10,6 @@
 #include <thread>
 
 #include "ripplenotch/core/error.hpp"
-#include "ripplenotch/core/inputs_read.hpp"
-#include "ripplenotch/core/spool.hpp"
 #include "support/catch.hpp"
 
 using namespace ripplenotch;

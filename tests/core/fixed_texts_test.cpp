@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Numbers printed side by side have the bytes of printf, on every instruction set, whoever their neighbours
 // are.
-#include "core/text/fixed_texts.hpp"
+#include "core/text/print_fixed.hpp"
 
 #include <algorithm>
 #include <bit>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "core/files/hash_beside.hpp"
+#include "core/files/sha256.hpp"
 
 #include <algorithm>
 #include <cstdio>

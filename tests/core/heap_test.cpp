@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "core/process/heap.hpp"
+#include "core/process/memory.hpp"
 
 #include <sys/mman.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "core/matrices/least_squares.hpp"
 
-#include "core/rows/rms.hpp"
+#include "core/rows/row_facts.hpp"
 #include "support/catch.hpp"
 
 using namespace ripplenotch;

@@ -9,7 +9,6 @@
 #include <random>
 #include <vector>
 
-#include "ripplenotch/core/phasor.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 #include "support/catch.hpp"
 #include "support/vectors.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "ripplenotch/core/output_name.hpp"
+#include "ripplenotch/core/files.hpp"
 
 #include "ripplenotch/core/error.hpp"
 #include "support/catch.hpp"

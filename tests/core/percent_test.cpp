@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "ripplenotch/core/percent.hpp"
+#include "ripplenotch/core/number.hpp"
 
 #include "support/catch.hpp"
 

@@ -11,7 +11,6 @@
 #include <random>
 #include <vector>
 
-#include "ripplenotch/core/phasor.hpp"
 #include "support/catch.hpp"
 #include "support/vectors.hpp"
 

@@ -3,7 +3,6 @@
 #include <numbers>
 
 #include "ripplenotch/core/error.hpp"
-#include "ripplenotch/core/units.hpp"
 #include "support/catch.hpp"
 
 using namespace ripplenotch;

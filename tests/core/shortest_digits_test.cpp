@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The shortest text of usual numbers is that of the formatting library, byte for byte.
-#include "core/text/shortest_digits.hpp"
+#include "core/text/number.hpp"
 
 #include <bit>
 #include <cmath>

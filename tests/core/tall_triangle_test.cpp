@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "core/matrices/tall_triangle.hpp"
+#include "core/matrices/least_squares.hpp"
 
 #include <cmath>
 #include <random>

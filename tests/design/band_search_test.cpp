@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What a search is told beforehand, and what it finds out sooner, changes nothing of what it finds.
-#include "design/band_search.hpp"
+#include "design/band_fit.hpp"
 
 #include <cmath>
 

@@ -6,7 +6,7 @@
 #include <random>
 
 #include "ripplenotch/core/error.hpp"
-#include "ripplenotch/design/transient.hpp"
+#include "ripplenotch/design/notch.hpp"
 #include "support/catch.hpp"
 
 using namespace ripplenotch;

@@ -6,7 +6,6 @@
 #include <numbers>
 
 #include "ripplenotch/core/error.hpp"
-#include "ripplenotch/design/frontier.hpp"
 #include "support/catch.hpp"
 
 using namespace ripplenotch;

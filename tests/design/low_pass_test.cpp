@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "ripplenotch/design/low_pass.hpp"
+#include "ripplenotch/design/notch.hpp"
 
 #include <cmath>
 #include <limits>
 #include <numbers>
 
-#include "ripplenotch/design/transient.hpp"
 #include "support/catch.hpp"
 
 using namespace ripplenotch;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "ripplenotch/design/table_work.hpp"
+#include "ripplenotch/design/candidate_table.hpp"
 
 #include "ripplenotch/core/error.hpp"
 #include "support/catch.hpp"

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "ripplenotch/design/transient.hpp"
+#include "ripplenotch/design/notch.hpp"
 
 #include <cmath>
 #include <random>
 
-#include "ripplenotch/design/low_pass.hpp"
-#include "ripplenotch/design/notch.hpp"
 #include "support/catch.hpp"
 
 using namespace ripplenotch;

@@ -9,7 +9,7 @@
 #include "diagnose/search/model_bench.hpp"
 #include "diagnose_fixture.hpp"
 #include "ripplenotch/core/portable_math.hpp"
-#include "ripplenotch/model/measured_motion.hpp"
+#include "ripplenotch/model/motion.hpp"
 
 namespace ripplenotch::fixture {
 

@@ -6,8 +6,8 @@
 
 #include "diagnose_fixture.hpp"
 #include "ripplenotch/core/error.hpp"
+#include "ripplenotch/model/fit.hpp"
 #include "ripplenotch/model/motion.hpp"
-#include "ripplenotch/model/noise.hpp"
 #include "support/catch.hpp"
 
 using namespace ripplenotch;

@@ -5,7 +5,7 @@
 
 #include "diagnose_fixture.hpp"
 #include "ripplenotch/core/portable_math.hpp"
-#include "ripplenotch/model/measured_motion.hpp"
+#include "ripplenotch/model/motion.hpp"
 #include "ripplenotch/model/sensors.hpp"
 #include "support/catch.hpp"
 

@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "ripplenotch/diagnose/setup.hpp"
+#include "ripplenotch/model/fit.hpp"
 #include "ripplenotch/model/model.hpp"
 #include "ripplenotch/model/motion.hpp"
-#include "ripplenotch/model/noise.hpp"
 
 namespace ripplenotch::fixture {
 

@@ -5,7 +5,7 @@
 #include "diagnose/judging/values.hpp"
 #include "diagnose/search/search.hpp"
 #include "diagnose_fixture.hpp"
-#include "ripplenotch/model/measured_motion.hpp"
+#include "ripplenotch/model/motion.hpp"
 #include "support/catch.hpp"
 
 using namespace ripplenotch;

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "document/json/json_door.hpp"
+#include "document/json/json.hpp"
 
 #include <string>
 
-#include "document/json/limits.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "support/catch.hpp"
 

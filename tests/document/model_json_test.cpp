@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "ripplenotch/arm/chain_files.hpp"
+#include "ripplenotch/arm/chain.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "support/catch.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "ripplenotch/evaluate/bench.hpp"
+#include "ripplenotch/evaluate/contender.hpp"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 
 #include "evaluate/contenders.hpp"
 #include "ripplenotch/core/biquad.hpp"
-#include "ripplenotch/design/transient.hpp"
+#include "ripplenotch/design/notch.hpp"
 #include "support/catch.hpp"
 
 using namespace ripplenotch;

@@ -6,7 +6,7 @@
 #include <random>
 
 #include "evaluate/contenders.hpp"
-#include "ripplenotch/evaluate/bench.hpp"
+#include "ripplenotch/evaluate/contender.hpp"
 #include "ripplenotch/evaluate/match_low_pass.hpp"
 #include "support/catch.hpp"
 

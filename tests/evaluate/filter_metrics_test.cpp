@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "ripplenotch/evaluate/filter_metrics.hpp"
+#include "ripplenotch/evaluate/ledger.hpp"
 
 #include "support/catch.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "ripplenotch/evaluate/switch_ledger.hpp"
+#include "ripplenotch/evaluate/contender.hpp"
 #include "support/catch.hpp"
 
 using namespace ripplenotch;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What float, six digits and four decimals do to a narrow notch at a low frequency, against published
 // figures; and the three structures in float and double.
-#include "ripplenotch/export/arithmetic.hpp"
+#include "ripplenotch/export/filter_set.hpp"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Maps in the form of each target, read back and run.
 
-#include "export/map/map_targets.hpp"
+#include "export/map/map_target.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Frequency, width and depth as firmware and drives say them: identities and published cases.
-#include "export/parameters.hpp"
+#include "export/text.hpp"
 
 #include <cmath>
 

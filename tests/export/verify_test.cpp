@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "export/run/bank.hpp"
-#include "export/text_reader.hpp"
+#include "export/text.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "support/catch.hpp"
 

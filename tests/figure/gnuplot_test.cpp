@@ -3,8 +3,8 @@
 
 #include <filesystem>
 
+#include "figure/gnuplot_picture.hpp"
 #include "figure/gnuplot_script.hpp"
-#include "figure/same_bytes.hpp"
 #include "ripplenotch/core/visible_text.hpp"
 #include "support/catch.hpp"
 

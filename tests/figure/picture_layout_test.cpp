@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "figure/picture_layout.hpp"
+#include "figure/gnuplot_picture.hpp"
 
 #include <algorithm>
 #include <cmath>

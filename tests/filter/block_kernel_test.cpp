@@ -5,11 +5,10 @@
 #include <cstring>
 #include <limits>
 
-#include "filter/kernels/block_cascade.hpp"
-#include "filter/kernels/block_difference.hpp"
-#include "filter/kernels/serial_cascade.hpp"
+#include "filter/kernels/bank_sections.hpp"
+#include "filter/kernels/block_sections.hpp"
 #include "filter/tables.hpp"
-#include "ripplenotch/design/low_pass.hpp"
+#include "ripplenotch/design/notch.hpp"
 #include "support/catch.hpp"
 #include "support/vectors.hpp"
 

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "filter/tables.hpp"
+#include "ripplenotch/model/fit.hpp"
 #include "ripplenotch/model/model.hpp"
 #include "ripplenotch/model/motion.hpp"
-#include "ripplenotch/model/noise.hpp"
 
 namespace ripplenotch::testing {
 

@@ -5,10 +5,10 @@
 
 #include <array>
 
-#include "filter/bank/gain_schedule.hpp"
+#include "filter/bank/filter_bank.hpp"
 #include "filter/moves.hpp"
-#include "filter/ripple/motor_angle.hpp"
 #include "filter/ripple/ripple_kalman.hpp"
+#include "filter/ripple/ripple_keys.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "support/catch.hpp"
 

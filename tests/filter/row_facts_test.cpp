@@ -6,7 +6,6 @@
 #include <random>
 #include <vector>
 
-#include "core/rows/first_outside.hpp"
 #include "core/rows/row_facts.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/log/format.hpp"

@@ -5,9 +5,9 @@
 #include <cstring>
 #include <limits>
 
-#include "core/rows/first_outside.hpp"
+#include "core/rows/row_facts.hpp"
 #include "filter/bank/filter_bank.hpp"
-#include "filter/kernels/direct_form.hpp"
+#include "filter/kernels/bank_sections.hpp"
 #include "filter/kernels/in_series.hpp"
 #include "filter/tables.hpp"
 #include "support/catch.hpp"

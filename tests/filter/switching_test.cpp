@@ -3,7 +3,7 @@
 
 #include "filter/tables.hpp"
 #include "ripplenotch/core/error.hpp"
-#include "ripplenotch/filter/supervisor.hpp"
+#include "ripplenotch/filter/engine.hpp"
 #include "support/catch.hpp"
 
 using namespace ripplenotch;

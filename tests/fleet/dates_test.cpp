@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "ripplenotch/fleet/log_date.hpp"
+#include "ripplenotch/fleet/features.hpp"
 #include "support/catch.hpp"
 
 #include "ripplenotch/core/error.hpp"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "fleet/trend/regression.hpp"
+#include "fleet/trend/change_test.hpp"
 
 #include <cmath>
 
-#include "ripplenotch/model/noise.hpp"
+#include "ripplenotch/model/fit.hpp"
 #include "support/catch.hpp"
 
 using namespace ripplenotch;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Descriptions of robots: URDF, MuJoCo, tables of Denavit and Hartenberg, and letters.
 #include "fuzz/fuzz.hpp"
-#include "ripplenotch/arm/chain_files.hpp"
+#include "ripplenotch/arm/chain.hpp"
 
 using namespace ripplenotch;
 using namespace ripplenotch::fuzz;

@@ -12,8 +12,7 @@
 #include "ripplenotch/document/identification_json.hpp"
 #include "ripplenotch/document/model_json.hpp"
 #include "ripplenotch/document/table_json.hpp"
-#include "ripplenotch/page/html_page.hpp"
-#include "ripplenotch/page/result_section.hpp"
+#include "ripplenotch/page/page.hpp"
 
 using namespace ripplenotch;
 using namespace ripplenotch::fuzz;

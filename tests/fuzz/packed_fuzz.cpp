@@ -4,8 +4,8 @@
 #include <algorithm>
 
 #include "fuzz/fuzz.hpp"
-#include "log/detect_format.hpp"
-#include "log/read_on.hpp"
+#include "log/open.hpp"
+#include "log/read.hpp"
 #include "log/unpack/unpacked_source.hpp"
 
 using namespace ripplenotch;

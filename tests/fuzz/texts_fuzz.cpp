@@ -8,7 +8,7 @@
 #include "ripplenotch/core/spec.hpp"
 #include "ripplenotch/core/visible_text.hpp"
 #include "ripplenotch/filter/method.hpp"
-#include "ripplenotch/log/time_range.hpp"
+#include "ripplenotch/log/layout.hpp"
 
 using namespace ripplenotch;
 using namespace ripplenotch::fuzz;

@@ -118,6 +118,22 @@ class Pages(unittest.TestCase):
         self.assertEqual(done.returncode, 2)
         self.assertIn("did you mean --gear-ratio?", done.stderr)
 
+    def test_a_mistyped_name_of_any_list_is_answered_with_the_nearest(self):
+        log = SOURCE / "data" / "paper_rest.csv"
+        for words, nearest in ((("info", log, "--format", "cvs"), "csv"), (("filter", log, "--method", "swiching"), "switching"),
+                               (("export", log, "--to", "c-heder"), "c-header"), (("effects", "vicous-friction"), "viscous-friction"),
+                               (("simulate", "--motion", "sien"), "sine")):
+            done = run(*map(str, words))
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertIn(f"(did you mean {nearest}?)", done.stderr)
+
+    def test_a_mistyped_option_before_a_command_is_answered_too(self):
+        for words, message in ((("--vesrion",), "there is no option --vesrion before a command (did you mean --version?)"),
+                               (("--nosuch", "identify", "log.csv"), "there is no option --nosuch before a command; see ripplenotch --help")):
+            done = run(*words)
+            self.assertEqual((done.returncode, done.stdout), (2, ""))
+            self.assertIn(message, done.stderr)
+
     def test_an_option_given_twice_is_named(self):
         done = run("design", "--gear-ratio", "100", "--gear-ratio", "101")
         self.assertEqual(done.returncode, 2)

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "log/columns/column_name.hpp"
-#include "log/columns/unit_text.hpp"
+#include "log/columns/units.hpp"
 #include "support/catch.hpp"
 
 using namespace ripplenotch;

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "fuzz/reading.hpp"
-#include "log/unpack/unpacker.hpp"
+#include "log/unpack/unpacked_source.hpp"
 #include "support/catch.hpp"
 
 using namespace ripplenotch;

@@ -9,7 +9,7 @@
 #include <random>
 #include <set>
 
-#include "log/detect_format.hpp"
+#include "log/open.hpp"
 #include "log_support.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "support/catch.hpp"

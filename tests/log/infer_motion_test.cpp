@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "log/columns/conventions.hpp"
+#include "log/columns/column_name.hpp"
 #include "log_support.hpp"
 #include "ripplenotch/core/quantity.hpp"
 #include "support/catch.hpp"

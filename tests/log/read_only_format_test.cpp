@@ -2,7 +2,7 @@
 // A format that is read and not written: a record without writers is enough for one.
 #include <array>
 
-#include "log/detect_format.hpp"
+#include "log/open.hpp"
 #include "log_support.hpp"
 #include "support/catch.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The quick way through a row agrees with the careful way, bit for bit.
-#include "log/text/row_parser.hpp"
+#include "log/text/quick_rows.hpp"
 
 #include <cmath>
 #include <random>

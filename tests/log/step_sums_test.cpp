@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "log/clock/step_sums.hpp"
+#include "log/clock/clock_check.hpp"
 
 #include <algorithm>
 #include <random>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "log/records/strided_copy.hpp"
+#include "log/records/joined_records.hpp"
 
 #include <string>
 

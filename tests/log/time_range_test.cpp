@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Which rows a range keeps: times as they are typed, times on the axis of a log, and the cut of every format.
-#include "log/clock/time_axis.hpp"
+#include "log/clock/choose_time.hpp"
 #include "log/row_cut.hpp"
 #include "log_support.hpp"
 #include "support/catch.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "model/spring/between_samples.hpp"
+#include "model/spring/mass_on_spring.hpp"
 
 #include <cmath>
 #include <complex>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A free mass on a damped spring, over steps of many lengths.
-#include "model/spring/free_move.hpp"
+#include "model/spring/mass_on_spring.hpp"
 
 #include <cmath>
 

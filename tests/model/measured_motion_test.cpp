@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "ripplenotch/model/measured_motion.hpp"
+#include "ripplenotch/model/motion.hpp"
 
 #include <cmath>
 #include <random>
@@ -7,7 +7,6 @@
 #include "model/motion/local_motion.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/model/model.hpp"
-#include "ripplenotch/model/motion.hpp"
 #include "support/catch.hpp"
 
 using namespace ripplenotch;

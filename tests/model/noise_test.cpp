@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "ripplenotch/model/noise.hpp"
+#include "ripplenotch/model/fit.hpp"
 
 #include <cmath>
 #include <vector>

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "effects_fixture.hpp"
-#include "model/carriers.hpp"
+#include "model/catalogue.hpp"
 #include "support/catch.hpp"
 
 using namespace ripplenotch;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A drive that turns with the joint.
-#include "model/spring/turning_drive.hpp"
+#include "model/spring/mass_on_spring.hpp"
 
 #include <cmath>
 #include <numbers>

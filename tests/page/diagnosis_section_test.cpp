@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "ripplenotch/document/diagnosis_json.hpp"
-#include "ripplenotch/page/result_section.hpp"
+#include "ripplenotch/page/page.hpp"
 #include "support/catch.hpp"
 #include "support/diagnoses.hpp"
 

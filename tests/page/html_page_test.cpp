@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "ripplenotch/page/html_page.hpp"
+#include "ripplenotch/page/page.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -8,8 +8,6 @@
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/document/figure_json.hpp"
 #include "ripplenotch/figure/gnuplot.hpp"
-#include "ripplenotch/page/plotly.hpp"
-#include "ripplenotch/page/result_section.hpp"
 #include "support/catch.hpp"
 #include "support/skipped.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "page/json_words.hpp"
+#include "page/json_table.hpp"
 
 #include "support/catch.hpp"
 

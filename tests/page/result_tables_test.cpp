@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "page/result_tables.hpp"
 
-#include "page/key_numbers.hpp"
-#include "ripplenotch/page/html_page.hpp"
-#include "ripplenotch/page/result_section.hpp"
+#include "page/result_section.hpp"
+#include "ripplenotch/page/page.hpp"
 #include "support/catch.hpp"
 
 using namespace ripplenotch;

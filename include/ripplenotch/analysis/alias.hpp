@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "ripplenotch/analysis/stack.hpp"
-#include "ripplenotch/core/units.hpp"
+#include "ripplenotch/core/quantity.hpp"
 
 namespace ripplenotch {
 

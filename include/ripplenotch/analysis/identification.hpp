@@ -7,15 +7,57 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "ripplenotch/analysis/velocity_error.hpp"
-#include "ripplenotch/analysis/verdict.hpp"
 #include "ripplenotch/core/gear_account.hpp"
+#include "ripplenotch/core/quantity.hpp"
 #include "ripplenotch/core/trace.hpp"
-#include "ripplenotch/core/units.hpp"
 
 namespace ripplenotch {
+
+// What an identification comes to, as values; the words are made of them in one place, verdict_sentence.
+//
+// Another reason for doubt is a name in DoubtReason and a Doubt from whoever knows of it: in
+// IdentifyOptions::doubts when it is known before the lines are looked for, with cast_doubt() when it follows
+// from what was found. A finding under a doubt is no verdict: the sentence begins with "Cannot tell:" and the
+// doubts, in the order in which they came, and the identification is not conclusive.
+
+/// What the lines come to.
+enum class RippleFinding {
+    ratio,       ///< ripple that turns with the joint, and the gear ratio
+    orders,      ///< ripple that turns with the joint; its gear ratio stays open
+    one_speed,   ///< lines, all at one speed, where an order and a fixed tone look alike
+    nothing,     ///< surely no ripple above SearchedOrders::detectable_nm in that range
+    too_little,  ///< the joint is at rest, or moves too little to say anything
+};
+[[nodiscard]] std::string_view finding_name(RippleFinding finding);
+/// Empty where nothing has this name.
+[[nodiscard]] std::optional<RippleFinding> finding_of(std::string_view name);
+
+/// Why the lines are not believed whatever they show.
+enum class DoubtReason {
+    clock,  ///< position, velocity and time contradict each other
+    unit,   ///< the unit of the motion is not stated, and another suits the lines as well
+};
+[[nodiscard]] std::string_view doubt_name(DoubtReason reason);
+/// Empty where nothing has this name.
+[[nodiscard]] std::optional<DoubtReason> doubt_of(std::string_view name);
+
+struct Doubt {
+    DoubtReason reason = DoubtReason::clock;
+    std::string because;  ///< half a sentence, with what would settle it; no capital, no full stop
+    bool operator==(const Doubt&) const = default;
+};
+
+/// What a verdict rests on.
+struct Grounds {
+    std::size_t sweeps = 0, rests = 0;  ///< pieces of motion in one direction, and of standstill
+    double sweep_turns = 0.0;           ///< output turns that the sweeps cover
+    double slowest_deg_s = 0.0, fastest_deg_s = 0.0;
+    double false_alarm = 0.0;
+};
 
 enum class LineKind { order, tone, unknown };
 [[nodiscard]] std::string_view line_kind_name(LineKind kind);
@@ -166,5 +208,45 @@ inline constexpr std::size_t fewest_identify_samples = 64;  ///< by hand: as for
 /// Lines and gear ratio of one joint from one or many of its logs. Throws DataError only for logs that are
 /// unusable as such (fewer than 64 samples).
 [[nodiscard]] Identification identify(std::span<const TraceView> logs, const IdentifyOptions& options);
+
+// The gear ratio Kg from the combs that output orders lie on: n Kg, where the wave generator turns against
+// the spline that stands still, and n (Kg + 1) or n (Kg - 1) against the one that moves.
+
+/// A line that turns with the joint.
+struct OrderLine {
+    double order_output = 0.0;
+    double error = 0.0;  ///< standard error of order_output from the line's own noise
+    double snr = 0.0;
+    double amplitude_nm = 0.0;
+    bool certain = true;        ///< false: it may also be a fixed tone
+    double speed_deg_s = 0.0;   ///< mean, at which the residual is stated
+    double shared_error = 0.0;  ///< relative standard error of the angle, which all lines have in common
+};
+
+struct GearRatioResult {
+    GearRatioFit fit;
+    /// Of each line, per turn of the motor, under fit.value: n on the first comb, n (Kg +/- 1) / Kg on the
+    /// second; empty where it lies off both.
+    std::vector<std::optional<double>> order_of_line;
+    std::vector<std::string> notes;
+};
+
+/// What is known beside the lines.
+struct RatioQuestion {
+    std::optional<GearRatio> hint{};
+    std::span<const int> hinted_orders{};  ///< n at which the strongest line is believed to stand
+};
+
+/// Ratios are compared by their posterior probability. A line lies on a tooth of a comb within its error, or
+/// anywhere by chance, which is the less probable the more clearly it is seen; a tooth has the prior
+/// probability of its n (1 to 32), so that a dense comb pays for what it explains by chance. Ratios have
+/// equal prior probability in the logarithm from 1 to 320, more where a catalogue has them, and more near the
+/// hint. Compared as well: no gear at all (whole orders of the shaft that was measured), no connection
+/// between the lines, and a mistaken unit. The scores are these probabilities. The value is left empty unless
+/// one ratio has at least 0.8 and explains two lines, or one and the hint. Fit: over the lines, by Huber's
+/// weights (k = 1.345); where they scatter more than their errors make likely (1 %), that widens the
+/// interval, by Student's t; the error that they share comes on top. Lines that both combs make up, too close
+/// together to be separated, count with the distance between the combs as their error.
+[[nodiscard]] GearRatioResult fit_gear_ratio(std::span<const OrderLine> lines, const RatioQuestion& question);
 
 }  // namespace ripplenotch

@@ -7,9 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "ripplenotch/core/speed_span.hpp"
+#include "ripplenotch/core/quantity.hpp"
 #include "ripplenotch/core/trace.hpp"
-#include "ripplenotch/core/units.hpp"
 
 namespace ripplenotch {
 

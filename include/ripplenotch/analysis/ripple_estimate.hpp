@@ -13,8 +13,8 @@
 #include <string>
 #include <vector>
 
+#include "ripplenotch/core/quantity.hpp"
 #include "ripplenotch/core/trace.hpp"
-#include "ripplenotch/core/units.hpp"
 
 namespace ripplenotch {
 

@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "ripplenotch/core/quantity.hpp"
 #include "ripplenotch/core/trace.hpp"
-#include "ripplenotch/core/units.hpp"
 
 namespace ripplenotch {
 

@@ -2,7 +2,7 @@
 #pragma once
 // What a logged velocity is off by.
 
-#include "ripplenotch/core/units.hpp"
+#include "ripplenotch/core/quantity.hpp"
 
 namespace ripplenotch {
 

@@ -6,11 +6,16 @@
 #include <array>
 #include <cstddef>
 #include <optional>
+#include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
 #include "ripplenotch/arm/arm_dynamics.hpp"
+#include "ripplenotch/arm/joint_matching.hpp"
+#include "ripplenotch/core/quantity.hpp"
 #include "ripplenotch/core/trace.hpp"
+#include "ripplenotch/model/model.hpp"
 
 namespace ripplenotch {
 
@@ -73,5 +78,110 @@ struct ArmFit {
 /// smoothed over the same window, and what is beside it.
 [[nodiscard]] std::vector<double> fitted_torque(const Chain& chain, const ArmFit& fit, const ArmLog& log,
                                                 std::size_t joint);
+
+// A fitted arm as part of a model: columns that a search leaves alone and fits with everything it tries.
+
+/// What is known of the arm before the torque of the joint in hand is looked at.
+enum class ArmKnowledge {
+    /// Nothing but the pull: a value a column, its mean 0, its deviation ArmFit::deviation.
+    pull,
+    /// What the other joints' torques say, too. Values that they tell together are no longer values of one
+    /// link: a column a combination, with a mean and a deviation of 1 in it.
+    other_joints,
+};
+
+/// Columns for the rows of `log`, those of links before the joint left out, and the rotor's last where it can
+/// be told from them; all smoothed over ArmFit::smoothing. Deviations are for a fit in which each row of the
+/// log is a measurement with deviation `row_noise_nm`: the knowledge weighs there what it weighs in the fit
+/// of the arm. Left out: what the arm left of this joint's torque, spread over the rows that the fit took for
+/// one. `motions`: arm_motions of the log over ArmFit::smoothing, where they are known already.
+[[nodiscard]] GivenTerm arm_term(const Chain& chain, const ArmFit& fit, const ArmLog& log, std::size_t joint,
+                                 ArmKnowledge knowledge = ArmKnowledge::other_joints,
+                                 std::optional<double> row_noise_nm = {},
+                                 std::span<const Motion> motions = {});
+
+// An arm as a part of a model: its chain, and the values of its links once they are known. It predicts the
+// torque of one joint along any log of all joints, and needs neither the robot's description nor the log that
+// it was fitted to.
+
+struct ArmValues {
+    std::vector<double> links;        ///< values_of_a_link each, in the order of arm_columns; not unique
+    double rotor_inertia_kgm2 = 0.0;  ///< of the joint's own rotor, as the joint feels it
+
+    bool operator==(const ArmValues&) const = default;
+};
+
+/// What is in the torque beside the arm and nobody named: an offset, and friction as BesideArm has it.
+struct ArmNuisance {
+    double offset_nm = 0.0, coulomb_nm = 0.0, viscous_nm_per_deg_s = 0.0, stribeck_nm = 0.0;
+
+    [[nodiscard]] bool any() const { return *this != ArmNuisance{}; }
+    bool operator==(const ArmNuisance&) const = default;
+};
+
+struct StatedArm {
+    Chain chain;
+    std::string joint;                      ///< of the chain: whose torque it is
+    std::vector<std::string> log_joints;    ///< names in a log, in the order of the chain
+    std::optional<ArmValues> values = {};   ///< left out: fitted
+    std::optional<Seconds> smoothing = {};  ///< of the motion that the arm sees; left out: chosen by a fit
+    ArmNuisance nuisance = {};
+
+    /// Which joint of the chain is which of a log.
+    [[nodiscard]] StatedJoints stated_joints() const;
+};
+
+/// The links that values of arm_term's columns mean, `of_term` in their order. Combinations of values that
+/// the joint's torque does not tell are those that the fit of all joints gave.
+[[nodiscard]] ArmValues arm_values(const Chain& chain, const ArmFit& fit, std::size_t joint,
+                                   std::span<const double> of_term,
+                                   ArmKnowledge knowledge = ArmKnowledge::other_joints);
+
+/// The torque in newton-metres of one joint along a log: links and rotor, smoothed as arm_term's columns are,
+/// so that it is the same torque. Throws what arm_motions throws.
+[[nodiscard]] std::vector<double> stated_torque(const Chain& chain, const ArmValues& values,
+                                                Seconds smoothing, const ArmLog& log, std::size_t joint);
+
+/// The torque that is beside it, at the speeds of the joint's own log.
+[[nodiscard]] std::vector<double> nuisance_torque(const Chain& chain, const ArmNuisance& nuisance,
+                                                  const TraceView& log, std::size_t joint);
+
+// How far each joint of an arm goes in a log, and whether it can go there.
+
+/// Less than this, and a link's inertia cannot be told from the next one's.
+inline constexpr double least_travel_deg = 5.0;
+
+struct JointTravel {
+    std::string name;       ///< in the chain
+    std::string log;        ///< in the log
+    double travel_deg = 0;  ///< from its least to its greatest position; of a prismatic joint m
+};
+
+/// `log_joints`: the joints' names in the log, in the order of the chain. Throws DataError where a position
+/// is so far out of the chain's limits, so often, that its unit must be another one.
+[[nodiscard]] std::vector<JointTravel> arm_travel(const Chain& chain, const ArmLog& log,
+                                                  const std::vector<std::string>& log_joints);
+
+/// Why the log tells less of the arm than another one could; or nothing.
+[[nodiscard]] std::vector<std::string> arm_warnings(const ArmFit& fit,
+                                                    const std::vector<JointTravel>& travel);
+
+// What there is to say of an arm that a diagnosis was given.
+
+struct ArmAccount {
+    std::string source;  ///< "ur10.urdf", "axes zyyzyz"
+    std::string rule;    ///< how joints were matched: "by name"
+    std::string option;  ///< that would force it
+    std::vector<JointTravel> joints;
+    std::size_t values_there = 0, values_told = 0;
+    bool values_are_stated = false;   ///< by a model; there is no fit then, and nothing below of one
+    bool all_joints_at_once = false;  ///< or this joint alone
+    bool lengths_are_guessed = false;
+    double pull = 0.0;
+    Seconds smoothing;
+    double gap_before_nm = 0.0;  ///< rms of the torque about its mean
+    double gap_nm = 0.0;         ///< rms of what arm and friction beside it leave, on fifths left out
+    std::vector<std::string> warnings, notes;
+};
 
 }  // namespace ripplenotch

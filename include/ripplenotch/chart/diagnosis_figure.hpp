@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <optional>
+#include <span>
 #include <string>
 
 #include "ripplenotch/core/trace.hpp"
@@ -7,6 +9,19 @@
 #include "ripplenotch/figure/figure.hpp"
 
 namespace ripplenotch {
+
+// Where a model and a log disagree, before and after.
+
+/// What is left of the torque by two models, one value a sample; `position_deg` may be empty. `after_nm` may
+/// be empty: one model only.
+struct Residuals {
+    std::span<const double> time_s, speed_deg_s, position_deg, before_nm, after_nm;
+};
+
+/// Residual against time, and its rms over position (time, without a position) and speed, with the same
+/// colours before and after.
+[[nodiscard]] Figure residual_figure(const std::string& title, const std::string& sentence,
+                                     const Residuals& residuals, std::optional<double> noise_floor_nm);
 
 /// "explained: coulomb-friction, tone; gap from 1.01 to 0.0493 Nm rms, noise floor 0.0494 Nm"
 [[nodiscard]] std::string diagnosis_sentence(const Diagnosis& diagnosis);

@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 
+#include "ripplenotch/analysis/identification.hpp"
 #include "ripplenotch/analysis/motion_lines.hpp"
 #include "ripplenotch/analysis/order_map.hpp"
 #include "ripplenotch/analysis/spectrum.hpp"
@@ -13,6 +14,9 @@
 #include "ripplenotch/figure/figure.hpp"
 
 namespace ripplenotch {
+
+/// Line frequency against speed with the fitted ratio, what the fit leaves, and amplitude against speed.
+[[nodiscard]] Figure identification_figure(const std::string& source, const Identification& identification);
 
 struct ShownSpectrum {
     std::string name;  ///< "stretch 2, 60 deg/s"; empty for the whole log

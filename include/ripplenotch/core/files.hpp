@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -137,5 +138,60 @@ class Sha256 {
 };
 
 [[nodiscard]] std::string sha256_of_file(const std::string& path);
+
+// Reading the same bytes twice: a file as it is, a pipe by way of a temporary file.
+
+class Spool {
+  public:
+    /// A regular file is opened and stays where it is; standard input ("-"), a named pipe or a device is read
+    /// to its end into a file without a name in the folder for temporary files (TMPDIR). Throws FileError.
+    explicit Spool(const std::string& path);
+    ~Spool();
+    Spool(const Spool&) = delete;
+    Spool& operator=(const Spool&) = delete;
+
+    /// The bytes from their start, under the name that people gave: those of the file that was opened,
+    /// whatever has its name by now.
+    [[nodiscard]] std::unique_ptr<ByteSource> open() const;
+
+  private:
+    std::string path_, name_;
+    std::shared_ptr<const OpenFile> file_;
+};
+
+// What the ending of a file's name promises about what is in it.
+
+/// Refuses to write one kind of file under the name of another. `what` is what would be written, as "a log",
+/// and `endings` those that fit it, with blanks between them: ".csv .npy". Endings that say no kind of file
+/// which the tool knows are free, so are names without one. Throws UsageError with the endings that fit.
+/// `option`: that was given the name.
+void check_output_name(std::string_view path, std::string_view what, std::string_view endings,
+                       std::string_view option = "-o");
+
+// What a run read: a file that is read twice is the same both times, and its SHA-256 is that of the bytes
+// that were read, whatever has become of the file.
+
+/// From now on a file that this process opens again must be what it was when it was first opened: one that
+/// was written to, or gave its name to another, is refused with a FileError. Off at the start; off forgets
+/// all.
+void watch_inputs(bool wanted);
+
+/// Whether what is read is hashed: not at all, by the thread that reads, or of long files by one beside it.
+enum class Hashing { none, here, beside };
+
+/// Of the files watched: from now on every ByteSource hashes what it reads, or none does any longer. It takes
+/// about a second for a gigabyte on a processor with instructions for it, five without: only for runs that
+/// tell.
+void hash_inputs(Hashing how);
+
+/// Of the bytes of `path` as they were first read to their end. Where nobody has read it, it is read now.
+/// Empty where inputs are watched and not hashed, for then nothing tells it. Throws FileError.
+[[nodiscard]] std::string sha256_as_read(const std::string& path);
+
+// How much memory a run may still take: asked before work that holds a whole log.
+
+/// In bytes: the least of what the system has left, of the limit of the process (ulimit -v) and of that of
+/// its control group (containers). Empty where nobody says any of them.
+[[nodiscard]] std::optional<std::uint64_t> memory_to_be_had();
 
 }  // namespace ripplenotch

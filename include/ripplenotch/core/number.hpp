@@ -2,6 +2,8 @@
 #pragma once
 // Numbers as text: strict, independent of the locale, exact in both directions.
 
+#include <fmt/format.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -10,6 +12,17 @@
 #include <string_view>
 
 namespace ripplenotch {
+
+/// A percentage as people print it, two significant digits and no exponent: "0.16", "4.2", "38", "100", and
+/// "0" for none, never "-0.0" or "1e+02". Without the sign.
+[[nodiscard]] std::string percent_text(double percent);
+
+/// "1 gap", "2 gaps"; `many` where an s does not make the plural: "2 switches".
+[[nodiscard]] inline std::string how_many(std::size_t count, std::string_view one,
+                                          std::string_view many = {}) {
+    if (count == 1) return fmt::format("1 {}", one);
+    return many.empty() ? fmt::format("{} {}s", count, one) : fmt::format("{} {}", count, many);
+}
 
 inline constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 

@@ -9,6 +9,13 @@
 #include <numbers>
 #include <span>
 
+namespace ripplenotch::portable {
+
+/// cos(angle) + i sin(angle), the bits of both, for little more than the price of one.
+[[nodiscard]] std::complex<double> phasor(double angle_rad);
+
+}  // namespace ripplenotch::portable
+
 namespace ripplenotch {
 
 inline constexpr double full_turn = 2.0 * std::numbers::pi;  ///< in radians

@@ -11,6 +11,9 @@
 
 namespace ripplenotch {
 
+inline constexpr std::string_view tool_name = "ripplenotch";
+[[nodiscard]] std::string_view version();
+
 class Progress {
   public:
     /// One stage of the work; `total` 0 when nobody knows.

@@ -67,4 +67,25 @@ class Settings {
 [[nodiscard]] std::optional<std::string> nearest_name(std::string_view text,
                                                       std::span<const std::string> known);
 
+/// " (did you mean lowpass?)" where `nearest_name` has an answer, else nothing: to be put behind the wrong
+/// name.
+[[nodiscard]] std::string did_you_mean(std::string_view text, std::span<const std::string> known);
+
+/// Throws the UsageError of find_entry.
+[[noreturn]] void raise_no_entry(std::string_view kind, std::string_view plural, std::string_view name,
+                                 std::span<const std::string> known);
+
+/// The entry of a registry that has this name. Throws UsageError "there is no <kind> 'x' (did you mean y?);
+/// <plural>: ..." where none has.
+template <class Entry>
+[[nodiscard]] const Entry& find_entry(std::span<const Entry* const> entries, std::string_view kind,
+                                      std::string_view plural, std::string_view name) {
+    std::vector<std::string> known;
+    for (const Entry* entry : entries) {
+        if (entry->name == name) return *entry;
+        known.emplace_back(entry->name);
+    }
+    raise_no_entry(kind, plural, name, known);
+}
+
 }  // namespace ripplenotch

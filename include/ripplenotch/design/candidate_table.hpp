@@ -2,6 +2,8 @@
 #pragma once
 // The table of candidate notch filters, one row per band of joint speed (Kim, Kim, Song 2011, table 1).
 
+#include <algorithm>
+#include <cstddef>
 #include <span>
 #include <string>
 #include <string_view>
@@ -9,8 +11,7 @@
 #include <vector>
 
 #include "ripplenotch/core/biquad.hpp"
-#include "ripplenotch/core/speed_span.hpp"
-#include "ripplenotch/core/units.hpp"
+#include "ripplenotch/core/quantity.hpp"
 #include "ripplenotch/design/notch.hpp"
 
 namespace ripplenotch {
@@ -90,6 +91,60 @@ class CandidateTable {
   private:
     TableSpec spec_;
     std::vector<Band> bands_;
+};
+
+// What holds at which speed: the bands of a table, and the rules for what lies below, between and above them.
+
+/// In force when no candidate is: the torque passes.
+inline constexpr int no_candidate = -1;
+
+/// A range of speed in which one rule holds: from < |v| <= to.
+struct SpeedRegion {
+    double from_deg_s = 0.0, to_deg_s = 0.0;
+    int candidate = no_candidate;  ///< index into the table's bands; no_candidate
+    bool holds = false;            ///< the candidate in force stays, whichever it is
+    /// Share of the filtered signal in the output: 1 but where the rule fades. It falls linearly from 1 at
+    /// full_deg_s to 0 at none_deg_s and stays 0 beyond; both equal means 1 everywhere.
+    double full_deg_s = 0.0, none_deg_s = 0.0;
+
+    [[nodiscard]] double share(double speed_deg_s) const noexcept;
+    [[nodiscard]] bool fades() const noexcept { return full_deg_s != none_deg_s; }
+};
+
+/// All speeds from 0 up, without holes. `fade` reaches from the edge of a band to half that speed below the
+/// first band, to one and a half times that speed above the last, and to the middle of a hole.
+[[nodiscard]] std::vector<SpeedRegion> speed_regions(std::span<const std::pair<DegPerSec, DegPerSec>> bands,
+                                                     OutsideRule below, OutsideRule above);
+[[nodiscard]] std::vector<SpeedRegion> speed_regions(std::span<const Band> bands, OutsideRule below,
+                                                     OutsideRule above);
+
+// A line near half the sample rate can be neither notched nor told from its mirror image: methods that follow
+// the ripple let go of it before it gets there, all in the same way.
+
+/// In cycles a sample: up to the first a line is taken out whole, from the second on not at all.
+inline constexpr double full_below_rate = 0.45, none_above_rate = 0.48;
+
+/// The share of a line at this frequency, in cycles a sample, that is taken out.
+[[nodiscard]] inline double share_below_rate(double cycles) noexcept {
+    return std::clamp((none_above_rate - cycles) / (none_above_rate - full_below_rate), 0.0, 1.0);
+}
+
+// How much work it is to measure the bands of a table: told before it is done, so that no table keeps anybody
+// waiting.
+
+constexpr std::size_t most_bands = 10000;  ///< by hand: docs/security.md
+constexpr std::size_t most_orders = 64;    ///< by hand: docs/security.md
+
+/// Adds up what measure_band() will have to do. A table that can be designed can be read again: both ask
+/// here.
+class TableWork {
+  public:
+    /// Throws UsageError when the bands added so far take more than about a second together.
+    void add(const Band& band, double settle_band_percent);
+
+  private:
+    std::size_t bands_ = 0;
+    double responses_ = 0.0, steps_ = 0.0;
 };
 
 }  // namespace ripplenotch

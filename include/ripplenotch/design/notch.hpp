@@ -2,12 +2,41 @@
 #pragma once
 // Notches: second-order sections that take out one frequency.
 
+#include <cstddef>
+#include <span>
 #include <string_view>
 
 #include "ripplenotch/core/biquad.hpp"
-#include "ripplenotch/core/units.hpp"
+#include "ripplenotch/core/quantity.hpp"
 
 namespace ripplenotch {
+
+/// Butterworth low-pass of any order (order 1: one real pole), bilinear, prewarped at the cut-off (-3 dB).
+struct LowPassSpec {
+    Hertz cutoff;
+    int order = 1;  ///< as the paper's
+};
+
+/// Sections in series, a first-order section first when the order is odd. Throws UsageError unless
+/// 0 < cutoff < sample_rate / 2 and 1 <= order <= 20.
+[[nodiscard]] Cascade design_low_pass(const LowPassSpec& spec, Hertz sample_rate);
+
+// Step figures of a cascade, measured on its own sampled response.
+
+struct StepFigures {
+    Seconds settle;                  ///< time after which the step response stays within the band
+    double overshoot_percent = 0.0;  ///< highest point above the final value; 0 when it never passes it
+};
+
+/// Response to a unit step at t = 0 from rest, run until it has surely settled. `band_percent` is half the
+/// width of the band around the final value, 0 < band_percent < 100. Throws UsageError on an unstable cascade
+/// or one that needs more than 5e7 samples.
+[[nodiscard]] StepFigures measure_step(std::span<const Biquad> cascade, Hertz sample_rate,
+                                       double band_percent);
+
+/// Samples after which a step response has surely come within `remainder` (0 < remainder < 1) of its final
+/// value. Throws UsageError on an unstable cascade or one that needs more than 5e7 samples.
+[[nodiscard]] std::size_t samples_to_settle(std::span<const Biquad> cascade, double remainder);
 
 inline constexpr double infinite_depth_db = 1e300;  ///< stands for a gain of 0
 

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "ripplenotch/core/units.hpp"
+#include "ripplenotch/core/quantity.hpp"
 
 namespace ripplenotch {
 

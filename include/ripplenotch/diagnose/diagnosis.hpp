@@ -13,9 +13,8 @@
 #include "ripplenotch/diagnose/alignment.hpp"
 #include "ripplenotch/diagnose/rules.hpp"
 #include "ripplenotch/model/fit.hpp"
-#include "ripplenotch/model/given_term.hpp"
-#include "ripplenotch/model/measured_motion.hpp"
 #include "ripplenotch/model/model.hpp"
+#include "ripplenotch/model/motion.hpp"
 #include "ripplenotch/model/setup_fault.hpp"
 
 namespace ripplenotch {

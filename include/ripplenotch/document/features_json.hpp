@@ -7,9 +7,17 @@
 #include <string_view>
 #include <vector>
 
-#include "ripplenotch/fleet/feature_line.hpp"
+#include "ripplenotch/fleet/features.hpp"
+#include "ripplenotch/fleet/shards.hpp"
 
 namespace ripplenotch {
+
+// The record that a complete shard leaves beside its lines.
+
+/// Schema ripplenotch/shard/1; same record, same bytes.
+[[nodiscard]] std::string shard_record_text(const ShardRecord& record);
+/// Reads it back. Throws DataError that names `source`, the field, what it holds and what was expected.
+[[nodiscard]] ShardRecord shard_record_from_json(std::string_view text, const std::string& source);
 
 /// One line with its line feed, schema ripplenotch/features/1; same features, same bytes. Units stand in the
 /// names, intervals under "..._ci95_...", reasons for null in "not_told".

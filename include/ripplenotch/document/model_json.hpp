@@ -6,12 +6,19 @@
 #include <string>
 #include <string_view>
 
-#include "ripplenotch/arm/stated_arm.hpp"
+#include "ripplenotch/arm/arm_fit.hpp"
 #include "ripplenotch/document/provenance.hpp"
-#include "ripplenotch/document/simulated_term.hpp"
 #include "ripplenotch/model/model.hpp"
 
 namespace ripplenotch {
+
+// The member `simulated` of a model.json: the torque of the user's own simulation as a part of the model.
+
+struct SimulatedTerm {
+    std::string column;           ///< of the log, or of the simulation's own
+    std::optional<double> scale;  ///< empty: 1, and whether it is another is one of a diagnosis' questions
+    double delay_s = 0.0;         ///< by which the column is later than the log
+};
 
 /// A model with what is given beside its effects.
 struct ModelWithGiven {

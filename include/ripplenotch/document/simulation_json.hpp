@@ -2,17 +2,45 @@
 #pragma once
 // What simulate says about a log that it made: enough to make it again, and what to expect in it.
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "ripplenotch/core/gear_account.hpp"
-#include "ripplenotch/core/units.hpp"
+#include "ripplenotch/core/quantity.hpp"
 #include "ripplenotch/document/provenance.hpp"
+#include "ripplenotch/export/verify.hpp"
+#include "ripplenotch/model/effect.hpp"
 #include "ripplenotch/model/model.hpp"
 
 namespace ripplenotch {
+
+// What `export` wrote and what came back when it was read again.
+
+struct ExportReport {
+    std::string target;  ///< as it would be typed again, with its keys
+    std::string file;    ///< as given to -o
+    std::size_t bytes = 0;
+    Hertz sample_rate;
+    std::size_t bands = 0, sections_per_band = 0;
+    std::vector<std::string> warnings;
+    std::string usage;       ///< one line to paste; may be empty
+    bool verified = false;   ///< what follows is known
+    std::string arithmetic;  ///< "float32, state-variable form"
+    std::vector<SectionCheck> checks;
+    std::vector<std::string> violations;
+};
+
+[[nodiscard]] std::string export_report_to_json(const ExportReport& report, const Provenance& provenance);
+
+// The catalogue of effects for programs: what ripplenotch effects --json prints.
+
+/// {"schema": "ripplenotch/effects/1", "effects": [...]}; docs/commands/effects.md names the fields.
+[[nodiscard]] std::string write_catalogue(std::span<const Effect* const> effects,
+                                          const Provenance& provenance);
 
 /// The log along whose motion a simulation ran, and how far it is from the torque measured there.
 struct Followed {

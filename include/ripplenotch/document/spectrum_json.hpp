@@ -7,11 +7,27 @@
 #include <vector>
 
 #include "ripplenotch/analysis/motion_lines.hpp"
+#include "ripplenotch/analysis/order_map.hpp"
 #include "ripplenotch/analysis/spectrum.hpp"
 #include "ripplenotch/analysis/steady.hpp"
+#include "ripplenotch/analysis/track_report.hpp"
+#include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/document/provenance.hpp"
 
 namespace ripplenotch {
+
+// A spectrum over speed as JSON.
+
+/// Schema ripplenotch/spectrum/1 with `domain` campbell or order-map. `axis_name` is what the axis counts:
+/// frequency_hz, order or order_output.
+[[nodiscard]] std::string speed_map_text(const std::string& joint, const SpeedMap& map,
+                                         std::string_view axis_name, const std::optional<GearAccount>& gear,
+                                         const Provenance& provenance);
+
+// What track measured, as JSON.
+
+/// Schema ripplenotch/track/1; the columns are arrays, null where a line was not measured.
+[[nodiscard]] std::string track_text(const TrackReport& report, const Provenance& provenance);
 
 /// A frequency spectrum and the samples that it is of.
 struct StretchSpectrum {

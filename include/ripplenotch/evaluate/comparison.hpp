@@ -9,11 +9,10 @@
 #include <string>
 #include <vector>
 
+#include "ripplenotch/core/quantity.hpp"
 #include "ripplenotch/core/trace.hpp"
-#include "ripplenotch/core/units.hpp"
 #include "ripplenotch/evaluate/contender.hpp"
 #include "ripplenotch/evaluate/ledger.hpp"
-#include "ripplenotch/evaluate/switch_ledger.hpp"
 
 namespace ripplenotch {
 

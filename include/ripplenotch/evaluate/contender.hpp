@@ -3,12 +3,15 @@
 // A method with its settings, its table and the gear whose ripple it is measured by, ready to be started as
 // often as it is needed.
 
+#include <array>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "ripplenotch/core/gear_account.hpp"
+#include "ripplenotch/core/quantity.hpp"
 #include "ripplenotch/core/spec.hpp"
 #include "ripplenotch/design/ripple_map.hpp"
 #include "ripplenotch/filter/method.hpp"
@@ -41,5 +44,84 @@ struct Contender {
 /// Finds the method and checks its settings; `table` is needed by some methods. Throws UsageError.
 [[nodiscard]] Contender make_contender(const Spec& spec,
                                        std::shared_ptr<const CandidateTable> table = nullptr);
+
+// The test bench: a running filter at one constant joint speed, fed with torque signals of the tool's own
+// making. What it reports is what the filter put out, sample by sample; no formula stands in for it.
+
+/// Per cent of a step within which it counts as settled.
+inline constexpr std::array<double, 4> settle_bands_percent = {0.5, 1.0, 2.0, 5.0};
+
+struct StepMeasurement {
+    std::array<Seconds, 4>
+        settle;  ///< per entry of settle_bands_percent: from the step until it stays within
+    double overshoot_percent = 0.0;  ///< above the step, in its direction
+};
+
+/// Attenuations above this cannot be told from a complete null in double precision and are reported as this.
+inline constexpr double most_attenuation_db = 200.0;
+
+class Bench {
+  public:
+    /// Borrows `contender`; `speed` may be 0. Throws UsageError when a measurement has not come to rest after
+    /// 1e7 samples.
+    Bench(const Contender& contender, Hertz sample_rate, DegPerSec speed)
+        : contender_(contender), sample_rate_(sample_rate), speed_(speed) {}
+    Bench(const Contender&& gone, Hertz sample_rate, DegPerSec speed) = delete;  // it is borrowed
+
+    /// The torque is 0 for ever, and `height` Nm (not 0) from t = 0 on.
+    [[nodiscard]] StepMeasurement step(NewtonMeters height) const;
+    /// The torque is 0 for ever, and rises by `slope_nm_s` (not 0) from t = 0 on: how far the output lags
+    /// behind once the lag no longer changes, to 1e-5 ms.
+    [[nodiscard]] Seconds ramp_delay(double slope_nm_s) const;
+    /// Input amplitude over output amplitude of a sine at `at`, once the output has settled; between -inf and
+    /// most_attenuation_db. Empty unless 0 < at < sample_rate / 2.
+    [[nodiscard]] std::optional<double> attenuation_db(Hertz at) const;
+
+  private:
+    const Contender& contender_;
+    Hertz sample_rate_;
+    DegPerSec speed_;
+};
+
+// The switching ledger: every change of filter on a log with what it did to the output, measured against the
+// torque that is known to be true.
+
+/// Errors are |output - truth|, from the change up to the next one, a gap or the end of the log: its stretch.
+/// They hold all that is wrong there, the new filter's lag and the ripple that it leaves included.
+struct SwitchEntry {
+    Switch change;
+    Seconds time;
+    Seconds stretch;                        ///< from the change to the last sample before the next one
+    std::optional<double> error_before_nm;  ///< at the sample before; empty right after a gap, or no truth
+    std::optional<double> peak_error_nm;    ///< the largest; empty without truth
+    std::optional<Seconds> peak_after;      ///< when, counted from the change
+    /// Per entry of settle_bands_percent (bench.hpp), in per cent of the true torque's range over the log:
+    /// from the change until the error stays within; empty when it is still outside at the stretch's end.
+    std::array<std::optional<Seconds>, 4> settle;
+};
+
+/// Takes a running filter's output block by block, in the order of the log.
+class SwitchLedger {
+  public:
+    /// `truth_nm`: row by row, or empty where it is not known.
+    explicit SwitchLedger(std::span<const double> truth_nm);
+
+    /// The next samples: their times and what the filter put out, with all its changes so far.
+    void add(std::span<const double> time_s, std::span<const double> out_nm, std::span<const Switch> changes);
+    /// Between two samples: a gap ends the stretch.
+    void split();
+
+    [[nodiscard]] const std::vector<SwitchEntry>& entries() const { return entries_; }
+
+  private:
+    void follow(Seconds time, double error_nm);
+    std::span<const double> truth_nm_;
+    std::array<double, 4> bands_nm_{};
+    std::vector<SwitchEntry> entries_;
+    std::size_t done_ = 0;  ///< samples seen
+    bool watched_ = false;  ///< the last entry's stretch goes on
+    std::array<bool, 4> outside_{};
+    std::optional<double> last_error_nm_;
+};
 
 }  // namespace ripplenotch

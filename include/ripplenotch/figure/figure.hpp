@@ -4,10 +4,26 @@
 // chart); renderers draw it, document writes it as JSON. Nothing here knows pixels.
 
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace ripplenotch {
+
+// Which figures there are: one line each in src/figure/figures.def. Help, docs/figures and tests follow it.
+
+struct FigureKind {
+    std::string_view name;     ///< Figure::name
+    std::string_view command;  ///< that draws it with --plot
+};
+
+/// All figures, in the order of figures.def.
+[[nodiscard]] std::span<const FigureKind> figure_kinds();
+/// "campbell, order-map": those of one command.
+[[nodiscard]] std::string figures_of(std::string_view command);
+/// Throws std::logic_error, which names the list, where no figure has this name.
+void require_listed_figure(std::string_view name);
 
 /// `whole`: linear, of things that are counted; numbers stand at whole values alone.
 enum class PlotScale { linear, logarithmic, whole };

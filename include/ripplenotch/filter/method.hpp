@@ -11,10 +11,9 @@
 #include <variant>
 #include <vector>
 
+#include "ripplenotch/core/quantity.hpp"
 #include "ripplenotch/core/spec.hpp"
-#include "ripplenotch/core/units.hpp"
 #include "ripplenotch/design/candidate_table.hpp"
-#include "ripplenotch/design/low_pass.hpp"
 #include "ripplenotch/design/notch.hpp"
 
 namespace ripplenotch {

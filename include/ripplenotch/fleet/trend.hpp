@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "ripplenotch/fleet/feature_line.hpp"
+#include "ripplenotch/fleet/features.hpp"
 
 namespace ripplenotch {
 

@@ -7,11 +7,91 @@
 #include <string>
 #include <vector>
 
+#include "ripplenotch/core/trace.hpp"
 #include "ripplenotch/log/clock.hpp"
-#include "ripplenotch/log/joint_angle.hpp"
 #include "ripplenotch/log/layout.hpp"
 
 namespace ripplenotch {
+
+// Is the position column this joint's? Asked once, where a log is read; all that follows takes the answer.
+
+/// Where the joint's angle comes from, and why.
+struct AngleFacts {
+    struct Parting {
+        std::size_t row = 0;       ///< of the log, 0-based
+        std::size_t used_row = 0;  ///< of the rows that are used
+    };
+    enum class Source { position, velocity };
+    enum class Verdict {
+        no_position,
+        no_velocity,        ///< that could be held against the position
+        too_little_motion,  ///< to tell: the position is believed
+        agrees,
+        reversed,   ///< agrees with its sign turned
+        stands,     ///< while the velocity says that the joint moves
+        scaled,     ///< follows the velocity, less than half or more than twice as far
+        unrelated,  ///< does not follow the velocity
+    };
+    Verdict verdict = Verdict::no_position;
+    std::optional<double> factor;  ///< position over velocity and time, where it is steady
+    /// Where position and velocity part on the way: from here on the angle goes by the velocity.
+    std::optional<Parting> contradicted;
+
+    [[nodiscard]] Source source() const;
+    /// One clause.
+    [[nodiscard]] std::string reason() const;
+    /// A sentence where the position is not taken as it stands, or the log contradicts itself later; or
+    /// empty.
+    [[nodiscard]] std::string warning() const;
+};
+[[nodiscard]] std::string_view source_name(AngleFacts::Source source);
+
+/// Compares position with velocity over pieces of motion of 2 deg and more, sixteen at a time, by the median
+/// of their ratios, which neither spikes nor jumps move. All of the opening decide, from six on, or else
+/// the first sixteen; later ones can only contradict. A position is unwrapped at half turns.
+class JointAngle {
+  public:
+    /// What the log has.
+    JointAngle(bool velocity, bool position);
+
+    /// Consecutive rows of the opening, before all rows are taken: what they say holds from the first row on.
+    void look(const TraceView& rows, bool begins_run);
+    /// The opening has been seen.
+    void decide();
+    /// Consecutive rows; `begins_run`: the row before is no past of theirs.
+    void follow(const TraceView& rows, bool begins_run);
+    /// Rows that are not used.
+    void skip(std::size_t rows) {
+        rows_ += rows;
+        skipped_ += rows;
+    }
+
+    [[nodiscard]] const AngleFacts& facts() const { return facts_; }
+
+  private:
+    struct Piece {
+        double velocity_deg = 0.0, position_deg = 0.0;
+    };
+    struct Row {
+        double time_s = 0.0, velocity_deg_s = 0.0, position_deg = 0.0;
+    };
+    struct Judgement {
+        AngleFacts::Verdict verdict;
+        std::optional<double> factor;
+    };
+    static Judgement judge(const std::vector<Piece>& pieces);
+    void add(const TraceView& rows, bool begins_run);
+    void end_piece();
+    void conclude();
+
+    AngleFacts facts_;
+    bool any_ = false, looking_ = false;
+    std::size_t rows_ = 0, skipped_ = 0;  ///< so far
+    Row last_;
+    Piece piece_;
+    double piece_begin_s_ = 0.0;
+    std::vector<Piece> pieces_;
+};
 
 /// Rows that repeat the row before because nothing new had been measured.
 struct HeldSamples {

@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "ripplenotch/core/quantity.hpp"
-#include "ripplenotch/core/units.hpp"
 
 namespace ripplenotch {
 

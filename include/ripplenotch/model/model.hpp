@@ -3,6 +3,7 @@
 // A model of a joint is a list of effects with their numbers. It copies, compares and prints; it runs nothing
 // itself.
 
+#include <algorithm>
 #include <optional>
 #include <span>
 #include <string>
@@ -13,6 +14,29 @@
 #include "ripplenotch/model/effect.hpp"
 
 namespace ripplenotch {
+
+// A part of a model that the user states and that is never searched: the torque of an arm's rigid bodies, or
+// of the user's own simulation. Unlike an effect it has columns of the whole log, and values that nobody asks
+// for one by one.
+
+/// Deviation of a value that is stated: so small that nothing moves it.
+inline constexpr double stated_deviation = 1e-9;
+
+/// Columns whose values are fitted together with everything else.
+struct GivenTerm {
+    std::string name;  ///< "arm", "simulated"; "nuisance": stated beside one of them, and nobody's name
+    /// One column a value: the torque in newton-metres that one unit of the value brings, an entry per row of
+    /// the log.
+    std::vector<std::vector<double>> torque_nm;
+    /// What is known of each value before the log: drawn towards `mean` as by a measurement with this
+    /// standard deviation, in the value's own unit. A deviation of infinity leaves it free.
+    std::vector<double> mean, deviation;
+};
+
+/// True when one of these, terms or values of them, has the name.
+[[nodiscard]] bool is_given(const auto& given, std::string_view name) {
+    return std::ranges::any_of(given, [name](const auto& one) { return one.name == name; });
+}
 
 /// One effect with one value per parameter. An empty value is one that the model does not state; what that
 /// means is up to the parameter (LeftOut).

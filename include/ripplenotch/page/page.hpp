@@ -3,7 +3,9 @@
 // A page as a value: what is said about some results, before anybody turns it into HTML. All text is text:
 // whoever renders it escapes it.
 
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "ripplenotch/figure/figure.hpp"
@@ -47,5 +49,32 @@ struct Page {
     std::string title;
     std::vector<PageSection> sections;
 };
+
+// A page as one self-contained HTML file that asks no network for anything.
+
+/// `plotly_js` is the text of that library, which draws the figures; without it gnuplot's pictures take their
+/// place. The same page gives the same bytes. Only the two scripts that it holds itself may run: its content
+/// security policy names them by their hashes and forbids every address.
+[[nodiscard]] std::string html_page(const Page& page, const std::optional<std::string>& plotly_js);
+
+/// Text between tags and in attributes.
+[[nodiscard]] std::string html_escaped(std::string_view text);
+
+/// A figure for plotly.js 3: {"data": [...], "layout": {...}}, panels one under the other, equal time axes
+/// linked; "narrow", where it is there, lists what is otherwise on a phone: {"path", "value"}. Names are
+/// escaped for plotly's own markup; the text holds no "<", so that it can stand in a page.
+[[nodiscard]] std::string plotly_text(const Figure& figure);
+
+// Any result of the tool as a section of a page: its verdict, its numbers, its figures, its tables.
+
+/// `text` is a JSON document with schema ripplenotch/<kind>/1. joint, map, table and figure are read with all
+/// their checks; of diagnosis the rounds become the figure of the gap; whatever else a kind holds becomes
+/// facts (single values), and tables (lists of objects), units taken from the names. Throws DataError for
+/// what is no such document.
+[[nodiscard]] PageSection section_of_result(const std::string& text, const std::string& source);
+
+/// The same for a document that may hold several results: the diagnoses of several joints become a section
+/// each.
+[[nodiscard]] std::vector<PageSection> sections_of_result(const std::string& text, const std::string& source);
 
 }  // namespace ripplenotch

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "ripplenotch/analysis/gear_ratio.hpp"
+#include "ripplenotch/analysis/identification.hpp"
 
 #include <fmt/format.h>
 
@@ -7,8 +7,8 @@
 #include <array>
 #include <cmath>
 
-#include "analysis/lines/excess_scatter.hpp"
 #include "analysis/lines/ratio_hypothesis.hpp"
+#include "analysis/lines/tones_and_hums.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {

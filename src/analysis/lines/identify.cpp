@@ -1,18 +1,286 @@
 // SPDX-License-Identifier: MIT
-#include <algorithm>
-#include <cmath>
+#include "analysis/lines/identify.hpp"
 
-#include "analysis/lines/conclude.hpp"
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
 #include "analysis/lines/disagreement.hpp"
-#include "analysis/lines/reported_line.hpp"
 #include "analysis/lines/tones_and_hums.hpp"
-#include "ripplenotch/analysis/gear_ratio.hpp"
+#include "analysis/shared_limits.hpp"
+#include "core/matrices/least_squares.hpp"
 #include "ripplenotch/analysis/identification.hpp"
 #include "ripplenotch/analysis/motion_lines.hpp"
 #include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
+
 namespace {
+
+// Names of what an identification holds, and what is read off it.
+
+template <class Value>
+using Named = std::pair<Value, std::string_view>;
+
+constexpr std::array findings{Named<RippleFinding>{RippleFinding::ratio, "ratio"},
+                              Named<RippleFinding>{RippleFinding::orders, "orders"},
+                              Named<RippleFinding>{RippleFinding::one_speed, "one speed"},
+                              Named<RippleFinding>{RippleFinding::nothing, "nothing"},
+                              Named<RippleFinding>{RippleFinding::too_little, "too little motion"}};
+constexpr std::array doubt_reasons{Named<DoubtReason>{DoubtReason::clock, "clock"},
+                                   Named<DoubtReason>{DoubtReason::unit, "unit"}};
+constexpr std::array abouts{Named<Disagreement::About>{Disagreement::About::ratio, "gear ratio"},
+                            Named<Disagreement::About>{Disagreement::About::amplitude, "amplitude"},
+                            Named<Disagreement::About>{Disagreement::About::phase, "phase"}};
+constexpr std::array line_kinds{Named<LineKind>{LineKind::order, "order"},
+                                Named<LineKind>{LineKind::tone, "tone"},
+                                Named<LineKind>{LineKind::unknown, "unknown"}};
+
+template <class Table, class Value>
+std::string_view name_in(const Table& table, Value value) {
+    for (const auto& [one, name] : table) {
+        if (one == value) return name;
+    }
+    return "";
+}
+
+template <class Value, class Table>
+std::optional<Value> value_in(const Table& table, std::string_view name) {
+    for (const auto& [value, one] : table) {
+        if (one == name) return value;
+    }
+    return std::nullopt;
+}
+
+}  // namespace
+
+std::string_view finding_name(RippleFinding finding) { return name_in(findings, finding); }
+
+std::optional<RippleFinding> finding_of(std::string_view name) {
+    return value_in<RippleFinding>(findings, name);
+}
+
+std::string_view doubt_name(DoubtReason reason) { return name_in(doubt_reasons, reason); }
+
+std::optional<DoubtReason> doubt_of(std::string_view name) {
+    return value_in<DoubtReason>(doubt_reasons, name);
+}
+
+std::string_view about_name(Disagreement::About about) { return name_in(abouts, about); }
+
+std::optional<Disagreement::About> about_of(std::string_view name) {
+    return value_in<Disagreement::About>(abouts, name);
+}
+
+std::string_view line_kind_name(LineKind kind) { return name_in(line_kinds, kind); }
+
+std::optional<SeenFrequencies> seen_frequencies(const Line& line) {
+    if (line.hz) return SeenFrequencies{*line.hz, *line.hz};
+    if (line.by_speed.empty()) return std::nullopt;
+    const auto [lowest, highest] =
+        std::minmax_element(line.by_speed.begin(), line.by_speed.end(),
+                            [](const AmplitudeAtSpeed& a, const AmplitudeAtSpeed& b) { return a.hz < b.hz; });
+    return SeenFrequencies{lowest->hz, highest->hz};
+}
+
+std::optional<double> motor_order(const Line& line) {
+    const bool follows = line.kind == LineKind::order || line.kind == LineKind::unknown;
+    return follows ? line.order : std::nullopt;
+}
+
+std::vector<double> undecided_ratios(const GearRatioFit& fit) {
+    constexpr double probable = 0.2, beside_it = 0.1;  // by hand: the first of all, the others of the first
+    std::vector<double> ratios;
+    if (fit.value || fit.candidates.empty() || fit.candidates.front().score < probable) return ratios;
+    for (const RatioCandidate& one : fit.candidates) {
+        if (one.score > beside_it * fit.candidates.front().score) ratios.push_back(one.value);
+    }
+    return ratios.size() > 1 ? ratios : std::vector<double>{};
+}
+
+std::optional<GearAccount> found_gear(const Identification& found) {
+    if (!found.gear_ratio.value) return std::nullopt;
+    std::vector<Order> orders;
+    for (const Line& line : found.lines) {
+        if (const auto order = motor_order(line)) orders.emplace_back(*order);
+    }
+    std::sort(orders.begin(), orders.end());
+    orders.erase(std::unique(orders.begin(), orders.end()), orders.end());
+    return GearAccount{GearRatio(*found.gear_ratio.value), std::move(orders), {}, {}, "found in the log"};
+}
+
+namespace {
+
+bool any_of_kind(const Identification& result, LineKind kind) {
+    return std::any_of(result.lines.begin(), result.lines.end(),
+                       [kind](const Line& line) { return line.kind == kind; });
+}
+
+Grounds grounds_of(const MotionLines& motion, const IdentifyOptions& options) {
+    Grounds grounds;
+    grounds.false_alarm = options.false_alarm;
+    grounds.sweeps = motion.sweeps;
+    grounds.rests = motion.rests;
+    grounds.sweep_turns = motion.turns;
+    grounds.slowest_deg_s = motion.slowest_deg_s;
+    grounds.fastest_deg_s = motion.fastest_deg_s;
+    return grounds;
+}
+
+RippleFinding finding_in(const Identification& result) {
+    if (result.gear_ratio.value) return RippleFinding::ratio;
+    if (any_of_kind(result, LineKind::order)) return RippleFinding::orders;
+    if (any_of_kind(result, LineKind::unknown)) return RippleFinding::one_speed;
+    return result.searched ? RippleFinding::nothing : RippleFinding::too_little;
+}
+
+/// A ratio from lines of one speed alone is the likeliest, and not settled; nor is one of several, or one
+/// that cannot be distinguished from that of the other spline.
+bool settled(const Identification& result) {
+    const bool two_ratios =
+        std::any_of(result.disagreements.begin(), result.disagreements.end(),
+                    [](const Disagreement& one) { return one.about == Disagreement::About::ratio; });
+    if (two_ratios) return false;
+    if (result.finding == RippleFinding::nothing) return true;
+    return result.finding == RippleFinding::ratio && !result.gear_ratio.coarse &&
+           std::any_of(result.lines.begin(), result.lines.end(), [](const Line& line) {
+               return line.kind == LineKind::order && line.order.has_value();
+           });
+}
+
+/// With as many decimals as the error has one digit; "0 within 0.02 deg/s" where the value is no larger.
+std::string told(double value, double error, std::string_view unit, std::string_view below,
+                 std::string_view above) {
+    const double reach = normal_95_errors * error;
+    const int decimals = std::max(0, -static_cast<int>(std::floor(portable::log10(error))));
+    if (std::abs(value) <= reach) return fmt::format("0 within {:.{}f} {}", reach, decimals, unit);
+    return fmt::format("{:.{}f} +/- {:.{}f} {} too {}", std::abs(value), decimals, error, decimals, unit,
+                       value < 0.0 ? below : above);
+}
+
+std::string of_velocity(const std::optional<VelocityError>& error) {
+    if (!error)
+        return "what an offset, a filter or a delay of the velocity does to the ratio is not in its interval";
+    std::string text = "the ripple tells what the velocity is off by: " +
+                       told(error->offset.value(), error->offset_error.value(), "deg/s", "low", "high");
+    if (error->delay_told)
+        text +=
+            ", " + told(1e3 * error->delay.value(), 1e3 * error->delay_error.value(), "ms", "early", "late");
+    return text + "; that is taken off, and its error is in the ratio's interval";
+}
+
+}  // namespace
+
+void conclude(const MotionLines& motion, const IdentifyOptions& options, Identification& result) {
+    if (motion.sweeps_left_out > 0) {
+        result.notes.push_back(fmt::format("the order spectrum used {} of {} sweeps, evenly chosen",
+                                           motion.sweeps, motion.sweeps + motion.sweeps_left_out));
+    }
+    if (!motion.absolute_angle && motion.sweeps > 0) {
+        result.notes.push_back(
+            "no position that agrees with the velocity: angle is integrated velocity, phases are not "
+            "known, and " +
+            of_velocity(result.velocity_error));
+    }
+    result.grounds = grounds_of(motion, options);
+    result.searched = motion.searched;
+    settle(result);
+}
+
+void settle(Identification& result) {
+    result.finding = finding_in(result);
+    result.conclusive = settled(result);
+    result.verdict = verdict_sentence(result);
+}
+
+void cast_doubt(Identification& found, Doubt doubt) {
+    for (Line& line : found.lines) {
+        if (line.kind == LineKind::tone) continue;
+        Line doubted;
+        doubted.hz = line.hz;
+        doubted.amplitude_nm = line.amplitude_nm;
+        doubted.snr = line.snr;
+        doubted.speed_from_deg_s = line.speed_from_deg_s;
+        doubted.speed_to_deg_s = line.speed_to_deg_s;
+        doubted.by_speed = std::move(line.by_speed);
+        line = std::move(doubted);
+    }
+    found.gear_ratio = {};
+    found.disagreements.clear();
+    if (std::find(found.doubts.begin(), found.doubts.end(), doubt) == found.doubts.end())
+        found.doubts.push_back(std::move(doubt));
+    found.conclusive = false;
+    found.verdict = verdict_sentence(found);
+}
+
+namespace {
+
+/// Says which orders above those searched would explain the line about as well, seen folded.
+void list_folds(const MotionLine& found, double highest_searched, double rate_hz, Line& line) {
+    std::vector<Fold> folds = found.folds;
+    std::erase_if(folds, [&](const Fold& fold) { return fold.order_output <= highest_searched; });
+    if (folds.empty()) return;
+    const double best = std::max(folds.front().gain, found.gain_angle);
+    const double decisive = std::max(decisive_nats, floor_doubt * std::max(best, found.gain_time));
+    for (const Fold& fold : folds) {
+        if (fold.gain > best - decisive) line.could_be.push_back(fold.order_output);
+    }
+    if (line.could_be.empty()) return;
+    std::sort(line.could_be.begin(), line.could_be.end());
+    constexpr std::size_t most = 5;  // by hand: a note that a person reads
+    const std::span listed(line.could_be.data(), std::min(most, line.could_be.size()));
+    line.note += fmt::format("{}or folded at {:.4g} Hz from order {:.4g}", line.note.empty() ? "" : "; ",
+                             rate_hz, fmt::join(listed, ", "));
+}
+
+// Line number `source` of a motion; folds are told with the rate of the samples.
+Reported from_motion(const MotionLines& motion, std::size_t source, double rate_hz) {
+    const MotionLine& found = motion.lines[source];
+    Reported reported;
+    Line& line = reported.line;
+    line.kind = found.kind;
+    line.amplitude_nm = found.amplitude_nm;
+    line.snr = found.snr;
+    line.by_speed = found.by_speed;
+    line.speed_from_deg_s = motion.slowest_deg_s;
+    line.speed_to_deg_s = motion.fastest_deg_s;
+    if (found.kind != LineKind::order && found.hz > 0.0) {
+        line.hz = found.hz;
+        reported.hz_error = found.hz_stderr;
+    }
+    const bool tone = found.kind == LineKind::tone;
+    if (!tone) {
+        line.order_output = found.order_output;
+        line.order_output_stderr =
+            portable::hypot(found.order_stderr, found.order_output * motion.order_share_error);
+        reported.order = OrderLine{found.order_output,
+                                   found.order_stderr,
+                                   found.snr,
+                                   found.amplitude_nm,
+                                   found.kind == LineKind::order,
+                                   0.5 * (motion.slowest_deg_s + motion.fastest_deg_s),
+                                   motion.order_share_error};
+    }
+    if (found.phase_deg) {
+        line.phase_deg = *found.phase_deg;
+        line.phase_known = true;
+    }
+    if (found.kind == LineKind::unknown)
+        line.note = "the speed varies too little to tell an order from a tone";
+    if (!tone) list_folds(found, motion.highest_spectrum_order, rate_hz, line);
+    return reported;
+}
 
 /// What a joint carries repeats once a turn, with and without a gear: such a line says nothing of the ratio.
 bool is_once_a_turn(const OrderLine& line) {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "ripplenotch/analysis/gear_ratio.hpp"
+#include "ripplenotch/analysis/identification.hpp"
 
 namespace ripplenotch {
 

@@ -6,9 +6,18 @@
 #include <span>
 #include <vector>
 
-#include "analysis/lines/reported_line.hpp"
+#include "analysis/lines/identify.hpp"
 
 namespace ripplenotch {
+
+// Internal to the analysis room: whether estimates disagree by more than their errors say.
+
+/// By what factor errors are too small, when estimates of one value scatter about their weighted mean with
+/// `squares` = sum (estimate - mean)^2 / variance on `freedom` degrees of freedom: sqrt(squares / freedom)
+/// (Birge 1932), where chance gives such scatter less than once in a hundred times; else 1. An error that is
+/// widened by every scatter above the mean one would cover too often, and one that is never widened too
+/// seldom.
+[[nodiscard]] double excess_scatter(double squares, double freedom);
 
 /// The family that explains most of the tones, or none: three multiples or more of one frequency, up to 12,
 /// that meet so many tones by chance less than once in 150 cases.

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "ripplenotch/analysis/identification.hpp"
-#include "ripplenotch/core/how_many.hpp"
+#include "ripplenotch/core/number.hpp"
 
 namespace ripplenotch {
 namespace {

@@ -6,7 +6,7 @@
 #include <complex>
 #include <limits>
 
-#include "analysis/lines/excess_scatter.hpp"
+#include "analysis/lines/tones_and_hums.hpp"
 #include "core/process/two_cores.hpp"
 #include "ripplenotch/analysis/fourier.hpp"
 #include "ripplenotch/core/portable_math.hpp"

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "analysis/motion/line_removal.hpp"
+#include "analysis/motion/motion_lines.hpp"
 #include "ripplenotch/analysis/motion_lines.hpp"
 
 namespace ripplenotch {

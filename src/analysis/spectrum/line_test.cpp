@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "analysis/shared_limits.hpp"
-#include "analysis/spectrum/running_median.hpp"
+#include "analysis/spectrum/spectrum.hpp"
 #include "core/functions/many_numbers.hpp"
 #include "ripplenotch/core/median.hpp"
 #include "ripplenotch/core/portable_math.hpp"

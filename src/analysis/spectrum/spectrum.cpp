@@ -1,13 +1,343 @@
 // SPDX-License-Identifier: MIT
-#include "ripplenotch/analysis/spectrum.hpp"
+#include "analysis/spectrum/spectrum.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
+#include <numbers>
+#include <vector>
 
-#include "analysis/spectrum/welch.hpp"
+#include "analysis/spectrum/fourier.hpp"
+#include "ripplenotch/analysis/spectrum.hpp"
 #include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
+
+namespace {
+
+constexpr double hann_error_factor =
+    1.5307;                           // standard error of a Hann-windowed frequency over the Cramer-Rao bound
+constexpr double skirt_margin = 2.0;  // a side lobe may be this much higher than the window's own
+constexpr std::size_t trend_bins = 3;  // main lobe of what the straight line leaves at zero
+
+/// Offset in bins of a Hann peak from the logs of three powers around it; within 0.02 bin, the rest is for
+/// Newton.
+double log_parabola(double left, double middle, double right) {
+    if (!(left > 0.0) || !(right > 0.0)) return 0.0;
+    const double a = portable::log(left), b = portable::log(middle), c = portable::log(right);
+    const double bend = a - 2.0 * b + c;
+    return bend < 0.0 ? std::clamp(0.5 * (a - c) / bend, -0.5, 0.5) : 0.0;
+}
+
+/// Largest amplitude that a line of amplitude 1 shows `bins` away through a Hann window, side lobes included.
+double leakage(double bins) {
+    const double d = std::abs(bins);
+    return d < 2.0 ? 1.0 : 1.0 / (std::numbers::pi * d * (d * d - 1.0));
+}
+
+/// Drops what is only the skirt of a stronger peak, and what lies 100 dB below the strongest, where rounding
+/// is the floor. `powers` by bin; strongest first on return.
+std::vector<SignificantPeak> without_skirts(std::vector<SignificantPeak> found,
+                                            std::span<const double> power) {
+    std::stable_sort(found.begin(), found.end(), [&](const SignificantPeak& a, const SignificantPeak& b) {
+        return power[a.bin] > power[b.bin];
+    });
+    std::vector<SignificantPeak> kept;
+    for (const SignificantPeak& peak : found) {
+        const double own = std::sqrt(power[peak.bin]);
+        const bool skirt = std::any_of(kept.begin(), kept.end(), [&](const SignificantPeak& strong) {
+            const double apart = static_cast<double>(peak.bin) - static_cast<double>(strong.bin);
+            const double other = std::sqrt(power[strong.bin]);
+            return own < skirt_margin * other * leakage(std::abs(apart) - 0.5) || own < 1e-5 * other;
+        });
+        if (!skirt) kept.push_back(peak);
+    }
+    return kept;
+}
+
+}  // namespace
+
+Welch::Welch(std::size_t length, Hertz rate)
+    : length_(length), rate_(rate.value()), maker_(length, rate), power_(length / 2 + 1, 0.0) {}
+
+std::size_t Welch::add(std::span<const double> time_s, std::span<const double> torque_nm) {
+    return maker_.for_each(time_s, torque_nm, [this](const Piece& piece) {
+        maker_.add_power(4.0 / (piece.window_sum * piece.window_sum), power_);
+        gain_ += 0.5 * piece.window_sum * piece.window_sum / piece.window_square_sum;
+        ++pieces_;
+    });
+}
+
+PowerSpectrum Welch::tested() const {
+    // Half-overlapping Hann pieces: neighbours share a sixth of their power in correlation, (1 + 2/36)^-1.
+    const double averages = std::max(1.0, static_cast<double>(pieces_) / (pieces_ > 1 ? 1.0556 : 1.0));
+    // A single spectrum of red noise has maxima near its low end that few cells beside them do not explain.
+    constexpr double unsearched_cells = 5.0;
+    const std::size_t first = std::min(trend_bins, power_.size());
+    return {power_, averages, hann_cell,
+            first,  {},       first + static_cast<std::size_t>(std::ceil(unsearched_cells * hann_cell))};
+}
+
+std::optional<Welch> Welch::at(Hertz rate) const {
+    if (!maker_.even_at(rate)) return std::nullopt;
+    Welch other(length_, rate);
+    other.pieces_ = pieces_;
+    other.power_ = power_;
+    other.gain_ = gain_;
+    return other;
+}
+
+bool Welch::find_lines(double false_alarm) {
+    maker_.begin_again();
+    const double share = 1.0 / static_cast<double>(pieces_);
+    for (double& power : power_) power *= share;
+    gain_ *= share;
+    floor_ = noise_floor(tested());
+    found_ = without_skirts(significant_peaks(tested(), floor_, false_alarm), power_);
+    const std::vector<double> rest = power_without_lines();
+    PowerSpectrum without_lines = tested();
+    without_lines.power = rest;
+    humps_ = significant_humps(without_lines, false_alarm);
+    for (const SignificantPeak& found : found_) {
+        const std::size_t k = found.bin;
+        const double between = log_parabola(power_[k - 1], power_[k], power_[k + 1]);
+        LineMeter& meter = meters_.emplace_back((static_cast<double>(k) + between) * bin_hz(), bin_hz());
+        if (pieces_ > 1) meter.expect_even_pieces(maker_.even_time_s());
+    }
+    return !found_.empty();
+}
+
+/// The noise in place of each line, as far as its skirt rises above it.
+std::vector<double> Welch::power_without_lines() const {
+    std::vector<double> rest = power_;
+    for (const SignificantPeak& found : found_) {
+        const double amplitude = skirt_margin * std::sqrt(power_[found.bin]);
+        const auto fill = [&](std::size_t bin, std::size_t apart) {
+            const double leaks = amplitude * leakage(static_cast<double>(apart) - 0.5);
+            if (apart > 2 && leaks * leaks < floor_[bin]) return false;
+            rest[bin] = floor_[bin];
+            return true;
+        };
+        for (std::size_t k = found.bin; k < rest.size() && fill(k, k - found.bin); ++k) {
+        }
+        for (std::size_t k = found.bin; k > tested().first && fill(k - 1, found.bin - k + 1); --k) {
+        }
+    }
+    return rest;
+}
+
+std::vector<SpectralHump> Welch::humps() const {
+    std::vector<SpectralHump> humps;
+    const std::vector<double> rest = power_without_lines();
+    for (const SignificantHump& found : humps_) {
+        SpectralHump hump;
+        double square = 0.0;
+        std::size_t highest = found.first;
+        for (std::size_t k = found.first; k < found.end; ++k) {
+            square += (rest[k] - found.floor) / (2.0 * hann_cell);
+            if (rest[k] > rest[highest]) highest = k;
+        }
+        // What widens a line, because its frequency or amplitude moves, is no hump beside it.
+        const bool of_a_line = std::any_of(found_.begin(), found_.end(), [&](const SignificantPeak& line) {
+            return line.bin + 1 >= found.first && line.bin <= found.end && power_[line.bin] > 2.0 * square;
+        });
+        if (of_a_line) continue;
+        hump.from_hz = static_cast<double>(found.first) * bin_hz();
+        hump.to_hz = static_cast<double>(found.end - 1) * bin_hz();
+        hump.peak_hz = static_cast<double>(highest) * bin_hz();
+        hump.peak_nm = std::sqrt(rest[highest]);
+        hump.rms_nm = std::sqrt(std::max(square, 0.0));
+        hump.floor_nm = std::sqrt(found.floor);
+        hump.false_alarm = found.false_alarm;
+        humps.push_back(hump);
+    }
+    std::stable_sort(humps.begin(), humps.end(),
+                     [](const SpectralHump& a, const SpectralHump& b) { return a.rms_nm > b.rms_nm; });
+    return humps;
+}
+
+std::size_t Welch::measure(std::span<const double> time_s, std::span<const double> torque_nm) {
+    return maker_.for_each(time_s, torque_nm, [this](const Piece& piece) {
+        for (LineMeter& meter : meters_) meter.add(piece);
+    });
+}
+
+SpectralPeak Welch::peak(std::size_t line) const {
+    const LineMeter& meter = meters_[line];
+    SpectralPeak peak;
+    peak.hz = meter.hz();
+    peak.amplitude_nm = meter.amplitude_nm();
+    peak.floor_nm = std::sqrt(floor_[found_[line].bin]);  // the test's own floor leans to the safe side
+    peak.snr = peak.amplitude_nm / peak.floor_nm;
+    peak.false_alarm = found_[line].false_alarm;
+    peak.phase_deg = std::remainder(meter.phase_rad() * degrees_per_radian, 360.0);
+    // var f = 3 S / (pi^2 A^2 T^3) for one-sided noise density S; floor^2 = 2 S * noise bandwidth.
+    const double duration = static_cast<double>(length_) / rate_;
+    const double density = peak.floor_nm * peak.floor_nm / (2.0 * hann_cell * bin_hz());
+    const double bound =
+        std::sqrt(3.0 * density / (peak.amplitude_nm * peak.amplitude_nm * duration * duration * duration)) /
+        std::numbers::pi;
+    peak.hz_stderr =
+        hann_error_factor * bound / std::sqrt(std::max(1.0, 0.5 * static_cast<double>(pieces_ + 1)));
+    return peak;
+}
+
+Spectrum Welch::spectrum() const {
+    Spectrum spectrum;
+    spectrum.bin_width = Hertz(bin_hz());
+    spectrum.resolution = Hertz(hann_cell * bin_hz());
+    spectrum.piece_duration = Seconds(static_cast<double>(length_) / rate_);
+    spectrum.pieces = pieces_;
+    const std::size_t bins = power_.size(), first = tested().first;
+    const bool even = length_ % 2 == 0;
+    for (std::size_t k = 0; k < bins; ++k) {
+        // At 0 Hz and at half the rate both halves of the two-sided spectrum fall on one bin.
+        const double single = k == 0 || (even && k + 1 == bins) ? 0.5 : 1.0;
+        spectrum.hz.push_back(static_cast<double>(k) * bin_hz());
+        spectrum.amplitude_nm.push_back(std::sqrt(power_[k]) * single);
+        spectrum.psd_nm2_hz.push_back(power_[k] * (gain_ / rate_) * single);
+        spectrum.floor_nm.push_back(k < first ? 0.0 : std::sqrt(floor_[k]));
+    }
+    spectrum.humps = humps();
+    for (std::size_t line = 0; line < found_.size(); ++line) spectrum.peaks.push_back(peak(line));
+    std::stable_sort(
+        spectrum.peaks.begin(), spectrum.peaks.end(),
+        [](const SpectralPeak& a, const SpectralPeak& b) { return a.amplitude_nm > b.amplitude_nm; });
+    return spectrum;
+}
+
+struct SpectrumStream::Work {
+    Welch welch;
+    std::vector<double> time_s = {}, torque_nm = {};  // of pieces that are not whole yet
+
+    using Pass = std::size_t (Welch::*)(std::span<const double>, std::span<const double>);
+    void feed(Pass pass, std::span<const double> more_s, std::span<const double> more_nm) {
+        time_s.insert(time_s.end(), more_s.begin(), more_s.end());
+        torque_nm.insert(torque_nm.end(), more_nm.begin(), more_nm.end());
+        const auto done = static_cast<std::ptrdiff_t>((welch.*pass)(time_s, torque_nm));
+        time_s.erase(time_s.begin(), time_s.begin() + done);
+        torque_nm.erase(torque_nm.begin(), torque_nm.begin() + done);
+    }
+};
+
+SpectrumStream::SpectrumStream(std::size_t length, Hertz rate)
+    : work_(std::make_unique<Work>(Work{Welch(length, rate)})) {}
+
+SpectrumStream::~SpectrumStream() = default;
+
+SpectrumStream::SpectrumStream(SpectrumStream&&) noexcept = default;
+
+SpectrumStream& SpectrumStream::operator=(SpectrumStream&&) noexcept = default;
+
+void SpectrumStream::add(std::span<const double> time_s, std::span<const double> torque_nm) {
+    work_->feed(&Welch::add, time_s, torque_nm);
+}
+
+bool SpectrumStream::settle(Hertz rate) {
+    auto settled = work_->welch.at(rate);
+    if (settled) work_->welch = std::move(*settled);
+    return settled.has_value();
+}
+
+bool SpectrumStream::find_lines(double false_alarm) {
+    work_->time_s.clear();
+    work_->torque_nm.clear();
+    return work_->welch.find_lines(false_alarm);
+}
+
+void SpectrumStream::measure(std::span<const double> time_s, std::span<const double> torque_nm) {
+    work_->feed(&Welch::measure, time_s, torque_nm);
+}
+
+Spectrum SpectrumStream::spectrum() const { return work_->welch.spectrum(); }
+
+namespace {
+
+// Ranks kept to each side of the median: four deviations of where the next window of the same noise has its.
+std::size_t ranks_beside(std::size_t count) {
+    return static_cast<std::size_t>(2.0 * std::sqrt(static_cast<double>(count))) + 8;
+}
+
+}  // namespace
+
+void RunningMedian::start(std::size_t first, std::size_t end) {
+    const auto window = signal_.subspan(first, end - first);
+    scratch_.assign(window.begin(), window.end());
+    const std::size_t middle = window.size() / 2, beside = ranks_beside(window.size());
+    const auto lowest = scratch_.begin() + static_cast<std::ptrdiff_t>(middle - std::min(middle, beside));
+    const auto highest =
+        scratch_.begin() + static_cast<std::ptrdiff_t>(std::min(window.size() - 1, middle + beside));
+    std::nth_element(scratch_.begin(), lowest, scratch_.end());
+    low_ = *lowest;
+    std::nth_element(lowest, highest, scratch_.end());
+    const double apart = *highest - low_;
+    buckets_a_unit_ = apart > 1e-300 ? static_cast<double>(bucket_count - 3) / apart : 0.0;
+    counts_.fill(0);
+    middle_ = below_ = 0;
+    come(first, end);
+}
+
+// Buckets rise with the values, whatever is rounded.
+std::uint8_t RunningMedian::bucket_of(double value) const {
+    const double place = (value - low_) * buckets_a_unit_ + 1.0;
+    const double last = static_cast<double>(bucket_count - 1);
+    return static_cast<std::uint8_t>(std::max(0.0, std::min(last, place)));
+}
+
+// Where values come in no order, a branch on one is guessed wrong every other time: there are none.
+void RunningMedian::come(std::size_t first, std::size_t end) {
+    for (std::size_t k = first; k < end; ++k) {
+        const std::uint8_t bucket = bucket_of(signal_[k]);
+        bucket_[k] = bucket;
+        ++counts_[bucket];
+        below_ += static_cast<std::size_t>(bucket < middle_);
+    }
+}
+
+void RunningMedian::move_on(std::size_t first, std::size_t end) {
+    for (std::size_t k = first_; k < first; ++k) {
+        const std::uint8_t bucket = bucket_[k];
+        --counts_[bucket];
+        below_ -= static_cast<std::size_t>(bucket < middle_);
+    }
+    come(end_, end);
+}
+
+bool RunningMedian::settle(std::size_t rank) {
+    while (rank < below_) below_ -= counts_[--middle_];
+    while (rank >= below_ + counts_[middle_]) below_ += counts_[middle_++];
+    return middle_ > 0 && middle_ + 1 < bucket_count;
+}
+
+double RunningMedian::inside(std::size_t rank) {
+    scratch_.clear();
+    const std::uint8_t *const begin = bucket_.data(), *const end = begin + end_;
+    const auto next = [&](const std::uint8_t* from) {
+        return static_cast<const std::uint8_t*>(
+            std::memchr(from, static_cast<int>(middle_), static_cast<std::size_t>(end - from)));
+    };
+    for (auto* at = next(begin + first_); at != nullptr; at = next(at + 1))
+        scratch_.push_back(signal_[static_cast<std::size_t>(at - begin)]);
+    const auto place = scratch_.begin() + static_cast<std::ptrdiff_t>(rank);
+    std::nth_element(scratch_.begin(), place, scratch_.end());
+    return *place;
+}
+
+double RunningMedian::at(std::size_t first, std::size_t count) {
+    const std::size_t end = first + count;
+    const bool onward = first >= first_ && end >= end_;
+    const bool little = onward && first - first_ + end - end_ < count / 2;
+    if (little) move_on(first, end);
+    if (!little || !settle(count / 2)) {
+        start(first, end);
+        settle(count / 2);
+    }
+    first_ = first;
+    end_ = end;
+    return inside(count / 2 - below_);
+}
+
 std::size_t piece_length(std::size_t samples, Hertz rate, const SpectrumOptions& options) {
     std::size_t length = samples;
     if (options.segment) {

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/track/ripple_segments.hpp"
+#include "analysis/track/ripple_estimate.hpp"
 #include "ripplenotch/analysis/ripple_estimate.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/median.hpp"

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "arm/fit/row_sums.hpp"
+#include "arm/fit/arm_fit.hpp"
 
 namespace ripplenotch {
 

@@ -7,10 +7,10 @@
 #include <map>
 #include <numbers>
 
-#include "arm/chain/space.hpp"
-#include "arm/readers/branches.hpp"
+#include "arm/chain/chain.hpp"
+#include "arm/readers/chain_text.hpp"
 #include "arm/readers/xml_tree.hpp"
-#include "ripplenotch/arm/chain_files.hpp"
+#include "ripplenotch/arm/chain.hpp"
 #include "ripplenotch/core/error.hpp"
 
 namespace ripplenotch {

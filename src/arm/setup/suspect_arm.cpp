@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "arm/fit/arm_rows.hpp"
+#include "arm/fit/arm_fit.hpp"
 #include "ripplenotch/arm/arm_setup.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 

@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "ripplenotch/arm/chain_files.hpp"
+#include "ripplenotch/arm/chain.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/spec.hpp"
 

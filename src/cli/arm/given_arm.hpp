@@ -9,9 +9,8 @@
 #include <vector>
 
 #include "cli/arm/arm_option.hpp"
-#include "cli/readings/arm_reading.hpp"
-#include "ripplenotch/arm/arm_account.hpp"
-#include "ripplenotch/arm/arm_term.hpp"
+#include "cli/readings/readings.hpp"
+#include "ripplenotch/arm/arm_fit.hpp"
 
 namespace ripplenotch {
 

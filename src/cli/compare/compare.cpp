@@ -1,31 +1,187 @@
 // SPDX-License-Identifier: MIT
 // ripplenotch compare: several methods side by side on a log, a step or a ramp.
 
+#include "cli/compare/compare.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
+#include <set>
+#include <span>
+#include <string>
+#include <vector>
 
 #include "cli/command.hpp"
-#include "cli/compare/comparison_costs.hpp"
 #include "cli/compare/comparison_view.hpp"
-#include "cli/compare/contenders.hpp"
-#include "cli/gear/joint_facts.hpp"
+#include "cli/gear/chosen_method.hpp"
+#include "cli/gear/gear_choice.hpp"
+#include "cli/options/gates.hpp"
 #include "cli/options/name_list.hpp"
+#include "cli/options/options.hpp"
 #include "cli/options/plot_request.hpp"
+#include "cli/readings/side_column.hpp"
 #include "cli/talk.hpp"
-#include "ripplenotch/chart/compared_course.hpp"
 #include "ripplenotch/chart/comparison_figure.hpp"
+#include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/core/progress.hpp"
+#include "ripplenotch/design/guarantee.hpp"
 #include "ripplenotch/document/comparison_json.hpp"
+#include "ripplenotch/document/provenance.hpp"
+#include "ripplenotch/evaluate/comparison.hpp"
 #include "ripplenotch/evaluate/match_low_pass.hpp"
 #include "ripplenotch/filter/engine.hpp"
 #include "ripplenotch/log/log.hpp"
 
 namespace ripplenotch {
+
+namespace {
+
+// The nearer to what the user typed outside the methods, the better.
+int rank_of(const Contender& contender) {
+    if (!contender.gear) return 3;
+    if (contender.table) return 2;
+    return contender.made_for() ? 1 : 0;
+}
+
+const Method& control_method() {
+    const auto all = ripplenotch::methods();
+    return **std::find_if(all.begin(), all.end(),
+                          [](const Method* method) { return method->part == MethodPart::control; });
+}
+
+std::optional<GearAccount> common_gear(const std::vector<Contender>& contenders) {
+    const auto best =
+        std::min_element(contenders.begin(), contenders.end(),
+                         [](const Contender& a, const Contender& b) { return rank_of(a) < rank_of(b); });
+    if (!best->gear) return std::nullopt;
+    for (const Contender& contender : contenders) refuse_other_gear(contender, *best->gear);
+    return best->gear;
+}
+
+// The methods as they are on this log: at its temperature, where a map asks for one. The same without a log.
+std::vector<std::string> methods_at(const std::string& log, std::vector<std::string> methods,
+                                    const LogOptions& options) {
+    if (log.empty()) return methods;
+    ReadOptions read = read_options(options, std::nullopt);
+    read.takes_motor_units = true;
+    for (std::string& method : methods) method = at_log_temperature(method, log, read);
+    return methods;
+}
+
+// By contender, the temperature that it follows at the rows that read_log_in_part gives; empty for others.
+// Says how many cells were none.
+std::vector<std::vector<double>> temperatures_for(std::span<const Contender> contenders,
+                                                  const std::string& log, const ReadOptions& read,
+                                                  const CommonOptions& common) {
+    std::vector<std::vector<double>> all;
+    std::vector<std::string> notes;
+    for (const Contender& contender : contenders) all.push_back(followed_values(contender, log, read, notes));
+    notes.erase(std::unique(notes.begin(), notes.end()), notes.end());
+    say_warnings(common, notes);
+    return all;
+}
+
+// Throws UsageError when `methods` is empty, and what choose_method and refuse_other_gear throw.
+Field load_contenders(const std::vector<std::string>& methods, const GearOptions& gear,
+                      Provenance& provenance) {
+    if (methods.empty()) {
+        raise<UsageError>(
+            "nothing to compare; give --method, for example --method fixed,centers=25Hz:50Hz,q=0.25 "
+            "--method lowpass,cutoff=13rad/s");
+    }
+    const GearChoice choice(gear);
+    Field field;
+    std::set<std::string> recorded;
+    const auto add = [&](const std::string& text) {
+        const Contender& added = field.contenders.emplace_back(choose_method(text, std::nullopt, choice));
+        if (!field.table) field.table = added.table;
+        for (const std::string& file : added.files)
+            if (recorded.insert(file).second) provenance.inputs.push_back(input_record(file));
+    };
+    const auto is_control = [](const std::string& text) {
+        return find_method(parse_spec(text).name).part == MethodPart::control;
+    };
+    if (std::none_of(methods.begin(), methods.end(), is_control)) add(std::string(control_method().name));
+    for (const std::string& text : methods) add(text);
+    field.gear = common_gear(field.contenders);
+    if (!field.gear && !gear.orders.empty()) raise_no_gear("--orders");
+    return field;
+}
+
+// Warns when a method's table is for a slightly different rate, and throws DataError when it is for another.
+void check_table_rates(const Field& field, Hertz sample_rate, const std::string& source,
+                       const CommonOptions& common) {
+    for (const Contender& contender : field.contenders) {
+        if (!contender.table) continue;
+        const auto warning =
+            compare_table_rate({.table = contender.table->spec().sample_rate, .log = sample_rate}, source);
+        if (warning) say_warnings(common, {&*warning, 1});
+    }
+}
+
+void attach_costs(Options& options, CostRequest& request) {
+    options.quantity("--crossover", request.crossover, Dimension::frequency,
+                     "the control loop's: phase lag and gain there, e.g. 12Hz");
+    options.flag("--ledger", request.ledger,
+                 "delay, settling and phase lag of every band of every method; on a log every switch");
+    attach_gates(options, request.gates);
+}
+
+// Phase lag and gain at the crossover, the ledger, and from which speed on a delay limit is kept, as asked.
+void add_costs(Comparison& comparison, const CostRequest& request, const Field& field) {
+    comparison.crossover = request.crossover;
+    if (request.gates.max_delay && comparison.lines) {
+        TableSpec notches;
+        notches.gear_ratio = comparison.lines->ratio;
+        notches.orders = comparison.lines->orders;
+        notches.sample_rate = comparison.sample_rate;
+        comparison.max_delay = *request.gates.max_delay;
+        comparison.no_notch_below = slowest_within(notches, *comparison.max_delay);
+    }
+    for (std::size_t i = 0; i < field.contenders.size(); ++i) {
+        const Contender& contender = field.contenders[i];
+        MethodFigures& figures = comparison.methods[i];
+        const auto frozen = contender.frozen(comparison.sample_rate, comparison.speed);
+        if (request.crossover && frozen) {
+            const auto at =
+                at_crossover(frozen->cascade, *request.crossover, SampledAt(comparison.sample_rate));
+            figures.phase_lag_deg = at.phase_lag_deg;
+            figures.crossover_db = at.gain_db;
+        }
+        if (request.ledger)
+            figures.ledger = delay_ledger(contender, comparison.sample_rate, {request.crossover, true});
+        if (!request.ledger) figures.switch_ledger.clear();
+        if (request.gates.max_delay && contender.made_for()) {
+            figures.within_from = within_from(contender, comparison.sample_rate, *request.gates.max_delay);
+        }
+    }
+}
+
+}  // namespace
+
+// The control is there to be compared with, not to be held to anything.
+std::vector<std::string> violations(const Comparison& comparison, const CostRequest& request,
+                                    const Field& field) {
+    std::vector<std::string> found;
+    const auto add = [&found](std::vector<std::string> more) {
+        for (std::string& sentence : more) found.push_back(std::move(sentence));
+    };
+    for (std::size_t i = 0; i < field.contenders.size(); ++i) {
+        const Contender& contender = field.contenders[i];
+        if (contender.method->part == MethodPart::control) continue;
+        const DegPerSec slowest = comparison.on_log ? comparison.slowest : comparison.speed;
+        const DegPerSec fastest = comparison.on_log ? comparison.fastest : comparison.speed;
+        add(delay_violations(request.gates, contender, comparison.sample_rate, slowest, fastest));
+        add(attenuation_violations(request.gates, contender.text, comparison.methods[i].attenuation));
+    }
+    return found;
+}
+
 namespace {
 
 constexpr double default_step_nm = 10.0,

@@ -2,13 +2,48 @@
 #pragma once
 // A candidate table as people read it.
 
+#include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
+#include "ripplenotch/core/quantity.hpp"
 #include "ripplenotch/design/candidate_table.hpp"
+#include "ripplenotch/design/guarantee.hpp"
 #include "ripplenotch/document/table_json.hpp"
 
 namespace ripplenotch {
+
+// A trade-off curve as people read it.
+
+/// The curve, one row a point with the recommended one marked, and one line that says why it.
+[[nodiscard]] std::string frontier_to_text(const Frontier& frontier);
+
+/// "No notch of Q 5 or less is within 20 ms below 4.3 deg/s."
+[[nodiscard]] std::string slowest_sentence(Seconds delay, DegPerSec slowest);
+
+/// "Recommended: 40.4 dB with 82.6 ms in 32 bands: ...", with the reason.
+[[nodiscard]] std::string recommended_sentence(const Frontier& frontier);
+
+/// What a delay asks of the control loop: "At a crossover of 1 Hz this delay costs a loop 30 deg of phase;
+/// ..."
+[[nodiscard]] std::string crossover_sentence(Seconds delay, std::string_view aside = "");
+
+// Speed ranges as people type them: "18:180:18", "0.3rad/s:3rad/s", "18:36,36:60,60:100deg/s".
+
+struct SpeedRange {
+    DegPerSec from, to;
+    std::optional<DegPerSec> width;  ///< of one band; empty for FROM:TO
+};
+
+/// Reads FROM:TO or FROM:TO:WIDTH. Either each number has its unit, or only the last and it holds for all, or
+/// none and all are deg/s. Throws UsageError that names `what`.
+[[nodiscard]] SpeedRange parse_speed_range(std::string_view text, std::string_view what);
+
+/// Reads FROM:TO,FROM:TO,... by the same rules, each band for itself.
+[[nodiscard]] std::vector<std::pair<DegPerSec, DegPerSec>> parse_speed_bands(std::string_view text,
+                                                                             std::string_view what);
 
 /// What the table is for, one row a band, and sentences: the delays, what happens outside the bands, and what
 /// it was designed for.

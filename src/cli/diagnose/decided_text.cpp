@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "cli/text_table.hpp"
+#include "cli/talk.hpp"
 
 namespace ripplenotch {
 

@@ -3,10 +3,10 @@
 
 #include "cli/diagnose/model_from_log.hpp"
 #include "cli/diagnose/planned_motion.hpp"
-#include "cli/gear/joint_methods.hpp"
+#include "cli/gear/chosen_method.hpp"
 #include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/files.hpp"
 #include "ripplenotch/core/number.hpp"
-#include "ripplenotch/core/output_name.hpp"
 
 namespace ripplenotch {
 namespace {

@@ -10,7 +10,7 @@
 #include "cli/given/given_terms.hpp"
 #include "cli/options/plot_request.hpp"
 #include "ripplenotch/diagnose/diagnosis.hpp"
-#include "ripplenotch/model/measured_motion.hpp"
+#include "ripplenotch/model/motion.hpp"
 
 namespace ripplenotch {
 

@@ -8,11 +8,11 @@
 
 #include "cli/diagnose/decided_text.hpp"
 #include "cli/talk.hpp"
-#include "core/rows/rms.hpp"
-#include "ripplenotch/arm/chain_files.hpp"
+#include "core/rows/row_facts.hpp"
+#include "ripplenotch/arm/chain.hpp"
+#include "ripplenotch/core/progress.hpp"
 #include "ripplenotch/core/spec.hpp"
-#include "ripplenotch/core/version.hpp"
-#include "ripplenotch/model/measured_motion.hpp"
+#include "ripplenotch/model/motion.hpp"
 
 namespace ripplenotch {
 namespace {

@@ -6,11 +6,11 @@
 #include <algorithm>
 
 #include "cli/diagnose/model_from_log.hpp"
-#include "cli/gear/joint_facts.hpp"
-#include "cli/gear/joint_methods.hpp"
+#include "cli/gear/chosen_method.hpp"
+#include "cli/gear/gear_choice.hpp"
 #include "cli/readings/readings.hpp"
 #include "ripplenotch/core/error.hpp"
-#include "ripplenotch/core/memory.hpp"
+#include "ripplenotch/core/files.hpp"
 #include "ripplenotch/core/progress.hpp"
 
 namespace ripplenotch {

@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-#include "cli/text_table.hpp"
+#include "cli/talk.hpp"
 
 namespace ripplenotch {
 namespace {

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cli/gear/joint_facts.hpp"
+#include "cli/gear/gear_choice.hpp"
 #include "cli/readings/readings.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"

@@ -6,11 +6,11 @@
 #include <array>
 
 #include "cli/diagnose/decided_text.hpp"
-#include "cli/gear/joint_methods.hpp"
+#include "cli/gear/chosen_method.hpp"
 #include "cli/talk.hpp"
 #include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/files.hpp"
 #include "ripplenotch/core/number.hpp"
-#include "ripplenotch/core/output_name.hpp"
 #include "ripplenotch/core/spec.hpp"
 
 namespace ripplenotch {

@@ -7,9 +7,8 @@
 
 #include "cli/command.hpp"
 #include "cli/talk.hpp"
-#include "cli/text_table.hpp"
 #include "ripplenotch/core/number.hpp"
-#include "ripplenotch/document/effects_json.hpp"
+#include "ripplenotch/document/simulation_json.hpp"
 
 namespace ripplenotch {
 namespace {

@@ -2,32 +2,270 @@
 // `export`: tables and filters to firmware and tools, read back and run there. The trailing underscore is
 // C++'s: export is a keyword.
 
+#include "cli/export/export_.hpp"
+
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
+#include <numbers>
 #include <optional>
+#include <string>
 
 #include "cli/command.hpp"
-#include "cli/export/export_code.hpp"
-#include "cli/export/export_map.hpp"
-#include "cli/export/export_text.hpp"
-#include "cli/export/written_file.hpp"
 #include "cli/gear/chosen_method.hpp"
-#include "cli/gear/joint_facts.hpp"
+#include "cli/gear/gear_choice.hpp"
 #include "cli/options/name_list.hpp"
+#include "cli/options/options.hpp"
 #include "cli/talk.hpp"
+#include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/files.hpp"
 #include "ripplenotch/core/number.hpp"
-#include "ripplenotch/core/output_name.hpp"
-#include "ripplenotch/core/version.hpp"
-#include "ripplenotch/document/export_json.hpp"
+#include "ripplenotch/core/portable_math.hpp"
+#include "ripplenotch/core/progress.hpp"
 #include "ripplenotch/document/map_json.hpp"
+#include "ripplenotch/document/simulation_json.hpp"
 #include "ripplenotch/document/table_json.hpp"
+#include "ripplenotch/evaluate/contender.hpp"
 #include "ripplenotch/export/map_target.hpp"
-#include "ripplenotch/export/method_code.hpp"
+#include "ripplenotch/export/target.hpp"
+#include "ripplenotch/filter/engine.hpp"
 
 namespace ripplenotch {
+
+void write_export(const Written& written, const CommonOptions& common, bool binary) {
+    ByteSink sink(common.output, common.overwrite(), binary);
+    sink.write(written.bytes);
+    sink.finish();
+    say_warnings(common, written.warnings);
+}
+
+ReadBack read_back(const Written& written, const CommonOptions& common) {
+    const bool file = std::filesystem::is_regular_file(common.output);
+    return {file ? read_all(common.output) : written.bytes,
+            common.output == "-" ? "standard output" : common.output};
+}
+
 namespace {
+
+// What was found out about it: on standard output, unless the file itself went there.
+void tell_check(const std::string& text, const CommonOptions& common) {
+    if (common.output != "-") {
+        write_text("-", text, ByteSink::Overwrite::no);
+    } else if (!common.quiet) {
+        talk_lines(text);
+    }
+}
+
+// `export` of a method whose coefficients change while it runs.
+
+struct CodeExport {
+    const Contender& method;
+    Hertz sample_rate;
+    std::string to;
+    bool verify = false;
+    CommonOptions common;
+};
+
+constexpr std::size_t samples = 1'000'000, block = 10'000;
+constexpr double swing_s = 5.0, fastest_deg_s = 80.0 * 2.0 * std::numbers::pi / swing_s;
+
+// A joint that swings under a slow torque, with ripple of every order and noise: the same on every machine.
+// With a map it swings where the map was made, no faster than there.
+class Swing {
+  public:
+    explicit Swing(const CodeExport& request)
+        : gear_(*request.method.gear), rate_hz_(request.sample_rate.value()) {
+        if (request.method.map == nullptr) return;
+        const RippleMap& map = *request.method.map;
+        if (map.speeds_deg_s.to > 0.0) fastest_deg_s_ = std::min(fastest_deg_s_, map.speeds_deg_s.to);
+        position_ = map.positions_deg.middle();
+    }
+
+    struct Sample {
+        double torque_nm, velocity_deg_s, position_deg, motor_turns;
+    };
+    Sample at(std::size_t k) {
+        const double phase = 2.0 * std::numbers::pi * static_cast<double>(k) / rate_hz_ / swing_s;
+        const double velocity = fastest_deg_s_ * portable::cos(phase);
+        // By trapezoids, as the tool adds a velocity up: while the motor is slow it may take that way.
+        if (k > 0) position_ += 0.5 * (before_ + velocity) / rate_hz_;
+        before_ = velocity;
+        const double turns = gear_.ratio.value() * position_ / 360.0;
+        double torque = 6.0 * portable::sin(0.3 * phase) + 0.05 * noise();
+        for (const Order order : gear_.orders)
+            torque += 0.5 * portable::cos(2.0 * std::numbers::pi * order.value() * turns + order.value());
+        return {torque, velocity, position_, turns};
+    }
+
+  private:
+    // Sum of four even numbers from -1 to 1, about the variance of a normal one.
+    double noise() {
+        double sum = 0.0;
+        for (int i = 0; i < 4; ++i) {
+            state_ = state_ * 6364136223846793005ULL + 1442695040888963407ULL;
+            sum += static_cast<double>(state_ >> 40U) / static_cast<double>(1U << 23U) - 1.0;
+        }
+        return sum;
+    }
+
+    const GearAccount& gear_;
+    double rate_hz_, fastest_deg_s_ = fastest_deg_s;
+    double position_ = 0.0, before_ = 0.0;
+    std::uint64_t state_ = 20;
+};
+
+struct CodeCheck {
+    double largest_error_nm = 0.0, largest_nm = 0.0;
+};
+
+CodeCheck run_beside(const CodeExport& request, const LoadedCode& code) {
+    CodeCheck check;
+    Swing swing(request);
+    const auto filter = request.method.start(request.sample_rate);
+    std::vector<double> torque(block), velocity(block), position(block), out(block), coded(block);
+    for (std::size_t first = 0; first < samples; first += block) {
+        for (std::size_t k = 0; k < block; ++k) {
+            const Swing::Sample now = swing.at(first + k);
+            torque[k] = now.torque_nm;
+            velocity[k] = now.velocity_deg_s;
+            position[k] = now.position_deg;
+            const double angle = now.motor_turns - std::floor(now.motor_turns);
+            coded[k] = code.step({now.torque_nm, now.velocity_deg_s, angle, now.position_deg});
+        }
+        filter->process({velocity, torque, position}, out);
+        for (std::size_t k = 0; k < block; ++k) {
+            check.largest_error_nm = std::max(check.largest_error_nm, std::abs(coded[k] - out[k]));
+            check.largest_nm = std::max(check.largest_nm, std::abs(out[k]));
+        }
+    }
+    return check;
+}
+
+// Writes its code; with verify reads it back and runs it beside the method itself over a million samples.
+// Throws UsageError for a target that takes coefficients only.
+ExitCode export_code(const CodeExport& request, const std::string& command_line) {
+    if (request.common.json) raise<UsageError>("--json: of a method as code nothing is told as JSON yet");
+    const Spec spec = parse_spec(request.to);
+    if (!is_code_target(spec.name)) {
+        raise<UsageError>("target {} takes coefficients, and those of {} change while it runs; use c-header",
+                          spec.name, request.method.method->name);
+    }
+    const Settings settings(fmt::format("target {}", spec.name), spec, method_code_keys());
+    check_output_name(request.common.output, spec.name, ".h .hpp");
+    const auto design = running_design(*request.method.method, request.method.settings, request.sample_rate);
+    const std::array<std::string, 2> heading = {fmt::format("Made by {} {}:", tool_name, version()),
+                                                command_line};
+    const Written written = write_method_code(*design, settings, heading);
+    write_export(written, request.common);
+    if (!request.verify) return ExitCode::done;
+    const ReadBack again = read_back(written, request.common);
+    const LoadedCode code = read_method_code(again.bytes, again.source, *design, settings);
+    const CodeCheck check = run_beside(request, code);
+    tell_check(fmt::format("{}: {}, read back and run beside the method over {} samples in {}.\n"
+                           "largest output          {:.4g} Nm\n"
+                           "largest difference      {:.1e} Nm\n",
+                           again.source, spec.text(), samples, code.arithmetic, check.largest_nm,
+                           check.largest_error_nm),
+               request.common);
+    return ExitCode::done;
+}
+
+// `export` of a ripple map.
+
+/// What export does with a map: the options that a map has too.
+struct MapExport {
+    std::string map, to;
+    bool verify = false;
+    CommonOptions common;
+};
+
+std::string check_text(const std::string& file, const std::string& target, const LoadedMap& loaded,
+                       const MapCheck& check) {
+    return fmt::format(
+        "{}: {}, read back and run at {} states in {}.\n"
+        "ripple of the map       {:.4g} Nm rms\n"
+        "no place in the target  {:.4g} Nm rms\n"
+        "largest error           {:.2g} Nm\n",
+        file, target, check.states, loaded.arithmetic, check.ripple_nm, check.not_held_nm,
+        check.largest_error_nm);
+}
+
+// Writes the map in the form of the target, reads it back and tells what came through. Throws UsageError,
+// DataError.
+ExitCode export_map(const MapExport& request, const std::string& command_line) {
+    if (request.common.json) raise<UsageError>("--json: of a map's export nothing is told as JSON yet");
+    const Spec spec = parse_spec(request.to);
+    const MapTarget& target = find_map_target(spec.name);
+    check_output_name(request.common.output, target.name, target.endings);
+    const Settings settings(fmt::format("target {}", spec.name), spec, target.keys);
+    const RippleMap map = load_map(request.map).map;
+    if (map.orders.empty()) raise<DataError>("{}: the map is empty: there is nothing to export", request.map);
+    const InputRecord input = input_record(request.map);
+    const std::vector<std::string> heading = {fmt::format("Made by {} {}:", tool_name, version()),
+                                              command_line,
+                                              fmt::format("from {}, SHA-256 {}", input.name, input.sha256)};
+    const Written written = target.write(map, settings, heading);
+    write_export(written, request.common);
+    if (!request.verify) return ExitCode::done;
+    const ReadBack again = read_back(written, request.common);
+    const LoadedMap loaded = target.read(again.bytes, again.source, map, settings);
+    tell_check(check_text(again.source, std::string(target.name), loaded, verify_map_export(map, loaded)),
+               request.common);
+    return ExitCode::done;
+}
+
+// What was read back, for people.
+
+// A rounded zero has no sign: -0.0000 would differ from machine to machine.
+std::string fixed(const std::optional<double>& value, int decimals) {
+    if (!value) return "-";
+    const std::string text = fmt::format("{:.{}f}", *value, decimals);
+    const bool is_zero = text.find_first_of("123456789") == std::string::npos;
+    return is_zero && text.front() == '-' ? text.substr(1) : text;
+}
+
+std::string depth_text(const SectionCheck& check) {
+    if (!check.is_notch) return "-";
+    const double depth = check.depth_db.value_or(check.response_depth_db);
+    return depth >= deepest_measured_db ? fmt::format(">{:.0f}", deepest_measured_db) : fixed(depth, 1);
+}
+
+std::vector<std::string> row(const SectionCheck& check, bool bands) {
+    std::vector<std::string> cells;
+    if (bands) cells.push_back(std::to_string(check.band));
+    cells.push_back(check.order ? shortest(check.order->value()) : std::to_string(check.section));
+    cells.push_back(fmt::format("{:.6g}", check.center.value()));
+    cells.push_back(check.shift_percent ? fixed(check.shift_percent, 4) : "none");
+    cells.push_back(fmt::format("{:.4g}", check.q));
+    cells.push_back(depth_text(check));
+    cells.push_back(fixed(check.dc_error_db, 5));
+    cells.push_back(fixed(check.mean_error_nm ? std::optional(1e3 * *check.mean_error_nm) : std::nullopt, 4));
+    cells.push_back(fixed(check.pole_radius, 7));
+    return cells;
+}
+
+std::string export_report_to_text(const ExportReport& report) {
+    const bool bands = !report.checks.empty() && report.checks.front().band > 0;
+    std::string text = fmt::format("{}: {}, read back and run at {} Hz in {}.\n\n",
+                                   report.file == "-" ? "standard output" : report.file, report.target,
+                                   shortest(report.sample_rate.value()), report.arithmetic);
+    const bool orders = !report.checks.empty() && report.checks.front().order.has_value();
+    std::vector<std::vector<std::string>> rows = {{orders ? "order" : "section", "centre Hz", "shift %", "Q",
+                                                   "depth dB", "DC error dB", "mean error mNm",
+                                                   "pole radius"}};
+    if (bands) rows.front().insert(rows.front().begin(), "band");
+    for (const SectionCheck& check : report.checks) rows.push_back(row(check, bands));
+    text += text_table(rows, "r");
+    text += fmt::format("\nThe torque it ran on: {} Nm, and 1 Nm of ripple at the designed centre.\n",
+                        shortest(verify_load_nm));
+    return text;
+}
 
 constexpr std::size_t most_violations_said = 5;
 

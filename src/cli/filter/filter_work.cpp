@@ -5,11 +5,11 @@
 
 #include <complex>
 
-#include "cli/filter/filter_summary.hpp"
+#include "cli/filter/filter.hpp"
 #include "cli/gear/chosen_method.hpp"
-#include "cli/gear/joint_facts.hpp"
+#include "cli/gear/gear_choice.hpp"
 #include "ripplenotch/core/error.hpp"
-#include "ripplenotch/document/metrics_json.hpp"
+#include "ripplenotch/document/comparison_json.hpp"
 #include "ripplenotch/log/log.hpp"
 
 namespace ripplenotch {

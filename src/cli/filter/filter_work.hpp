@@ -7,12 +7,12 @@
 #include <string>
 #include <vector>
 
-#include "cli/gear/joint_methods.hpp"
+#include "cli/gear/chosen_method.hpp"
 #include "cli/options/gates.hpp"
 #include "cli/options/options.hpp"
 #include "cli/options/plot_request.hpp"
-#include "ripplenotch/core/spool.hpp"
-#include "ripplenotch/evaluate/filter_metrics.hpp"
+#include "ripplenotch/core/files.hpp"
+#include "ripplenotch/evaluate/ledger.hpp"
 #include "ripplenotch/filter/engine.hpp"
 
 namespace ripplenotch {

@@ -3,8 +3,11 @@
 // A filter method as the user wrote it, checked, with its table loaded and its gear chosen.
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "cli/gear/gear_choice.hpp"
 #include "ripplenotch/evaluate/contender.hpp"
@@ -29,5 +32,45 @@ void refuse_other_joint(const Contender& method, const std::string& joint);
 /// Throws UsageError, naming both, when the method's filter is made for another gear ratio than that whose
 /// ripple is measured: by more than 0.5 %, or than a table's own ratio error.
 void refuse_other_gear(const Contender& method, const GearAccount& measured);
+
+// The methods of a log's joints: one for all of them, or one each.
+
+/// Stands for a joint's name in the names of files and in the keys of a method.
+inline constexpr std::string_view joint_mark = "{joint}";
+[[nodiscard]] bool names_joint(std::string_view text);
+/// `text` with the joint's name in place of each mark; a name that is no file's, like arm/1, gets _ for /.
+/// Throws UsageError when there is a mark and the joint has no name.
+[[nodiscard]] std::string with_joint(std::string text, const std::string& joint);
+
+/// As the command line has it; "{joint}" may stand in the names of methods and files.
+struct MethodRequest {
+    std::string method;
+    std::optional<std::string> table;
+    GearOptions gear;
+    bool needs_gear = false;  ///< something was asked about the ripple's place
+};
+
+class JointMethods {
+  public:
+    /// Chooses at once where no text names the joint, so that what is wrong is said before a log is opened.
+    /// Throws what choose_method throws, UsageError when a gear is needed and not known.
+    explicit JointMethods(MethodRequest request);
+
+    /// Throws the same, and what with_joint throws.
+    [[nodiscard]] std::shared_ptr<const Contender> of(const std::string& joint) const;
+    /// Of all joints; empty where each has its own, or nobody says it.
+    [[nodiscard]] std::optional<GearAccount> common_gear() const;
+    /// Whether the method looks at the whole log before it filters.
+    [[nodiscard]] bool learns() const;
+    /// Whether what the method does depends on how fast the joint turns.
+    [[nodiscard]] bool follows_motion() const;
+
+  private:
+    [[nodiscard]] const Method& method() const;
+    [[nodiscard]] std::shared_ptr<const Contender> choose(const std::string& joint) const;
+
+    MethodRequest request_;
+    std::shared_ptr<const Contender> common_;  ///< null when each joint has its own
+};
 
 }  // namespace ripplenotch

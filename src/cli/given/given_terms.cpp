@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cli/gear/joint_methods.hpp"
+#include "cli/gear/chosen_method.hpp"
 #include "core/vectors/dot.hpp"
 #include "ripplenotch/core/error.hpp"
 

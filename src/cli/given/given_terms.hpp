@@ -12,12 +12,12 @@
 #include "cli/arm/given_arm.hpp"
 #include "cli/options/options.hpp"
 #include "cli/options/simulated_option.hpp"
-#include "ripplenotch/arm/arm_account.hpp"
+#include "ripplenotch/arm/arm_fit.hpp"
 #include "ripplenotch/diagnose/diagnosis.hpp"
 #include "ripplenotch/diagnose/setup.hpp"
 #include "ripplenotch/document/model_json.hpp"
 #include "ripplenotch/log/log.hpp"
-#include "ripplenotch/model/given_term.hpp"
+#include "ripplenotch/model/model.hpp"
 
 namespace ripplenotch {
 

@@ -3,12 +3,12 @@
 
 #include <fmt/format.h>
 
-#include "cli/gear/joint_methods.hpp"
+#include "cli/gear/chosen_method.hpp"
 #include "cli/given/stated_along.hpp"
-#include "core/rows/rms.hpp"
+#include "core/rows/row_facts.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/document/model_json.hpp"
-#include "ripplenotch/model/measured_motion.hpp"
+#include "ripplenotch/model/motion.hpp"
 
 namespace ripplenotch {
 namespace {

@@ -4,18 +4,168 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <cmath>
 #include <memory>
+#include <string>
 
 #include "cli/command.hpp"
-#include "cli/info/info_text.hpp"
 #include "cli/options/plot_request.hpp"
 #include "cli/talk.hpp"
-#include "ripplenotch/core/inputs_read.hpp"
+#include "ripplenotch/core/files.hpp"
+#include "ripplenotch/core/number.hpp"
 #include "ripplenotch/document/info_json.hpp"
 #include "ripplenotch/log/format.hpp"
+#include "ripplenotch/survey/survey.hpp"
 
 namespace ripplenotch {
+
 namespace {
+
+constexpr std::size_t all_columns_up_to = 12;
+
+std::string figure(double value) { return fmt::format("{:.4g}", value); }
+
+std::string range_text(const std::optional<Range>& range) {
+    return range ? fmt::format("{} to {}", figure(range->min), figure(range->max)) : "-";
+}
+
+std::string first_sentence(const LogInfo& log) {
+    std::string text = log.source + ": " + how_many(log.rows, "row");
+    if (log.duration_s && log.clock.nominal_rate.value() > 0.0) {
+        text += fmt::format(" over {:.6g} s", *log.duration_s);
+        if (log.clock.refusal.empty()) text += fmt::format(" at {:.5g} Hz", log.clock.nominal_rate.value());
+    } else {
+        text += " without a clock";
+    }
+    if (log.joints.size() > 1) {
+        text += fmt::format(", {} joints", log.joints.size());
+    } else if (!log.joints.empty()) {
+        const JointInfo& joint = log.joints.front();
+        if (!joint.joint.empty()) text += fmt::format(", joint {}", joint.joint);
+        if (joint.speed_deg_s) text += fmt::format(", speed {} deg/s", range_text(joint.speed_deg_s));
+        if (joint.torque_nm) text += fmt::format(", torque {} Nm", range_text(joint.torque_nm));
+        if (!joint.speed_deg_s && !joint.torque_nm && !joint.position_deg) {
+            text += ", no column known as velocity, torque or position";
+        } else if (!joint.torque_nm) {
+            text += ", no torque";
+        }
+    }
+    return text + ".\n";
+}
+
+// Times are written with so many digits that rounding them looks like jitter.
+double rounded_jitter(Seconds jitter, Seconds step) {
+    return jitter.value() < 1e-5 * step.value() ? 0.0 : jitter.value();
+}
+
+std::string clock_text(const LogInfo& log) {
+    const ClockFacts& clock = log.clock;
+    if (!(clock.nominal_rate.value() > 0.0)) return "no time column and no --sample-rate";
+    if (log.layout.stated_rate) return fmt::format("{:.6g} Hz as stated", clock.nominal_rate.value());
+    const double nominal = clock.nominal_rate.value(), mean = clock.mean_rate.value();
+    std::string text;
+    if (std::abs(mean / nominal - 1.0) > rate_worth_a_word)
+        text = fmt::format("{:.6g} Hz by the usual step, ", nominal);
+    text += fmt::format("{:.6g} Hz in the mean; step {} ms in the median, {} to {} ms; jitter {} ms rms; ",
+                        mean, figure(1e3 * clock.usual_step.value()),
+                        figure(1e3 * clock.shortest_step.value()), figure(1e3 * clock.longest_step.value()),
+                        figure(1e3 * rounded_jitter(clock.jitter, clock.usual_step)));
+    text += clock.gap_count == 0 ? "no gap" : how_many(clock.gap_count, "gap");
+    if (!clock.rate_changes.empty()) {
+        text += "; " + how_many(clock.rate_changes.size(), "change of rate", "changes of rate");
+    }
+    if (clock.repeated_times > 0) text += fmt::format("; {} repeated times", clock.repeated_times);
+    return text;
+}
+
+std::string clock_factor_text(const std::optional<double>& factor) {
+    return factor ? fmt::format("{:.4f}", *factor) : "-";
+}
+
+std::string joints_in_log(const LogInfo& log) {
+    std::vector<std::vector<std::string>> rows = {
+        {"joint", "speed deg/s", "torque Nm", "turns", "steady", "held", "position/velocity"}};
+    for (const JointInfo& joint : log.joints) {
+        const auto steady = std::count_if(joint.stretches.begin(), joint.stretches.end(),
+                                          [](const SteadyStretch& s) { return !s.rest; });
+        rows.push_back({joint.joint.empty() ? "-" : joint.joint, range_text(joint.speed_deg_s),
+                        range_text(joint.torque_nm), fmt::format("{:.3g}", joint.turns),
+                        std::to_string(steady), std::to_string(joint.recording.held.count),
+                        clock_factor_text(joint.clock_factor)});
+    }
+    return text_table(rows, "lrrrrrr");
+}
+
+std::string columns_table(const LogInfo& log) {
+    const auto& columns = log.layout.columns;
+    std::vector<std::vector<std::string>> rows = {{"column", "name", "is", "unit", "joint"}};
+    std::size_t others = 0;
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+        const Column& column = columns[c];
+        if (column.role == Role::other && columns.size() > all_columns_up_to) {
+            ++others;
+            continue;
+        }
+        rows.push_back(
+            {std::to_string(c + 1), column.name.empty() ? "(no name)" : column.name,
+             std::string(role_name(column.role)),
+             column.role == Role::other ? "" : column.unit + (column.unit_assumed ? " (assumed)" : ""),
+             column.joint});
+    }
+    std::string text = text_table(rows, "rllll");
+    if (others > 0) text += fmt::format("and {} other columns\n", others);
+    return text;
+}
+
+// What is in a container beside the columns that were read.
+std::string contents_table(const LogInfo& log) {
+    constexpr std::size_t most_listed = 40;
+    std::vector<std::vector<std::string>> rows = {{"in the file", "", "shape", "type", "unit", "Hz"}};
+    const auto& contents = log.layout.contents;
+    for (std::size_t i = 0; i < std::min(contents.size(), most_listed); ++i) {
+        const ContentEntry& entry = contents[i];
+        rows.push_back({entry.path, entry.read ? "read" : "", entry.shape, entry.type, entry.unit,
+                        entry.rate_hz ? figure(*entry.rate_hz) : ""});
+    }
+    std::string text = '\n' + text_table(rows, "llllll");
+    if (contents.size() > most_listed)
+        text += fmt::format("and {} others; --json lists all\n", contents.size() - most_listed);
+    return text;
+}
+
+// One screen about a log, a sentence first. Wide files list only the columns that mean something.
+std::string info_to_text(const LogInfo& log) {
+    std::string text = first_sentence(log);
+    text += fmt::format("\nclock     {}\n", clock_text(log));
+    if (log.layout.outside) {
+        const RowsOutside& outside = *log.layout.outside;
+        text += fmt::format("range     {}; left out are {} rows before and {} after\n",
+                            range_in_words(outside), outside.before, outside.after);
+    }
+    text += fmt::format("read as   {}{}\n", log.layout.options,
+                        log.joints.size() > 1 ? ", and the other joints alike" : "");
+    if (log.bad_values_held > 0)
+        text += fmt::format("held      {} bad values replaced by the value before\n", log.bad_values_held);
+    text += '\n' + joints_in_log(log);
+    text += '\n' + columns_table(log);
+    if (!log.layout.contents.empty()) text += contents_table(log);
+    text += "\ngood for\n";
+    for (const Use& use : log.uses) {
+        text += fmt::format("  {:12} {}  {}\n", use.name, use.possible ? "yes" : "no ", use.reason);
+    }
+    if (!log.layout.inferences.empty() || !log.layout.assumptions.empty()) text += "\nnot stated\n";
+    for (const Assumption& one : log.layout.inferences)
+        text += fmt::format("  {} is {}: {}\n", one.about, one.assumed, one.reason);
+    for (const Assumption& one : log.layout.assumptions)
+        text += fmt::format("  {} is taken as {}: {}; {} settles it\n", one.about, one.assumed, one.reason,
+                            one.settle_with);
+    if (!log.warnings.empty()) {
+        text += "\nwarnings\n";
+        for (const std::string& warning : log.warnings) text += fmt::format("  {}\n", warning);
+    }
+    return text;
+}
 
 struct InfoRequest {
     CommonOptions common;

@@ -8,7 +8,7 @@
 #include <numeric>
 
 #include "cli/command.hpp"
-#include "cli/features/shard_work.hpp"
+#include "cli/features/features.hpp"
 #include "ripplenotch/core/error.hpp"
 
 namespace ripplenotch {

@@ -10,7 +10,7 @@
 #include "cli/options/options.hpp"
 #include "ripplenotch/evaluate/comparison.hpp"
 #include "ripplenotch/evaluate/contender.hpp"
-#include "ripplenotch/evaluate/filter_metrics.hpp"
+#include "ripplenotch/evaluate/ledger.hpp"
 
 namespace ripplenotch {
 

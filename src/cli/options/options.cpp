@@ -14,9 +14,9 @@
 #include "cli/options/shell_word.hpp"
 #include "cli/talk.hpp"
 #include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/files.hpp"
 #include "ripplenotch/core/number.hpp"
-#include "ripplenotch/core/output_name.hpp"
-#include "ripplenotch/core/version.hpp"
+#include "ripplenotch/core/progress.hpp"
 
 namespace ripplenotch {
 namespace {

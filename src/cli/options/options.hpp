@@ -13,7 +13,6 @@
 
 #include "ripplenotch/core/files.hpp"
 #include "ripplenotch/core/quantity.hpp"
-#include "ripplenotch/core/units.hpp"
 #include "ripplenotch/document/provenance.hpp"
 #include "ripplenotch/log/layout.hpp"
 

@@ -10,9 +10,9 @@
 #include <filesystem>
 
 #include "ripplenotch/core/error.hpp"
-#include "ripplenotch/core/inputs_read.hpp"
+#include "ripplenotch/core/files.hpp"
 #include "ripplenotch/document/figure_json.hpp"
-#include "ripplenotch/figure/figure_kinds.hpp"
+#include "ripplenotch/figure/figure.hpp"
 #include "ripplenotch/figure/gnuplot.hpp"
 
 namespace ripplenotch {

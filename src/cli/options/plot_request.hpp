@@ -8,7 +8,7 @@
 #include <string>
 
 #include "cli/options/options.hpp"
-#include "ripplenotch/chart/torque_course.hpp"
+#include "ripplenotch/chart/track_figure.hpp"
 #include "ripplenotch/document/provenance.hpp"
 #include "ripplenotch/figure/figure.hpp"
 #include "ripplenotch/log/format.hpp"

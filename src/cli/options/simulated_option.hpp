@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "ripplenotch/diagnose/setup.hpp"
-#include "ripplenotch/document/simulated_term.hpp"
+#include "ripplenotch/document/model_json.hpp"
 #include "ripplenotch/log/log.hpp"
-#include "ripplenotch/model/given_term.hpp"
+#include "ripplenotch/model/model.hpp"
 
 namespace ripplenotch {
 

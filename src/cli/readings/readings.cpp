@@ -7,12 +7,109 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <functional>
+#include <span>
+#include <string>
 #include <utility>
+#include <vector>
 
-#include "cli/readings/log_doubts.hpp"
+#include "ripplenotch/analysis/identification.hpp"
+#include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/spec.hpp"
+#include "ripplenotch/diagnose/diagnosis.hpp"
+#include "ripplenotch/log/log.hpp"
 
 namespace ripplenotch {
+
 namespace {
+
+std::string lower_case(std::string text) {
+    for (char& letter : text) letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+    return text;
+}
+
+}  // namespace
+
+ArmLog ArmReading::view() const {
+    ArmLog arm;
+    for (const Log& log : logs) {
+        arm.joints.push_back(log.trace.view());
+        arm.has_torque.push_back(log.layout.chosen.torque.has_value());
+    }
+    return arm;
+}
+
+std::size_t ArmReading::find(const Chain& chain, const std::string& joint) const {
+    for (std::size_t j = 0; j < names.size(); ++j)
+        if (lower_case(names[j]) == lower_case(joint)) return j;
+    std::vector<std::string> known;
+    for (std::size_t j = 0; j < chain.size(); ++j) {
+        known.push_back(chain.joints[j].name);
+        if (lower_case(known.back()) == lower_case(joint)) return j;
+    }
+    raise<UsageError>("arm: '{}' is no joint of {}; {}{}", joint, chain.source, joint_list(chain),
+                      did_you_mean(joint, known));
+}
+
+ArmReading read_arm(const std::string& path, const ReadOptions& options, std::size_t most_rows,
+                    const Chain& chain, const StatedJoints& stated) {
+    ReadOptions motion = options;
+    motion.torque_of_each = false;
+    std::vector<Log> all = read_joints_at_once_in_part(path, motion, most_rows);
+    std::vector<std::string> there;
+    for (const Log& log : all) there.push_back(log.trace.joint);
+    const std::string source = all.front().layout.source;
+    ArmReading reading{{}, match_joints(chain, there, stated, source), {}};
+    for (const std::size_t place : reading.match.of) {
+        if (!all[place].trace.view().has_position()) {
+            raise<UsageError>(
+                "arm: {} has the velocity of '{}' and not its position; gravity depends on it and its "
+                "integral "
+                "does not tell from where",
+                source, there[place]);
+        }
+        reading.names.push_back(there[place]);
+        reading.logs.push_back(std::move(all[place]));
+    }
+    return reading;
+}
+
+namespace {
+
+// What a log itself says against believing what identify finds in it.
+
+// Position over velocity and time is known within 5 % where it is stated at all. A scale that is off by less
+// moves a gear ratio by as little; the fit of the ratio speaks of it.
+constexpr double agreement = 0.05;
+constexpr double widest_clock = 5.0;  // no clock is off by more; a unit or a side is
+
+}  // namespace
+
+// One entry a reason, each with what settles it, with the log read in this way. Empty for a log that does
+// not contradict itself.
+std::vector<Doubt> log_doubts(const Log& log, const OtherReading& reading) {
+    const auto& factor = log.recording.angle.factor;
+    if (!factor) return {};
+    // A turned sign leaves every order where it is.
+    const double size =
+        std::abs(*factor) * reading.position_factor / (reading.velocity_factor * reading.time_factor);
+    if (std::abs(size - 1.0) <= agreement) return {};
+    const bool clock = size < widest_clock && size > 1.0 / widest_clock;
+    return {{DoubtReason::clock,
+             fmt::format(
+                 "in {} the position changes {:.4g} times as much as velocity and time say, so {}",
+                 log.layout.source, size,
+                 clock ? fmt::format("the clock or a unit is wrong: --sample-rate {:.4g}Hz would mend "
+                                     "the clock, --unit the velocity or the position",
+                                     log.recording.clock.nominal_rate.value() / reading.time_factor / size)
+                       : "a unit is wrong, or one of the two is the motor's: --unit would mend it")}};
+}
+
+namespace {
+
+/// The ratio that motion of the motor's shaft is divided by where nobody knows the real one, so that its
+/// lines stand where those of a joint would.
+constexpr double stand_in_ratio = 100.0;
 
 constexpr double same_ratio = 0.02;  // by hand
 constexpr double least_ratio = 3.0;  // less is no gear: what was logged turns with the motor

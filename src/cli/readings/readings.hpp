@@ -8,19 +8,38 @@
 #include <vector>
 
 #include "ripplenotch/analysis/identification.hpp"
+#include "ripplenotch/arm/arm_fit.hpp"
+#include "ripplenotch/arm/joint_matching.hpp"
 #include "ripplenotch/diagnose/diagnosis.hpp"
 #include "ripplenotch/log/log.hpp"
 
 namespace ripplenotch {
 
-/// The ratio that motion of the motor's shaft is divided by where nobody knows the real one, so that its
-/// lines stand where those of a joint would.
-inline constexpr double stand_in_ratio = 100.0;
+// All joints of an arm from one log, in the order of its chain.
+
+struct ArmReading {
+    std::vector<Log> logs;  ///< a joint of the chain each
+    JointMatch match;
+    std::vector<std::string> names;  ///< of the joints in the log, in the order of the chain
+
+    [[nodiscard]] ArmLog view() const;
+    /// The place in the chain of a joint by its name in the log or in the chain, whatever its case. Throws
+    /// UsageError with the nearest name.
+    [[nodiscard]] std::size_t find(const Chain& chain, const std::string& joint) const;
+};
+
+/// Of a log with more than `most_rows` the pieces of read_log_in_part. Throws what
+/// read_joints_at_once_in_part and match_joints throw, and UsageError where a joint of the chain has no
+/// position.
+[[nodiscard]] ArmReading read_arm(const std::string& path, const ReadOptions& options, std::size_t most_rows,
+                                  const Chain& chain, const StatedJoints& stated);
 
 /// Readings as possible as the one taken, of all the logs, each once.
 [[nodiscard]] std::vector<OtherReading> open_readings(std::span<const Log> logs);
+
 /// What the one that was taken is called: "in rad/s and rad, as assumed".
 [[nodiscard]] std::string assumed_reading(std::span<const Log> logs);
+
 /// Options that settle them, those for what was assumed first.
 [[nodiscard]] std::string settling_options(std::span<const Log> logs);
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "cli/gear/joint_methods.hpp"
+#include "cli/gear/chosen_method.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/spec.hpp"
@@ -24,10 +24,15 @@ std::string value_of(const Spec& spec, std::string_view key) {
     return at == spec.values.end() ? "" : at->second;
 }
 
-// The column is read in the place of the torque.
-ReadOptions beside(std::string& column, const std::string& joint, ReadOptions read) {
+std::string named_for(std::string column, const std::string& joint) {
     if (const std::size_t at = column.find(joint_mark); at != std::string::npos)
         column.replace(at, joint_mark.size(), joint);
+    return column;
+}
+
+// The column is read in the place of the torque.
+ReadOptions beside(std::string& column, const std::string& joint, ReadOptions read) {
+    column = named_for(column, joint);
     std::erase_if(read.columns, [](const std::string& entry) { return entry.starts_with("torque="); });
     read.columns.push_back("torque=" + column);
     read.units["torque"] = "Nm";  // its numbers as they are
@@ -103,13 +108,13 @@ std::string at_log_temperature(const std::string& method, const std::string& log
             "method {}: {} depends on the joint's temperature ('{}'), and standard input cannot be "
             "read twice; {}",
             spec.name, path, column, remedy);
-    try {
-        const double degc = mean_of_side_column(log, column, joint_of(map, read), held(read));
-        return at_rows_temperature(method, degc);
-    } catch (const UsageError&) {
+    const std::string shown = named_for(column, joint_of(map, read));
+    const auto reader = open_log(log, read);
+    const auto& columns = reader->layout().columns;
+    if (std::none_of(columns.begin(), columns.end(), [&](const auto& one) { return one.name == shown; }))
         raise<DataError>("{}: read no column '{}', expected the temperature that {} depends on; {}", log,
-                         column, path, remedy);
-    }
+                         shown, path, remedy);
+    return at_rows_temperature(method, mean_of_side_column(log, column, joint_of(map, read), held(read)));
 }
 
 FollowedRows::FollowedRows(const std::string& path, std::string column, const ReadOptions& side)

@@ -6,20 +6,76 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <map>
 #include <numeric>
+#include <set>
+#include <string>
 
 #include "cli/gear/chosen_method.hpp"
+#include "cli/options/options.hpp"
 #include "cli/options/shell_word.hpp"
 #include "cli/readings/side_column.hpp"
-#include "cli/recommend/pasted.hpp"
+#include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/document/map_json.hpp"
 #include "ripplenotch/evaluate/comparison.hpp"
 #include "ripplenotch/filter/map_fit.hpp"
 
 namespace ripplenotch {
+
 namespace {
+
+void add(std::string& line, std::string_view option, const std::optional<std::string>& value) {
+    if (value) line += " " + std::string(option) + " " + shell_quoted(*value);
+}
+
+std::optional<std::string> count_of(int value) {
+    return value > 0 ? std::optional(std::to_string(value)) : std::nullopt;
+}
+
+}  // namespace
+
+std::string log_words(const LogOptions& log) {
+    std::string line;
+    add(line, "--from", log.from);
+    add(line, "--to", log.to);
+    add(line, "--format", log.format);
+    add(line, "--joint", log.joint);
+    add(line, "--columns", log.columns);
+    for (const std::string& unit : log.units) add(line, "--unit", unit);
+    if (log.sample_rate) add(line, "--sample-rate", shortest(log.sample_rate->value()) + "Hz");
+    if (log.constant_speed) line += " --constant-speed " + shortest(log.constant_speed->value()) + "deg/s";
+    add(line, "--side", log.side);
+    add(line, "--delimiter", log.delimiter);
+    add(line, "--decimal", log.decimal);
+    if (log.no_header) line += " --no-header";
+    add(line, "--skip-lines", count_of(log.skip_lines));
+    add(line, "--layout", log.records);
+    add(line, "--skip-bytes", count_of(log.skip_bytes));
+    add(line, "--clock", log.clock);
+    add(line, "--join", log.join);
+    add(line, "--kt", log.kt);
+    if (log.hold_bad_values) line += " --hold-bad-values";
+    return line;
+}
+
+namespace {
+
+// " --gear-ratio 100 --orders 1,2"
+std::string gear_words(const GearAccount& gear) {
+    std::string orders;
+    for (const Order order : gear.orders) orders += (orders.empty() ? "" : ",") + shortest(order.value());
+    return " --gear-ratio " + shortest(gear.ratio.value()) + " --orders " + orders;
+}
+
+// A name for the filtered log beside this one: "filtered.csv".
+std::string filtered_name(const std::string& log) {
+    // A name that the filtered log can keep; others hold what is not written or is packed.
+    static const std::set<std::string> written = {".csv", ".txt", ".npy", ".mat", ".h5"};
+    const std::string ending = std::filesystem::path(log).extension().string();
+    return "filtered" + (written.contains(ending) ? ending : ".csv");
+}
 
 constexpr std::string_view map_file = "map.json";
 constexpr double paper_spacing_hz = 5.0;  ///< of a table's centres, in the lowest order
@@ -213,5 +269,34 @@ class Maker {
 }  // namespace
 
 TriedMethods candidates_for(const CandidateRequest& request) { return Maker(request).all(); }
+
+std::vector<std::string> CommandLines::of(const MethodFigures& figures) const {
+    const TriedMethods& tried = about_.tried;
+    const auto contender = std::find_if(tried.contenders.begin(), tried.contenders.end(),
+                                        [&](const Contender& one) { return one.text == figures.method; });
+    std::vector<std::string> lines;
+    if (contender->method->part == MethodPart::control) return lines;
+    for (const MadeFile& file : tried.files) {
+        const auto& files = contender->files;
+        if (std::find(files.begin(), files.end(), file.name) != files.end()) lines.push_back(file.command);
+    }
+    lines.push_back(fmt::format("ripplenotch filter {}{} --method {} -o {}", shell_quoted(about_.log),
+                                log_words(about_.whole), shell_quoted(figures.method),
+                                filtered_name(about_.log)));
+    if (!about_.target) return lines;
+    // A target that does not hold the whole map is given the map all the same.
+    if (contender->method->name == "map" && contender->files.empty() && !tried.files.empty())
+        lines.insert(lines.begin(), tried.files.front().command);
+    lines.push_back(about_.target->command(*contender, about_.sample_rate));
+    return lines;
+}
+
+std::string CommandLines::check(const std::vector<const JudgedMethod*>& methods) const {
+    std::string line = fmt::format("ripplenotch compare {}{}{}", shell_quoted(about_.log),
+                                   log_words(about_.judged), gear_words(about_.gear));
+    for (const JudgedMethod* method : methods)
+        if (method != nullptr) line += " --method " + shell_quoted(method->figures.method);
+    return line;
+}
 
 }  // namespace ripplenotch

@@ -8,11 +8,19 @@
 #include <vector>
 
 #include "cli/gear/gear_choice.hpp"
-#include "cli/recommend/targets.hpp"
+#include "cli/options/options.hpp"
+#include "cli/recommend/recommend.hpp"
+#include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/evaluate/contender.hpp"
+#include "ripplenotch/evaluate/recommendation.hpp"
 #include "ripplenotch/log/log.hpp"
 
 namespace ripplenotch {
+
+// Command lines that people paste.
+
+/// " --from 2s --unit velocity=rad/s": the options that read a log in this way, each with a blank before it.
+[[nodiscard]] std::string log_words(const LogOptions& log);
 
 /// A file that methods need, and the command line that makes it.
 struct MadeFile {
@@ -43,5 +51,29 @@ struct CandidateRequest {
 
 /// The same for every limit, so that looser limits never give a worse answer.
 [[nodiscard]] TriedMethods candidates_for(const CandidateRequest& request);
+
+// What recommend prints to be pasted, of the methods that it judged.
+
+class CommandLines {
+  public:
+    /// What the lines are about; refers to what its maker holds.
+    struct About {
+        const std::string& log;
+        const LogOptions &whole, &judged;  ///< options that read the log, and the part that was judged
+        Hertz sample_rate;
+        const TriedMethods& tried;
+        const std::optional<TargetChoice>& target;
+        const GearAccount& gear;
+    };
+    explicit CommandLines(const About& about) : about_(about) {}
+
+    /// What makes use of a method, one command after the other.
+    [[nodiscard]] std::vector<std::string> of(const MethodFigures& figures) const;
+    /// Measures methods as they were measured here; null ones are left out.
+    [[nodiscard]] std::string check(const std::vector<const JudgedMethod*>& methods) const;
+
+  private:
+    About about_;
+};
 
 }  // namespace ripplenotch

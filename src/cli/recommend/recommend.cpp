@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // ripplenotch recommend: which method to take for a log, within what it may cost.
 
+#include "cli/recommend/recommend.hpp"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -8,22 +10,164 @@
 #include <cmath>
 #include <functional>
 #include <memory>
+#include <optional>
+#include <string>
 
 #include "cli/command.hpp"
 #include "cli/options/gates.hpp"
+#include "cli/options/name_list.hpp"
 #include "cli/options/shell_word.hpp"
 #include "cli/readings/readings.hpp"
 #include "cli/readings/side_column.hpp"
 #include "cli/recommend/candidates.hpp"
-#include "cli/recommend/command_lines.hpp"
-#include "cli/recommend/pasted.hpp"
-#include "cli/recommend/recommend_text.hpp"
 #include "cli/talk.hpp"
+#include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
+#include "ripplenotch/core/quantity.hpp"
+#include "ripplenotch/core/visible_text.hpp"
+#include "ripplenotch/design/ripple_map.hpp"
+#include "ripplenotch/document/comparison_json.hpp"
+#include "ripplenotch/evaluate/contender.hpp"
+#include "ripplenotch/export/map_target.hpp"
+#include "ripplenotch/export/target.hpp"
 #include "ripplenotch/log/log.hpp"
 
 namespace ripplenotch {
+
+namespace {
+
+// A recommendation as people read it.
+
+constexpr std::size_t report_width = 110, widest_name = 60;
+
+std::string wrapped_sentence(const std::string& sentence) {
+    std::string text;
+    for (const std::string& line : wrapped(sentence, report_width)) text += line + "\n";
+    return text;
+}
+
+std::string next_commands(std::string_view head, const std::vector<std::string>& lines) {
+    if (lines.empty()) return "";
+    return fmt::format("\n{}\n    {}\n", head, fmt::join(lines, "\n    "));
+}
+
+std::string orders_text(const Recommendation& found) {
+    std::vector<std::vector<std::string>> rows = {
+        {"order", "ripple Nm", "standard error Nm", "detectable Nm", ""}};
+    for (const RippleEstimate& one : found.orders) {
+        const auto cell = [&](double nm) { return one.searched() ? fmt::format("{:.3f}", nm) : "-"; };
+        rows.push_back({shortest(one.order), cell(one.amplitude_nm), cell(one.standard_error_nm),
+                        cell(one.detectable_nm),
+                        !one.searched() ? one.insufficient
+                        : one.present() ? ""
+                                        : "not above the noise"});
+    }
+    return "\n" + text_table(rows, "rrrrl");
+}
+
+std::string methods_text(const Recommendation& found) {
+    std::vector<std::vector<std::string>> rows = {{"method"}};
+    for (const RippleEstimate& one : found.orders)
+        rows.front().push_back(fmt::format("order {:g}, dB", one.order));
+    for (const char* const title : {"late, ms", "ripple, Nm rms", "off by, Nm", ""})
+        rows.front().emplace_back(title);
+    for (const JudgedMethod& method : found.methods) {
+        const std::string& name = method.figures.method;
+        rows.push_back({name.size() > widest_name ? name.substr(0, widest_name) + "..." : name});
+        for (const OrderAttenuation& entry : method.figures.attenuation)
+            rows.back().push_back(entry.db ? rounded(*entry.db, 1) : "-");
+        rows.back().push_back(rounded(1e3 * method.delay.value(), 1));
+        rows.back().push_back(fmt::format("{:.4f}", method.figures.ripple_rms_nm.value_or(0.0)));
+        rows.back().push_back(fmt::format("{:.4f}", method.error_nm));
+        rows.back().push_back(method.meets() ? "" : "no");
+    }
+    rows.front().back() = found.limits.max_delay || found.limits.min_attenuation_db ? "within limits" : "";
+    return "\n" + text_table(rows, "lr");
+}
+
+std::string bulleted(std::string_view head, const std::vector<std::string>& sentences) {
+    if (sentences.empty()) return "";
+    std::string text = fmt::format("\n{}\n", head);
+    for (const std::string& sentence : sentences) {
+        std::string lead = "* ";
+        for (const std::string& line : wrapped(sentence, report_width - 2)) {
+            text += lead + line + "\n";
+            lead = "  ";
+        }
+    }
+    return text;
+}
+
+// Verdict, commands to paste, what is in the log, all methods, and what was assumed.
+std::string recommendation_view(const RecommendationReport& report) {
+    const Recommendation& found = report.found;
+    std::string text = wrapped_sentence(recommendation_verdict(found));
+    text += next_commands("To take it:", report.take);
+    text += next_commands("The other:", report.runner_up);
+    if (!found.orders.empty()) text += orders_text(found);
+    if (!found.methods.empty()) {
+        text += methods_text(found);
+        text += fmt::format(
+            "\nTrained up to {:.6g} s, judged from there on in {} windows. Off by: the ripple left, and "
+            "{:.3g} Nm\n"
+            "for every ms of delay, since this torque moves at {:.3g} Nm/s.\n",
+            report.split_s, found.windows, 1e-3 * found.torque_rate_nm_s, found.torque_rate_nm_s);
+    }
+    if (!report.check.empty()) text += next_commands("To measure it again:", {report.check});
+    return text + bulleted("Assumed:", report.assumed) + bulleted("Not tried:", report.left_out);
+}
+
+template <class Entries>
+auto named(const Entries& entries, const std::string& name) -> decltype(*entries.begin()) {
+    const auto found =
+        std::find_if(entries.begin(), entries.end(), [&](const auto* entry) { return entry->name == name; });
+    static constexpr typename std::iterator_traits<decltype(entries.begin())>::value_type none = nullptr;
+    return found == entries.end() ? none : *found;
+}
+
+// Throws UsageError with all names.
+TargetChoice find_any_target(const std::string& text) {
+    TargetChoice choice{parse_spec(text), nullptr, nullptr};
+    choice.filters = named(export_targets(), choice.spec.name);
+    choice.maps = named(map_targets(), choice.spec.name);
+    if (choice.filters == nullptr && choice.maps == nullptr) {
+        raise<UsageError>("--target {}: there is none of this name; of filters {}; of maps {}",
+                          choice.spec.name, name_list(export_targets()), name_list(map_targets()));
+    }
+    return choice;
+}
+
+}  // namespace
+
+bool TargetChoice::holds(const Contender& method) const {
+    if (method.method->name == "map") return maps != nullptr;
+    if (filters == nullptr) return false;
+    if (method.method->needs_table) return filters->switches;
+    if (method.method->steady == nullptr) return is_code_target(spec.name) && has_code(method.method->name);
+    return !filters->notches_only ||
+           std::holds_alternative<std::vector<NotchSpec>>(method.method->steady(method.settings));
+}
+
+std::optional<RippleMap> TargetChoice::held(const RippleMap& map) const {
+    if (maps == nullptr || map.orders.empty()) return std::nullopt;
+    const Settings settings(fmt::format("target {}", spec.name), spec, maps->keys);
+    const RippleMap kept = maps->read(maps->write(map, settings, {}).bytes, "the target", map, settings).held;
+    if (kept.form.columns() == map.form.columns()) return std::nullopt;
+    return kept;
+}
+
+std::string TargetChoice::command(const Contender& method, Hertz sample_rate) const {
+    const bool is_map = method.method->name == "map";
+    const std::string_view endings = is_map ? maps->endings : filters->endings;
+    const std::string file = "ripple" + std::string(endings.substr(0, endings.find(' ')));
+    const std::string from = is_map || method.method->needs_table
+                                 ? (method.files.empty() ? "map.json" : method.files.front())
+                                 : fmt::format("--method {} --sample-rate {}Hz", shell_quoted(method.text),
+                                               shortest(sample_rate.value()));
+    return fmt::format("ripplenotch export {} --to {} -o {} --verify", from, shell_quoted(spec.text()), file);
+}
+
 namespace {
 
 constexpr std::size_t most_other_lines = 3;  // by hand: of a sentence

@@ -9,9 +9,8 @@
 #include <memory>
 
 #include "cli/command.hpp"
-#include "ripplenotch/core/output_name.hpp"
-#include "ripplenotch/page/html_page.hpp"
-#include "ripplenotch/page/result_section.hpp"
+#include "ripplenotch/core/files.hpp"
+#include "ripplenotch/page/page.hpp"
 
 namespace ripplenotch {
 namespace {

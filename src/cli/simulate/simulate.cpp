@@ -1,29 +1,103 @@
 // SPDX-License-Identifier: MIT
 // ripplenotch simulate: a log from a joint model and a motion.
 
+#include "cli/simulate/simulate.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "cli/command.hpp"
-#include "cli/gear/joint_facts.hpp"
+#include "cli/gear/gear_choice.hpp"
 #include "cli/given/stated_along.hpp"
 #include "cli/options/name_list.hpp"
-#include "cli/simulate/joint_model.hpp"
+#include "cli/options/options.hpp"
 #include "cli/talk.hpp"
-#include "core/rows/rms.hpp"
+#include "core/rows/row_facts.hpp"
+#include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/progress.hpp"
+#include "ripplenotch/document/model_json.hpp"
 #include "ripplenotch/document/simulation_json.hpp"
 #include "ripplenotch/log/log.hpp"
-#include "ripplenotch/model/measured_motion.hpp"
+#include "ripplenotch/model/fit.hpp"
 #include "ripplenotch/model/motion.hpp"
-#include "ripplenotch/model/noise.hpp"
 
 namespace ripplenotch {
+
 namespace {
+
+// "1:0.8Nm:0deg" is order, amplitude, phase; the phase may be left out.
+Term parse_ripple(const std::string& text) {
+    std::vector<std::string> pieces;
+    std::istringstream stream(text);
+    for (std::string piece; std::getline(stream, piece, ':');) pieces.push_back(piece);
+    if (pieces.size() == 2) pieces.emplace_back("0deg");
+    if (pieces.size() != 3) {
+        raise<UsageError>(
+            "--ripple: '{}' is not ORDER:AMPLITUDE or ORDER:AMPLITUDE:PHASE, for example 1:0.8Nm:0deg", text);
+    }
+    return parse_term(
+        fmt::format("ripple,order={},amplitude_nm={},phase_deg={}", pieces[0], pieces[1], pieces[2]));
+}
+
+}  // namespace
+
+ModelWithGiven assemble_model(const JointModelOptions& options, bool takes_given) {
+    ModelWithGiven whole;
+    Model& model = whole.model;
+    check_gear(options.gear);
+    if (options.model) {
+        const std::string source = *options.model == "-" ? "standard input" : *options.model;
+        if (options.gear.ratio) {
+            raise<UsageError>("--gear-ratio: the model of {} states the gear ratio; change it there", source);
+        }
+        const std::string text = read_all(*options.model);
+        if (takes_given)
+            whole = read_model_with_given(text, source);
+        else
+            model = read_model(text, source);
+    } else {
+        if (!options.gear.ratio)
+            raise<UsageError>("--gear-ratio is missing; give it, or --model FILE, which states it");
+        model.gear_ratio = GearRatio(*options.gear.ratio);
+    }
+    if (options.inertia_kgm2) {
+        model.terms.push_back(
+            parse_term(fmt::format("inertia,inertia_kgm2={}", shortest(*options.inertia_kgm2))));
+    }
+    for (const std::string& ripple : options.ripples) model.terms.push_back(parse_ripple(ripple));
+    for (const std::string& effect : options.effects) model.terms.push_back(parse_term(effect));
+    return whole;
+}
+
+namespace {
+
+// The gear of the assembled model, with what was typed or read as its source.
+GearAccount assembled_gear(const JointModelOptions& joint, const Model& model) {
+    std::string source = !joint.model          ? "--gear-ratio"
+                         : *joint.model == "-" ? "standard input"
+                                               : *joint.model;
+    if (!joint.ripples.empty()) source += ", --ripple";
+    return gear_of(model, std::move(source));
+}
+
+void attach_joint_model(Options& options, JointModelOptions& joint) {
+    options.text("--model", joint.model, "FILE", "model.json of the joint; - is standard input");
+    attach_gear(options, joint.gear, {.orders = "", .joint_file = ""});
+    options.number("--inertia", joint.inertia_kgm2, Dimension::inertia, "adds the effect inertia");
+    options.texts("--ripple", joint.ripples, "ORDER:AMPLITUDE[:PHASE]",
+                  "adds the effect ripple: 1:0.8Nm:0deg; repeatable");
+    options.texts("--effect", joint.effects, "NAME,KEY=VALUE,...",
+                  "adds any effect: offset,torque_nm=0.2; repeatable; 'ripplenotch effects' lists them");
+}
 
 struct SimulateOptions {
     CommonOptions common;

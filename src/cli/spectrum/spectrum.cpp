@@ -1,30 +1,338 @@
 // SPDX-License-Identifier: MIT
 // ripplenotch spectrum: amplitude of the torque against frequency or against output order.
 
+#include "cli/spectrum/spectrum.hpp"
+
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <initializer_list>
 #include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
 
 #include "cli/command.hpp"
-#include "cli/gear/joint_facts.hpp"
+#include "cli/gear/gear_choice.hpp"
 #include "cli/given/residual.hpp"
+#include "cli/options/options.hpp"
 #include "cli/options/plot_request.hpp"
 #include "cli/readings/readings.hpp"
-#include "cli/spectrum/spectrum_text.hpp"
-#include "cli/spectrum/speed_map_request.hpp"
-#include "cli/spectrum/streamed_spectrum.hpp"
 #include "cli/talk.hpp"
+#include "ripplenotch/analysis/order_map.hpp"
+#include "ripplenotch/analysis/spectrum.hpp"
+#include "ripplenotch/analysis/sweeps.hpp"
 #include "ripplenotch/chart/spectrum_figure.hpp"
-#include "ripplenotch/core/memory.hpp"
+#include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/files.hpp"
 #include "ripplenotch/core/number.hpp"
-#include "ripplenotch/core/output_name.hpp"
+#include "ripplenotch/core/trace.hpp"
+#include "ripplenotch/document/provenance.hpp"
 #include "ripplenotch/document/spectrum_json.hpp"
+#include "ripplenotch/filter/engine.hpp"
 #include "ripplenotch/log/log.hpp"
 
 namespace ripplenotch {
+
 namespace {
+
+// Spectra as people and programs read them.
+
+std::string counted(std::size_t count, std::string_view noun) {
+    return count == 0 ? fmt::format("no {}", noun) : how_many(count, noun);
+}
+
+std::string line_table(const std::vector<SpectralPeak>& peaks) {
+    if (peaks.empty()) return "";
+    std::vector<std::vector<std::string>> rows{{"Hz", "+/-", "amplitude, Nm", "phase, deg", "SNR"}};
+    for (const SpectralPeak& peak : peaks) {
+        rows.push_back({fmt::format("{:.4f}", peak.hz), fmt::format("{:.2g}", peak.hz_stderr),
+                        fmt::format("{:.4g}", peak.amplitude_nm), fmt::format("{:.1f}", peak.phase_deg),
+                        fmt::format("{:.1f}", peak.snr)});
+    }
+    return text_table(rows, "r");
+}
+
+std::string hump_table(const std::vector<SpectralHump>& humps) {
+    if (humps.empty()) return "";
+    std::vector<std::vector<std::string>> rows{
+        {"hump, Hz", "rms in it, Nm", "highest at, Hz", "amplitude, Nm", "noise, Nm"}};
+    for (const SpectralHump& hump : humps) {
+        rows.push_back({fmt::format("{:.4g} to {:.4g}", hump.from_hz, hump.to_hz),
+                        fmt::format("{:.3g}", hump.rms_nm), fmt::format("{:.4g}", hump.peak_hz),
+                        fmt::format("{:.3g}", hump.peak_nm), fmt::format("{:.2g}", hump.floor_nm)});
+    }
+    return text_table(rows, "r");
+}
+
+/// "a,b,c"
+void append_cells(std::string& text, std::initializer_list<double> cells) {
+    const char* before = "";
+    for (const double cell : cells) {
+        text += before;
+        append_shortest(text, cell);
+        before = ",";
+    }
+    text += "\n";
+}
+
+/// A power falls as the square of an amplitude: its small values have finer steps than the digits of the
+/// largest.
+double power_cell(double largest, double value) {
+    constexpr int power_digits = 15;
+    return to_digits(to_digits_in_row({.value = value, .largest = largest}, power_digits));
+}
+
+double largest_of(std::span<const double> values) {
+    return values.empty() ? 0.0 : *std::max_element(values.begin(), values.end());
+}
+
+// The bins as CSV; several spectra with their number and speed in front.
+std::string frequency_csv(const std::vector<StretchSpectrum>& spectra) {
+    const bool numbered = spectra.front().number.has_value();
+    std::string text = numbered ? "stretch,speed_deg_s,frequency_hz,amplitude_nm,psd_nm2_hz,floor_nm\n"
+                                : "frequency_hz,amplitude_nm,psd_nm2_hz,floor_nm\n";
+    for (const StretchSpectrum& one : spectra) {
+        const Spectrum& s = one.spectrum;
+        const double amplitude_nm = largest_of(s.amplitude_nm), psd = largest_of(s.psd_nm2_hz);
+        for (std::size_t k = 0; k < s.hz.size(); ++k) {
+            if (numbered) {
+                text += std::to_string(*one.number) + ",";
+                append_shortest(text, one.stretch.speed.value());
+                text += ",";
+            }
+            append_cells(text,
+                         {s.hz[k], to_digits_in_row({s.amplitude_nm[k], amplitude_nm}),
+                          power_cell(psd, s.psd_nm2_hz[k]), to_digits_in_row({s.floor_nm[k], amplitude_nm})});
+        }
+    }
+    return text;
+}
+
+std::string order_csv(const Stack& stack) {
+    std::string text = "order_output,amplitude_nm,floor_nm,averages\n";
+    const double amplitude_nm = largest_of(stack.amplitude_nm);
+    for (std::size_t k = stack.first; k < stack.ratio.size(); ++k) {
+        append_cells(text, {static_cast<double>(k) * stack.spacing,
+                            to_digits_in_row({stack.amplitude_nm[k], amplitude_nm}),
+                            to_digits_in_row({stack.floor_nm[k], amplitude_nm}), stack.averages[k]});
+    }
+    return text;
+}
+
+// The lines as tables.
+std::string frequency_peaks(const std::vector<StretchSpectrum>& spectra) {
+    std::string text;
+    for (const StretchSpectrum& one : spectra) {
+        const Spectrum& s = one.spectrum;
+        if (!text.empty()) text += "\n";
+        text += one.number ? fmt::format("Stretch {}, {:.4g} deg/s: ", *one.number, one.stretch.speed.value())
+                           : "";
+        const std::string humps = s.humps.empty() ? "" : " and " + counted(s.humps.size(), "hump");
+        text += fmt::format("{}{} in {:.4g} s (resolution {:.3g} Hz, floor {:.2g} Nm).\n",
+                            counted(s.peaks.size(), "line"), humps, one.stretch.duration.value(),
+                            s.resolution.value(), median_floor(s.floor_nm));
+        text += line_table(s.peaks) + hump_table(s.humps);
+        if (one.stretch.smears_orders())
+            text += fmt::format(
+                "The speed changes ({:.3g} deg/s, give or take {:.2g}, over the angle turned), so that "
+                "what turns with the\njoint is no line here: --domain order counts it by output turn.\n",
+                one.stretch.turning_deg_s, one.stretch.turning_spread_deg_s);
+    }
+    return text;
+}
+
+std::string order_peaks(const OrderSpectrum& spectrum) {
+    const MotionLines& found = spectrum.lines;
+    std::string text = spectrum.doubt.empty() ? "" : fmt::format("Cannot tell: {}.\n", spectrum.doubt);
+    text += fmt::format("{} in {} over {:.3g} output turns (resolution {:.3g} orders, floor {:.2g} Nm).\n",
+                        found.lines.empty() ? "No line"
+                                            : fmt::format("{} line{}", found.lines.size(),
+                                                          found.lines.size() == 1 ? "" : "s"),
+                        found.sweeps == 1 ? "1 sweep" : fmt::format("{} sweeps", found.sweeps), found.turns,
+                        found.resolution_orders, median_floor(spectrum.stack.floor_nm));
+    if (found.lines.empty()) return text;
+    std::vector<std::vector<std::string>> rows{{"kind", "output order", "+/-", "Hz", "amplitude, Nm", "SNR"}};
+    for (const MotionLine& line : found.lines) {
+        const bool tone = line.kind == LineKind::tone, order = line.kind == LineKind::order;
+        rows.push_back({std::string(line_kind_name(line.kind)),
+                        tone ? "-" : fmt::format("{:.3f}", line.order_output),
+                        fmt::format("{:.2g}", tone ? line.hz_stderr : line.order_stderr),
+                        order ? "-" : fmt::format("{:.3f}", line.hz),
+                        fmt::format("{:.4g}", line.amplitude_nm), fmt::format("{:.1f}", line.snr)});
+    }
+    return text + text_table(rows, "lr");
+}
+
+/// Pieces are cut in the first pass already, at the rate that the first rows have. Longer ones wait until it
+/// is known that the log is as long.
+constexpr std::size_t longest_guessed = std::size_t{1} << 17;
+
+class GuessedSpectrum {
+  public:
+    explicit GuessedSpectrum(const SpectrumOptions& options) : options_(options) {}
+
+    void add(const TraceView& rows) {
+        if (length_ == 0) length_ = begin(rows);
+        if (stream_) stream_->add(rows.time_s, rows.torque_nm);
+    }
+    /// What the first pass has added up, when the guess was good enough to make no difference.
+    [[nodiscard]] std::optional<SpectrumStream> settled(std::size_t length, Hertz rate) {
+        if (!stream_ || length_ != length || !stream_->settle(rate)) return std::nullopt;
+        return std::move(stream_);
+    }
+
+  private:
+    std::size_t begin(const TraceView& rows) {
+        const double duration = rows.time_s.back() - rows.time_s.front();
+        const Hertz rate = nominal_rate(Hertz(static_cast<double>(rows.size() - 1) / duration));
+        const bool known = duration > 0.0;
+        const std::size_t length = known ? piece_length(longest_guessed + 1, rate, options_) : 1;
+        if (known && length >= fewest_spectrum_samples && length <= longest_guessed)
+            stream_.emplace(length, rate);
+        return length;
+    }
+
+    SpectrumOptions options_;
+    std::size_t length_ = 0;
+    std::optional<SpectrumStream> stream_;
+};
+
+}  // namespace
+
+StretchSpectrum streamed_spectrum(LogPasses& log, const SpectrumOptions& options,
+                                  const std::function<void()>& tell) {
+    GuessedSpectrum guess(options);
+    log.first([&](const TraceView& rows) { guess.add(rows); });
+    const LogFacts& facts = log.facts();
+    const std::size_t length = piece_length(facts.rows, facts.sample_rate, options);
+    const bool enough = length >= fewest_spectrum_samples;
+    std::optional<SpectrumStream> stream = guess.settled(length, facts.sample_rate);
+    const bool added = stream.has_value(), lines = added && stream->find_lines(options.false_alarm);
+    if (enough && !added) stream.emplace(length, facts.sample_rate);
+
+    StretchMeter speed(facts.rows, Seconds(facts.mean_s), Degrees(facts.mean_position_deg));
+    log.second([&](const TraceView& rows) {
+        speed.add(rows);
+        if (enough && !added) stream->add(rows.time_s, rows.torque_nm);
+        if (lines) stream->measure(rows.time_s, rows.torque_nm);
+    });
+    tell();
+    require_piece_length(length, options);
+    if (!added && stream->find_lines(options.false_alarm))
+        log.again([&](const TraceView& rows) { stream->measure(rows.time_s, rows.torque_nm); });
+    return {std::nullopt, speed.stretch(facts.sample_rate), stream->spectrum()};
+}
+
+namespace {
+
+// spectrum --map: its options, and the map as CSV or JSON.
+
+struct SpeedMapRequest {
+    std::optional<std::string> map;  ///< "campbell" or "order"; nothing without it
+    GearOptions gear;
+    std::optional<double> resolution, highest;
+    std::optional<DegPerSec> speed_step;
+};
+
+/// CSV, one row a cell: speed_deg_s, then frequency_hz, order (with a gear ratio) or order_output, then
+/// amplitude_nm. JSON: schema ripplenotch/spectrum/1.
+struct SpeedMapResult {
+    std::string text;
+    SpeedMap map;
+};
+
+constexpr std::array<std::string_view, 2> map_names = {"campbell", "order"};
+
+std::string map_csv(const SpeedMap& map, std::string_view axis_name) {
+    std::string text = fmt::format("speed_deg_s,{},amplitude_nm\n", axis_name);
+    for (std::size_t row = 0; row < map.speed_deg_s.size(); ++row) {
+        const std::string speed = fmt::format("{:.6g}", map.speed_deg_s[row]);
+        for (std::size_t k = 0; k < map.axis.size(); ++k) {
+            text += fmt::format("{},{:.6g},{:.6g}\n", speed, map.axis[k], map.amplitude_nm[row][k]);
+        }
+    }
+    return text;
+}
+
+std::string in_words(const SpeedMap& map, std::string_view unit, std::optional<double> asked) {
+    std::string text =
+        fmt::format("{} speeds in steps of {} deg/s, resolution {:.3g} {}", map.speed_deg_s.size(),
+                    shortest(map.speed_step_deg_s), map.resolution, unit);
+    if (asked && map.resolution > 1.001 * *asked)
+        text += fmt::format(" instead of {}: no run of motion is long enough", shortest(*asked));
+    return text;
+}
+
+void attach_speed_map(Options& options, SpeedMapRequest& request) {
+    options.text("--map", request.map, "campbell|order",
+                 "over speed: frequency against speed, or order against speed");
+    attach_gear(options, request.gear,
+                {.ratio = "--map order: count orders per motor turn instead of per output turn",
+                 .orders = "--map: orders whose lines are drawn, in cycles per motor turn (default: 1,2)",
+                 .joint_file = "--map: joint.json with gear ratio and orders"});
+    options.number("--resolution", request.resolution, Dimension::none, "of the map, in Hz or orders");
+    options.number("--highest", request.highest, Dimension::none, "frequency or order where the map ends");
+    options.quantity("--speed-step", request.speed_step, Dimension::speed, "width of a row of the map");
+}
+
+// Throws UsageError when options of the map are given without --map, or make no sense.
+void check_speed_map(const SpeedMapRequest& request) {
+    if (!request.map) {
+        if (request.gear.any() || request.resolution || request.highest || request.speed_step) {
+            raise<UsageError>(
+                "--joint-file, --gear-ratio, --orders, --resolution, --highest and --speed-step belong to "
+                "--map");
+        }
+        return;
+    }
+    if (*request.map != map_names[0] && *request.map != map_names[1])
+        raise<UsageError>("--map: '{}' is none of campbell, order", *request.map);
+    const auto positive = [](std::string_view option, std::optional<double> value) {
+        if (value && !(*value > 0.0)) raise<UsageError>("{} {} is not above 0", option, shortest(*value));
+    };
+    check_gear(request.gear);
+    positive("--resolution", request.resolution);
+    positive("--highest", request.highest);
+    if (request.speed_step) positive("--speed-step", request.speed_step->value());
+}
+
+// The lines that are drawn into the map, where a gear is known; notes the joint file as an input.
+MapLines map_lines(const SpeedMapRequest& request, Provenance& provenance) {
+    const GearChoice choice(request.gear);
+    if (choice.joint()) provenance.inputs.push_back(input_record(choice.joint()->path));
+    MapLines lines{choice.of(), false};
+    if (!lines.gear && !request.gear.orders.empty()) raise_no_gear("--orders");
+    lines.axis_per_motor_turn = lines.gear && *request.map == "order";
+    return lines;
+}
+
+SpeedMapResult speed_map_result(const SpeedMapRequest& request, const MapLines& lines, const Trace& trace,
+                                const CommonOptions& common, const Provenance& provenance) {
+    const bool campbell = *request.map == "campbell";
+    const TraceView view = trace.view();
+    OutputAngle angle = output_angle(view);
+    for (double& turns : angle.turns) turns *= lines.gear ? lines.gear->ratio.value() : 1.0;
+    const std::vector<double> speed = smoothed_speed(view);
+    SpeedMap map = speed_map(view, angle.turns, speed,
+                             {.axis = campbell ? Axis::time : Axis::angle,
+                              .resolution = request.resolution,
+                              .highest = request.highest,
+                              .speed_step = request.speed_step.value_or(DegPerSec(0.0))});
+    const std::string_view axis = campbell ? "frequency_hz" : lines.gear ? "order" : "order_output";
+    const std::string words = in_words(map, campbell ? "Hz" : "orders", request.resolution);
+    if (request.resolution && map.resolution > 1.001 * *request.resolution) {
+        say_warnings(common, std::vector{words});
+    } else {
+        say(common, words);
+    }
+    std::string text =
+        common.json ? speed_map_text(trace.joint, map, axis, lines.gear, provenance) : map_csv(map, axis);
+    return {std::move(text), std::move(map)};
+}
 
 constexpr std::array<std::string_view, 2> domain_names = {"frequency", "order"};
 

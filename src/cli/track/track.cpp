@@ -7,22 +7,65 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "cli/command.hpp"
 #include "cli/gear/gear_choice.hpp"
 #include "cli/options/plot_request.hpp"
 #include "cli/readings/readings.hpp"
 #include "cli/talk.hpp"
-#include "cli/track/track_words.hpp"
-#include "ripplenotch/analysis/motion_runs.hpp"
+#include "ripplenotch/analysis/sweeps.hpp"
+#include "ripplenotch/analysis/track_report.hpp"
 #include "ripplenotch/analysis/vold_kalman.hpp"
 #include "ripplenotch/chart/track_figure.hpp"
 #include "ripplenotch/core/number.hpp"
-#include "ripplenotch/document/track_json.hpp"
+#include "ripplenotch/document/spectrum_json.hpp"
 #include "ripplenotch/log/log.hpp"
 
 namespace ripplenotch {
+
 namespace {
+
+// What `track` says of rows that it could not measure.
+
+std::vector<std::string> track_warnings(const TrackReport& report) {
+    const OrderTracks& tracks = report.tracks;
+    std::vector<std::string> warnings;
+    if (!report.angle_from_position) {
+        warnings.emplace_back(
+            "no usable position: the angle is integrated velocity, and phases count from the first sample");
+    }
+    if (tracks.windows_too_few_samples > 0) {
+        warnings.push_back(fmt::format("{} left out: too few samples for so many lines; use a longer window",
+                                       how_many(tracks.windows_too_few_samples, "window")));
+    }
+    if (tracks.rows_not_separable > 0) {
+        warnings.push_back(
+            fmt::format("{} rows where lines cannot be told apart from each other or from the trend are {}",
+                        tracks.rows_not_separable, report.method == "ls" ? "left out" : "nan or left out"));
+    }
+    if (tracks.rows_folded > 0) {
+        warnings.push_back(
+            fmt::format("in {} rows a line lies above half the sample rate: its amplitude is what a "
+                        "low-pass before the sampling left of it",
+                        tracks.rows_folded));
+    }
+    return warnings;
+}
+
+// Why no row at all could be measured.
+std::string why_nothing_tracked(const TrackReport& report) {
+    if (report.bandwidth) {
+        return fmt::format(
+            "no line anywhere turns faster than four times the bandwidth of {} Hz, apart from the others",
+            shortest(report.bandwidth->value()));
+    }
+    const std::string window = report.window ? shortest(report.window->value()) + " s"
+                                             : shortest(report.window_turns.value_or(0.0)) + " turns";
+    return fmt::format("the joint nowhere moves in one direction for a window of {}, or for half of one",
+                       window);
+}
 
 constexpr std::array<std::string_view, 2> method_names = {"ls", "vold-kalman"};
 constexpr std::array<std::string_view, 3> amplitude_names = {"peak", "rms", "peak-to-peak"};

@@ -1,19 +1,138 @@
 // SPDX-License-Identifier: MIT
+#include "core/files/byte_source.hpp"
+
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
+#include <cstring>
 #include <utility>
+#include <vector>
 
-#include "core/files/hash_beside.hpp"
+#include "core/files/byte_sink.hpp"
 #include "core/files/inputs_read.hpp"
-#include "core/files/open_file.hpp"
+#include "core/files/sha256.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/files.hpp"
 #include "ripplenotch/core/progress.hpp"
 #include "ripplenotch/core/visible_text.hpp"
 
 namespace ripplenotch {
+
+std::string system_reason() { return std::strerror(errno); }
+
+FileState FileState::of(int descriptor) {
+    struct stat status {};
+    if (::fstat(descriptor, &status) != 0) return {};
+    return {status.st_dev,  status.st_ino,  status.st_size,
+            status.st_mtim, status.st_ctim, S_ISREG(status.st_mode)};
+}
+
+bool FileState::same_bytes(const FileState& other) const {
+    const auto same = [](const timespec& a, const timespec& b) {
+        return a.tv_sec == b.tv_sec && a.tv_nsec == b.tv_nsec;
+    };
+    // Who writes may set the time of writing back; nobody sets the other.
+    return device == other.device && inode == other.inode && size == other.size &&
+           same(written, other.written) && same(touched, other.touched);
+}
+
+OpenFile::OpenFile(const std::string& path) : path_(path) {
+    if (path == "-") {
+        owns_ = false;
+        descriptor_ = STDIN_FILENO;
+        if (::isatty(STDIN_FILENO) == 1) {
+            raise<UsageError>(
+                "standard input is a terminal; name a file, or pipe one in: cat log.csv | ripplenotch ...");
+        }
+        state_ = FileState::of(descriptor_);
+        begin_ = state_.regular ? std::max<off_t>(0, ::lseek(descriptor_, 0, SEEK_CUR)) : 0;
+        widen_pipe(descriptor_);
+        return;
+    }
+    descriptor_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    if (descriptor_ < 0) raise<FileError>("{}: cannot open: {}", path, system_reason());
+    struct stat status {};
+    if (::fstat(descriptor_, &status) == 0 && S_ISDIR(status.st_mode)) {
+        ::close(descriptor_);
+        raise<FileError>("{}: is a directory; name a file in it", path);
+    }
+    state_ = FileState::of(descriptor_);
+    if (S_ISFIFO(status.st_mode)) widen_pipe(descriptor_);
+}
+
+OpenFile::OpenFile(std::string path, int descriptor)
+    : path_(std::move(path)), descriptor_(descriptor), state_(FileState::of(descriptor)) {}
+
+OpenFile::~OpenFile() {
+    if (owns_) ::close(descriptor_);
+}
+
+void OpenFile::require_unchanged(off_t end, std::string_view name) const {
+    if (!state_.regular || state_.size == 0) return;
+    const FileState now = FileState::of(descriptor_);
+    if (end == state_.size && now.same_bytes(state_)) return;
+    const std::string sizes =
+        end == state_.size
+            ? "something wrote to it"
+            : fmt::format("{} bytes when it was opened, {} when its end was reached", state_.size, end);
+    raise<FileError>(
+        "{}: the file changed while it was read: {}; wait until nothing writes to it, or read a copy", name,
+        sizes);
+}
+
+namespace {
+
+constexpr std::size_t piece_size = std::size_t{1} << 20;
+
+void copy_to(ByteSource& source, int descriptor, const std::string& folder) {
+    std::vector<char> piece(piece_size);
+    while (const std::size_t size = source.read(piece.data(), piece.size())) {
+        std::size_t written = 0;
+        while (written < size) {
+            const ssize_t taken = ::write(descriptor, piece.data() + written, size - written);
+            if (taken < 0 && errno == EINTR) continue;
+            if (taken < 0) {
+                raise<FileError>(
+                    "{}: cannot keep {} for a second pass: {}; TMPDIR=FOLDER names another place", folder,
+                    source.name(), system_reason());
+            }
+            written += static_cast<std::size_t>(taken);
+        }
+    }
+}
+
+}  // namespace
+
+Spool::Spool(const std::string& path) : path_(path) {
+    const auto file = std::make_shared<const OpenFile>(path);
+    if (file->by_place()) {
+        file_ = file;
+        return;
+    }
+    // Read under its own name, so that it is hashed like any other input.
+    ByteSource source(file);
+    name_ = source.name();
+    const std::string folder = temporary_folder();
+    TemporaryFile kept(folder + "/ripplenotch-spool", std::nullopt);
+    const int descriptor = kept.release_without_name();
+    try {
+        copy_to(source, descriptor, folder);
+        file_ = std::make_shared<const OpenFile>("", descriptor);
+    } catch (...) {
+        ::close(descriptor);
+        throw;
+    }
+}
+
+Spool::~Spool() = default;
+
+std::unique_ptr<ByteSource> Spool::open() const {
+    if (name_.empty()) return std::make_unique<ByteSource>(file_);
+    return std::make_unique<ByteSource>(file_, name_);
+}
+
 namespace {
 
 constexpr std::size_t first_room = std::size_t{1} << 14;  // for a whole file: most are tables and models

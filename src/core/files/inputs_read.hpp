@@ -5,8 +5,8 @@
 #include <string>
 #include <string_view>
 
-#include "core/files/open_file.hpp"
-#include "ripplenotch/core/inputs_read.hpp"
+#include "core/files/byte_source.hpp"
+#include "ripplenotch/core/files.hpp"
 
 namespace ripplenotch {
 

@@ -7,10 +7,9 @@
 #include <complex>
 #include <numbers>
 
-#include "core/functions/circle_terms.hpp"
 #include "core/functions/many_numbers.hpp"
+#include "core/functions/polynomials.hpp"
 #include "core/vectors/lanes.hpp"
-#include "ripplenotch/core/phasor.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch::portable {

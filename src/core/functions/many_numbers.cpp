@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/functions/power_terms.hpp"
+#include "core/functions/polynomials.hpp"
 #include "core/vectors/lanes.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 

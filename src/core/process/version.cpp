@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "ripplenotch/core/version.hpp"
+#include "ripplenotch/core/progress.hpp"
 
 namespace ripplenotch {
 

@@ -2,17 +2,28 @@
 // Four numbers at a time: scaled and rounded to whole numbers, these split into digits by multiplications,
 // all of them in place before and behind the mark, and what comes before the first digit made minus signs:
 // the text begins at the last of these, or behind it.
+
 #include "core/text/print_fixed.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
+#include <span>
 
 #include "core/vectors/bytes.hpp"
+#include "ripplenotch/core/number.hpp"
 
 namespace ripplenotch {
 
+namespace {
+
+constexpr int most_decimals_side_by_side = 13;
+
+}  // namespace
+
 #if defined(RIPPLENOTCH_BYTE_VECTORS)
+
 namespace {
 
 constexpr double two_to_52 = 4503599627370496.0;
@@ -211,4 +222,28 @@ void print_fixed(std::span<const double> values, int, char, char*, std::uint64_t
 }
 
 #endif
+
+void FixedTexts::prepare(std::span<const double> values, double divisor, int decimals) {
+    values_ = values;
+    divisor_ = divisor;
+    decimals_ = decimals;
+    if (!wide_vectors() || decimals < 0 || decimals > most_decimals_side_by_side) {
+        std::fill_n(lengths_.begin(), values.size(), 0);
+        return;
+    }
+    std::array<double, most> quotients;
+    if (divisor != 1.0) {
+        std::transform(values.begin(), values.end(), quotients.begin(),
+                       [divisor](double value) { return value / divisor; });
+        values = {quotients.data(), values.size()};
+    }
+    print_fixed(values, decimals, mark_, slots_.data(), lengths_.data());
+}
+
+char* FixedTexts::put_alone(char* into, std::size_t i) const {
+    char* const end = put_fixed(into, values_[i] / divisor_, decimals_);
+    if (mark_ != '.') std::replace(into, end, '.', mark_);
+    return end;
+}
+
 }  // namespace ripplenotch

@@ -12,7 +12,6 @@
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/reading.hpp"
-#include "ripplenotch/core/units.hpp"
 
 namespace ripplenotch {
 namespace {

@@ -79,6 +79,17 @@ std::optional<std::string> nearest_name(std::string_view text, std::span<const s
     return best;
 }
 
+std::string did_you_mean(std::string_view text, std::span<const std::string> known) {
+    const auto near = nearest_name(text, known);
+    return near ? fmt::format(" (did you mean {}?)", *near) : "";
+}
+
+void raise_no_entry(std::string_view kind, std::string_view plural, std::string_view name,
+                    std::span<const std::string> known) {
+    raise<UsageError>("there is no {} '{}'{}; {}: {}", kind, name, did_you_mean(name, known), plural,
+                      fmt::join(known, ", "));
+}
+
 std::string Spec::text() const {
     std::string out = name;
     for (const auto& [key, value] : values) out += fmt::format(",{}={}", key, value);
@@ -128,9 +139,7 @@ Settings::Settings(std::string_view what, const Spec& spec, std::span<const Key>
         if (find_key(keys, name) == nullptr) {
             std::vector<std::string> known;
             for (const Key& key : keys) known.emplace_back(key.name);
-            const auto near = nearest_name(name, known);
-            raise<UsageError>("{} has no key '{}'{}; its keys: {}", what, name,
-                              near ? fmt::format(" (did you mean {}?)", *near) : "",
+            raise<UsageError>("{} has no key '{}'{}; its keys: {}", what, name, did_you_mean(name, known),
                               known.empty() ? "none" : fmt::format("{}", fmt::join(known, ", ")));
         }
         texts_[name] = value;

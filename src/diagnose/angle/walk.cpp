@@ -9,7 +9,7 @@
 #include "diagnose/case/lines.hpp"
 #include "diagnose/case/ridge.hpp"
 #include "diagnose/case/undecidable.hpp"
-#include "model/fit/fit_coordinates.hpp"
+#include "model/fit/weighing.hpp"
 #include "model/motion/local_motion.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/model/prediction.hpp"

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "ripplenotch/core/units.hpp"
+#include "ripplenotch/core/quantity.hpp"
 #include "ripplenotch/diagnose/diagnosis.hpp"
 
 namespace ripplenotch {

@@ -10,7 +10,7 @@
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/median.hpp"
 #include "ripplenotch/core/portable_math.hpp"
-#include "ripplenotch/model/measured_motion.hpp"
+#include "ripplenotch/model/motion.hpp"
 
 namespace ripplenotch {
 namespace {

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/rows/rms.hpp"
+#include "core/rows/row_facts.hpp"
 #include "model/fit/weighing.hpp"
 #include "ripplenotch/core/trace.hpp"
 #include "ripplenotch/diagnose/rules.hpp"

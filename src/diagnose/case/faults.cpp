@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "ripplenotch/core/median.hpp"
-#include "ripplenotch/model/detection.hpp"
+#include "ripplenotch/model/fit.hpp"
 
 namespace ripplenotch {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "diagnose/case/known_torque.hpp"
 
-#include "core/matrices/normal_errors.hpp"
+#include "core/matrices/least_squares.hpp"
 #include "core/vectors/dot.hpp"
 
 namespace ripplenotch {

@@ -9,7 +9,7 @@
 #include "diagnose/case/noise_floor.hpp"
 #include "diagnose/case/ridge.hpp"
 #include "ripplenotch/diagnose/diagnosis.hpp"
-#include "ripplenotch/model/given_term.hpp"
+#include "ripplenotch/model/model.hpp"
 
 namespace ripplenotch {
 

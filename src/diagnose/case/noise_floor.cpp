@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "diagnose/case/lines.hpp"
-#include "model/fit/fit_coordinates.hpp"
+#include "model/fit/weighing.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/model/prediction.hpp"
 

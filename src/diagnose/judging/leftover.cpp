@@ -8,7 +8,7 @@
 #include <numeric>
 
 #include "diagnose/case/lines.hpp"
-#include "ripplenotch/core/phasor.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "ripplenotch/diagnose/plan.hpp"
-#include "ripplenotch/model/noise.hpp"
+#include "ripplenotch/model/fit.hpp"
 
 namespace ripplenotch {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/rows/rms.hpp"
+#include "core/rows/row_facts.hpp"
 #include "diagnose/case/undecidable.hpp"
 #include "diagnose/judging/doubt.hpp"
 #include "ripplenotch/model/prediction.hpp"

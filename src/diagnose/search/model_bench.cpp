@@ -6,7 +6,7 @@
 #include <numeric>
 #include <utility>
 
-#include "core/rows/rms.hpp"
+#include "core/rows/row_facts.hpp"
 #include "diagnose/case/known_torque.hpp"
 #include "diagnose/search/stated_speed.hpp"
 #include "ripplenotch/model/prediction.hpp"

@@ -12,7 +12,7 @@
 #include "diagnose/case/noise_floor.hpp"
 #include "diagnose/search/kept_screenings.hpp"
 #include "diagnose/search/work.hpp"
-#include "model/carriers.hpp"
+#include "model/catalogue.hpp"
 #include "ripplenotch/model/fit.hpp"
 
 namespace ripplenotch {

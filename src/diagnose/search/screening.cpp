@@ -7,8 +7,8 @@
 
 #include "diagnose/search/projection.hpp"
 #include "diagnose/search/search_starts.hpp"
-#include "model/carriers.hpp"
-#include "model/fit/fit_coordinates.hpp"
+#include "model/catalogue.hpp"
+#include "model/fit/weighing.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/model/prediction.hpp"
 

@@ -9,7 +9,7 @@
 #include "diagnose/case/band_gaps.hpp"
 #include "diagnose/judging/doubt.hpp"
 #include "diagnose/telling/next_steps.hpp"
-#include "ripplenotch/model/measured_motion.hpp"
+#include "ripplenotch/model/motion.hpp"
 
 namespace ripplenotch {
 namespace {

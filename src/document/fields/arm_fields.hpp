@@ -3,7 +3,7 @@
 // The member `arm` of a model.json.
 
 #include "document/fields/fields.hpp"
-#include "ripplenotch/arm/stated_arm.hpp"
+#include "ripplenotch/arm/arm_fit.hpp"
 
 namespace ripplenotch {
 

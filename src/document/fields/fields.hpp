@@ -5,12 +5,15 @@
 
 #include <initializer_list>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "document/json/json.hpp"
-#include "document/json/limits.hpp"
+#include "ripplenotch/diagnose/diagnosis.hpp"
+#include "ripplenotch/document/diagnosis_json.hpp"
+#include "ripplenotch/document/provenance.hpp"
 
 namespace ripplenotch {
 
@@ -67,5 +70,41 @@ class Fields {
     std::string source_, path_;
     std::vector<std::string> seen_;
 };
+
+// The account of a recording as every document carries it.
+
+/// Adds "recording", or "recordings" where there are several, and nothing where there is none.
+void add_recordings(Json& json, std::span<const Recording> recordings);
+
+/// [{"row", "from_s", "to_s"}]: the listed gaps.
+[[nodiscard]] Json gaps_json(const ClockFacts& clock);
+
+// What every document begins with, and the way in of those that are read.
+
+/// {"schema": "ripplenotch/<kind>/1", "tool", "version", "command", "inputs"}: the opening of every document.
+[[nodiscard]] Json document_head(std::string_view kind, const Provenance& provenance);
+
+/// Parses a document and checks its schema. Throws DataError with file, line and column of a syntax error,
+/// and the schema expected and found.
+[[nodiscard]] Json parse_document(std::string_view text, const std::string& source, std::string_view kind);
+
+/// A document of any kind that a command writes: "table", "metrics".
+struct AnyDocument {
+    std::string kind;
+    Json json = Json::object();
+};
+/// The same for a document of any of these kinds, with a head whose fields are of their types.
+[[nodiscard]] AnyDocument parse_any_document(std::string_view text, const std::string& source);
+
+// What was written beside a diagnosis, as its fields.
+
+/// "mjcf" and "plan", where they were asked for.
+void put_written(Json& json, const DiagnosisWritten& written);
+
+// What a diagnosis says of the angle of logs without position, in its document.
+
+/// Sets "angle" where a log has no position.
+void put_angle(Json& json, const Diagnosis& diagnosis);
+void read_angle(Fields& fields, Diagnosis& diagnosis);
 
 }  // namespace ripplenotch

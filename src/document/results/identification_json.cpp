@@ -1,15 +1,191 @@
 // SPDX-License-Identifier: MIT
-#include "ripplenotch/document/identification_json.hpp"
-
 #include <array>
+#include <cmath>
 #include <utility>
 
-#include "document/fields/document_head.hpp"
-#include "document/fields/gear_fields.hpp"
+#include "document/fields/fields.hpp"
+#include "document/fields/result_fields.hpp"
 #include "document/json/json.hpp"
+#include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/files.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/document/identification_json.hpp"
 
 namespace ripplenotch {
+
+namespace {
+
+std::array<double, 2> pair_at(Fields& fields, std::string_view name) {
+    const Json& value = fields.list(name);
+    if (value.size() != 2 || !value[0].is_number() || !value[1].is_number()) {
+        raise<DataError>("{} is {}, expected two numbers", fields.where(name), in_words(value));
+    }
+    return {value[0].get<double>(), value[1].get<double>()};
+}
+
+LineKind kind_at(Fields& fields) {
+    const std::string text = fields.text("kind");
+    for (const LineKind kind : {LineKind::order, LineKind::tone, LineKind::unknown}) {
+        if (line_kind_name(kind) == text) return kind;
+    }
+    raise<DataError>("{} is \"{}\", expected one of order, tone, unknown", fields.where("kind"), text);
+}
+
+Line line_from_json(Fields& fields) {
+    Line line;
+    line.kind = kind_at(fields);
+    line.order = fields.number_if_any("order");
+    line.order_output = fields.number_if_any("order_output");
+    line.order_output_stderr = fields.number_if_any("order_output_stderr");
+    if (fields.has("could_be")) line.could_be = fields.numbers("could_be");
+    line.hz = fields.number_if_any("hz");
+    line.amplitude_nm = fields.number("amplitude_nm");
+    if (const auto phase = fields.number_if_any("phase_deg")) {
+        line.phase_deg = *phase;
+        line.phase_known = true;
+    }
+    line.snr = fields.number("snr");
+    const auto range = pair_at(fields, "speed_range_deg_s");
+    line.speed_from_deg_s = range[0];
+    line.speed_to_deg_s = range[1];
+    fields.each("amplitude_by_speed", [&](Fields& entry) {
+        line.by_speed.push_back({entry.number("speed_deg_s"), entry.number("hz"),
+                                 entry.number("amplitude_nm"), entry.number("snr")});
+    });
+    if (fields.has("note")) line.note = fields.text("note");
+    return line;
+}
+
+GearRatioFit ratio_from_json(Fields& fields) {
+    GearRatioFit fit;
+    fit.value = fields.number_if_any("value");
+    fit.standard_error = fields.number_if_any("stderr").value_or(0.0);
+    if (fields.has("ci95")) {
+        const auto interval = pair_at(fields, "ci95");
+        fit.ci95_low = interval[0];
+        fit.ci95_high = interval[1];
+    }
+    if (fit.value && !(*fit.value > 0.0)) {
+        raise<DataError>("{} is {}, expected a positive number or null", fields.where("value"), *fit.value);
+    }
+    if (fields.has("second_comb")) fit.second_comb = fields.number_if_any("second_comb");
+    fields.each("candidates", [&](Fields& entry) {
+        fit.candidates.push_back({entry.number("value"), entry.number("score"), entry.text("reason"),
+                                  entry.has("other_unit") && entry.flag("other_unit")});
+    });
+    if (!fields.has("residuals")) return fit;
+    fields.each("residuals", [&](Fields& entry) {
+        fit.residuals.push_back({entry.number("speed_deg_s"), entry.number("hz"), entry.number("order"),
+                                 entry.number("residual_hz"), entry.number("weight")});
+    });
+    return fit;
+}
+
+Disagreement disagreement_from_json(Fields& fields) {
+    Disagreement one;
+    one.about = fields.named("about", about_of);
+    one.order = fields.number_if_any("order");
+    one.order_output = fields.number_if_any("order_output");
+    one.chance = fields.number("chance");
+    fields.each("values", [&](Fields& entry) {
+        one.values.push_back({entry.whole("recording"), entry.number("value"), entry.number("stderr")});
+    });
+    return one;
+}
+
+int multiple_of(const Fields& fields, double number) {
+    constexpr double most = 1e6;
+    if (!(number >= 1.0 && number <= most) || number != std::floor(number))
+        raise<DataError>("{} holds {}, expected whole numbers from 1 to {}", fields.where("multiples"),
+                         number, most);
+    return static_cast<int>(number);
+}
+
+// Older files have none of it.
+void besides_from_json(Fields& fields, Identification& found) {
+    if (fields.has("velocity_error")) {
+        Fields error = fields.object("velocity_error");
+        VelocityError told{DegPerSec(error.number("offset_deg_s")),
+                           DegPerSec(error.number("offset_stderr_deg_s")), Seconds(), Seconds()};
+        const auto delay = error.number_if_any("delay_s"),
+                   delay_error = error.number_if_any("delay_stderr_s");
+        told.delay_told = delay && delay_error;
+        if (told.delay_told) {
+            told.delay = Seconds(*delay);
+            told.delay_error = Seconds(*delay_error);
+        }
+        found.velocity_error = told;
+        error.finish();
+    }
+    if (fields.has("families")) {
+        fields.each("families", [&](Fields& entry) {
+            ToneFamily family{entry.number("hz"), entry.number("hz_stderr"), {}};
+            for (const double n : entry.numbers("multiples"))
+                family.multiples.push_back(multiple_of(entry, n));
+            found.families.push_back(std::move(family));
+        });
+    }
+    if (fields.has("hums")) {
+        fields.each("hums", [&](Fields& entry) {
+            found.hums.push_back({entry.number("from_hz"), entry.number("to_hz"), entry.number("peak_hz"),
+                                  entry.number("rms_nm")});
+        });
+    }
+    if (!fields.has("disagreements")) return;
+    fields.each("disagreements",
+                [&](Fields& entry) { found.disagreements.push_back(disagreement_from_json(entry)); });
+}
+
+}  // namespace
+
+Identification identification_from_json(std::string_view text, const std::string& source) {
+    const Json json = parse_document(text, source, "joint");
+    Fields fields(json, source, "");
+    fields.ignore_head();
+    fields.ignore({"gear"});
+    Identification found;
+    found.verdict = fields.text("verdict");
+    // Older files tell the finding in words alone.
+    if (fields.has("finding")) found.finding = fields.named("finding", finding_of);
+    if (fields.has("doubts")) {
+        fields.each("doubts", [&](Fields& entry) {
+            found.doubts.push_back({entry.named("reason", doubt_of), entry.text("because")});
+        });
+    }
+    found.conclusive = fields.flag("conclusive");
+    if (fields.has("joint")) found.joint = fields.text("joint");
+    found.sample_rate = Hertz(fields.number("sample_rate_hz"));
+    if (!(found.sample_rate.value() > 0.0)) {
+        raise<DataError>("{} is {}, expected a positive number", fields.where("sample_rate_hz"),
+                         found.sample_rate.value());
+    }
+    found.evidence = fields.text("evidence");
+    if (fields.has("searched")) {
+        Fields searched = fields.object("searched");
+        found.searched = {searched.number("lowest_order"),
+                          searched.number("highest_order"),
+                          searched.number("detectable_nm"),
+                          {}};
+        searched.each("bounds", [&](Fields& entry) {
+            found.searched->bounds.push_back({entry.number("from_order"), entry.number("detectable_nm")});
+        });
+        searched.finish();
+    }
+    Fields ratio = fields.object("gear_ratio");
+    found.gear_ratio = ratio_from_json(ratio);
+    ratio.finish();
+    fields.each(
+        "lines", [&](Fields& entry) { found.lines.push_back(line_from_json(entry)); }, most_lines);
+    besides_from_json(fields, found);
+    found.notes = fields.texts("notes");
+    fields.finish();
+    return found;
+}
+
+Identification load_identification(const std::string& path) {
+    return identification_from_json(read_all(path), path == "-" ? "standard input" : path);
+}
+
 namespace {
 
 Json optional_to_json(const std::optional<double>& value) {

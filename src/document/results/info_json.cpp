@@ -4,8 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "document/fields/document_head.hpp"
-#include "document/fields/recording_fields.hpp"
+#include "document/fields/fields.hpp"
 #include "document/json/json.hpp"
 
 namespace ripplenotch {

@@ -1,13 +1,168 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "core/matrices/least_squares.hpp"
+#include "document/fields/fields.hpp"
+#include "document/json/json.hpp"
+#include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/files.hpp"
 #include "ripplenotch/document/map_json.hpp"
 
-#include <cmath>
-
-#include "core/matrices/normal_errors.hpp"
-#include "document/fields/document_head.hpp"
-#include "document/json/json.hpp"
-
 namespace ripplenotch {
+
+namespace {
+
+constexpr std::size_t most_speeds = 64, most_turn_harmonics = 8, most_map_orders = 64;
+
+std::optional<MapFinding> map_finding_of(std::string_view name) {
+    for (const MapFinding one :
+         {MapFinding::mapped, MapFinding::nothing, MapFinding::unclear, MapFinding::too_little})
+        if (map_finding_name(one) == name) return one;
+    return std::nullopt;
+}
+
+std::size_t at_most(Fields& fields, std::string_view name, std::size_t least, std::size_t most) {
+    const std::size_t value = fields.whole(name);
+    if (value < least || value > most)
+        raise<DataError>("{} is {}, expected {} to {}", fields.where(name), value, least, most);
+    return value;
+}
+
+MapRange range_at(Fields& fields, std::string_view name) {
+    const std::vector<double> ends = fields.numbers(name);
+    if (ends.size() != 2 || !(ends[0] <= ends[1]))
+        raise<DataError>("{} is not two numbers, the lower one first", fields.where(name));
+    return {ends[0], ends[1]};
+}
+
+// Rising, and not more than a list may hold.
+std::vector<double> rising_at(Fields& fields, std::string_view name, double least, std::size_t fewest,
+                              std::size_t most) {
+    std::vector<double> values = fields.numbers(name);
+    const bool rises = std::is_sorted(values.begin(), values.end(), std::less_equal<>());
+    if (values.size() < fewest || values.size() > most || !rises ||
+        (!values.empty() && !(values.front() >= least))) {
+        raise<DataError>("{} is not {} to {} numbers from {} on, each above the one before",
+                         fields.where(name), fewest, most, least);
+    }
+    return values;
+}
+
+MapForm form_from_json(Fields& fields) {
+    MapForm form;
+    fields.ignore({"words"});
+    form.speeds_deg_s = rising_at(fields, "speeds_deg_s", 0.0, 1, most_speeds);
+    form.directions = at_most(fields, "directions", 1, 2);
+    form.turn_harmonics = at_most(fields, "turn_harmonics", 0, most_turn_harmonics);
+    form.by_load = fields.flag("by_load");
+    form.by_temperature = fields.has("by_temperature") && fields.flag("by_temperature");
+    if (fields.has("second_comb")) {
+        const double side = fields.number("second_comb");
+        if (std::abs(side) != 1.0)
+            raise<DataError>("{} is {}, expected 1 or -1", fields.where("second_comb"), side);
+        form.second_comb = side > 0.0 ? 1 : -1;
+    }
+    fields.finish();
+    return form;
+}
+
+void coefficients_from_json(Fields& fields, MapFit& fit) {
+    const std::size_t columns = fit.map.form.columns();
+    std::vector<std::complex<double>> values, errors;
+    fields.each("coefficients", [&](Fields& entry) {
+        entry.ignore({"order", "column"});
+        values.emplace_back(entry.number("cosine_nm"), entry.number("sine_nm"));
+        errors.emplace_back(entry.number("cosine_ci95_nm") / normal_95_errors,
+                            entry.number("sine_ci95_nm") / normal_95_errors);
+    });
+    if (values.size() != columns * fit.map.orders.size()) {
+        raise<DataError>("{}: {} values, expected {} for each of {} orders", fields.where("coefficients"),
+                         values.size(), columns, fit.map.orders.size());
+    }
+    for (auto at = std::ptrdiff_t{0}; at < std::ssize(values); at += static_cast<std::ptrdiff_t>(columns)) {
+        const auto to = at + static_cast<std::ptrdiff_t>(columns);
+        fit.map.values.emplace_back(values.begin() + at, values.begin() + to);
+        fit.errors.emplace_back(errors.begin() + at, errors.begin() + to);
+    }
+}
+
+void scores_from_json(Fields& fields, MapFit& fit) {
+    fields.each("left_out", [&](Fields& entry) {
+        fit.scores.push_back({entry.number("order"), entry.flag("in_map"), entry.number("ripple_nm"),
+                              entry.number("noise_nm"), entry.number("left_nm"),
+                              entry.number("predicted_share"),
+                              entry.has("false_alarm") ? entry.number("false_alarm") : 1.0,
+                              entry.has("detectable_nm") ? entry.number("detectable_nm") : 0.0});
+    });
+    fields.each("agreement", [&](Fields& entry) {
+        fit.agreement.push_back({entry.whole("log"), entry.number("order"), entry.number("amplitude_ratio"),
+                                 entry.number("amplitude_error"), entry.number("phase_deg"),
+                                 entry.number("phase_error_deg"), entry.flag("agrees")});
+    });
+}
+
+void map_fields(Fields& fields, MapFit& fit) {
+    RippleMap& map = fit.map;
+    map.joint = fields.text("joint");
+    map.gear_ratio = GearRatio(fields.number("gear_ratio"));
+    if (!(map.gear_ratio.value() > 0.0))
+        raise<DataError>("{} is {}, expected a positive number", fields.where("gear_ratio"),
+                         map.gear_ratio.value());
+    map.zero_deg = fields.number("zero_deg");
+    fit.anchored = fields.text("angle") == "position";
+    Fields form = fields.object("form");
+    map.form = form_from_json(form);
+    Fields range = fields.object("range");
+    map.speeds_deg_s = range_at(range, "speed_deg_s");
+    map.positions_deg = range_at(range, "position_deg");
+    map.loads_nm = range_at(range, "load_nm");
+    if (map.form.by_temperature) {
+        map.temperatures_degc = range_at(range, "temperature_degc");
+        map.temperature_column = fields.text("temperature_column");
+    }
+    range.finish();
+    for (const double order : rising_at(fields, "orders", 1e-9, 0, most_map_orders))
+        map.orders.emplace_back(order);
+    map.spread_nm = fields.numbers("spread_nm");
+    if (map.spread_nm.size() != map.orders.size())
+        raise<DataError>("{}: {} numbers for {} orders", fields.where("spread_nm"), map.spread_nm.size(),
+                         map.orders.size());
+}
+
+}  // namespace
+
+MapFit map_from_json(std::string_view text, const std::string& source) {
+    const Json json = parse_document(text, source, "map");
+    Fields fields(json, source, "");
+    fields.ignore_head();
+    fields.ignore({"verdict"});
+    MapFit fit;
+    fit.finding = fields.named("finding", map_finding_of);
+    fit.doubt = fields.text("doubt");
+    fit.conclusive = fields.flag("conclusive");
+    map_fields(fields, fit);
+    coefficients_from_json(fields, fit);
+    scores_from_json(fields, fit);
+    fit.windows = fields.whole("windows");
+    fit.blocks = fields.whole("blocks");
+    fit.notes = fields.texts("notes");
+    fields.finish();
+    return fit;
+}
+
+MapFit load_map(const std::string& path) {
+    return map_from_json(read_all(path), path == "-" ? "standard input" : path);
+}
+
+bool is_map(const std::string& path) {
+    constexpr std::size_t head = 200;
+    std::error_code failed;
+    if (!std::filesystem::is_regular_file(path, failed)) return false;
+    return read_all(path).substr(0, head).find("ripplenotch/map/1") != std::string::npos;
+}
+
 namespace {
 
 Json range_to_json(const MapRange& range) { return {range.from, range.to}; }

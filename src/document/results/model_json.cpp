@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "document/fields/arm_fields.hpp"
-#include "document/fields/document_head.hpp"
-#include "document/fields/model_fields.hpp"
+#include "document/fields/fields.hpp"
+#include "document/fields/result_fields.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 

@@ -1,14 +1,105 @@
 // SPDX-License-Identifier: MIT
-#include "ripplenotch/document/spectrum_json.hpp"
-
 #include <algorithm>
 #include <utility>
 
-#include "document/fields/document_head.hpp"
+#include "document/fields/fields.hpp"
+#include "document/fields/result_fields.hpp"
 #include "document/json/json.hpp"
 #include "ripplenotch/core/median.hpp"
+#include "ripplenotch/document/spectrum_json.hpp"
 
 namespace ripplenotch {
+
+std::string speed_map_text(const std::string& joint, const SpeedMap& map, std::string_view axis_name,
+                           const std::optional<GearAccount>& gear, const Provenance& provenance) {
+    Json json = document_head("spectrum", provenance);
+    json["joint"] = joint;
+    json["domain"] = map.axis_kind == Axis::time ? "campbell" : "order-map";
+    json["gear"] = gear_to_json(gear);
+    json["window"] = "hann";
+    json["resolution"] = six_digits(map.resolution);
+    json["speed_step_deg_s"] = map.speed_step_deg_s;
+    json["runs_too_short"] = map.runs_too_short;
+    json["axis"] = axis_name;
+    json["axis_values"] = Json::array();
+    for (const double value : map.axis) list_in(json, "axis_values").push_back(six_digits(value));
+    json["rows"] = Json::array();
+    for (std::size_t row = 0; row < map.speed_deg_s.size(); ++row) {
+        Json one = Json::object();
+        one["speed_deg_s"] = six_digits(map.speed_deg_s[row]);
+        one["windows"] = map.windows[row];
+        one["amplitude_nm"] = Json::array();
+        for (const double value : map.amplitude_nm[row])
+            list_in(one, "amplitude_nm").push_back(six_digits(value));
+        list_in(json, "rows").push_back(std::move(one));
+    }
+    return to_fitted_text(std::move(json));
+}
+
+namespace {
+
+Json array_of(const std::vector<double>& values) {
+    Json json = Json::array();
+    for (const double value : values) json.push_back(finite_or_null(value));
+    return json;
+}
+
+template <class Tag>
+Json quantity_or_null(const std::optional<Quantity<Tag>>& value) {
+    return value ? Json(value->value()) : Json(nullptr);
+}
+
+Json tracked_line_to_json(const TrackReport& report, std::size_t i) {
+    const TrackLabel& label = report.labels[i];
+    const TrackSummary line = track_summary(report, i);
+    const auto of_kind = [&](TrackLabel::Kind kind) {
+        return label.kind == kind ? Json(label.value) : Json(nullptr);
+    };
+    const auto measured = [&](double value) { return line.rows > 0 ? finite_or_null(value) : Json(nullptr); };
+    Json json = Json::object();
+    json["name"] = label.column();
+    json["order"] = of_kind(TrackLabel::Kind::order);
+    json["order_output"] = of_kind(TrackLabel::Kind::order_output);
+    json["hz"] = of_kind(TrackLabel::Kind::tone);
+    json["ripple"] = report.ripple[i] ? ripple_to_json(*report.ripple[i]) : Json(nullptr);
+    json["rows_measured"] = line.rows;
+    json["median_nm"] = measured(line.median_nm);
+    json["least_nm"] = measured(line.least_nm);
+    json["greatest_nm"] = measured(line.greatest_nm);
+    return json;
+}
+
+}  // namespace
+
+std::string track_text(const TrackReport& report, const Provenance& provenance) {
+    Json json = document_head("track", provenance);
+    json["verdict"] = report.doubt + track_verdict(report);
+    json["joint"] = report.joint;
+    json["method"] = report.method;
+    json["against"] = report.by_speed ? "speed" : "time";
+    json["amplitude"] = amplitude_words(report.kind);
+    json["gear_ratio"] = report.gear ? Json(report.gear->ratio.value()) : Json(nullptr);
+    json["gear"] = gear_to_json(report.gear);
+    json["angle"] = report.angle_from_position ? "position" : "integrated velocity";
+    json["window_turns"] = report.window_turns ? Json(*report.window_turns) : Json(nullptr);
+    json["window_s"] = quantity_or_null(report.window);
+    json["bandwidth_hz"] = quantity_or_null(report.bandwidth);
+    json["bandwidth_obtained_hz"] = quantity_or_null(report.bandwidth_obtained);
+    json["poles"] = report.poles ? Json(*report.poles) : Json(nullptr);
+    json["speed_step_deg_s"] = report.by_speed ? Json(report.by_speed->step_deg_s) : Json(nullptr);
+    json["residual_rms_nm"] = report.tracks.residual_rms_nm;
+    json["rows_folded"] = report.tracks.rows_folded;
+    json["rows_not_separable"] = report.tracks.rows_not_separable;
+    json["windows_too_few_samples"] = report.tracks.windows_too_few_samples;
+    json["lines"] = Json::array();
+    for (std::size_t i = 0; i < report.labels.size(); ++i)
+        list_in(json, "lines").push_back(tracked_line_to_json(report, i));
+    json["columns"] = Json::object();
+    for (const TrackColumn& column : track_columns(report))
+        json["columns"][column.name] = array_of(column.values);
+    return to_fitted_text(std::move(json));
+}
+
 namespace {
 
 Json peak_to_json(const SpectralPeak& peak) {

@@ -4,13 +4,12 @@
 #include <array>
 #include <cmath>
 
-#include "document/fields/document_head.hpp"
 #include "document/fields/fields.hpp"
-#include "document/fields/gear_fields.hpp"
+#include "document/fields/result_fields.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/files.hpp"
 #include "ripplenotch/core/number.hpp"
-#include "ripplenotch/design/table_work.hpp"
+#include "ripplenotch/design/candidate_table.hpp"
 
 namespace ripplenotch {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "export/code/method_code_parts.hpp"
+#include "export/code/method_code.hpp"
 #include "ripplenotch/design/ripple_map.hpp"
 
 namespace ripplenotch {

@@ -6,7 +6,7 @@
 #include <optional>
 #include <utility>
 
-#include "export/joint/mjcf_elements.hpp"
+#include "export/joint/joint_mjcf.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 

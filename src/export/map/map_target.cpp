@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "ripplenotch/export/map_target.hpp"
+#include "export/map/map_target.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -7,10 +7,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "export/map/map_targets.hpp"
+#include "ripplenotch/core/spec.hpp"
 #include "ripplenotch/core/error.hpp"
+#include "ripplenotch/export/map_target.hpp"
 
 namespace ripplenotch {
+
 namespace {
 
 constexpr const MapTarget* every_map_target[] = {
@@ -28,14 +30,7 @@ constexpr int places = 2000;
 std::span<const MapTarget* const> map_targets() { return every_map_target; }
 
 const MapTarget& find_map_target(std::string_view name) {
-    std::vector<std::string> known;
-    for (const MapTarget* target : map_targets()) {
-        if (target->name == name) return *target;
-        known.emplace_back(target->name);
-    }
-    const auto near = nearest_name(name, known);
-    raise<UsageError>("there is no export target '{}' for a map{}; targets: {}", name,
-                      near ? fmt::format(" (did you mean {}?)", *near) : "", fmt::join(known, ", "));
+    return find_entry(map_targets(), "map export target", "targets", name);
 }
 
 MapCheck verify_map_export(const RippleMap& map, const LoadedMap& loaded) {

@@ -7,11 +7,10 @@
 #include <memory>
 
 #include "export/code/map_code.hpp"
-#include "export/code/method_code_parts.hpp"
-#include "export/map/map_targets.hpp"
+#include "export/code/method_code.hpp"
+#include "export/map/map_target.hpp"
 #include "export/run/map_run.hpp"
 #include "export/text.hpp"
-#include "export/text_reader.hpp"
 
 namespace ripplenotch {
 namespace {

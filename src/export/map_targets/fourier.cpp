@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "export/map/map_targets.hpp"
+#include "export/map/map_target.hpp"
 #include "export/text.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"

@@ -6,11 +6,9 @@
 #include <array>
 #include <cmath>
 
-#include "export/map/flat_map.hpp"
 #include "export/map/map_table.hpp"
-#include "export/map/map_targets.hpp"
+#include "export/map/map_target.hpp"
 #include "export/text.hpp"
-#include "export/text_reader.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 

@@ -1,14 +1,179 @@
 // SPDX-License-Identifier: MIT
 #include "export/run/bank.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
-#include "export/run/structure.hpp"
-#include "ripplenotch/design/speed_regions.hpp"
+#include "ripplenotch/core/portable_math.hpp"
+#include "ripplenotch/design/candidate_table.hpp"
+#include "ripplenotch/export/filter_set.hpp"
 
 namespace ripplenotch {
+
+namespace {
+
+// The three structures in which targets compute a section, over float or double: the same operations in the
+// same order as the code that is exported, so that both give the same bits where nothing is contracted.
+
+template <class Real>
+struct DirectForm1 {
+    struct Coefficients {
+        Real b0, b1, b2, a1, a2;
+    };
+    struct State {
+        Real x1{}, x2{}, y1{}, y2{};
+    };
+    static Coefficients coefficients(const LoadedSection& s) {
+        return {static_cast<Real>(s.biquad.b0), static_cast<Real>(s.biquad.b1),
+                static_cast<Real>(s.biquad.b2), static_cast<Real>(s.biquad.a1),
+                static_cast<Real>(s.biquad.a2)};
+    }
+    static State settled(const Coefficients&, Real x) { return {x, x, x, x}; }
+    static Real step(const Coefficients& c, State& s, Real x) {
+        const Real y = c.b0 * x + c.b1 * s.x1 + c.b2 * s.x2 - c.a1 * s.y1 - c.a2 * s.y2;
+        s.x2 = s.x1;
+        s.x1 = x;
+        s.y2 = s.y1;
+        s.y1 = y;
+        return y;
+    }
+};
+
+template <class Real>
+struct TransposedForm2 {
+    using Coefficients = typename DirectForm1<Real>::Coefficients;
+    struct State {
+        Real s1{}, s2{};
+    };
+    static Coefficients coefficients(const LoadedSection& s) { return DirectForm1<Real>::coefficients(s); }
+    static State settled(const Coefficients& c, Real x) {
+        const Real s2 = (c.b2 - c.a2) * x;
+        return {(c.b1 - c.a1) * x + s2, s2};
+    }
+    static Real step(const Coefficients& c, State& s, Real x) {
+        const Real y = c.b0 * x + s.s1;
+        s.s1 = c.b1 * x - c.a1 * y + s.s2;
+        s.s2 = c.b2 * x - c.a2 * y;
+        return y;
+    }
+};
+
+template <class Real>
+struct StateVariable {
+    struct Coefficients {
+        Real a1, a2, a3, m0, m1, m2;
+    };
+    struct State {
+        Real s1{}, s2{};
+    };
+    static Coefficients coefficients(const LoadedSection& s) {
+        return {static_cast<Real>(s.svf.a1), static_cast<Real>(s.svf.a2), static_cast<Real>(s.svf.a3),
+                static_cast<Real>(s.svf.m0), static_cast<Real>(s.svf.m1), static_cast<Real>(s.svf.m2)};
+    }
+    static State settled(const Coefficients&, Real x) { return {Real{}, x}; }
+    static Real step(const Coefficients& c, State& s, Real x) {
+        const Real v3 = x - s.s2;
+        const Real v1 = c.a1 * s.s1 + c.a2 * v3;
+        const Real v2 = s.s2 + c.a2 * s.s1 + c.a3 * v3;
+        s.s1 = v1 + v1 - s.s1;
+        s.s2 = v2 + v2 - s.s2;
+        return c.m0 * x + c.m1 * v1 + c.m2 * v2;
+    }
+};
+
+template <class Real, template <class> class Structure>
+void run(const LoadedSection& section, std::span<const double> in, std::span<double> out) {
+    const auto coefficients = Structure<Real>::coefficients(section);
+    typename Structure<Real>::State state{};
+    for (std::size_t k = 0; k < in.size(); ++k) {
+        out[k] = static_cast<double>(Structure<Real>::step(coefficients, state, static_cast<Real>(in[k])));
+    }
+}
+
+template <class Real>
+void run_in(const LoadedSection& section, std::span<const double> in, std::span<double> out) {
+    switch (section.arithmetic.form) {
+        case Form::df1:
+            return run<Real, DirectForm1>(section, in, out);
+        case Form::df2t:
+            return run<Real, TransposedForm2>(section, in, out);
+        case Form::svf:
+            return run<Real, StateVariable>(section, in, out);
+    }
+}
+
+}  // namespace
+
+std::string arithmetic_name(Arithmetic arithmetic) {
+    const std::string_view form = arithmetic.form == Form::df1    ? "direct form I"
+                                  : arithmetic.form == Form::df2t ? "transposed direct form II"
+                                                                  : "state-variable form";
+    return fmt::format("{}, {}", arithmetic.precision == Precision::float32 ? "float32" : "float64", form);
+}
+
+SvfSection svf_of(const ExportSection& section, Hertz sample_rate) {
+    const Biquad& f = section.section;
+    double g = 0.0, k = 0.0;
+    SvfSection svf;
+    if (section.notch) {
+        const NotchSpec& notch = *section.notch;
+        const double half = std::numbers::pi * (notch.center / sample_rate);
+        g = portable::tan(half);
+        // The digital rule has another damping in the same prototype: alpha = tan(W/(2Q)) instead of
+        // sin(W)/(2Q).
+        k = notch.width == WidthRule::analog
+                ? 1.0 / notch.q
+                : 2.0 * portable::tan(half / notch.q) / portable::sin(2.0 * half);
+        const double gain = notch.depth_db >= 6000.0 ? 0.0 : portable::pow(10.0, -notch.depth_db / 20.0);
+        svf.m1 = -(1.0 - gain) * k;
+    } else {
+        const double at_half_rate = 1.0 - f.a1 + f.a2;
+        g = std::sqrt((1.0 + f.a1 + f.a2) / at_half_rate);
+        k = 2.0 * (1.0 - f.a2) / (g * at_half_rate);
+        const double scale = 4.0 / at_half_rate;
+        const double high = (f.b0 - f.b1 + f.b2) * scale / 4.0;
+        // A low-pass has no high-pass part; what is left of it is rounding.
+        svf.m0 = std::abs(high) < 1e-12 ? 0.0 : high;
+        svf.m1 = (f.b0 - f.b2) * scale / (2.0 * g) - k * svf.m0;
+        svf.m2 = 1.0 - svf.m0;
+    }
+    svf.a1 = 1.0 / (1.0 + g * (g + k));
+    svf.a2 = g * svf.a1;
+    svf.a3 = g * svf.a2;
+    return svf;
+}
+
+Biquad biquad_of(const SvfSection& s) {
+    // State space of the two integrators: s' = A s + B x, y = C s + D x.
+    const double a11 = 2.0 * s.a1 - 1.0, a12 = -2.0 * s.a2, a21 = 2.0 * s.a2, a22 = 1.0 - 2.0 * s.a3;
+    const double in1 = 2.0 * s.a2, in2 = 2.0 * s.a3;
+    const double out1 = s.m1 * s.a1 + s.m2 * s.a2, out2 = s.m2 * (1.0 - s.a3) - s.m1 * s.a2;
+    const double through = s.m0 + s.m1 * s.a2 + s.m2 * s.a3;
+    const double trace = a11 + a22, determinant = a11 * a22 - a12 * a21;
+    const double once = out1 * in1 + out2 * in2;
+    const double twice = out1 * (a11 * in1 + a12 * in2) + out2 * (a21 * in1 + a22 * in2);
+    return {through, once - through * trace, through * determinant - trace * once + twice, -trace,
+            determinant};
+}
+
+LoadedSection loaded(const Biquad& section, Arithmetic arithmetic) { return {arithmetic, section, {}}; }
+
+LoadedSection loaded(const SvfSection& section, Precision precision) {
+    return {{Form::svf, precision}, biquad_of(section), section};
+}
+
+void run_section(const LoadedSection& section, std::span<const double> in, std::span<double> out) {
+    if (section.arithmetic.precision == Precision::float32) {
+        run_in<float>(section, in, out);
+    } else {
+        run_in<double>(section, in, out);
+    }
+}
+
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();

@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "ripplenotch/export/filter_set.hpp"
 #include "ripplenotch/export/target.hpp"
 
 namespace ripplenotch {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "export/code/map_code.hpp"
-#include "export/code/method_code_parts.hpp"
-#include "ripplenotch/export/method_code.hpp"
+#include "export/code/method_code.hpp"
+#include "ripplenotch/export/target.hpp"
 
 namespace ripplenotch {
 

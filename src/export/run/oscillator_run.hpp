@@ -1,5 +1,20 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "export/code/method_code.hpp"
+#include "export/run/map_run.hpp"
+#include "ripplenotch/design/candidate_table.hpp"
+#include "ripplenotch/design/running_design.hpp"
+
+namespace ripplenotch {
+
 // The oscillator as its C header computes it, in the header's precision.
 //
 // It is the filter of filter/ripple/ripple_kalman.hpp in other coordinates. There the first state is the
@@ -7,19 +22,6 @@
 // alone, and a cold start knows nothing of how the two share it: its covariance is diagonal, and no digits go
 // into cancelling large correlations. What is forgotten of the amplitudes is taken off how they show, one
 // number for all of them, and brought back into them where that has sunk to a half.
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <optional>
-#include <utility>
-#include <vector>
-
-#include "export/code/method_code_parts.hpp"
-#include "export/run/map_run.hpp"
-#include "ripplenotch/design/rate_edge.hpp"
-
-namespace ripplenotch {
 
 /// Places in the header's array of values. The torque's rate is per sample.
 struct OscillatorValue {
@@ -208,5 +210,9 @@ class OscillatorRun {
          variance_ = 0;
     bool started_ = false;
 };
+
+/// The body of the oscillator's step, as export/run/oscillator_run.hpp computes it; fields as CodeStyle fills
+/// them.
+[[nodiscard]] std::string oscillator_step_code(const OscillatorDesign& design);
 
 }  // namespace ripplenotch

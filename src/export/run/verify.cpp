@@ -9,7 +9,7 @@
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
-#include "ripplenotch/design/transient.hpp"
+#include "ripplenotch/design/notch.hpp"
 
 namespace ripplenotch {
 namespace {

@@ -8,10 +8,8 @@
 #include <array>
 #include <cmath>
 
-#include "export/parameters.hpp"
-#include "export/targets.hpp"
+#include "export/target.hpp"
 #include "export/text.hpp"
-#include "export/text_reader.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"

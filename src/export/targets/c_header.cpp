@@ -5,11 +5,10 @@
 #include <array>
 #include <cmath>
 
-#include "export/code/c_code.hpp"
+#include "export/code/method_code.hpp"
 #include "export/run/bank.hpp"
-#include "export/targets.hpp"
+#include "export/target.hpp"
 #include "export/text.hpp"
-#include "export/text_reader.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 

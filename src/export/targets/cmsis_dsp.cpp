@@ -4,9 +4,8 @@
 
 #include <array>
 
-#include "export/targets.hpp"
+#include "export/target.hpp"
 #include "export/text.hpp"
-#include "export/text_reader.hpp"
 #include "ripplenotch/core/number.hpp"
 
 namespace ripplenotch {

@@ -2,11 +2,10 @@
 // The filters as plain JSON, for programs of one's own: everything the other targets round, unrounded.
 #include <fmt/format.h>
 
-#include "export/targets.hpp"
+#include "export/target.hpp"
 #include "export/text.hpp"
-#include "export/text_reader.hpp"
 #include "ripplenotch/core/number.hpp"
-#include "ripplenotch/core/version.hpp"
+#include "ripplenotch/core/progress.hpp"
 
 namespace ripplenotch {
 namespace {

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <cstring>
 
-#include "export/targets.hpp"
+#include "export/target.hpp"
 #include "ripplenotch/core/error.hpp"
 
 namespace ripplenotch {

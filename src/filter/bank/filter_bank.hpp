@@ -3,13 +3,59 @@
 // All candidates kept warm on the same input, several at a time in vector lanes.
 
 #include <cstddef>
+#include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "filter/kernels/bank_sections.hpp"
-#include "filter/run/transition.hpp"
+#include "filter/kernels/block_sections.hpp"
+#include "filter/ripple/ripple_kalman.hpp"
+#include "filter/run/engine.hpp"
+#include "ripplenotch/filter/method.hpp"
 
 namespace ripplenotch {
+
+// One cascade of unity DC gain that runs for the whole log; shared by the methods that have just one.
+
+/// Runs relative to the first sample of each run: out = x0 + F(x - x0) from zero state. As F has unity gain
+/// at 0 Hz this is the steady-state start of F, and a constant torque passes bit for bit, which settled
+/// states give only to rounding.
+class CascadeFilter final : public CausalFilter {
+  public:
+    explicit CascadeFilter(Cascade cascade);
+    void process(const Samples& in, std::span<double> out) override;
+    void restart() override { started_ = false; }
+    std::string hurry() override;
+
+  private:
+    Cascade cascade_;
+    std::vector<BiquadState> states_;
+    std::optional<BlockCascade> blocks_;
+    double origin_nm_ = 0.0;
+    bool started_ = false;
+};
+
+// Settled gains of the ripple's Kalman filter over motor speed, worked out once.
+
+/// Gains in the frame of ripple_rotation, linear between eight speeds an octave.
+class GainSchedule {
+  public:
+    explicit GainSchedule(const RippleModel& model);
+
+    /// The gain at `step_turns` motor turns a sample, either direction, into `gain` (RippleModel::states
+    /// entries). At standstill the ripple's is 0 and the torque's that of a filter without ripple.
+    void at(double step_turns, std::span<double> gain) const noexcept;
+
+  private:
+    std::size_t states_;
+    std::vector<double> standing_;
+    std::vector<double> gains_;  ///< states_ entries a speed, slowest first
+};
+
+/// What GainSchedule::at gives, where one speed is all that is asked: of the hundred or so that a schedule
+/// holds, only the two beside it are worked out.
+[[nodiscard]] std::vector<double> scheduled_gain(const RippleModel& model, double step_turns);
 
 /// Lanes do the same additions and multiplications as one candidate alone would, so results do not depend on
 /// how many candidates there are, nor on the width of the machine's vectors.

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/matrices/linear_algebra.hpp"
-#include "filter/map/map_data.hpp"
+#include "filter/map/map_fit.hpp"
 
 namespace ripplenotch {
 

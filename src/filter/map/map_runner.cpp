@@ -7,9 +7,8 @@
 #include <utility>
 
 #include "ripplenotch/core/error.hpp"
-#include "ripplenotch/core/phasor.hpp"
 #include "ripplenotch/core/portable_math.hpp"
-#include "ripplenotch/design/rate_edge.hpp"
+#include "ripplenotch/design/candidate_table.hpp"
 
 namespace ripplenotch {
 namespace {

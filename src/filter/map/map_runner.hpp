@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "filter/map/map_settings.hpp"
-#include "filter/ripple/motor_angle.hpp"
 #include "filter/ripple/ripple_kalman.hpp"
+#include "filter/ripple/ripple_keys.hpp"
 
 namespace ripplenotch {
 

@@ -9,6 +9,7 @@
 #include "ripplenotch/filter/map_fit.hpp"
 
 namespace ripplenotch {
+
 namespace {
 
 MapRange range_of(const Settings& settings, std::string_view key) {

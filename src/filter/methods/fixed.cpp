@@ -3,8 +3,8 @@
 // follow speed.
 #include <array>
 
-#include "filter/bank/cascade_filter.hpp"
-#include "filter/methods/list.hpp"
+#include "filter/bank/filter_bank.hpp"
+#include "filter/method.hpp"
 #include "ripplenotch/design/notch.hpp"
 
 namespace ripplenotch {

@@ -4,10 +4,10 @@
 
 #include <array>
 
-#include "filter/bank/cascade_filter.hpp"
-#include "filter/methods/list.hpp"
+#include "filter/bank/filter_bank.hpp"
+#include "filter/method.hpp"
 #include "ripplenotch/core/number.hpp"
-#include "ripplenotch/design/low_pass.hpp"
+#include "ripplenotch/design/notch.hpp"
 
 namespace ripplenotch {
 namespace {

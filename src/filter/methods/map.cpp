@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "filter/map/map_runner.hpp"
-#include "filter/methods/list.hpp"
+#include "filter/method.hpp"
 
 namespace ripplenotch {
 namespace {

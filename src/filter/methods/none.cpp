@@ -2,7 +2,7 @@
 // The control in every comparison: out = in.
 #include <algorithm>
 
-#include "filter/methods/list.hpp"
+#include "filter/method.hpp"
 
 namespace ripplenotch {
 namespace {

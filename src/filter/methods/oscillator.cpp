@@ -11,14 +11,12 @@
 #include <optional>
 #include <utility>
 
-#include "filter/bank/gain_schedule.hpp"
+#include "filter/bank/filter_bank.hpp"
 #include "filter/map/map_runner.hpp"
-#include "filter/methods/designs.hpp"
-#include "filter/methods/list.hpp"
-#include "filter/ripple/motor_angle.hpp"
-#include "filter/ripple/observer_cascade.hpp"
-#include "filter/ripple/oscillator_keys.hpp"
+#include "filter/map/map_settings.hpp"
+#include "filter/method.hpp"
 #include "filter/ripple/ripple_kalman.hpp"
+#include "filter/ripple/ripple_keys.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"

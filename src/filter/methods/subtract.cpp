@@ -9,12 +9,11 @@
 #include <numbers>
 #include <utility>
 
-#include "filter/methods/list.hpp"
+#include "filter/method.hpp"
 #include "filter/ripple/ripple_course.hpp"
 #include "filter/ripple/ripple_keys.hpp"
-#include "filter/ripple/ripple_windows.hpp"
 #include "ripplenotch/core/portable_math.hpp"
-#include "ripplenotch/design/rate_edge.hpp"
+#include "ripplenotch/design/candidate_table.hpp"
 
 namespace ripplenotch {
 namespace {

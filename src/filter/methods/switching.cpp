@@ -9,11 +9,11 @@
 #include <iterator>
 #include <utility>
 
-#include "filter/methods/list.hpp"
-#include "filter/run/transition.hpp"
+#include "filter/method.hpp"
+#include "filter/run/engine.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
-#include "ripplenotch/filter/supervisor.hpp"
+#include "ripplenotch/filter/engine.hpp"
 
 namespace ripplenotch {
 namespace {

@@ -8,15 +8,14 @@
 #include <numbers>
 #include <utility>
 
-#include "filter/methods/designs.hpp"
-#include "filter/methods/list.hpp"
+#include "filter/method.hpp"
 #include "filter/ripple/ripple_keys.hpp"
+#include "ripplenotch/core/biquad.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
-#include "ripplenotch/core/state_variable.hpp"
+#include "ripplenotch/design/candidate_table.hpp"
 #include "ripplenotch/design/notch.hpp"
-#include "ripplenotch/design/rate_edge.hpp"
 
 namespace ripplenotch {
 namespace {

@@ -7,6 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "ripplenotch/core/biquad.hpp"
+
 namespace ripplenotch {
 
 /// All in units of the sensor's noise, whose variance is 1 per sample.
@@ -96,5 +98,14 @@ struct RippleRotation {
 /// Gain at one constant speed once settled, in the frame that turns with the motor of ripple_rotation. Empty
 /// where ripple and torque cannot be told apart (at standstill).
 [[nodiscard]] std::vector<double> settled_gain(const RippleModel& model, double step_turns);
+
+// The settled Kalman filter at one speed, written as second-order sections, so that delay and attenuation can
+// be read off as for any other filter.
+
+/// From the measured torque to the torque estimate, or to the measured torque less the ripple estimate. Gain
+/// 1 at 0 Hz. `gain` is in the frame of ripple_rotation; empty at standstill, where ripple and torque cannot
+/// be told apart and the amplitudes stand still.
+[[nodiscard]] Cascade settled_cascade(const RippleModel& model, double step_turns, std::vector<double> gain,
+                                      bool minus_ripple);
 
 }  // namespace ripplenotch

@@ -9,6 +9,80 @@
 
 namespace ripplenotch {
 
+namespace {
+
+constexpr double slow_turns = 0.002;      ///< of the motor in a sample
+constexpr double judged_samples = 100.0;  ///< over which trembling is judged
+constexpr double fewest_judged = 6.0;     ///< before which the velocity is taken while slow
+constexpr double still_turns = 1e-5;      ///< trembling that is none
+constexpr double pull_turns = 2e-5;       ///< with which a trembling position at rest still pulls
+
+}  // namespace
+
+void MotorAngle::restart() noexcept {
+    started_ = false;
+    from_velocity_ = false;
+}
+
+void MotorAngle::next(double velocity_deg_s, const double* position_deg, double correction_deg_s) noexcept {
+    if (!started_) {
+        started_ = true;
+        from_velocity_ = position_deg == nullptr || source_ == Source::velocity;
+        joint_deg_ = position_deg != nullptr ? *position_deg : start_deg_;
+        step_turns_ = 0.0;
+        ahead_deg_ = beside_ = covariance_ = excess_ = slow_speed_ = judged_ = 0.0;
+    } else {
+        const double by_velocity = 0.5 * (last_velocity_ + velocity_deg_s) * step_s_;
+        double moved = by_velocity + correction_deg_s * step_s_;
+        from_velocity_ = from_velocity_ || position_deg == nullptr;
+        if (!from_velocity_ && position_deg != nullptr) {
+            double by_position = *position_deg - last_position_;
+            if (std::abs(by_position) > 180.0) by_position -= 360.0 * std::round(by_position / 360.0);
+            moved = follow(by_velocity, by_position);
+        }
+        joint_deg_ += moved;
+        step_turns_ = gear_ratio_ * moved / 360.0;
+    }
+    last_velocity_ = velocity_deg_s;
+    if (position_deg != nullptr) last_position_ = *position_deg;
+}
+
+// Variance of the position about where the motor is, in motor turns squared. White noise of a position shows
+// in what it does beside the velocity as a covariance of minus its variance from sample to sample; noise of
+// the velocity does not. A position in steps of q stands and jumps, q v in the mean square at the speed v.
+double MotorAngle::trembling() const noexcept {
+    const double steps = slow_speed_ > 0.0 ? excess_ / slow_speed_ : 0.0;
+    const double of_steps = excess_ > 0.0 ? std::min(steps * steps / 12.0, 10.0 * excess_) : 0.0;
+    return std::max({-covariance_, of_steps, 0.0});
+}
+
+// How far the joint is taken to have moved: to where the position is, or, while the position trembles more
+// than the motor turns, by the velocity and a share of the way to the position.
+double MotorAngle::follow(double by_velocity_deg, double by_position_deg) noexcept {
+    const double to_turns = gear_ratio_ / 360.0;
+    const double turned = std::abs(by_velocity_deg * to_turns);
+    const double before = beside_;
+    beside_ = (by_position_deg - by_velocity_deg) * to_turns;
+    if (turned < slow_turns) {
+        judged_ = std::min(judged_ + 1.0, judged_samples);
+        covariance_ += (beside_ * before - covariance_) / judged_;
+        excess_ += (beside_ * beside_ - 4.0 * turned * turned - excess_) / judged_;
+        slow_speed_ += (turned - slow_speed_) / judged_;
+    }
+    ahead_deg_ += by_position_deg;
+    double moved = ahead_deg_;
+    const double trembles = trembling();
+    if (turned < slow_turns && judged_ < fewest_judged) {
+        moved = by_velocity_deg;
+    } else if (trembles > still_turns * still_turns) {
+        // The velocity is trusted to half of what it says: clocks jitter by as much.
+        const double sure = 0.25 * turned * turned + pull_turns * pull_turns;
+        moved = by_velocity_deg + sure / (sure + trembles) * (ahead_deg_ - by_velocity_deg);
+    }
+    ahead_deg_ -= moved;
+    return moved;
+}
+
 MotorAngle::Source angle_source(const Settings& settings) {
     return settings.text("angle") == "velocity" ? MotorAngle::Source::velocity : MotorAngle::Source::best;
 }

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "filter/run/transition.hpp"
+#include "filter/run/engine.hpp"
 
 namespace ripplenotch {
 

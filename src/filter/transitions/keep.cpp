@@ -4,7 +4,7 @@
 // carry sums weighted by the old coefficients into the new filter, and its peak error at a change is four
 // times larger.
 
-#include "filter/kernels/direct_form.hpp"
+#include "filter/kernels/bank_sections.hpp"
 #include "filter/run/one_cascade.hpp"
 
 namespace ripplenotch {

@@ -6,7 +6,7 @@
 
 #include "filter/kernels/in_series.hpp"
 #include "filter/run/one_cascade.hpp"
-#include "ripplenotch/core/state_variable.hpp"
+#include "ripplenotch/core/biquad.hpp"
 
 namespace ripplenotch {
 namespace {

@@ -2,7 +2,7 @@
 // One cascade that starts again at every change, as if the present torque had been there for ever. Simple
 // firmware does this; every change lets the ripple of that moment through and then decays.
 
-#include "filter/kernels/serial_cascade.hpp"
+#include "filter/kernels/bank_sections.hpp"
 #include "filter/run/one_cascade.hpp"
 
 namespace ripplenotch {

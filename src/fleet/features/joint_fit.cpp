@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/rows/rms.hpp"
+#include "core/rows/row_facts.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/median.hpp"
 #include "ripplenotch/core/number.hpp"

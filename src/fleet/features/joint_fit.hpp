@@ -8,7 +8,7 @@
 
 #include "fleet/features/motion_facts.hpp"
 #include "ripplenotch/core/gear_account.hpp"
-#include "ripplenotch/fleet/feature_line.hpp"
+#include "ripplenotch/fleet/features.hpp"
 #include "ripplenotch/model/fit.hpp"
 
 namespace ripplenotch {

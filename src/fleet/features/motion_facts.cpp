@@ -7,11 +7,11 @@
 #include <numeric>
 
 #include "core/matrices/least_squares.hpp"
-#include "core/rows/rms.hpp"
+#include "core/rows/row_facts.hpp"
 #include "core/vectors/dot.hpp"
 #include "model/motion/local_motion.hpp"
 #include "ripplenotch/core/median.hpp"
-#include "ripplenotch/model/measured_motion.hpp"
+#include "ripplenotch/model/motion.hpp"
 
 namespace ripplenotch {
 namespace {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "ripplenotch/core/trace.hpp"
-#include "ripplenotch/fleet/feature_line.hpp"
+#include "ripplenotch/fleet/features.hpp"
 #include "ripplenotch/model/effect.hpp"
 
 namespace ripplenotch {

@@ -3,14 +3,301 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numeric>
+#include <optional>
 #include <random>
+#include <span>
+#include <string>
+#include <vector>
 
+#include "core/matrices/least_squares.hpp"
+#include "fleet/trend/joint_history.hpp"
 #include "ripplenotch/core/median.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
+
 namespace {
+
+constexpr double least_left = 0.05;  // of the squares of a column, beside the others
+
+double dot_product(const std::vector<double>& a, const std::vector<double>& b) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
+    return sum;
+}
+
+}  // namespace
+
+Regression::Regression(std::span<const double> value, std::span<const double> weights,
+                       const std::vector<std::vector<double>>& columns)
+    : weights_(weights.begin(), weights.end()) {
+    std::vector<std::vector<double>> kept;
+    for (const auto& column : columns) {
+        std::vector<double> weighed(column);
+        for (std::size_t i = 0; i < weighed.size(); ++i) weighed[i] *= weights_[i];
+        const double before = dot_product(weighed, weighed);
+        std::vector<double> left = weighed;
+        project(left);
+        project(left);  // once more, for what rounding left
+        const double size = std::sqrt(dot_product(left, left));
+        if (!(size * size > 1e-6 * before)) continue;
+        for (double& number : left) number /= size;
+        basis_.push_back(std::move(left));
+        kept.push_back(std::move(weighed));
+    }
+    residual_.assign(value.begin(), value.end());
+    for (std::size_t i = 0; i < residual_.size(); ++i) residual_[i] *= weights_[i];
+    if (!kept.empty()) {
+        const std::vector<double> values = least_squares(kept, residual_);
+        first_value_ = values.front();
+    }
+    project(residual_);
+    project(residual_);
+}
+
+void Regression::project(std::vector<double>& weighed) const {
+    for (const auto& axis : basis_) {
+        const double along = dot_product(axis, weighed);
+        for (std::size_t i = 0; i < weighed.size(); ++i) weighed[i] -= along * axis[i];
+    }
+}
+
+double Regression::freedom() const {
+    return static_cast<double>(residual_.size()) - static_cast<double>(basis_.size());
+}
+
+double Regression::deviation() const {
+    return std::sqrt(dot_product(residual_, residual_) / std::max(freedom(), 1.0));
+}
+
+std::vector<double> Regression::beside(std::span<const double> column) const {
+    std::vector<double> left(column.begin(), column.end());
+    for (std::size_t i = 0; i < left.size(); ++i) left[i] *= weights_[i];
+    project(left);
+    return left;
+}
+
+std::optional<Extra> Regression::extra(std::span<const double> column) const {
+    double whole = 0.0, mean = 0.0;
+    for (const double number : column) mean += number / static_cast<double>(column.size());
+    for (std::size_t i = 0; i < column.size(); ++i)
+        whole += (column[i] - mean) * (column[i] - mean) * weights_[i] * weights_[i];
+    const std::vector<double> left = beside(column);
+    const double squares = dot_product(left, left);
+    if (!(squares > least_left * whole) || !(freedom() > 1.5)) return std::nullopt;
+    const double along = dot_product(left, residual_), rss = dot_product(residual_, residual_);
+    const double rest = std::max(rss - along * along / squares, 1e-12 * rss);
+    Extra found;
+    found.size = along / squares;
+    found.error = std::sqrt(rest / (freedom() - 1.0) / squares);
+    found.t_squared = rest > 0.0 ? along * along / squares / (rest / (freedom() - 1.0)) : 0.0;
+    return found;
+}
+
+namespace {
+
+class Scan {
+  public:
+    Scan(const JointHistory& history, const Series& series, const Regression& regression);
+    /// All torques together, each by its relative residual: what a sensor of another gain moves at once, each
+    /// of them by too little. Empty where fewer than three torques are told by every line.
+    [[nodiscard]] static std::optional<Scan> of_sensor_gain(const JointHistory& history,
+                                                            const std::vector<Regression>& known);
+
+    [[nodiscard]] const std::string& name() const { return name_; }
+    [[nodiscard]] double unit() const { return unit_; }  ///< unit_of(), 1 of all torques together
+    [[nodiscard]] const Scatter& scatter() const { return scatter_; }  ///< of its own lines
+    /// From here on a statistic is held against its own scatter and this one together.
+    void lean_on(const Scatter& known);
+
+    [[nodiscard]] double largest() const { return largest_; }  ///< t squared, in the order of time
+    [[nodiscard]] bool is_drift() const { return drift_; }
+    [[nodiscard]] std::size_t row() const { return row_; }   ///< of the joint's lines: first after the step
+    [[nodiscard]] double memory() const { return memory_; }  ///< from row to row, beside the best change
+    /// The same of what chance makes of the series, in another order of the joint's rows.
+    [[nodiscard]] double largest_of(const std::vector<std::size_t>& order, std::vector<double>& room) const;
+
+  private:
+    struct Found {
+        double t_squared = 0.0;
+        bool drift = false;
+        std::size_t place = 0;
+    };
+    Scan(const JointHistory& history, std::string name, std::vector<std::size_t> rows, double unit,
+         Regression regression);
+    [[nodiscard]] Found look(const std::vector<double>& residual) const;
+    void leave_chance(const Found& found);
+
+    std::string name_;
+    double unit_ = 0.0;
+    Scatter scatter_;
+    Scatter known_;  ///< of others, in the series' unit
+    std::vector<std::size_t> rows_;
+    std::vector<std::size_t> place_of_row_;  ///< in rows_; rows that do not tell the series have rows_.size()
+    Regression regression_;
+    std::vector<double> norm_;  ///< squares that are left of a step before each place; 0: it is not looked at
+    std::vector<double> chance_;  ///< residual beside the best change, if it is one, weighed
+    std::vector<double> slope_;
+    double slope_norm_ = 0.0, largest_ = 0.0, memory_ = 0.0;
+    bool drift_ = false;
+    std::size_t row_ = 0;
+};
+
+constexpr std::size_t fewest_before = 5, fewest_after = 3;  // by hand
+constexpr double least_left_of_step = 0.05;                 // of a step, beside conditions and other changes
+constexpr std::size_t fewest_torques = 3;                   // by hand
+constexpr double hardly_chance = 16.0;  // t squared that chance has in one series of fifty
+
+double squares_of(const std::vector<double>& values) {
+    double sum = 0.0;
+    for (const double value : values) sum += value * value;
+    return sum;
+}
+
+}  // namespace
+
+double unit_of(const Series& series, const Regression& regression) {
+    std::vector<double> errors = series.error;
+    const double usual = median_in(errors);
+    return usual > 0.0 ? usual : std::abs(regression.first_value());
+}
+
+namespace {
+
+Scan::Scan(const JointHistory& history, const Series& series, const Regression& regression)
+    : Scan(history, series.name, series.rows, unit_of(series, regression), regression) {}
+
+Scan::Scan(const JointHistory& history, std::string name, std::vector<std::size_t> rows, double unit,
+           Regression regression)
+    : name_(std::move(name)),
+      unit_(unit),
+      rows_(std::move(rows)),
+      place_of_row_(history.lines.size(), rows_.size()),
+      regression_(std::move(regression)),
+      norm_(rows_.size(), 0.0) {
+    for (std::size_t i = 0; i < rows_.size(); ++i) place_of_row_[rows_[i]] = i;
+    const std::size_t n = rows_.size();
+    const auto& weights = regression_.weights();
+    double all = 0.0;
+    for (const double weight : weights) all += weight * weight;
+    double behind = 0.0;
+    for (std::size_t place = n; place-- > fewest_before;) {
+        behind += weights[place] * weights[place];
+        if (n - place < fewest_after) continue;
+        FoundChange step;
+        step.row = rows_[place];
+        const double left = squares_of(regression_.beside(change_column(history, step, rows_)));
+        if (left > least_left_of_step * behind * (all - behind) / all) norm_[place] = left;
+    }
+    FoundChange drift;
+    drift.drift = true;
+    slope_ = regression_.beside(change_column(history, drift, rows_));
+    slope_norm_ = squares_of(slope_);
+    double spread = 0.0, middle = 0.0;
+    const auto column = change_column(history, drift, rows_);
+    for (const double value : column) middle += value / static_cast<double>(n);
+    for (std::size_t i = 0; i < n; ++i)
+        spread += (column[i] - middle) * (column[i] - middle) * weights[i] * weights[i];
+    if (!(slope_norm_ > least_left_of_step * spread)) slope_norm_ = 0.0;
+    const Found found = look(regression_.residual());
+    largest_ = found.t_squared;
+    drift_ = found.drift;
+    row_ = rows_[found.place];
+    leave_chance(found);
+}
+
+Scan::Found Scan::look(const std::vector<double>& residual) const {
+    const std::size_t n = residual.size();
+    const auto& weights = regression_.weights();
+    const double squares = squares_of(residual);
+    double most = 0.0, behind = 0.0, along_slope = 0.0;
+    Found found;
+    for (std::size_t place = n; place-- > 0;) {
+        behind += weights[place] * residual[place];
+        along_slope += slope_[place] * residual[place];
+        if (norm_[place] > 0.0 && behind * behind > most * norm_[place]) {
+            most = behind * behind / norm_[place];
+            found.place = place;
+        }
+    }
+    if (slope_norm_ > 0.0 && along_slope * along_slope > most * slope_norm_) {
+        most = along_slope * along_slope / slope_norm_;
+        found.drift = true;
+    }
+    const double rest = std::max(squares - most, 1e-12 * squares) + known_.freedom * known_.variance;
+    if (rest > 0.0) found.t_squared = most / rest * (regression_.freedom() - 1.0 + known_.freedom);
+    return found;
+}
+
+void Scan::lean_on(const Scatter& known) {
+    known_ = {known.freedom, known.variance * unit_ * unit_};
+    largest_ = look(regression_.residual()).t_squared;
+}
+
+double Scan::largest_of(const std::vector<std::size_t>& order, std::vector<double>& room) const {
+    room.clear();
+    for (const std::size_t row : order)
+        if (place_of_row_[row] < chance_.size()) room.push_back(chance_[place_of_row_[row]]);
+    regression_.project(room);
+    return look(room).t_squared;
+}
+
+// A change would spoil its own yardstick (Ter Braak, 1992), so it is taken out of what chance makes of this
+// series. What chance made itself has to stay, or the yardstick would be too short.
+void Scan::leave_chance(const Found& found) {
+    std::vector<double> column = slope_;
+    const std::size_t n = column.size();
+    if (!found.drift) {
+        column.assign(n, 0.0);
+        for (std::size_t i = found.place; i < n; ++i) column[i] = regression_.weights()[i];
+        regression_.project(column);
+    }
+    chance_ = regression_.residual();
+    std::vector<double> left = chance_;
+    double along = 0.0;
+    for (std::size_t i = 0; i < n; ++i) along += column[i] * left[i];
+    const double norm = squares_of(column);
+    if (norm > 0.0)
+        for (std::size_t i = 0; i < n; ++i) left[i] -= along / norm * column[i];
+    double products = 0.0;
+    for (std::size_t i = 1; i < n; ++i) products += left[i] * left[i - 1];
+    const double squares = squares_of(left);
+    memory_ = squares > 0.0 ? products / squares : 0.0;
+    const bool change = found.t_squared > hardly_chance;
+    if (change) chance_ = std::move(left);
+    const double freedom = regression_.freedom() - (change ? 1.0 : 0.0);
+    scatter_ = {freedom, squares_of(chance_) / freedom / (unit_ * unit_)};
+    // The regression took its share of chance, and takes it of every order once more.
+    const double share = std::sqrt(static_cast<double>(n) / freedom);
+    for (double& one : chance_) one *= share;
+}
+
+std::optional<Scan> Scan::of_sensor_gain(const JointHistory& history, const std::vector<Regression>& known) {
+    std::vector<double> sum(history.lines.size(), 0.0);
+    double weight = 0.0;
+    std::size_t torques = 0;
+    for (std::size_t s = 0; s < known.size(); ++s) {
+        const Series& series = history.series[s];
+        const double base = known[s].first_value();
+        if (!series.torque || series.rows.size() != sum.size() || series.name == "sensor_zero_nm") continue;
+        const double deviation = known[s].deviation() / std::abs(base);
+        if (!(std::abs(base) > 0.0) || !(deviation > 0.0) || !(deviation < 0.5)) continue;
+        ++torques;
+        weight += 1.0 / (deviation * deviation);
+        for (std::size_t i = 0; i < sum.size(); ++i)
+            sum[i] += known[s].residual()[i] / known[s].weights()[i] / base / (deviation * deviation);
+    }
+    if (torques < fewest_torques) return std::nullopt;
+    for (double& value : sum) value /= weight;
+    const std::vector<double> ones(sum.size(), 1.0);
+    std::vector<std::vector<double>> columns = {ones};
+    for (const Condition& condition : history.conditions) columns.push_back(condition.value);
+    std::vector<std::size_t> rows(sum.size());
+    for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = i;
+    return Scan(history, "all torques", rows, 1.0, Regression(sum, ones, columns));
+}
 
 constexpr std::size_t enough_exceed = 10;  // orders that show as much, after which p is known well enough
 constexpr double hardly_worse = 3.84;      // fall of twice the log-likelihood, 95 % of one degree of freedom
@@ -163,6 +450,9 @@ std::vector<Regression> regressions(const JointHistory& history, std::span<const
     return all;
 }
 
+namespace {
+
+// Every series that has enough lines, and all torques together.
 std::vector<Scan> scans_of(const JointHistory& history, const std::vector<Regression>& known) {
     std::vector<Scan> scans;
     for (std::size_t s = 0; s < known.size(); ++s)
@@ -170,6 +460,8 @@ std::vector<Scan> scans_of(const JointHistory& history, const std::vector<Regres
     if (auto gain = Scan::of_sensor_gain(history, known)) scans.push_back(std::move(*gain));
     return scans;
 }
+
+}  // namespace
 
 std::optional<FoundChange> next_change(const JointHistory& history, const std::vector<Regression>& known,
                                        const ScatterOfSeries& scatter, double limit, std::uint64_t seed) {
@@ -189,6 +481,70 @@ std::optional<FoundChange> next_change(const JointHistory& history, const std::v
     else
         settle_row(history, known, found);
     return found;
+}
+
+namespace {
+
+constexpr double fewest_others = 4.0;  // by hand
+constexpr double most_worth = 100.0;   // lines, however alike the joints are
+
+/// One joint's scatter as a number that is about normal among joints: its logarithm, without the bias that
+/// few lines have.
+struct LogScatter {
+    std::size_t history = 0;
+    double value = 0.0, own_variance = 0.0;
+};
+
+// Sums over joints, from which one of them is easily taken out.
+struct Sums {
+    double count = 0.0, value = 0.0, squares = 0.0, own_variance = 0.0;
+
+    void add(const LogScatter& one, double sign) {
+        count += sign;
+        value += sign * one.value;
+        squares += sign * one.value * one.value;
+        own_variance += sign * one.own_variance;
+    }
+};
+
+// Logarithms of chi square over its freedom d have the mean -1/d and the variance 2/d + 2/d^2, to a few
+// percent from four on.
+LogScatter log_scatter(std::size_t history, const Scatter& own) {
+    return {history, portable::log(own.variance) + 1.0 / own.freedom,
+            2.0 / own.freedom + 2.0 / (own.freedom * own.freedom)};
+}
+
+// What joints differ by beside the chance of few lines tells what one is worth for another.
+Scatter scatter_of(const Sums& others) {
+    const double mean = others.value / others.count;
+    const double variance = std::max(others.squares - others.count * mean * mean, 0.0) / (others.count - 1.0);
+    const double apart = variance - others.own_variance / others.count;
+    const double freedom = apart > 0.0 ? (1.0 + std::sqrt(1.0 + 2.0 * apart)) / apart : most_worth;
+    const double worth = std::min(freedom, most_worth);
+    return {worth, portable::exp(mean - 1.0 / worth)};
+}
+
+}  // namespace
+
+std::vector<ScatterOfSeries> scatter_of_kin(std::span<const JointHistory> histories) {
+    std::map<std::pair<std::string, std::string>, std::vector<LogScatter>> all;
+    for (std::size_t h = 0; h < histories.size(); ++h) {
+        if (histories[h].series.empty()) continue;
+        for (const Scan& scan : scans_of(histories[h], regressions(histories[h], {})))
+            if (scan.unit() > 0.0 && scan.scatter().variance > 0.0)
+                all[{histories[h].joint, scan.name()}].push_back(log_scatter(h, scan.scatter()));
+    }
+    std::vector<ScatterOfSeries> told(histories.size());
+    for (const auto& [name, joints] : all) {
+        Sums sums;
+        for (const LogScatter& one : joints) sums.add(one, 1.0);
+        for (const LogScatter& one : joints) {
+            Sums others = sums;
+            others.add(one, -1.0);
+            if (others.count >= fewest_others) told[one.history][name.second] = scatter_of(others);
+        }
+    }
+    return told;
 }
 
 }  // namespace ripplenotch

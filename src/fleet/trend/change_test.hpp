@@ -5,17 +5,68 @@
 // 1983), so that one p stands for all of them.
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "fleet/trend/joint_history.hpp"
-#include "fleet/trend/kin_scatter.hpp"
-#include "fleet/trend/regression.hpp"
-#include "fleet/trend/scan.hpp"
 
 namespace ripplenotch {
+
+// Internal: weighted least squares of a series on a few columns, and what one more column would explain of
+// what they leave.
+
+/// What one more column explains.
+struct Extra {
+    double size = 0.0;   ///< of the column
+    double error = 0.0;  ///< standard error of it
+    double t_squared = 0.0;
+};
+
+class Regression {
+  public:
+    /// `weights` multiply rows: 1 over a standard deviation, or in proportion to it. Columns that the ones
+    /// before them nearly hold are left out. All as long as `value`.
+    Regression(std::span<const double> value, std::span<const double> weights,
+               const std::vector<std::vector<double>>& columns);
+
+    [[nodiscard]] const std::vector<double>& residual() const { return residual_; }  ///< weighed
+    [[nodiscard]] const std::vector<double>& weights() const { return weights_; }
+    [[nodiscard]] double freedom() const;    ///< rows less columns
+    [[nodiscard]] double deviation() const;  ///< rms of the weighed residual, by its freedom
+    /// What is left of a column beside the others, weighed.
+    [[nodiscard]] std::vector<double> beside(std::span<const double> column) const;
+    /// Takes the columns out of weighed numbers.
+    void project(std::vector<double>& weighed) const;
+    /// Empty where less than a twentieth of the column is left beside the others.
+    [[nodiscard]] std::optional<Extra> extra(std::span<const double> column) const;
+    /// Value of the first column, where all others are 0.
+    [[nodiscard]] double first_value() const { return first_value_; }
+
+  private:
+    std::vector<double> weights_, residual_;
+    std::vector<std::vector<double>> basis_;
+    double first_value_ = 0.0;
+};
+
+// Internal: how much the lines of a series scatter, as the other joints of the kind show it. Thirty lines
+// alone know their scatter to an eighth, and four of them have to stand out of it.
+
+/// What is known of a series' scatter beside its own lines, and how many lines that is worth.
+struct Scatter {
+    double freedom = 0.0;
+    double variance = 0.0;  ///< of lines, in squares of Scan::unit()
+};
+
+/// By the names of scans; without those that nobody else tells.
+using ScatterOfSeries = std::map<std::string, Scatter>;
+
+/// Of each history, by the joints of its name on other robots, never by its own lines; worth the more lines
+/// the more alike those joints are (G. K. Smyth, Linear models and empirical Bayes methods for assessing
+/// differential expression in microarray experiments, 2004).
+[[nodiscard]] std::vector<ScatterOfSeries> scatter_of_kin(std::span<const JointHistory> histories);
 
 /// A change that was found: its column, and where it is.
 struct FoundChange {
@@ -33,14 +84,18 @@ struct FoundChange {
 [[nodiscard]] std::vector<Regression> regressions(const JointHistory& history,
                                                   std::span<const FoundChange> known);
 
-/// Every series that has enough lines, and all torques together.
-[[nodiscard]] std::vector<Scan> scans_of(const JointHistory& history, const std::vector<Regression>& known);
-
 /// The likeliest change, if its chance is at most `limit`; and the autocorrelation is kept by blocks.
 /// `scatter`: what is known of each series beside its lines.
 [[nodiscard]] std::optional<FoundChange> next_change(const JointHistory& history,
                                                      const std::vector<Regression>& known,
                                                      const ScatterOfSeries& scatter, double limit,
                                                      std::uint64_t seed);
+
+// Internal: the largest statistic of one series over all places of a step, and of a drift, for its residuals
+// in any order.
+
+/// The usual error of a line as the lines state it, else the size of the series: what scatters of joints are
+/// compared in. 0: there is none.
+[[nodiscard]] double unit_of(const Series& series, const Regression& regression);
 
 }  // namespace ripplenotch

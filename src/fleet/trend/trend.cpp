@@ -4,9 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/matrices/normal_errors.hpp"
+#include "core/matrices/least_squares.hpp"
 #include "fleet/trend/cause.hpp"
-#include "fleet/trend/courses.hpp"
 #include "fleet/trend/kinds.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"

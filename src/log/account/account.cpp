@@ -1,11 +1,278 @@
 // SPDX-License-Identifier: MIT
 #include "log/account/account.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
+#include "log/clock/clock_check.hpp"
+#include "ripplenotch/core/median.hpp"
+#include "ripplenotch/core/number.hpp"
+#include "ripplenotch/log/recording.hpp"
+
 namespace ripplenotch {
+
+double Unwrapper::next(double position_deg) {
+    if (before_) turns_ -= std::round((position_deg + turns_ * period_ - *before_) / period_);
+    before_ = position_deg + turns_ * period_;
+    return *before_;
+}
+
+void WrapWatch::Continuous::add(double angle) {
+    sum += angle;
+    largest = std::max(largest, std::abs(angle));
+}
+
+// A wrapped angle never exceeds its turn, and steps over the seam in one row: other steps are much smaller.
+void WrapWatch::look_at(double step, Turn& turn) const {
+    const double magnitude = std::abs(step);
+    if (magnitude > 0.5 * turn.period) {
+        if (turn.unwrapper) return;
+        turn.unwrapper.emplace(turn.period, before_);
+        turn.made = raw_;
+    } else if (magnitude >= 0.25 * turn.period) {
+        turn.ruled_out = true;
+    }
+}
+
+void WrapWatch::follow(std::span<const double> position_deg) {
+    constexpr double harmless = 0.25 * 2.0 * std::numbers::pi;  // no turn is ruled out by less, none begun
+    for (const double angle : position_deg) {
+        const double step = count_++ > 0 ? angle - before_ : 0.0;
+        low_ = std::min(low_, angle);
+        high_ = std::max(high_, angle);
+        if (jumped_ || std::abs(step) >= harmless) {
+            for (Turn& turn : turns_) {
+                turn.ruled_out = turn.ruled_out || high_ - low_ > 1.0001 * turn.period;
+                if (turn.ruled_out) continue;
+                look_at(step, turn);
+                if (!turn.unwrapper) continue;
+                jumped_ = true;
+                turn.made.add(turn.unwrapper->next(angle));
+            }
+        }
+        raw_.add(angle);
+        before_ = angle;
+    }
+}
+
+const WrapWatch::Turn* WrapWatch::found() const {
+    const double range = high_ - low_;
+    const auto fits = [&](const Turn& turn) {
+        // It fills its turn nearly.
+        return count_ >= 3 && !turn.ruled_out && turn.unwrapper && range >= 0.9 * turn.period &&
+               range <= 1.0001 * turn.period;
+    };
+    const auto turn = std::find_if(turns_.begin(), turns_.end(), fits);
+    return turn == turns_.end() ? nullptr : &*turn;
+}
+
+std::optional<double> WrapWatch::period() const {
+    return found() != nullptr ? std::optional<double>(found()->period) : std::nullopt;
+}
+
+std::string wrap_in_words(double period_deg) {
+    return fmt::format("the position starts again at {:.4g} deg; it was made continuous", period_deg);
+}
+
+std::optional<double> wrap_period(std::span<const double> position_deg) {
+    WrapWatch watch;
+    watch.follow(position_deg);
+    return watch.period();
+}
+
+namespace {
+
+constexpr double piece_deg = 2.0;         ///< far more than a step of an encoder
+constexpr double longest_piece_s = 10.0;  ///< what takes longer is drift at rest
+// By hand: then, at least, and at most.
+constexpr std::size_t pieces_judged = 16, fewest_pieces = 6, most_pieces_of_angle = 4096;
+constexpr double standing_share = 0.02;  ///< of the other's motion
+constexpr double frozen_share = 1e-5;  ///< the same for a velocity: a motor's position goes 300 times as far
+constexpr double alike_share = 0.6;    ///< of the pieces have to be near the median's ratio ...
+constexpr double alike_within = 0.5;   ///< ... by this share of it
+constexpr double farthest_factor = 2.0;  ///< a clock may be wrong by as much
+
+}  // namespace
+
+AngleFacts::Source AngleFacts::source() const {
+    switch (verdict) {
+        case Verdict::no_velocity:
+        case Verdict::too_little_motion:
+        case Verdict::agrees:
+        case Verdict::reversed:
+            return Source::position;
+        case Verdict::no_position:
+        case Verdict::stands:
+        case Verdict::scaled:
+        case Verdict::unrelated:
+            break;
+    }
+    return Source::velocity;
+}
+
+std::string_view source_name(AngleFacts::Source source) {
+    return source == AngleFacts::Source::position ? "position" : "velocity";
+}
+
+std::string AngleFacts::reason() const {
+    switch (verdict) {
+        case Verdict::no_position:
+            return "the log has no position of this joint";
+        case Verdict::no_velocity:
+            return "no velocity is logged that the position could be held against";
+        case Verdict::too_little_motion:
+            return "the joint moves too little to hold the position against the velocity";
+        case Verdict::agrees:
+            return "the position moves as the velocity says";
+        case Verdict::reversed:
+            return "velocity and position have opposite signs: the position is taken with its sign turned";
+        case Verdict::stands:
+            return "the position stands still while the velocity says that the joint moves";
+        case Verdict::scaled:
+            return factor_in_words(*factor);
+        case Verdict::unrelated:
+            break;
+    }
+    return "the position does not move as the velocity says: it may be another joint's";
+}
+
+std::string AngleFacts::warning() const {
+    std::string text;
+    if (verdict == Verdict::reversed) text = reason();
+    if (verdict != Verdict::no_position && source() == Source::velocity)
+        text = fmt::format("{}; the angle is taken from the velocity", reason());
+    if (!contradicted) return text;
+    const std::string later = fmt::format(
+        "from data row {} on the position no longer moves as the velocity says; from there the angle is "
+        "taken from "
+        "the velocity",
+        contradicted->row + 1);
+    return text.empty() ? later : fmt::format("{}; {}", text, later);
+}
+
+JointAngle::Judgement JointAngle::judge(const std::vector<Piece>& pieces) {
+    std::vector<double> ratios, velocities, positions;
+    for (const Piece& piece : pieces) {
+        const double far = std::copysign(std::numeric_limits<double>::max(), piece.position_deg);
+        ratios.push_back(piece.velocity_deg != 0.0 ? piece.position_deg / piece.velocity_deg : far);
+        velocities.push_back(std::abs(piece.velocity_deg));
+        positions.push_back(std::abs(piece.position_deg));
+    }
+    const double velocity = median_in(velocities), position = median_in(positions);
+    using Verdict = AngleFacts::Verdict;
+    if (velocity < frozen_share * position) return {Verdict::unrelated, std::nullopt};
+    const double factor = median_of(ratios), magnitude = std::abs(factor);
+    const auto alike = std::count_if(ratios.begin(), ratios.end(), [=](double ratio) {
+        return std::abs(ratio - factor) <= alike_within * magnitude;
+    });
+    if (magnitude > 0.0 && static_cast<double>(alike) >= alike_share * static_cast<double>(ratios.size())) {
+        if (magnitude < 1.0 / farthest_factor || magnitude > farthest_factor)
+            return {Verdict::scaled, factor};
+        return {factor > 0.0 ? Verdict::agrees : Verdict::reversed, factor};
+    }
+    return {position < standing_share * velocity ? Verdict::stands : Verdict::unrelated, std::nullopt};
+}
+
+JointAngle::JointAngle(bool velocity, bool position) {
+    using Verdict = AngleFacts::Verdict;
+    facts_.verdict = !position   ? Verdict::no_position
+                     : !velocity ? Verdict::no_velocity
+                                 : Verdict::too_little_motion;
+}
+
+void JointAngle::look(const TraceView& rows, bool begins_run) {
+    looking_ = true;
+    add(rows, begins_run);
+}
+
+void JointAngle::decide() {
+    if (facts_.verdict == AngleFacts::Verdict::too_little_motion && pieces_.size() >= fewest_pieces)
+        conclude();
+    looking_ = any_ = false;
+    rows_ = skipped_ = 0;
+    pieces_.clear();
+    piece_ = {};
+}
+
+void JointAngle::follow(const TraceView& rows, bool begins_run) {
+    add(rows, begins_run);
+    rows_ += rows.size();
+}
+
+void JointAngle::add(const TraceView& rows, bool begins_run) {
+    using Verdict = AngleFacts::Verdict;
+    if (facts_.verdict == Verdict::no_position || facts_.verdict == Verdict::no_velocity) return;
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+        const Row row{rows.time_s[k], rows.velocity_deg_s[k], rows.position_deg[k]};
+        if (!any_ || (k == 0 && begins_run)) {
+            any_ = true;
+            piece_ = {};
+            piece_begin_s_ = row.time_s;
+            last_ = row;
+            continue;
+        }
+        double moved = row.position_deg - last_.position_deg;
+        if (std::abs(moved) > 180.0) moved -= 360.0 * std::round(moved / 360.0);
+        piece_.position_deg += moved;
+        piece_.velocity_deg +=
+            0.5 * (row.velocity_deg_s + last_.velocity_deg_s) * (row.time_s - last_.time_s);
+        last_ = row;
+        if (std::max(std::abs(piece_.position_deg), std::abs(piece_.velocity_deg)) >= piece_deg) {
+            end_piece();
+            if (!looking_ && pieces_.size() == pieces_judged) {
+                rows_ += k;
+                conclude();
+                rows_ -= k;
+            }
+        } else if (row.time_s - piece_begin_s_ > longest_piece_s) {
+            piece_ = {};
+            piece_begin_s_ = row.time_s;
+        }
+    }
+}
+
+void JointAngle::end_piece() {
+    if (pieces_.size() < most_pieces_of_angle) pieces_.push_back(piece_);
+    piece_ = {};
+    piece_begin_s_ = last_.time_s;
+}
+
+void JointAngle::conclude() {
+    const Judgement found = judge(pieces_);
+    pieces_.clear();
+    if (facts_.verdict == AngleFacts::Verdict::too_little_motion) {
+        facts_.verdict = found.verdict;
+        facts_.factor = found.factor;
+        return;
+    }
+    if (facts_.contradicted || facts_.source() == AngleFacts::Source::velocity) return;
+    if (found.verdict != facts_.verdict) facts_.contradicted = {rows_, rows_ - skipped_};
+}
+
+std::vector<LogWarning> recording_warnings(const Recording& recording, const std::string& clock_check) {
+    std::vector<LogWarning> warnings = clock_warnings(recording.clock);
+    const double held = 100.0 * static_cast<double>(recording.held.count) /
+                        static_cast<double>(recording.rows() > 0 ? recording.rows() : 1);
+    if (held >= 0.1) {
+        warnings.push_back(
+            {"held samples",
+             fmt::format("{} rows ({} %) hold the sample before while the joint moves, up to {} in a row",
+                         recording.held.count, percent_text(held), recording.held.longest),
+             true});
+    }
+    using Verdict = AngleFacts::Verdict;
+    const Verdict verdict = recording.angle.verdict;
+    if (const std::string angle = recording.angle.warning(); !angle.empty())
+        warnings.push_back({"angle", angle, true});
+    if ((verdict == Verdict::agrees || verdict == Verdict::too_little_motion) && !clock_check.empty())
+        warnings.push_back({"clock against motion", clock_check, true});
+    return warnings;
+}
+
 namespace {
 
 bool has_values(const std::vector<double>& values) {

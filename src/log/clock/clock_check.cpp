@@ -10,9 +10,195 @@
 #include <numbers>
 #include <vector>
 
+#include "core/vectors/lanes.hpp"
 #include "ripplenotch/core/median.hpp"
+#include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/portable_math.hpp"
+#include "ripplenotch/log/clock.hpp"
 
 namespace ripplenotch {
+
+namespace {
+
+struct SumUp {
+    template <class Lanes>
+    RIPPLENOTCH_INLINED static StepSums run(std::span<const double> time_s, double usual_s) {
+        const std::size_t steps = time_s.size() - 1, even = steps - steps % lane_count;
+        const double first = time_s[1] - time_s[0];
+        Lanes before, now, usual, shortest, longest, squares;
+        fill(usual, usual_s);
+        fill(shortest, first);
+        fill(longest, first);
+        fill(squares, 0.0);
+        for (std::size_t k = 0; k < even; k += lane_count) {
+            load(before, time_s.data() + k);
+            load(now, time_s.data() + k + 1);
+            const Lanes step = now - before, off = step - usual;
+            squares += off * off;
+            lower(shortest, step);
+            raise(longest, step);
+        }
+        StepSums sums{first, first, sum(squares)};
+        double least[lane_count], most[lane_count];
+        store(least, shortest);
+        store(most, longest);
+        for (std::size_t i = 0; i < lane_count; ++i) {
+            sums.shortest_s = std::min(sums.shortest_s, least[i]);
+            sums.longest_s = std::max(sums.longest_s, most[i]);
+        }
+        for (std::size_t k = even; k < steps; ++k) {
+            const double step = time_s[k + 1] - time_s[k];
+            sums.squares += (step - usual_s) * (step - usual_s);
+            sums.shortest_s = std::min(sums.shortest_s, step);
+            sums.longest_s = std::max(sums.longest_s, step);
+        }
+        return sums;
+    }
+};
+
+}  // namespace
+
+StepSums sum_up_steps(std::span<const double> time_s, double usual_s) noexcept {
+    return in_lanes<SumUp>(time_s, usual_s);
+}
+
+namespace {
+
+constexpr double nominal_tolerance = 0.001;  // by hand
+// Steps cluster at their median when so many are this near, and their mean stays nearer still: rounded stamps
+// of another rate (4.4 ms as 4 or 5 ms) are near it too, but to one side.
+constexpr double cluster_width = 0.25, cluster_share = 0.75, cluster_lean = 0.03;
+// Stamps that keep within so many steps of even ones were never late: then rows over time is the rate.
+constexpr double even_steps = 1.5;
+constexpr double few_repeats = 0.01;  // by hand
+
+double two_digits(double value) {
+    const double scale = portable::pow(10.0, std::floor(portable::log10(value)) - 1.0);
+    // Dividing by a whole power of ten is exact where multiplying by a fraction is not: 0.001 s must give
+    // 1000 Hz.
+    return scale < 1.0 ? std::round(value / scale) / std::round(1.0 / scale)
+                       : std::round(value / scale) * scale;
+}
+
+bool near(double a, double b) { return std::abs(a - b) <= nominal_tolerance * b; }
+
+bool cluster(const std::vector<double>& advancing, double median_s) {
+    double sum = 0.0;
+    std::size_t count = 0;
+    for (const double step : advancing) {
+        if (std::abs(step - median_s) > cluster_width * median_s) continue;
+        sum += step;
+        ++count;
+    }
+    return static_cast<double>(count) >= cluster_share * static_cast<double>(advancing.size()) &&
+           std::abs(sum / static_cast<double>(count) - median_s) <= cluster_lean * median_s;
+}
+
+/// The furthest that times get from even ones, gaps closed.
+double furthest_from_even(std::span<const double> time_s, double mean_s, double limit_s) {
+    double off = 0.0, furthest = 0.0;
+    for (std::size_t k = 1; k < time_s.size(); ++k) {
+        const double step = time_s[k] - time_s[k - 1];
+        if (step > limit_s) continue;
+        off += step - mean_s;
+        furthest = std::max(furthest, std::abs(off));
+    }
+    return furthest;
+}
+
+}  // namespace
+
+Hertz nominal_rate(Hertz measured) {
+    const double rate = measured.value();
+    if (!(rate > 0.0) || !std::isfinite(rate)) return measured;
+    if (const double round_rate = two_digits(rate); near(rate, round_rate)) return Hertz(round_rate);
+    if (const double period = two_digits(1.0 / rate); near(rate, 1.0 / period)) {
+        const double by_period = 1.0 / period;
+        // 1 / 0.008 is 125 but for rounding.
+        return Hertz(std::abs(by_period - std::round(by_period)) < 1e-9 * by_period ? std::round(by_period)
+                                                                                    : by_period);
+    }
+    return measured;
+}
+
+RateEstimate estimate_rate(std::span<const double> time_s, double gap_steps) {
+    std::vector<double> advancing;
+    for (std::size_t k = 1; k < time_s.size(); ++k) {
+        if (time_s[k] > time_s[k - 1]) advancing.push_back(time_s[k] - time_s[k - 1]);
+    }
+    if (advancing.empty()) return {};
+    RateEstimate rate;
+    rate.step_s = median_in(advancing);
+    const double limit_s = gap_steps * rate.step_s;
+    double duration = 0.0;
+    std::size_t gaps = 0;
+    for (const double step : advancing) {
+        gaps += step > limit_s;
+        duration += step > limit_s ? 0.0 : step;
+    }
+    const double steps = static_cast<double>(time_s.size() - 1);
+    const double mean_s = duration / (steps - static_cast<double>(gaps));
+    rate.mean = Hertz(1.0 / mean_s);
+    const bool repeats = steps - static_cast<double>(advancing.size()) > few_repeats * steps;
+    const bool lost = !repeats && cluster(advancing, rate.step_s) &&
+                      furthest_from_even(time_s, mean_s, limit_s) > even_steps * rate.step_s;
+    rate.nominal = nominal_rate(lost ? Hertz(1.0 / rate.step_s) : rate.mean);
+    return rate;
+}
+
+namespace {
+
+std::string gaps_in_words(const ClockFacts& clock) {
+    const Gap& longest = clock.longest_gap;
+    return fmt::format("{} {} in the time, the longest of {:.4g} s after {:.9g} s; each starts a new run",
+                       clock.gap_count, clock.gap_count == 1 ? "gap" : "gaps", longest.to_s - longest.from_s,
+                       longest.from_s);
+}
+
+std::string changes_in_words(const ClockFacts& clock) {
+    const RateChange& first = clock.rate_changes.front();
+    const std::string change = fmt::format("from {:.6g} Hz to {:.6g} Hz after data row {} ({:.6g} s)",
+                                           first.from.value(), first.to.value(), first.row + 1, first.time_s);
+    const std::string changes =
+        clock.rate_changes.size() == 1
+            ? fmt::format("the clock changes {}", change)
+            : fmt::format("the clock changes {} times, first {}", clock.rate_changes.size(), change);
+    if (clock.rows_left_out == 0) return changes;
+    return fmt::format(
+        "{}; {} rows at another rate than {:.6g} Hz are left out and pass unfiltered: give each part a log "
+        "of "
+        "its own",
+        changes, clock.rows_left_out, clock.nominal_rate.value());
+}
+
+}  // namespace
+
+std::vector<LogWarning> clock_warnings(const ClockFacts& clock) {
+    std::vector<LogWarning> warnings;
+    if (clock.gap_count > 0) warnings.push_back({"gaps", gaps_in_words(clock)});
+    if (!clock.rate_changes.empty()) warnings.push_back({"changes of rate", changes_in_words(clock)});
+    if (clock.repeated_times > 0) {
+        warnings.push_back(
+            {"repeated times",
+             fmt::format("{} rows ({} %) repeat the time of the row before: the clock is coarser than the "
+                         "rows, or rows "
+                         "were doubled",
+                         clock.repeated_times,
+                         percent_text(100.0 * static_cast<double>(clock.repeated_times) /
+                                      static_cast<double>(clock.rows)))});
+    }
+    const double mean = clock.mean_rate.value(), nominal = clock.nominal_rate.value();
+    if (nominal > 0.0 && std::abs(mean / nominal - 1.0) > rate_worth_a_word) {
+        warnings.push_back(
+            {"mean rate",
+             fmt::format("the rows come at {:.6g} Hz in the mean, but at {:.6g} Hz by the usual step: rows "
+                         "are lost or late; "
+                         "filters are designed for {:.6g} Hz",
+                         mean, nominal, nominal)});
+    }
+    return warnings;
+}
+
 namespace {
 
 constexpr std::size_t most_pieces_checked = 64;  // many enough for a median, long enough to average noise

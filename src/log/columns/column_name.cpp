@@ -1,15 +1,20 @@
 // SPDX-License-Identifier: MIT
 #include "log/columns/column_name.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <array>
 #include <cctype>
 #include <span>
 #include <vector>
 
-#include "log/columns/unit_text.hpp"
+#include "log/columns/units.hpp"
+#include "ripplenotch/core/error.hpp"
 
 namespace ripplenotch {
+
 namespace {
 
 struct RoleWord {
@@ -225,6 +230,210 @@ std::string joint_key(std::string_view joint) {
         }
     }
     return key;
+}
+
+namespace {
+
+// Columns named one by one belong to a named joint only when their names agree on it.
+std::string joint_of_forced(const KnownColumns& known) {
+    const auto torque = known.forced.column_of(Role::torque);
+    auto motion = known.forced.column_of(Role::velocity);
+    if (!motion) motion = known.forced.column_of(Role::position);
+    if (known.forced.by_place || !torque || !motion) return "";
+    const std::string& joint = known.names[*torque].joint;
+    return joint_key(joint) == joint_key(known.names[*motion].joint) ? joint : "";
+}
+
+// Torque and motion are named by --columns: the other columns of these roles tell nothing, nor do joints that
+// have nothing else.
+void drop_unasked(const KnownColumns& known, bool joint_asked, std::vector<JointGroup>& groups) {
+    const auto& forced = known.forced;
+    const auto torque = forced.column_of(Role::torque);
+    const bool moves = forced.column_of(Role::velocity) || forced.column_of(Role::position);
+    if (forced.by_place || !torque || !moves) return;
+    const std::string of_torque = joint_key(known.names[*torque].joint);
+    const auto is_unasked = [&](const JointGroup& group) {
+        return group.key != of_torque &&
+               std::all_of(motion_roles.begin(), motion_roles.end(),
+                           [&](Role role) { return forced.column_of(role) || !group.has(role); });
+    };
+    if (joint_asked && std::all_of(groups.begin(), groups.end(), is_unasked) &&
+        !joint_of_forced(known).empty())
+        groups.clear();
+    if (joint_asked) return;
+    groups.erase(std::remove_if(groups.begin(), groups.end(), is_unasked), groups.end());
+    const bool told = std::any_of(groups.begin(), groups.end(),
+                                  [&](const JointGroup& group) { return group.key == of_torque; });
+    if (groups.size() > 1 && !told) groups.clear();
+}
+
+std::vector<JointGroup> collect_groups(const KnownColumns& known, bool merge) {
+    std::vector<JointGroup> groups;
+    for (const bool reference : {false, true}) {
+        for (std::size_t c = 0; c < known.facts.columns; ++c) {
+            const ColumnName& name = known.names[c];
+            if (known.forced.roles[c] || name.reference != reference) continue;
+            if (name.role == Role::other || name.role == Role::time) continue;
+            const std::string key = merge ? "" : joint_key(name.joint);
+            auto group =
+                std::find_if(groups.begin(), groups.end(), [&](const JointGroup& g) { return g.key == key; });
+            if (group == groups.end()) {
+                if (reference && !groups.empty()) continue;  // a wish alone does not make a joint
+                groups.push_back({key, merge ? "" : name.joint, {}});
+                group = groups.end() - 1;
+            }
+            group->candidates[name.role].push_back(c);
+        }
+    }
+    return groups;
+}
+
+[[noreturn]] void refuse_tie(const KnownColumns& known, Role role, const std::vector<std::size_t>& best) {
+    std::vector<std::string> labels, choices;
+    for (const std::size_t c : best) {
+        labels.push_back(column_label(known.facts.names, c));
+        const bool repeated =
+            std::count(known.facts.names.begin(), known.facts.names.end(), known.facts.names[c]) > 1;
+        choices.push_back(fmt::format("--columns {}={}", role_name(role),
+                                      repeated ? std::to_string(c + 1) : known.facts.names[c]));
+    }
+    raise<DataError>("{}: {} could each be the {}; say {}", known.source, fmt::join(labels, " and "),
+                     role_name(role), fmt::join(choices, " or "));
+}
+
+}  // namespace
+
+std::vector<JointGroup> group_joints(const KnownColumns& known, bool joint_asked, bool needs_torque) {
+    std::vector<JointGroup> groups = collect_groups(known, false);
+    drop_unasked(known, joint_asked, groups);
+    const auto complete = [&](const JointGroup& group) {
+        const auto has = [&](Role role) { return group.has(role) || known.forced.column_of(role); };
+        return (has(Role::torque) || !needs_torque) && (has(Role::velocity) || has(Role::position));
+    };
+    if (groups.empty() && (known.forced.column_of(Role::torque) || known.forced.column_of(Role::velocity))) {
+        const std::string joint = joint_of_forced(known);
+        groups.push_back({joint_key(joint), joint, {}});
+    }
+    if (std::none_of(groups.begin(), groups.end(), complete) && groups.size() > 1 && !joint_asked) {
+        // "motor_torque" beside "link_velocity": one joint whose columns are named after different
+        // things.
+        std::array<std::size_t, 3> counts{};
+        for (std::size_t r = 0; r < motion_roles.size(); ++r) {
+            for (const JointGroup& group : groups) counts[r] += group.has(motion_roles[r]);
+        }
+        if (std::all_of(counts.begin(), counts.end(), [](std::size_t n) { return n <= 1; })) {
+            groups = collect_groups(known, true);
+        }
+    }
+    const bool any_complete = std::any_of(groups.begin(), groups.end(), complete);
+    if (any_complete) {
+        groups.erase(
+            std::remove_if(groups.begin(), groups.end(), [&](const JointGroup& g) { return !complete(g); }),
+            groups.end());
+    }
+    return groups;
+}
+
+std::optional<std::size_t> choose_column(const KnownColumns& known, const JointGroup& group, Role role,
+                                         std::vector<LogWarning>& warnings) {
+    if (const auto forced = known.forced.column_of(role)) return forced;
+    const auto found = group.candidates.find(role);
+    if (found == group.candidates.end()) return std::nullopt;
+    const auto cost = [&known](std::size_t c) {
+        return known.names[c].rank + (known.names[c].reference ? 100 : 0);
+    };
+    int lowest = 1000;
+    for (const std::size_t c : found->second) lowest = std::min(lowest, cost(c));
+    std::vector<std::size_t> best, still;
+    for (const std::size_t c : found->second) {
+        if (cost(c) != lowest) continue;
+        const bool moves = known.facts.sample.empty() || varies(known.facts.sample[c]);
+        (moves ? best : still).push_back(c);
+    }
+    if (best.empty()) best.swap(still);
+    if (best.size() > 1) refuse_tie(known, role, best);
+    if (!still.empty()) {
+        warnings.push_back(
+            {"standing column",
+             fmt::format("{} does not change at the start of the log; the {} is taken from {}; --columns "
+                         "{}=NAME decides otherwise",
+                         column_label(known.facts.names, still.front()), role_name(role),
+                         column_label(known.facts.names, best.front()), role_name(role)),
+             true});
+    }
+    if (known.names[best.front()].reference) {
+        warnings.push_back({"reference",
+                            fmt::format("{} is a wish or a model, not a measurement, and the only {} here",
+                                        column_label(known.facts.names, best.front()), role_name(role)),
+                            true});
+    }
+    return best.front();
+}
+
+namespace {
+
+constexpr std::array all_conventions = {
+#define CONVENTION(family, beside, name, role, unit, side, source) \
+    Convention{family, beside, name, Role::role, unit, Shaft::side, source},
+#include "log/columns/conventions.def"
+#undef CONVENTION
+};
+
+bool is_decimal_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
+
+// ".joint.states.j1.velocity." of "/joint_states/j1/velocity"
+std::string in_words(std::string_view name) {
+    std::string words = ".";
+    for (const char c : name) {
+        if (std::isalnum(static_cast<unsigned char>(c)) != 0)
+            words += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+        else if (words.back() != '.')
+            words += '.';
+    }
+    if (words.back() != '.') words += '.';
+    return words;
+}
+
+// Whether `word` is the next one at `at`, perhaps with a number glued to it.
+bool word_at(std::string_view words, std::size_t at, std::string_view word) {
+    if (words.substr(at, word.size()) != word) return false;
+    std::size_t end = at + word.size();
+    while (end < words.size() && is_decimal_digit(words[end])) ++end;
+    return end < words.size() && words[end] == '.';
+}
+
+// All words of the pattern, in this order, others between them allowed: a joint's name stands there.
+bool follows(std::string_view words, std::string_view pattern) {
+    if (!pattern.empty() && pattern.front() == '=')
+        return words.substr(1, words.size() - 2) == pattern.substr(1);
+    std::size_t at = 0;
+    while (!pattern.empty()) {
+        const std::string_view word = pattern.substr(0, pattern.find('.'));
+        pattern.remove_prefix(std::min(pattern.size(), word.size() + 1));
+        while (at != std::string_view::npos && !word_at(words, at + 1, word)) at = words.find('.', at + 1);
+        if (at == std::string_view::npos) return false;
+        at = words.find('.', at + 1);
+    }
+    return true;
+}
+
+bool stands_beside(std::string_view pattern, const std::vector<std::string>& names) {
+    return std::any_of(names.begin(), names.end(),
+                       [&](const std::string& name) { return follows(in_words(name), pattern); });
+}
+
+}  // namespace
+
+std::span<const Convention> conventions() { return all_conventions; }
+
+const Convention* convention_of(std::string_view name, Role role, const std::vector<std::string>& names) {
+    const std::string words = in_words(name);
+    for (const Convention& known : all_conventions) {
+        if (role != Role::other && known.role != role) continue;
+        if (follows(words, known.name) && (known.beside.empty() || stands_beside(known.beside, names)))
+            return &known;
+    }
+    return nullptr;
 }
 
 }  // namespace ripplenotch

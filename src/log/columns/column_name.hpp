@@ -2,9 +2,15 @@
 #pragma once
 // What a column's name says: which quantity, how surely, in which unit, of which joint.
 
+#include <array>
+#include <map>
+#include <optional>
+#include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "log/columns/decide_layout.hpp"
 #include "ripplenotch/log/layout.hpp"
 
 namespace ripplenotch {
@@ -26,5 +32,54 @@ struct ColumnName {
 
 /// The same for "j3", "joint3", "J3" and "3"; other names in lower case.
 [[nodiscard]] std::string joint_key(std::string_view joint);
+
+// A part of decide_layout: which columns belong to one joint, and which of them is its velocity, its torque,
+// its position.
+
+inline constexpr std::array motion_roles = {Role::velocity, Role::torque, Role::position};
+
+/// All columns that could be one joint's velocity, torque or position.
+struct JointGroup {
+    std::string key, name;
+    std::map<Role, std::vector<std::size_t>> candidates;
+    [[nodiscard]] bool has(Role role) const { return candidates.count(role) > 0; }
+};
+
+/// What is known of a file's columns.
+struct KnownColumns {
+    const std::string& source;  ///< for messages
+    const ColumnFacts& facts;
+    const Forced& forced;
+    const std::vector<ColumnName>& names;  ///< what each column's name says
+};
+
+/// The joints of a file, in its order; those with a torque and a motion alone where there are any, or with a
+/// motion where that is enough. Columns that are named after different things are one joint's unless a joint
+/// was asked for by its name.
+[[nodiscard]] std::vector<JointGroup> group_joints(const KnownColumns& known, bool joint_asked,
+                                                   bool needs_torque = true);
+
+/// The one column for a role, empty when there is none. Throws DataError where several are equally good.
+[[nodiscard]] std::optional<std::size_t> choose_column(const KnownColumns& known, const JointGroup& group,
+                                                       Role role, std::vector<LogWarning>& warnings);
+
+// Units and sides that the names of known loggers imply, from one list (conventions.def).
+
+struct Convention {
+    std::string_view family;  ///< who writes such names: "libfranka"
+    std::string_view beside;  ///< a name that another column of the log has to have; may be empty
+    std::string_view name;    ///< as conventions.def explains
+    Role role = Role::other;
+    std::string_view unit;
+    Shaft side = Shaft::joint;
+    std::string_view source;  ///< where it is written down
+};
+
+[[nodiscard]] std::span<const Convention> conventions();
+
+/// The first convention that `name` follows as a column of this role, in a log with all these `names`; null
+/// when there is none. With Role::other: in whatever role.
+[[nodiscard]] const Convention* convention_of(std::string_view name, Role role,
+                                              const std::vector<std::string>& names);
 
 }  // namespace ripplenotch

@@ -6,23 +6,143 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <optional>
 #include <set>
+#include <string>
+#include <vector>
 
-#include "log/columns/channel_clocks.hpp"
 #include "log/columns/column_name.hpp"
-#include "log/columns/conventions.hpp"
 #include "log/columns/infer_motion.hpp"
-#include "log/columns/joint_groups.hpp"
-#include "log/columns/stated_units.hpp"
-#include "log/columns/unit_text.hpp"
+#include "log/columns/units.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/log/layout.hpp"
 
 namespace ripplenotch {
+
 namespace {
 
-using layout_detail::JointGroup;
-using layout_detail::motion_roles;
+// Tables in which each channel has a column of times beside it.
+
+// The first row of which two clocks are more than half a step apart, if there is one.
+std::optional<std::size_t> first_apart(const std::vector<double>& clock, const std::vector<double>& other) {
+    const std::size_t rows = std::min(clock.size(), other.size());
+    if (rows < 2) return std::nullopt;
+    const double half_step = 0.5 * std::abs(clock[1] - clock[0]);
+    for (std::size_t row = 0; row < rows; ++row)
+        if (std::abs(other[row] - clock[row]) > half_step) return row;  // an empty cell is not apart
+    return std::nullopt;
+}
+
+// Throws DataError where a chosen column's own times are not those that were chosen, as far as the opening
+// shows: its rows would be moments of another clock.
+void check_channel_clocks(const std::string& source, const ColumnFacts& facts, const Layout& layout) {
+    if (facts.clock_of.empty() || !layout.chosen.time) return;
+    const std::size_t time = *layout.chosen.time;
+    for (const JointColumns& joint : layout.all_chosen()) {
+        for (const auto& column : {joint.velocity, joint.torque, joint.position}) {
+            if (!column) continue;
+            const std::size_t own = facts.clock_of[*column];
+            if (own == time) continue;
+            const auto row = first_apart(facts.sample[time], facts.sample[own]);
+            if (!row) continue;
+            raise<DataError>(
+                "{}: read {} at times of its own: {} in row {} (column {}), where column {} has {}; expected "
+                "one "
+                "clock; export all channels at one rate from one start, or name channels of one clock with "
+                "--columns time=NUMBER,...",
+                source, column_label(facts.names, *column), facts.sample[own][*row], *row + 1, own + 1,
+                time + 1, facts.sample[time][*row]);
+        }
+    }
+}
+
+}  // namespace
+
+// --columns: by place "time,velocity,torque" ("-" skips one), or by name "torque=tau_J" or number "torque=3".
+
+std::string column_label(const std::vector<std::string>& names, std::size_t column) {
+    if (names.empty() || names[column].empty()) return fmt::format("column {}", column + 1);
+    return fmt::format("'{}' (column {})", names[column], column + 1);
+}
+
+namespace {
+
+std::optional<Role> role_of(std::string_view word) {
+    for (const Role role : {Role::time, Role::velocity, Role::torque, Role::position}) {
+        if (role_name(role) == word) return role;
+    }
+    return std::nullopt;
+}
+
+std::size_t column_named(const std::string& source, const ColumnFacts& facts, const std::string& name) {
+    std::vector<std::size_t> found;
+    for (std::size_t c = 0; c < facts.names.size(); ++c) {
+        if (facts.names[c] == name) found.push_back(c);
+    }
+    if (found.size() == 1) return found.front();
+    if (found.size() > 1) {
+        raise<DataError>(
+            "{}: the name '{}' of --columns stands over columns {} and {}; give the number instead, as in "
+            "torque={}",
+            source, name, found[0] + 1, found[1] + 1, found[0] + 1);
+    }
+    std::string_view digits = name;
+    if (digits.substr(0, 7) == "column ") digits.remove_prefix(7);
+    if (const auto number = parse_number(digits);
+        number && *number >= 1.0 && *number <= static_cast<double>(facts.columns) &&
+        *number == static_cast<double>(static_cast<std::size_t>(*number))) {
+        return static_cast<std::size_t>(*number) - 1;
+    }
+    raise<UsageError>("--columns: {} has no column '{}'; it has {}", source, name,
+                      facts.names.empty() ? fmt::format("{} columns without names", facts.columns)
+                                          : fmt::format("{}", fmt::join(facts.names, ", ")));
+}
+
+}  // namespace
+
+std::optional<std::size_t> Forced::column_of(Role role) const {
+    const auto at = std::find(roles.begin(), roles.end(), std::optional<Role>(role));
+    if (at == roles.end()) return std::nullopt;
+    return static_cast<std::size_t>(at - roles.begin());
+}
+
+namespace {
+
+Forced read_columns_option(const std::string& source, const ColumnFacts& facts, const ReadOptions& options) {
+    Forced forced;
+    forced.roles.resize(facts.columns);
+    std::size_t place = 0;
+    for (const std::string& entry : options.columns) {
+        const std::size_t equals = entry.find('=');
+        const std::string word = entry.substr(0, equals);
+        const auto role = role_of(word);
+        if (!role && !(equals == std::string::npos && word == "-")) {
+            raise<UsageError>(
+                "--columns: '{}' is none of time, velocity, torque, position, or - to skip a column", word);
+        }
+        if (role && forced.column_of(*role)) raise<UsageError>("--columns: '{}' is given twice", word);
+        if (equals != std::string::npos) {
+            forced.roles[column_named(source, facts, entry.substr(equals + 1))] = role;
+            continue;
+        }
+        forced.by_place = true;
+        if (place >= facts.columns) {
+            raise<UsageError>("--columns: names {} columns, {} has {}", options.columns.size(), source,
+                              facts.columns);
+        }
+        forced.roles[place++] = role ? *role : Role::other;
+    }
+    if (forced.by_place) {
+        for (auto& role : forced.roles) {
+            if (!role) role = Role::other;
+        }
+    }
+    return forced;
+}
 
 class Decision {
   public:
@@ -30,7 +150,7 @@ class Decision {
         : source_(source),
           facts_(facts),
           options_(options),
-          forced_(layout_detail::read_columns_option(source, facts, options)),
+          forced_(read_columns_option(source, facts, options)),
           stated_(facts.columns) {}
 
     Layout run(const std::string& format) {
@@ -39,23 +159,21 @@ class Decision {
         layout_.stated_rate = options_.sample_rate;
         layout_.outside = options_.outside;
         name_columns();
-        layout_detail::choose_time(facts_, forced_, options_, layout_);
+        choose_time(facts_, forced_, options_, layout_);
         if (layout_.chosen.time) give_role(*layout_.chosen.time, Role::time, "");
         if (layout_.time_fraction) give_role(*layout_.time_fraction, Role::time, "");
-        layout_detail::settle_clock(facts_, layout_.chosen.time && stated_[*layout_.chosen.time], layout_);
-        groups_ = layout_detail::group_joints(known(), options_.joint.has_value(),
-                                              !options_.every_joint || options_.torque_of_each);
+        settle_clock(facts_, layout_.chosen.time && stated_[*layout_.chosen.time], layout_);
+        groups_ = group_joints(known(), options_.joint.has_value(),
+                               !options_.every_joint || options_.torque_of_each);
         for (const JointGroup& group : groups_) layout_.joints.push_back(group.name);
         choose_joint();
-        layout_detail::infer_motion(facts_, options_,
-                                    layout_detail::motions_of(known(), groups_, stated_, options_, layout_),
-                                    layout_);
-        layout_detail::state_derived_velocity(layout_, facts_);
+        infer_motion(facts_, options_, motions_of(known(), groups_, stated_, options_, layout_), layout_);
+        state_derived_velocity(layout_, facts_);
         take_constant_speed();
-        layout_detail::state_units(layout_, facts_, options_);
+        state_units(layout_, facts_, options_);
         report_repeated_names();
-        layout_detail::check_channel_clocks(source_, facts_, layout_);
-        layout_.options = layout_detail::options_line(layout_, facts_, options_);
+        check_channel_clocks(source_, facts_, layout_);
+        layout_.options = options_line(layout_, facts_, options_);
         return std::move(layout_);
     }
 
@@ -146,12 +264,10 @@ class Decision {
         return may_derive(joint) || options_.constant_speed || !options_.needs_velocity;
     }
 
-    layout_detail::KnownColumns known() const { return {source_, facts_, forced_, names_}; }
+    KnownColumns known() const { return {source_, facts_, forced_, names_}; }
 
     JointColumns columns_of(const JointGroup& group) {
-        const auto choose = [&](Role role) {
-            return layout_detail::choose_column(known(), group, role, layout_.warnings);
-        };
+        const auto choose = [&](Role role) { return choose_column(known(), group, role, layout_.warnings); };
         JointColumns columns{group.name, layout_.chosen.time, {}, {}, {}};
         columns.velocity = choose(Role::velocity);
         columns.torque = choose(Role::torque);
@@ -223,11 +339,11 @@ class Decision {
         column.joint = joint;
         std::string written = names_[c].unit;
         stated_[c] = !written.empty();
-        if (const auto asked = layout_detail::asked_unit(options_, column.name, role)) {
+        if (const auto asked = asked_unit(options_, column.name, role)) {
             const auto usual = usual_unit(*asked, role);
             if (!usual || !role_factor(role, *usual, 1.0)) {
                 raise<UsageError>("--unit: '{}' is no unit of {}; write one of {}", *asked, role_name(role),
-                                  layout_detail::unit_list(role));
+                                  unit_list(role));
             }
             written = *usual;
             stated_[c] = true;
@@ -252,8 +368,8 @@ class Decision {
         } else if (is_chosen(c)) {
             raise<DataError>(
                 "{}: read {} in '{}', expected a {} in {}; if the header is wrong, say --unit {}={}", source_,
-                column_label(facts_.names, c), written, role_name(role), layout_detail::unit_list(role),
-                role_name(role), base_unit(dimension_of(role)));
+                column_label(facts_.names, c), written, role_name(role), unit_list(role), role_name(role),
+                base_unit(dimension_of(role)));
         } else {
             column.role = Role::other;
             column.joint.clear();
@@ -279,7 +395,7 @@ class Decision {
     const std::string& source_;
     const ColumnFacts& facts_;
     const ReadOptions& options_;
-    layout_detail::Forced forced_;
+    Forced forced_;
     Layout layout_;
     std::vector<ColumnName> names_;
     std::vector<bool> stated_;  ///< by column: the log or an option says its unit

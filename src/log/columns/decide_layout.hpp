@@ -57,7 +57,6 @@ struct ColumnFacts {
 [[nodiscard]] std::string column_label(const std::vector<std::string>& names, std::size_t column);
 
 /// The parts that decide_layout is made of, each in a file of its own.
-namespace layout_detail {
 
 /// Role forced by --columns for each column, by index; Role::other with `forced` means "skip".
 struct Forced {
@@ -65,8 +64,6 @@ struct Forced {
     bool by_place = false;
     [[nodiscard]] std::optional<std::size_t> column_of(Role role) const;
 };
-[[nodiscard]] Forced read_columns_option(const std::string& source, const ColumnFacts& facts,
-                                         const ReadOptions& options);
 
 /// The time column, decided by the values as well as the name, into layout.chosen; seconds and nanoseconds in
 /// two columns into layout.time_fraction too. None where there is none or a rate was stated.
@@ -87,5 +84,4 @@ inline constexpr std::size_t longer_opening = std::size_t{1} << 20, longest_open
 /// True when the values have two or more different numbers among them.
 [[nodiscard]] bool varies(const std::vector<double>& values);
 
-}  // namespace layout_detail
 }  // namespace ripplenotch

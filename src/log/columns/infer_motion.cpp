@@ -4,12 +4,205 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 
+#include "log/account/account.hpp"
 #include "log/columns/motion_reading.hpp"
 #include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/median.hpp"
+#include "ripplenotch/core/number.hpp"
 
-namespace ripplenotch::layout_detail {
+namespace ripplenotch {
+
+namespace {
+
+// The largest but a thousandth: one wild value decides no unit.
+double nearly_largest(std::vector<double> values) {
+    if (values.empty()) return 0.0;
+    for (double& value : values) value = std::abs(value);
+    const auto at = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) * 999 / 1000);
+    std::nth_element(values.begin(), at, values.end());
+    return *at;
+}
+
+// Over stretches of rows: from one row to the next it would be the noise that is fastest.
+std::vector<double> slopes(const std::vector<double>& time_s, const std::vector<double>& position) {
+    const std::size_t stride = std::max<std::size_t>(1, time_s.size() / 200);
+    std::vector<double> found;
+    for (std::size_t i = stride; i < time_s.size(); i += stride) {
+        const double passed = time_s[i] - time_s[i - stride];
+        if (passed > 0.0) found.push_back((position[i] - position[i - stride]) / passed);
+    }
+    return found;
+}
+
+// Change of position and velocity times time, piece by piece: long enough to average noise, many enough for a
+// median. A step of ten usual ones ends a piece: nobody knows the velocity within.
+struct Moves {
+    std::vector<double> position, velocity;
+};
+Moves moves_of(const std::vector<double>& t, const std::vector<double>& v, const std::vector<double>& q) {
+    constexpr std::size_t most_pieces = 64, shortest_piece = 4;  // by hand
+    std::vector<double> steps;
+    for (std::size_t i = 1; i < t.size(); ++i) steps.push_back(t[i] - t[i - 1]);
+    const double gap = 10.0 * std::max(median_of(steps), 0.0);
+    const std::size_t rows = std::max(shortest_piece, t.size() / most_pieces);
+    Moves moves;
+    double position = 0.0, velocity = 0.0;
+    std::size_t taken = 0;
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+        const bool broken = gap > 0.0 && steps[i] > gap;
+        if (!broken) {
+            position += q[i + 1] - q[i];
+            velocity += 0.5 * (v[i] + v[i + 1]) * steps[i];
+            ++taken;
+        }
+        if (!broken && taken < rows) continue;
+        if (taken >= shortest_piece) {
+            moves.position.push_back(position);
+            moves.velocity.push_back(velocity);
+        }
+        position = velocity = 0.0;
+        taken = 0;
+    }
+    return moves;
+}
+
+// The median of the pieces' ratios, where most of them say the same: neither spikes nor jumps move it.
+std::optional<double> scale_of(const Moves& moves) {
+    constexpr std::size_t fewest = 6;          // by hand
+    constexpr double alike = 0.1, most = 0.7;  // by hand: of the ratio, and of the pieces
+    if (moves.velocity.size() < fewest) return std::nullopt;
+    const double usual = nearly_largest(moves.velocity);
+    std::vector<double> ratios;
+    for (std::size_t i = 0; i < moves.velocity.size(); ++i) {
+        if (std::abs(moves.velocity[i]) > 0.2 * usual)
+            ratios.push_back(moves.position[i] / moves.velocity[i]);
+    }
+    if (!(usual > 0.0) || ratios.size() < fewest) return std::nullopt;
+    const double middle = median_of(ratios);
+    const auto same = std::count_if(ratios.begin(), ratios.end(), [middle](double ratio) {
+        return std::abs(ratio - middle) < alike * std::abs(middle);
+    });
+    if (static_cast<double>(same) < most * static_cast<double>(ratios.size())) return std::nullopt;
+    return std::abs(middle);
+}
+
+}  // namespace
+
+MotionEvidence motion_evidence(const std::vector<double>& time_s, const std::vector<double>& velocity,
+                               const std::vector<double>& position) {
+    std::vector<double> t, v, q;
+    for (std::size_t i = 0; i < std::max(velocity.size(), position.size()); ++i) {
+        const bool good = (time_s.empty() || std::isfinite(time_s[i])) &&
+                          (velocity.empty() || std::isfinite(velocity[i])) &&
+                          (position.empty() || std::isfinite(position[i]));
+        if (!good) continue;
+        if (!time_s.empty()) t.push_back(time_s[i]);
+        if (!velocity.empty()) v.push_back(velocity[i]);
+        if (!position.empty()) q.push_back(position[i]);
+    }
+    MotionEvidence evidence;
+    evidence.farthest = nearly_largest(q);
+    evidence.wrap = wrap_period(q);
+    if (evidence.wrap) Unwrapper(*evidence.wrap).apply(q);
+    evidence.fastest = nearly_largest(velocity.empty() && !t.empty() ? slopes(t, q) : v);
+    if (t.size() < 2 || v.empty() || q.empty()) return evidence;
+    evidence.scale = scale_of(moves_of(t, v, q));
+    return evidence;
+}
+
+namespace {
+
+// How well lines read with these rules: rows of equal width, nearly all numbers.
+struct Score {
+    CellRules rules;
+    std::size_t columns = 0;
+    double consistent = 0.0;  // share of lines with the commonest number of cells
+    double numeric = 0.0;     // share of the cells in them that are numbers or empty
+    std::size_t numbers = 0;  // numeric cells in a line, on average, rounded
+    [[nodiscard]] double value() const {
+        if (columns == 0 || numbers == 0) return 0.0;
+        return consistent * numeric * (columns > 1 ? 1.0 : 0.5);
+    }
+};
+
+// The commonest number of cells, and how many lines have it. Between widths that are equally common, the one
+// that the first line has too.
+std::pair<std::size_t, std::size_t> commonest(std::vector<std::size_t> widths, std::size_t first) {
+    std::sort(widths.begin(), widths.end());
+    std::size_t width = 0, best = 0;
+    for (std::size_t i = 0; i < widths.size();) {
+        const auto end = std::upper_bound(widths.begin(), widths.end(), widths[i]);
+        const auto count = static_cast<std::size_t>(end - widths.begin()) - i;
+        if (count > best || (count == best && widths[i] == first)) best = count, width = widths[i];
+        i += count;
+    }
+    return {width, best};
+}
+
+Score score(std::string_view bytes, const TextLine& first, const std::vector<TextLine>& rows,
+            CellRules rules) {
+    Score result{rules};
+    std::vector<std::size_t> widths;
+    CellSplit split;
+    for (const TextLine& line : rows) {
+        split_cells(line.of(bytes), rules.delimiter, split);
+        widths.push_back(split.cells.size());
+    }
+    split_cells(first.of(bytes), rules.delimiter, split);
+    const auto [columns, best] = commonest(widths, split.cells.size());
+    result.columns = columns;
+    std::size_t cells = 0, good = 0, numbers = 0;
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+        if (widths[k] != result.columns) continue;
+        const std::string_view line = rows[k].of(bytes);
+        split_cells(line, rules.delimiter, split);
+        for (const Cell& cell : split.cells) {
+            const bool number = parse_number(cell.of(line), rules.decimal_mark).has_value();
+            ++cells;
+            good += number || cell.begin == cell.end;
+            numbers += number;
+        }
+    }
+    if (cells == 0) return result;
+    result.consistent = static_cast<double>(best) / static_cast<double>(rows.size());
+    result.numeric = static_cast<double>(good) / static_cast<double>(cells);
+    result.numbers = (numbers + best - 1) / best;
+    return result;
+}
+
+}  // namespace
+
+GuessedRules guess_rules(std::string_view bytes, const TextLine& first, const std::vector<TextLine>& rows,
+                         const ReadOptions& options) {
+    // In order of preference between equals. A comma that separates can mark decimals only inside quotes.
+    constexpr std::array candidates = {CellRules{'\t', '.'}, CellRules{';', '.'},  CellRules{',', '.'},
+                                       CellRules{' ', '.'},  CellRules{'\t', ','}, CellRules{';', ','},
+                                       CellRules{' ', ','},  CellRules{',', ','}};
+    const bool quotes = bytes.find('"') != std::string_view::npos;
+    Score best;
+    const auto consider = [&](CellRules rules) {
+        const Score now = score(bytes, first, rows, rules);
+        // More columns win between readings that are equally good: "1,5;2,5" is two numbers, not one.
+        const double margin = now.value() - best.value();
+        if (margin > 1e-9 ||
+            (margin > -1e-9 && now.columns > best.columns && now.columns > 1 && best.columns <= 1))
+            best = now;
+    };
+    for (CellRules rules : candidates) {
+        if (rules.delimiter == ',' && rules.decimal_mark == ',' && !quotes) continue;
+        if (options.delimiter && rules.delimiter != *options.delimiter) continue;
+        if (options.decimal_mark && rules.decimal_mark != *options.decimal_mark) continue;
+        consider(rules);
+    }
+    if (best.columns == 0 && options.delimiter)
+        consider({*options.delimiter, options.decimal_mark.value_or('.')});
+    return {best.rules, best.columns, best.numbers};
+}
+
 namespace {
 
 constexpr double same_speed = 0.02;  // readings whose speeds differ by less are one
@@ -296,4 +489,54 @@ void infer_motion(const ColumnFacts& facts, const ReadOptions& options,
     Inference(facts, options, joints, layout).run();
 }
 
-}  // namespace ripplenotch::layout_detail
+namespace {
+
+// Which columns of a file are a joint's motion, and what is known of their units before any value is looked
+// at.
+
+// The measured column for a role where nobody has to choose between several.
+std::optional<std::size_t> only_column(const KnownColumns& known, const JointGroup& group, Role role) {
+    const auto found = group.candidates.find(role);
+    if (found == group.candidates.end()) return std::nullopt;
+    std::optional<std::size_t> only;
+    for (const std::size_t c : found->second) {
+        if (known.names[c].reference) continue;
+        if (only) return std::nullopt;
+        only = c;
+    }
+    return only;
+}
+
+}  // namespace
+
+std::vector<MotionColumns> motions_of(const KnownColumns& known, const std::vector<JointGroup>& groups,
+                                      const std::vector<bool>& unit_is_stated, const ReadOptions& options,
+                                      const Layout& layout) {
+    const auto column = [&](std::optional<std::size_t> c, Role role) -> std::optional<MotionColumn> {
+        if (!c || layout.columns[*c].role != role) return std::nullopt;
+        const auto side = options.sides.find(role);
+        const auto& names = known.facts.meanings();
+        return MotionColumn{*c, unit_is_stated[*c], known.names[*c].motor_side,
+                            names.empty() ? nullptr : convention_of(names[*c], role, names),
+                            side == options.sides.end() ? std::nullopt : std::optional<Shaft>(side->second)};
+    };
+    std::vector<MotionColumns> motions;
+    const auto add = [&](const std::string& joint, std::optional<std::size_t> velocity,
+                         std::optional<std::size_t> position, bool chosen) {
+        MotionColumns motion{joint, column(velocity, Role::velocity), column(position, Role::position),
+                             chosen};
+        if (motion.velocity || motion.position) motions.push_back(motion);
+    };
+    const std::vector<JointColumns> all = layout.all_chosen();
+    for (const JointColumns& joint : all) add(joint.joint, joint.velocity, joint.position, true);
+    for (const JointGroup& group : groups) {
+        const bool chosen = std::any_of(all.begin(), all.end(),
+                                        [&](const JointColumns& joint) { return joint.joint == group.name; });
+        if (!chosen)
+            add(group.name, only_column(known, group, Role::velocity),
+                only_column(known, group, Role::position), false);
+    }
+    return motions;
+}
+
+}  // namespace ripplenotch

@@ -3,15 +3,49 @@
 // Units and sides of velocity and position where the log does not state them: from names, from how far the
 // position goes in the time of the velocity, and from what a joint can do. The one place that decides.
 
+#include <cstddef>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "log/columns/conventions.hpp"
+#include "log/columns/column_name.hpp"
 #include "log/columns/decide_layout.hpp"
-#include "log/columns/joint_groups.hpp"
+#include "log/text/text_cells.hpp"
+#include "log/text/text_dialect.hpp"
+#include "ripplenotch/log/layout.hpp"
 
-namespace ripplenotch::layout_detail {
+namespace ripplenotch {
+
+// What the values of a joint's motion say about their units, as they stand in the file.
+
+struct MotionEvidence {
+    /// Change of position over velocity times time, in the file's units, magnitude; empty where there is no
+    /// position, too little motion, or no agreement between the two.
+    std::optional<double> scale;
+    std::optional<double> wrap;  ///< the position starts again after so much
+    double fastest = 0.0;        ///< largest magnitude of the velocity; without one, of the position's slope
+    double farthest = 0.0;       ///< largest magnitude of the position
+};
+
+/// Vectors of equal length, in seconds and file units; velocity or position may be empty. Rows with a
+/// not-a-number are left out.
+[[nodiscard]] MotionEvidence motion_evidence(const std::vector<double>& time_s,
+                                             const std::vector<double>& velocity,
+                                             const std::vector<double>& position);
+
+// How the cells of a text log are separated and its decimals marked: the reading under which most lines are
+// rows of equally many numbers.
+
+struct GuessedRules {
+    CellRules rules;
+    std::size_t columns = 0;  ///< cells in a row; 0 when no reading makes rows of it
+    std::size_t numbers = 0;  ///< numeric cells in a row, on average, rounded up
+};
+
+/// `first` may be a header; `rows` are the lines compared. What `options` state is taken as stated.
+[[nodiscard]] GuessedRules guess_rules(std::string_view bytes, const TextLine& first,
+                                       const std::vector<TextLine>& rows, const ReadOptions& options);
 
 /// What is known of a velocity or position column before its values are looked at.
 struct MotionColumn {
@@ -40,4 +74,4 @@ struct MotionColumns {
 void infer_motion(const ColumnFacts& facts, const ReadOptions& options,
                   const std::vector<MotionColumns>& joints, Layout& layout);
 
-}  // namespace ripplenotch::layout_detail
+}  // namespace ripplenotch

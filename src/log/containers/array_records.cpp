@@ -1,14 +1,395 @@
 // SPDX-License-Identifier: MIT
 // A log made of arrays: which of them belong together.
 
+#include "log/containers/array_records.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <deque>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
 
-#include "log/containers/joined_arrays.hpp"
+#include "log/columns/column_name.hpp"
+#include "log/columns/units.hpp"
+#include "log/containers/stored_array.hpp"
+#include "log/records/joined_records.hpp"
 #include "ripplenotch/core/error.hpp"
 
 namespace ripplenotch {
+
+namespace {
+
+constexpr std::size_t compared_at_once = std::size_t{1} << 15;  // rows
+
+// The last part of a path: "Data" of "log.tau.Data".
+std::string last_word(const std::string& path) {
+    const std::size_t end = path.find_last_of("./");
+    return end == std::string::npos ? path : path.substr(end + 1);
+}
+
+// What is in front of it: "log.tau".
+std::string path_around(const std::string& path) {
+    const std::size_t end = path.find_last_of("./");
+    return end == std::string::npos ? std::string() : path.substr(0, end);
+}
+
+// Without last parts that say nothing: "/tau/value" is "/tau", "tau.signals.values" is "tau".
+std::string without_empty_words(const std::string& path) {
+    constexpr std::array empty_words = {"value", "Value", "data", "Data", "values", "Values", "signals"};
+    std::string rest = path;
+    while (std::find(empty_words.begin(), empty_words.end(), last_word(rest)) != empty_words.end() &&
+           path_around(rest).size() > 0)
+        rest = path_around(rest);
+    return rest;
+}
+
+bool names_time(const StoredArray& array) {
+    if (!array.shape.vector) return false;
+    const ColumnName name =
+        read_column_name(array.read_as.empty() ? last_word(without_empty_words(array.path)) : array.read_as);
+    return name.role == Role::time && !name.reference;
+}
+
+bool same_numbers(const StoredArray& one, const StoredArray& other) {
+    if (one.type.kind != other.type.kind || one.type.size != other.type.size ||
+        one.type.big_endian != other.type.big_endian)
+        return false;
+    const auto left = one.open(0), right = other.open(0);
+    std::string a, b;
+    for (std::size_t done = 0; done < one.shape.rows;) {
+        const std::size_t rows = std::min(compared_at_once, one.shape.rows - done);
+        a.resize(rows * one.type.size);
+        b.resize(a.size());
+        left->read(rows, a.data());
+        right->read(rows, b.data());
+        if (a != b) return false;
+        done += rows;
+    }
+    return true;
+}
+
+class FoundClocks {
+  public:
+    explicit FoundClocks(const std::vector<StoredArray>& arrays) : arrays_(arrays), clock_(arrays.size()) {
+        for (std::size_t a = 0; a < arrays.size(); ++a) {
+            if (arrays[a].shape.rows < 2 || !names_time(arrays[a])) continue;
+            times_.emplace(Scope{path_around(without_empty_words(arrays[a].path)), arrays[a].shape.rows}, a);
+        }
+        for (std::size_t a = 0; a < arrays.size(); ++a) clock_[a] = nearest(a);
+        for (std::optional<std::size_t>& clock : clock_)
+            if (clock) clock = first_of_equals(*clock);
+        share();
+    }
+    [[nodiscard]] std::vector<ArrayGroup> groups() const {
+        std::map<std::pair<std::size_t, std::size_t>, ArrayGroup> groups;
+        for (std::size_t a = 0; a < arrays_.size(); ++a) {
+            if (arrays_[a].shape.rows < 2) continue;
+            const std::size_t clock = clock_[a].value_or(arrays_.size());
+            ArrayGroup& group = groups[{arrays_[a].shape.rows, clock}];
+            group.rows = arrays_[a].shape.rows;
+            if (clock_[a]) group.clock = &arrays_[clock];
+            if (!is_copy(a)) group.arrays.push_back(&arrays_[a]);
+        }
+        std::vector<ArrayGroup> found;
+        for (auto& [key, group] : groups) found.push_back(std::move(group));
+        return found;
+    }
+
+  private:
+    using Scope = std::pair<std::string, std::size_t>;  // a folder, and rows
+
+    [[nodiscard]] std::optional<std::size_t> nearest(std::size_t a) const {
+        const std::size_t rows = arrays_[a].shape.rows;
+        std::string folder = path_around(arrays_[a].path);
+        while (true) {
+            if (const auto found = times_.find({folder, rows}); found != times_.end()) return found->second;
+            if (folder.empty()) return std::nullopt;
+            folder = path_around(folder);
+        }
+    }
+    std::size_t first_of_equals(std::size_t clock) {
+        const auto known = equal_to_.find(clock);
+        if (known != equal_to_.end()) return known->second;
+        std::size_t first = clock;
+        for (const std::size_t other : distinct_) {
+            if (arrays_[other].shape.rows != arrays_[clock].shape.rows) continue;
+            if (!same_numbers(arrays_[other], arrays_[clock])) continue;
+            first = other;
+            break;
+        }
+        if (first == clock) distinct_.push_back(clock);
+        return equal_to_[clock] = first;
+    }
+    // An array that nothing is said of has the only clock of its length.
+    void share() {
+        for (std::size_t a = 0; a < arrays_.size(); ++a) {
+            if (clock_[a]) continue;
+            std::vector<std::size_t> fitting;
+            for (const std::size_t clock : distinct_)
+                if (arrays_[clock].shape.rows == arrays_[a].shape.rows) fitting.push_back(clock);
+            if (fitting.size() == 1) clock_[a] = fitting.front();
+        }
+    }
+    // Of a clock that stands in another folder.
+    [[nodiscard]] bool is_copy(std::size_t a) const {
+        const auto known = equal_to_.find(a);
+        return known != equal_to_.end() && known->second != a;
+    }
+
+    const std::vector<StoredArray>& arrays_;
+    std::map<Scope, std::size_t> times_;             ///< the first in each
+    std::vector<std::optional<std::size_t>> clock_;  ///< of each array
+    std::vector<std::size_t> distinct_;
+    std::map<std::size_t, std::size_t> equal_to_;
+};
+
+// In order of their rows. The clock of an array is the vector named as a time in its own folder or in the
+// nearest one around it, if it has as many rows; clocks that hold the same numbers are one. Reads clocks
+// where several have the same length.
+std::vector<ArrayGroup> groups_by_clock(const std::vector<StoredArray>& arrays) {
+    return FoundClocks(arrays).groups();
+}
+
+constexpr std::size_t buffered = std::size_t{1} << 18;
+
+std::vector<std::size_t> sizes_of(const std::vector<ArrayColumn>& columns) {
+    std::vector<std::size_t> sizes;
+    for (const ArrayColumn& column : columns) sizes.push_back(column.array->type.size);
+    return sizes;
+}
+
+class ArrayRecords final : public RecordSource {
+  public:
+    ArrayRecords(std::shared_ptr<StoredBytes> file, const std::vector<ArrayColumn>& columns)
+        : RecordSource(Name{file->name()}, sizes_of(columns)), file_(std::move(file)) {
+        rows_left_ = columns.front().array->shape.rows;
+        for (const ArrayColumn& column : columns)
+            columns_.push_back({column.array->type.size, column.array->open(column.number)});
+    }
+
+  private:
+    struct Open {
+        std::size_t size;
+        std::unique_ptr<ColumnCursor> cursor;
+    };
+    void refill(std::string& bytes) override {
+        const std::size_t rows = std::min(rows_left_, std::max<std::size_t>(64, buffered / record_size()));
+        bytes.resize(rows * record_size());
+        rows_left_ -= rows;
+        std::size_t offset = 0;
+        for (const std::size_t c : kept()) {
+            const std::size_t size = columns_[c].size;
+            column_.resize(rows * size);
+            columns_[c].cursor->read(rows, column_.data());
+            copy_numbers({column_.data(), size}, {bytes.data() + offset, record_size()}, size, rows);
+            offset += size;
+        }
+        if (rows > 0 && rows_left_ == 0) file_->require_unchanged();
+    }
+
+    std::shared_ptr<StoredBytes> file_;
+    std::vector<Open> columns_;
+    std::size_t rows_left_ = 0;
+    std::string column_;
+};
+
+std::string column_path(const StoredArray& array, std::size_t number, PathStyle style) {
+    if (array.shape.vector) return array.path;
+    if (style == PathStyle::matlab) {
+        return array.shape.time_is_first ? fmt::format("{}(:,{})", array.path, number + 1)
+                                         : fmt::format("{}({},:)", array.path, number + 1);
+    }
+    return array.shape.time_is_first ? fmt::format("{}[:,{}]", array.path, number)
+                                     : fmt::format("{}[{},:]", array.path, number);
+}
+
+// Of the names, up to a separator: "log.q" and "log.dq" are q and dq.
+std::size_t common_prefix(const std::vector<std::string>& names) {
+    if (names.empty()) return 0;
+    const std::string& first = names.front();
+    std::size_t common = first.size();
+    for (const std::string& name : names) {
+        const auto most = static_cast<std::ptrdiff_t>(std::min(common, name.size()));
+        common = static_cast<std::size_t>(
+            std::mismatch(first.begin(), first.begin() + most, name.begin()).first - first.begin());
+    }
+    const std::size_t end = first.substr(0, common).find_last_of("./");
+    return end == std::string::npos ? 0 : end + 1;
+}
+
+// "tau.Data" is tau where nothing but its own clock stands beside it.
+std::vector<std::string> names_of(const ArrayGroup& group) {
+    std::map<std::string, int> beside;
+    for (const StoredArray* array : group.arrays)
+        if (array != group.clock) ++beside[path_around(array->path)];
+    std::vector<std::string> names;
+    for (const StoredArray* array : group.arrays)
+        names.push_back(beside[path_around(array->path)] > 1 ? array->path
+                                                             : without_empty_words(array->path));
+    std::vector<std::string> common;
+    for (std::size_t a = 0; a < names.size(); ++a)
+        if (group.arrays[a] != group.clock || names.size() == 1) common.push_back(names[a]);
+    const std::size_t prefix = common_prefix(common);
+    for (std::size_t a = 0; a < names.size(); ++a) {
+        if (!group.arrays[a]->read_as.empty())
+            names[a] = group.arrays[a]->read_as;
+        else
+            names[a] = group.arrays[a] == group.clock ? last_word(names[a]) : names[a].substr(prefix);
+    }
+    return names;
+}
+
+}  // namespace
+
+std::vector<ArrayColumn> columns_of(const ArrayGroup& group, PathStyle style) {
+    const std::vector<std::string> names = names_of(group);
+    std::vector<ArrayColumn> columns;
+    for (std::size_t a = 0; a < group.arrays.size(); ++a) {
+        const StoredArray& array = *group.arrays[a];
+        for (std::size_t c = 0; c < array.shape.columns; ++c) {
+            const std::size_t number = style == PathStyle::matlab ? c + 1 : c;
+            columns.push_back({column_path(array, c, style),
+                               array.shape.vector ? names[a] : fmt::format("{}[{}]", names[a], number),
+                               &array, c});
+        }
+    }
+    return columns;
+}
+
+void add_fields(const std::vector<ArrayColumn>& columns, RecordTable& table) {
+    bool units = false;
+    for (const ArrayColumn& column : columns) {
+        NpyField field = column.array->type;
+        field.name = column.path;
+        field.offset = table.record_size;
+        table.record_size += field.size;
+        table.fields.push_back(field);
+        table.read_as.push_back(column.read_as);
+        table.units.push_back(column.array->unit);
+        units = units || !column.array->unit.empty();
+    }
+    if (!units) table.units.clear();
+}
+
+namespace {
+
+// The numbers of columns of one length as records, row by row.
+std::unique_ptr<RecordSource> array_records(std::shared_ptr<StoredBytes> file,
+                                            const std::vector<ArrayColumn>& columns) {
+    return std::make_unique<ArrayRecords>(std::move(file), columns);
+}
+
+constexpr double ns_per_s = 1e9, largest_ns = 9.2e18;
+constexpr std::size_t rows_looked_at = 4096;  // rows, of which the usual step is told
+
+// A clock's numbers as whole nanoseconds.
+class NanosecondCursor final : public ColumnCursor {
+  public:
+    NanosecondCursor(std::string label, std::unique_ptr<ColumnCursor> own, NpyField type, double ns_per_unit)
+        : label_(std::move(label)), own_(std::move(own)), type_(std::move(type)), ns_per_unit_(ns_per_unit) {}
+    void read(std::size_t rows, char* into) override {
+        raw_.resize(rows * type_.size);
+        own_->read(rows, raw_.data());
+        for (std::size_t row = 0; row < rows; ++row) {
+            const char* const number = raw_.data() + row * type_.size;
+            const double ns = load_field(number, type_) * ns_per_unit_;
+            if (!(std::abs(ns) < largest_ns))  // nan, too
+                raise<DataError>("{}: read a time of {} that is no number of seconds; save it again", label_,
+                                 load_field(number, type_));
+            const bool whole = type_.kind != 'f' && ns_per_unit_ == 1.0;
+            const std::int64_t clock = whole ? load_count(number, type_) : std::llround(ns);
+            std::memcpy(into + row * sizeof(clock), &clock, sizeof(clock));
+        }
+    }
+
+  private:
+    std::string label_;
+    std::unique_ptr<ColumnCursor> own_;
+    NpyField type_;
+    double ns_per_unit_;
+    std::string raw_;
+};
+
+double ns_per_unit(const std::string& source, const StoredArray& clock) {
+    const std::string written = clock.unit.empty() ? split_unit(last_word(clock.path)).unit : clock.unit;
+    const auto unit = written.empty() ? std::nullopt : usual_unit(written, Role::time);
+    if (unit) return ns_per_s * role_factor(Role::time, *unit, 1.0).value_or(1.0);
+    if (clock.type.kind != 'f')
+        raise<DataError>(
+            "{}: read whole numbers without a unit in {}, expected seconds, or a name or attribute with the "
+            "unit; read arrays of one clock, or save them with it",
+            source, clock.path);
+    return ns_per_s;
+}
+
+StoredArray in_nanoseconds(const std::string& source, const StoredArray& clock) {
+    StoredArray ns = clock;
+    ns.type = {};
+    ns.type.kind = 'i';
+    ns.type.big_endian = std::endian::native == std::endian::big;
+    ns.unit = "ns";
+    ns.open = [label = fmt::format("{}: {}", source, clock.path), own = clock.open, type = clock.type,
+               unit = ns_per_unit(source, clock)](std::size_t) {
+        return std::make_unique<NanosecondCursor>(label, own(0), type, unit);
+    };
+    return ns;
+}
+
+double period_ns(const StoredArray& clock_ns) {
+    const std::size_t rows = std::min(rows_looked_at, clock_ns.shape.rows);
+    std::vector<std::int64_t> times(rows);
+    clock_ns.open(0)->read(rows, reinterpret_cast<char*>(times.data()));
+    return (static_cast<double>(times.back()) - static_cast<double>(times.front())) /
+           static_cast<double>(rows - 1);
+}
+
+}  // namespace
+
+std::unique_ptr<RecordSource> joined_arrays(const std::shared_ptr<StoredBytes>& file, const ArrayGroup& base,
+                                            const std::vector<const ArrayGroup*>& others, PathStyle style,
+                                            const std::function<bool(const std::string& path)>& asked,
+                                            const std::string& how, RecordTable& table) {
+    std::deque<StoredArray> clocks;  // columns point into it
+    const auto add_clock = [&](const ArrayGroup& group) {
+        return &clocks.emplace_back(in_nanoseconds(file->name(), *group.clock));
+    };
+    std::vector<ArrayColumn> columns = columns_of(base, style);
+    const auto clock_column = std::find_if(columns.begin(), columns.end(), [&](const ArrayColumn& column) {
+        return column.array == base.clock;
+    });
+    clock_column->array = add_clock(base);
+    std::rotate(columns.begin(), clock_column, clock_column + 1);
+    add_fields(columns, table);
+    table.units.resize(table.fields.size());
+    std::vector<SideSignal> sides;
+    for (const ArrayGroup* other : others) {
+        const StoredArray* const clock = add_clock(*other);
+        for (const ArrayColumn& column : columns_of(*other, style)) {
+            if (!asked(column.path)) continue;
+            if (column.array == other->clock)
+                raise<UsageError>(
+                    "--columns: {} is not the clock of the torque, whose rows are taken; leave it out: each "
+                    "array is joined by its own",
+                    column.path);
+            const std::vector<ArrayColumn> pair = {{clock->path, "", clock, 0}, column};
+            sides.push_back({column.path, column.read_as, array_records(file, pair), column.array->type,
+                             join_limit_ns(period_ns(*clock)), column.array->unit, "value"});
+        }
+    }
+    std::vector<std::size_t> sizes;
+    for (const NpyField& field : table.fields) sizes.push_back(field.size);
+    add_sides(sides, how, table);
+    return join_records(array_records(file, columns), std::move(sizes), std::move(sides), join_named(how));
+}
+
 namespace {
 
 int column_names_tell(const std::vector<ArrayColumn>& columns) {

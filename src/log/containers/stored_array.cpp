@@ -2,14 +2,169 @@
 #include "log/containers/stored_array.hpp"
 
 #include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <set>
 
 #include "log/columns/column_name.hpp"
-#include "log/records/strided_copy.hpp"
+#include "log/npy/npy_writer.hpp"
+#include "log/read.hpp"
+#include "log/records/joined_records.hpp"
+#include "ripplenotch/core/error.hpp"
 
 namespace ripplenotch {
+
+namespace {
+
+constexpr std::size_t stored_piece = std::size_t{1} << 16;
+
+[[noreturn]] void complain_of_end(const std::string& name, std::uint64_t offset, std::uint64_t size) {
+    raise<DataError>(
+        "{}: read up to byte {}, expected more than these {} bytes; the file is cut off or damaged, copy it "
+        "again",
+        name, offset, size);
+}
+
+[[noreturn]] void complain_of_sum(const std::string& name, std::uint32_t sum, std::uint32_t expected) {
+    raise<DataError>(
+        "{}: read numbers with the checksum {:08x}, expected {:08x}: the file is damaged, copy it again",
+        name, sum, expected);
+}
+
+class FileBytes final : public StoredBytes {
+  public:
+    explicit FileBytes(std::unique_ptr<ByteSource> source)
+        : StoredBytes(source->name()),
+          source_(std::move(source)),
+          descriptor_(source_->descriptor_by_place()) {}
+    [[nodiscard]] std::uint64_t size() const override { return source_->size(); }
+    void read_at(std::uint64_t offset, char* into, std::size_t size) override {
+        if (offset > this->size()) complain_of_end(name(), offset, this->size());
+        while (size > 0) {
+            const ssize_t got = ::pread(descriptor_, into, size, static_cast<off_t>(offset));
+            if (got < 0 && errno == EINTR) continue;
+            if (got < 0) raise<FileError>("{}: cannot read: {}", name(), std::strerror(errno));
+            if (got == 0) complain_of_end(name(), offset, this->size());
+            into += got;
+            size -= static_cast<std::size_t>(got);
+            offset += static_cast<std::uint64_t>(got);
+        }
+    }
+    [[nodiscard]] std::string openable() const override {
+        struct stat status {};
+        const bool named = ::fstat(descriptor_, &status) == 0 && status.st_nlink > 0;
+        return named ? fmt::format("/dev/fd/{}", descriptor_) : "";
+    }
+    void require_unchanged() const override { source_->require_unchanged(); }
+
+  private:
+    std::unique_ptr<ByteSource> source_;
+    int descriptor_;
+};
+
+class KeptBytes final : public StoredBytes {
+  public:
+    KeptBytes(ByteSource& source, std::string piece) : StoredBytes(source.name()) {
+        for (std::size_t have = piece.size(); have > 0; have = read_on(source, piece, 0, stored_piece)) {
+            bytes_.put(std::string_view(piece).substr(0, have));
+            size_ += have;
+        }
+        char first = 0;
+        if (size_ > 0) bytes_.read_at(0, &first, 1);  // all is in the file
+    }
+    [[nodiscard]] std::uint64_t size() const override { return size_; }
+    void read_at(std::uint64_t offset, char* into, std::size_t size) override {
+        if (offset > size_ || size > size_ - offset) complain_of_end(name(), offset, size_);
+        bytes_.read_at(offset, into, size);
+    }
+
+  private:
+    TemporaryBytes bytes_;
+    std::uint64_t size_ = 0;
+};
+
+class UnpackedPart final : public StoredBytes {
+  public:
+    UnpackedPart(std::shared_ptr<StoredBytes> packed, std::uint64_t offset, std::uint64_t size, Deflate kind,
+                 std::uint64_t most, std::optional<std::uint32_t> checksum)
+        : StoredBytes(packed->name()),
+          packed_(std::move(packed)),
+          at_(offset),
+          end_(offset + size),
+          most_(most),
+          checksum_(checksum),
+          unpacker_(make_inflater(kind, name())) {}
+    [[nodiscard]] std::uint64_t size() const override { return 0; }
+    void read_at(std::uint64_t offset, char* into, std::size_t size) override {
+        if (size > most_ || offset > most_ - size) complain_of_end(name(), offset, most_);
+        while (have_ < offset + size) unpack_piece();
+        bytes_.read_at(offset, into, size);
+    }
+    void require_unchanged() const override { packed_->require_unchanged(); }
+
+  private:
+    void unpack_piece() {
+        if (!room_) room_ = std::make_unique_for_overwrite<char[]>(stored_piece);
+        const std::span<char> unpacked(room_.get(), stored_piece);
+        if (left_.empty() && at_ < end_) {
+            piece_.resize(static_cast<std::size_t>(std::min<std::uint64_t>(stored_piece, end_ - at_)));
+            packed_->read_at(at_, piece_.data(), piece_.size());
+            at_ += piece_.size();
+            left_ = piece_;
+        }
+        const Unpacker::Step step = unpacker_->step(left_, unpacked);
+        if (!step.damage.empty())
+            raise<DataError>("{}: read up to byte {}, expected packed numbers: {}", name(), at_, step.damage);
+        left_.remove_prefix(step.taken);
+        have_ += step.given;
+        if (step.given == 0 && (unpacker_->complete() || (step.taken == 0 && at_ == end_)))
+            complain_of_end(name(), at_, packed_->size());
+        if (have_ > most_)
+            raise<DataError>("{}: read more than {} bytes packed into one array, expected no more", name(),
+                             most_);
+        const std::string_view fresh(unpacked.data(), step.given);
+        if (checksum_) sum_ = crc32_of(fresh, sum_.value_or(0));
+        if (checksum_ && have_ == most_ && sum_ && *sum_ != *checksum_)
+            complain_of_sum(name(), *sum_, *checksum_);
+        bytes_.put(fresh);
+    }
+
+    std::shared_ptr<StoredBytes> packed_;
+    std::uint64_t at_, end_, most_, have_ = 0;
+    std::optional<std::uint32_t> checksum_, sum_;
+    std::unique_ptr<Unpacker> unpacker_;
+    std::string piece_;
+    std::string_view left_;         ///< of the piece
+    std::unique_ptr<char[]> room_;  ///< for what comes out of it
+    TemporaryBytes bytes_;
+};
+
+}  // namespace
+
+void require_checksum(StoredBytes& bytes, std::uint64_t offset, std::uint64_t size, std::uint32_t checksum) {
+    std::optional<std::uint32_t> sum = 0;
+    for (std::uint64_t done = 0; done < size && sum; done += stored_piece) {
+        const auto length = static_cast<std::size_t>(std::min<std::uint64_t>(stored_piece, size - done));
+        sum = crc32_of(bytes.text_at(offset + done, length), *sum);
+    }
+    if (sum && *sum != checksum) complain_of_sum(bytes.name(), *sum, checksum);
+}
+
+std::shared_ptr<StoredBytes> store_bytes(std::unique_ptr<ByteSource> source, std::string first_bytes) {
+    if (source->by_place()) return std::make_shared<FileBytes>(std::move(source));
+    return std::make_shared<KeptBytes>(*source, std::move(first_bytes));
+}
+
+std::shared_ptr<StoredBytes> unpack_part(std::shared_ptr<StoredBytes> packed, std::uint64_t offset,
+                                         std::uint64_t size, Deflate kind, std::uint64_t most,
+                                         std::optional<std::uint32_t> checksum) {
+    return std::make_shared<UnpackedPart>(std::move(packed), offset, size, kind, most, checksum);
+}
+
 namespace {
 
 constexpr std::uint64_t most_columns = 64;

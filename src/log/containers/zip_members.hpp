@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "log/containers/stored_bytes.hpp"
+#include "log/containers/stored_array.hpp"
 
 namespace ripplenotch {
 

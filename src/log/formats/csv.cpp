@@ -6,12 +6,11 @@
 #include <vector>
 
 #include "log/formats.hpp"
+#include "log/row_cut.hpp"
 #include "log/table_writer.hpp"
 #include "log/text/csv_reader.hpp"
 #include "log/text/csv_writer.hpp"
-#include "log/text/printed_cells.hpp"
-#include "log/text/text_cut.hpp"
-#include "log/text/text_room.hpp"
+#include "log/text/text_dialect.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 

@@ -3,10 +3,9 @@
 
 #include <array>
 
-#include "log/containers/hdf5_arrays.hpp"
-#include "log/containers/hdf5_writer.hpp"
+#include "log/containers/hdf5.hpp"
 #include "log/formats.hpp"
-#include "log/records/open_records.hpp"
+#include "log/records/joined_records.hpp"
 
 namespace ripplenotch {
 namespace {

@@ -3,10 +3,9 @@
 
 #include <array>
 
-#include "log/containers/mat_elements.hpp"
-#include "log/containers/mat_writer.hpp"
+#include "log/containers/mat.hpp"
 #include "log/formats.hpp"
-#include "log/records/open_records.hpp"
+#include "log/records/joined_records.hpp"
 #include "ripplenotch/core/error.hpp"
 
 namespace ripplenotch {

@@ -4,9 +4,9 @@
 #include <array>
 
 #include "log/formats.hpp"
-#include "log/npy/npy_cut.hpp"
 #include "log/npy/npy_reader.hpp"
 #include "log/npy/npy_writer.hpp"
+#include "log/row_cut.hpp"
 
 namespace ripplenotch {
 namespace {

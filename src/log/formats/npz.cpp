@@ -11,7 +11,7 @@
 #include "log/containers/zip_members.hpp"
 #include "log/formats.hpp"
 #include "log/npy/npy_header.hpp"
-#include "log/records/open_records.hpp"
+#include "log/records/joined_records.hpp"
 #include "ripplenotch/core/error.hpp"
 
 namespace ripplenotch {

@@ -7,7 +7,7 @@
 #include <array>
 
 #include "log/formats.hpp"
-#include "log/records/open_records.hpp"
+#include "log/records/joined_records.hpp"
 #include "log/records/raw_layout.hpp"
 #include "ripplenotch/core/error.hpp"
 

@@ -4,8 +4,8 @@
 #include <array>
 
 #include "log/formats.hpp"
-#include "log/messages/message_source.hpp"
-#include "log/records/open_records.hpp"
+#include "log/messages/message_records.hpp"
+#include "log/records/joined_records.hpp"
 
 namespace ripplenotch {
 namespace {

@@ -7,7 +7,7 @@
 #include <memory>
 #include <string_view>
 
-#include "log/messages/message_layout.hpp"
+#include "log/messages/message_records.hpp"
 
 namespace ripplenotch {
 

@@ -1,21 +1,207 @@
 // SPDX-License-Identifier: MIT
 // The messages of one topic as records: a row a message.
 
+#include "log/messages/message_records.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "log/containers/stored_array.hpp"
-#include "log/messages/message_layout.hpp"
-#include "log/messages/message_rows.hpp"
-#include "log/messages/message_source.hpp"
-#include "log/messages/topic_contents.hpp"
+#include "log/messages/cdr.hpp"
+#include "log/messages/field_tree.hpp"
+#include "log/messages/json_message.hpp"
+#include "log/messages/protobuf.hpp"
+#include "log/messages/ros_schema.hpp"
+#include "log/npy/npy_header.hpp"
 #include "log/records/joined_records.hpp"
 #include "ripplenotch/core/error.hpp"
 
 namespace ripplenotch {
+
 namespace {
+
+// Why messages of a channel cannot be read; empty where they can, as far as the channel tells.
+std::string refusal_of(const MessageChannel& channel) {
+    if (channel.encoding == "json") return {};
+    if (channel.encoding == "protobuf")
+        return channel.schema_encoding == "protobuf" && !channel.schema.empty()
+                   ? ""
+                   : "not defined in the recording";
+    if (channel.encoding != "cdr") return fmt::format("{} messages, which are not read", channel.encoding);
+    if (!channel.schema.empty() && channel.schema_encoding != "ros2msg")
+        return fmt::format("defined in {}, which is not read", channel.schema_encoding);
+    if (channel.schema.empty() && known_ros_schema(channel.type).empty())
+        return "not defined in the recording";
+    return {};
+}
+
+}  // namespace
+
+MessageLayout lay_out_message(const MessageChannel& channel, std::string_view first) {
+    if (channel.encoding == "json") return lay_out_fields(json_walk(), first);
+    if (channel.encoding == "protobuf")
+        return lay_out_fields(protobuf_walk(channel.schema, channel.type), first);
+    const std::string_view schema =
+        channel.schema.empty() ? known_ros_schema(channel.type) : std::string_view(channel.schema);
+    return lay_out_cdr(parse_ros_schema(schema, channel.type), first);
+}
+
+namespace {
+
+// The messages of one topic as the bytes of records: a row a message.
+
+/// The clock, then the leaves but for the one that is it.
+[[nodiscard]] std::vector<std::size_t> leaves_beside_clock(const MessageLayout& layout, bool header_clock) {
+    std::vector<std::size_t> leaves;
+    for (std::size_t l = 0; l < layout.leaves.size(); ++l)
+        if (!(layout.leaves[l].clock && header_clock)) leaves.push_back(l);
+    return leaves;
+}
+
+/// Field 0 is the clock, in nanoseconds; behind it stand leaves_beside_clock().
+class MessageRecords final : public RecordSource {
+  public:
+    /// `header_clock`: the layout has a leaf that is the clock, and it is taken; else the time of recording.
+    MessageRecords(std::unique_ptr<MessageSource> source, std::size_t channel, MessageLayout layout,
+                   bool header_clock)
+        : RecordSource(Name{source->name()}, sizes_of(layout, header_clock)),
+          source_(std::move(source)),
+          topic_(source_->channels()[channel].topic),
+          layout_(std::move(layout)),
+          header_clock_(header_clock) {
+        source_->restart({channel});
+        settle();
+    }
+
+  private:
+    static constexpr std::size_t buffered_rows = std::size_t{1} << 18;  // bytes
+
+    static std::vector<std::size_t> sizes_of(const MessageLayout& layout, bool header_clock) {
+        std::vector<std::size_t> sizes = {sizeof(std::int64_t)};
+        for (const std::size_t leaf : leaves_beside_clock(layout, header_clock))
+            sizes.push_back(layout.leaves[leaf].type.size);
+        return sizes;
+    }
+    void chosen() override { settle(); }
+    void settle() {
+        const auto beside = leaves_beside_clock(layout_, header_clock_);
+        offsets_.assign(layout_.leaves.size(), -1);
+        clock_offset_ = -1;
+        std::ptrdiff_t at = 0;
+        for (const std::size_t field : kept()) {
+            if (field > 0) {
+                offsets_[beside[field - 1]] = at;
+                at += static_cast<std::ptrdiff_t>(layout_.leaves[beside[field - 1]].type.size);
+                continue;
+            }
+            if (!header_clock_) clock_offset_ = at;
+            for (std::size_t l = 0; header_clock_ && l < layout_.leaves.size(); ++l)
+                if (layout_.leaves[l].clock) offsets_[l] = at;
+            at += sizeof(std::int64_t);
+        }
+        reader_ = layout_.program->reader(offsets_);
+    }
+    void refill(std::string& bytes) override {
+        RecordedMessage message;
+        while (!ended_ && bytes.size() < buffered_rows) {
+            ended_ = !source_->next(message);
+            if (ended_) return;
+            const std::size_t at = bytes.size();
+            bytes.resize(at + record_size());
+            try {
+                reader_->read(message.bytes, bytes.data() + at);
+            } catch (const DataError& error) {
+                raise<DataError>("{}: message {}, {}: read {}", name(), message.number, topic_, error.what());
+            }
+            if (clock_offset_ >= 0) std::memcpy(bytes.data() + at + clock_offset_, &message.log_time_ns, 8);
+        }
+    }
+
+    std::unique_ptr<MessageSource> source_;
+    std::string topic_;
+    MessageLayout layout_;
+    bool header_clock_;
+    LeafOffsets offsets_;
+    std::ptrdiff_t clock_offset_ = -1;
+    std::unique_ptr<MessageReader> reader_;
+    bool ended_ = false;  ///< behind it some sources would begin again
+};
+
+// The topics of a recording, as `info` lists them.
+
+/// What the first messages tell of a topic.
+struct Topic {
+    std::string first;  ///< its first message; empty where none was seen
+    std::uint64_t seen = 0;
+    std::int64_t from_ns = 0, to_ns = 0;
+    MessageLayout layout;
+    std::string refusal;  ///< why it has no numbers; empty where it has
+};
+
+std::optional<double> rate_of(const Topic& topic) {
+    if (topic.seen < 2 || topic.to_ns <= topic.from_ns) return std::nullopt;
+    // A damaged recording may hold any two times: their distance fits an unsigned number only.
+    const auto ns = static_cast<std::uint64_t>(topic.to_ns) - static_cast<std::uint64_t>(topic.from_ns);
+    return 1e9 * static_cast<double>(topic.seen - 1) / static_cast<double>(ns);
+}
+
+// Elements of an array are one thing, position[0..6]: the last of those that begin with this one.
+std::size_t last_element(const std::vector<MessageLeaf>& leaves, std::size_t first) {
+    const std::string& path = leaves[first].path;
+    if (!path.ends_with("[0]")) return first;
+    const std::string stem = path.substr(0, path.size() - 2);
+    std::size_t last = first;
+    while (last + 1 < leaves.size() && leaves[last + 1].path == fmt::format("{}{}]", stem, last + 1 - first))
+        ++last;
+    return last;
+}
+
+// A line a number that messages have, or a list of numbers; a line for a topic that is not read, with why. A
+// path stands for a column where `is_read` says so.
+std::vector<ContentEntry> topic_contents(
+    const MessageSource& source, const std::vector<Topic>& topics,
+    const std::function<bool(std::size_t channel, const std::string& path)>& is_read) {
+    std::vector<ContentEntry> entries;
+    for (std::size_t c = 0; c < topics.size(); ++c) {
+        const Topic& topic = topics[c];
+        const MessageChannel& channel = source.channels()[c];
+        const auto count = source.count_of(c);
+        ContentEntry entry;
+        entry.path = channel.topic;
+        entry.shape =
+            count ? fmt::format("{} messages", *count) : fmt::format("{} messages and more", topic.seen);
+        entry.type = fmt::format("{}, {}", channel.type, topic.refusal);
+        entry.rate_hz = rate_of(topic);
+        if (!topic.refusal.empty()) {
+            entries.push_back(entry);
+            continue;
+        }
+        const auto& leaves = topic.layout.leaves;
+        for (std::size_t l = 0, last = 0; l < leaves.size(); l = last + 1) {
+            last = last_element(leaves, l);
+            const std::string first = fmt::format("{}.{}", channel.topic, leaves[l].path);
+            entry.path =
+                last > l ? fmt::format("{}0..{}]", first.substr(0, first.size() - 2), last - l) : first;
+            entry.type = leaves[l].stamp ? "stamp" : type_name(leaves[l].type);
+            entry.unit = leaves[l].stamp ? "ns" : "";
+            entry.read = false;
+            for (std::size_t e = l; e <= last; ++e)
+                entry.read = entry.read || is_read(c, fmt::format("{}.{}", channel.topic, leaves[e].path));
+            entries.push_back(entry);
+        }
+    }
+    return entries;
+}
 
 constexpr int asked = 1000;  // more than any names tell
 constexpr std::uint64_t bytes_looked_at = std::uint64_t{1}

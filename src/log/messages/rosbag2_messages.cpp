@@ -2,7 +2,7 @@
 // The messages of a rosbag2 recording in SQLite (storage sqlite3: tables topics, messages,
 // message_definitions), by libsqlite3.
 
-#include "log/messages/message_source.hpp"
+#include "log/messages/message_records.hpp"
 #include "ripplenotch/core/error.hpp"
 
 #if defined(RIPPLENOTCH_HAS_SQLITE)

@@ -2,17 +2,26 @@
 #include "log/npy/npy_reader.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <memory>
+#include <string>
+#include <string_view>
 
-#include "log/clock/time_backward.hpp"
-#include "log/read_on.hpp"
+#include "log/clock/choose_time.hpp"
+#include "log/containers/stored_array.hpp"
+#include "log/npy/npy_header.hpp"
+#include "log/read.hpp"
+#include "log/records/joined_records.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/reading.hpp"
 
 namespace ripplenotch {
+
 namespace {
 
 constexpr std::size_t npy_piece = std::size_t{1} << 18;
@@ -248,6 +257,197 @@ void NpyReader::complain(std::size_t column, const std::string& sentence) const 
     }
     raise<DataError>("{}: row {}, {}: {}", source_->name(), source_->number_in_file(rows_ + 1),
                      column_label(names, column), sentence);
+}
+
+namespace {
+
+// Arrays that are not stored row by row, turned into such.
+
+// The same array as a file stored row by row, one row a time: from all the bytes of a file whose `header`
+// is by_columns or transposed. Throws DataError, beginning with `source`, when bytes are missing.
+std::string npy_by_rows(std::string_view file, const NpyHeader& header, const std::string& source) {
+    const std::size_t columns = header.fields.size(), size = header.fields.front().size;
+    const std::string_view data = file.substr(header.data_offset);
+    if (data.size() != header.rows * header.record_size) {
+        raise<DataError>(
+            "{}: read {} bytes of numbers, expected {}; the file is cut off, save the array again", source,
+            data.size(), header.rows * header.record_size);
+    }
+    std::string rows = make_npy_header(header.descr, fmt::format("{}, {}", header.rows, columns), false);
+    const std::size_t start = rows.size();
+    rows += data;
+    if (!header.by_columns) return rows;
+    for (std::size_t c = 0; c < columns; ++c) {
+        copy_numbers({data.data() + c * header.rows * size, size},
+                     {rows.data() + start + c * size, columns * size}, size, header.rows);
+    }
+    return rows;
+}
+
+}  // namespace
+
+// The numbers of an array's records: stamps in whole numbers or two fields, the opening's motion; and arrays
+// that have to be turned before they have records.
+
+// An array that is not stored row by row cannot be read a row at a time.
+void NpyReader::read_whole(std::string& first_bytes) {
+    constexpr std::size_t piece = std::size_t{1} << 20;
+    for (std::size_t have = first_bytes.size(), got = 1; got > 0; have += got) {
+        first_bytes.resize(have + piece);
+        got = source_->read(first_bytes.data() + have, piece);
+        first_bytes.resize(have + got);
+    }
+    const std::string name = source_->name();
+    const auto rows = std::make_shared<const std::string>(npy_by_rows(first_bytes, header_, name));
+    source_ = std::make_unique<ByteSource>(name, rows);
+    first_bytes.clear();
+    read_up_to(first_bytes, npy_header_size(std::string_view(*rows).substr(0, 12)));
+    header_ = parse_npy_header(first_bytes, name);
+}
+
+double NpyReader::time_at(const char* record, const Layout& layout) const {
+    const NpyField& field = header_.fields[*layout.chosen.time];
+    double time =
+        layout.time_origin == 0 ? load_field(record, field) : load_since(record, field, layout.time_origin);
+    if (layout.time_fraction)
+        time += seconds_per_nanosecond * load_field(record, header_.fields[*layout.time_fraction]);
+    return time;
+}
+
+double NpyReader::value_at(const char* record, const WantedColumn& wanted) const {
+    if (wanted.slot == time_slot) return time_at(record, layout_);
+    return load_field(record, header_.fields[wanted.column]);
+}
+
+MotionSample NpyReader::motion_sample(const MotionPlaces& places) const {
+    MotionSample sample;
+    const std::size_t rows = std::min(header_.rows, carry_.size() / header_.record_size);
+    sample.time.reserve(rows);
+    if (places.velocity) sample.velocity.reserve(rows);
+    if (places.position) sample.position.reserve(rows);
+    for (std::size_t r = 0; r < rows; ++r) {
+        const char* const record = carry_.data() + r * header_.record_size;
+        sample.time.push_back(places.layout.chosen.time ? time_at(record, places.layout)
+                                                        : static_cast<double>(r));
+        if (places.velocity) sample.velocity.push_back(load_field(record, header_.fields[*places.velocity]));
+        if (places.position) sample.position.push_back(load_field(record, header_.fields[*places.position]));
+    }
+    return sample;
+}
+
+bool NpyReader::read_column(const char* records, const WantedColumn& wanted,
+                            std::span<double> numbers) const {
+    const bool stamp = wanted.slot == time_slot && (layout_.time_origin != 0 || layout_.time_fraction);
+    if (!stamp) return load_column(records, header_.record_size, header_.fields[wanted.column], numbers);
+    bool finite = true;
+    for (double& number : numbers) {
+        number = time_at(records, layout_);
+        finite &= is_reading(number);
+        records += header_.record_size;
+    }
+    return finite;
+}
+
+namespace {
+
+// Records of dumps and containers, which have fields as arrays have but no head; and what the first records
+// of either say.
+
+// Links to other files, arrays of another length: what the names speak of and the records do not hold.
+std::string left_out_of(const std::vector<ContentEntry>& contents) {
+    constexpr std::size_t most = 4;
+    std::vector<std::string> found;
+    for (const ContentEntry& entry : contents) {
+        if (entry.read || found.size() == most || names_tell({entry.path}) == 0) continue;
+        found.push_back(
+            fmt::format("{} ({}{}{})", entry.path, entry.shape, entry.shape.empty() ? "" : ", ", entry.type));
+    }
+    return found.empty() ? std::string() : fmt::format(" and not {}", fmt::join(found, ", "));
+}
+
+}  // namespace
+
+NpyReader::NpyReader(std::unique_ptr<ByteSource> records, RecordTable table, const ReadOptions& options,
+                     bool keep_all)
+    : source_(std::move(records)), table_(std::move(table)), hold_bad_values_(options.hold_bad_values) {
+    header_.fields = table_.fields;
+    header_.structured = table_.named;
+    header_.record_size = table_.record_size;
+    endless_ = !table_.rows;
+    header_.rows = table_.rows.value_or(std::numeric_limits<std::size_t>::max());
+    // Whole records: of one that was begun, the rest would not fit any more once columns are left out.
+    const std::size_t sample = std::max<std::size_t>(64, npy_sample_bytes / header_.record_size);
+    read_up_to(carry_, std::min(header_.rows, sample) * header_.record_size);
+    if (carry_.size() < header_.record_size) {
+        if (!carry_.empty()) complain_of_end(carry_.size());
+        raise<DataError>("{}: read no row, expected rows of numbers; check what wrote it", source_->name());
+    }
+    ReadOptions settled = options;
+    if (!table_.columns.empty()) settled.columns = table_.columns;
+    decide(settled);
+    if (auto* const selective = dynamic_cast<RecordSource*>(source_.get()); selective != nullptr && !keep_all)
+        keep_wanted(*selective);
+}
+
+// Of what was read ahead, too: from here on records hold nothing else.
+void NpyReader::keep_wanted(RecordSource& records) {
+    std::vector<std::size_t> wanted;
+    for (const WantedColumn& one : wanted_) wanted.push_back(one.column);
+    if (layout_.time_fraction) wanted.push_back(*layout_.time_fraction);
+    std::sort(wanted.begin(), wanted.end());
+    wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
+    if (wanted.empty()) return;
+    std::string kept;
+    for (std::size_t at = 0; at + header_.record_size <= carry_.size(); at += header_.record_size) {
+        for (const std::size_t c : wanted)
+            kept.append(carry_, at + header_.fields[c].offset, header_.fields[c].size);
+    }
+    std::size_t size = 0;
+    for (const std::size_t c : wanted) {
+        header_.fields[c].offset = size;
+        size += header_.fields[c].size;
+    }
+    header_.record_size = size;
+    carry_ = std::move(kept);
+    records.keep(wanted);
+}
+
+void NpyReader::complain_of_end(std::size_t left_over) const {
+    raise<DataError>(
+        "{}: read {} rows and {} bytes of one more, expected records of {} bytes; the file is cut off, "
+        "or its records are others than told",
+        source_->name(), source_->number_in_file(fetched_), left_over, header_.record_size);
+}
+
+std::size_t NpyReader::sample_rows() const {
+    return std::min(header_.rows, carry_.size() / header_.record_size);
+}
+
+ColumnFacts NpyReader::column_facts() {
+    ColumnFacts facts;
+    facts.columns = header_.fields.size();
+    facts.sample.resize(facts.columns);
+    const std::size_t rows = sample_rows();
+    for (std::size_t c = 0; c < facts.columns; ++c) {
+        if (header_.structured) facts.names.push_back(header_.fields[c].name);
+        for (std::size_t r = 0; r < rows; ++r) {
+            const bool number = header_.fields[c].kind != '\0';
+            facts.sample[c].push_back(
+                number ? load_field(carry_.data() + r * header_.record_size, header_.fields[c])
+                       : not_a_number);
+        }
+        facts.first_counts.push_back(rows > 0 ? load_count(carry_.data(), header_.fields[c]) : 0);
+    }
+    facts.read_as = table_.read_as;
+    facts.left_out = left_out_of(table_.contents);
+    facts.units = table_.units;
+    facts.dialect_options = table_.options;
+    facts.motion_sample = [this](const MotionPlaces& places, std::size_t bytes) {
+        const std::size_t all = std::min(header_.rows, bytes / header_.record_size) * header_.record_size;
+        read_up_to(carry_, std::max(carry_.size(), all));
+        return motion_sample(places);
+    };
+    return facts;
 }
 
 }  // namespace ripplenotch

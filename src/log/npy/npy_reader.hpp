@@ -4,12 +4,13 @@
 
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "log/columns/decide_layout.hpp"
 #include "log/npy/npy_header.hpp"
-#include "log/records/record_table.hpp"
-#include "log/text/row_parser.hpp"
+#include "log/records/joined_records.hpp"
+#include "log/text/quick_rows.hpp"
 #include "ripplenotch/log/format.hpp"
 
 namespace ripplenotch {

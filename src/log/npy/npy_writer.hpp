@@ -2,16 +2,40 @@
 #pragma once
 // NumPy array files out: rows of one that was read with other torque values, or new structured ones.
 
+#include <cstdint>
+#include <cstdio>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "log/npy/npy_reader.hpp"
-#include "log/npy/temporary_bytes.hpp"
 #include "log/table_writer.hpp"
 
 namespace ripplenotch {
+
+// Internal to the log room: bytes that have to wait until something is known that goes before them.
+
+/// A file without a name in the folder for temporary files (TMPDIR). Throws FileError where there is no room.
+class TemporaryBytes {
+  public:
+    TemporaryBytes();
+    void put(std::string_view bytes);
+    /// All has been put; read() begins at the start.
+    void rewind();
+    /// Up to `size` bytes; 0 at the end.
+    std::size_t read(char* into, std::size_t size);
+    /// Exactly `size` bytes that have been put, anywhere; putting goes on behind the last.
+    void read_at(std::uint64_t offset, char* into, std::size_t size);
+
+  private:
+    struct Close {
+        void operator()(std::FILE* file) const { std::fclose(file); }
+    };
+    std::unique_ptr<std::FILE, Close> file_;
+    bool flushed_ = true;
+};
 
 /// Records of a reader with another torque; every other byte passes as it is.
 class NpyWriter : public LogWriter {

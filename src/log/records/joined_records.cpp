@@ -9,10 +9,92 @@
 #include <cstring>
 #include <optional>
 
+#include "log/npy/npy_reader.hpp"
+#include "log/row_cut.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 
 namespace ripplenotch {
+
+RecordSource::RecordSource(Name name, std::vector<std::size_t> sizes)
+    : ByteSource(std::move(name)), sizes_(std::move(sizes)) {
+    for (std::size_t f = 0; f < sizes_.size(); ++f) {
+        kept_.push_back(f);
+        record_size_ += sizes_[f];
+    }
+}
+
+void RecordSource::keep(const std::vector<std::size_t>& fields) {
+    std::vector<std::size_t> offsets(sizes_.size(), 0);
+    std::size_t offset = 0;
+    for (const std::size_t f : kept_) {
+        offsets[f] = offset;
+        offset += sizes_[f];
+    }
+    std::string made_ahead;
+    for (std::size_t at = given_; at + record_size_ <= bytes_.size(); at += record_size_)
+        for (const std::size_t f : fields) made_ahead.append(bytes_, at + offsets[f], sizes_[f]);
+    bytes_ = std::move(made_ahead);
+    given_ = 0;
+    kept_ = fields;
+    record_size_ = 0;
+    for (const std::size_t f : kept_) record_size_ += sizes_[f];
+    chosen();
+}
+
+std::size_t RecordSource::read(char* into, std::size_t size) {
+    if (given_ == bytes_.size()) {
+        bytes_.clear();
+        given_ = 0;
+        refill(bytes_);
+    }
+    const std::size_t taken = bytes_.copy(into, size, given_);
+    given_ += taken;
+    return taken;
+}
+
+namespace {
+
+/// Records that a range kept, with what is needed to read them again.
+class KeptRecords final : public ByteSource {
+  public:
+    KeptRecords(NpyReader& whole, const ReadOptions& options)
+        : ByteSource(Name{whole.layout().source}), rows_(whole, options), table_(whole.table()) {
+        table_.rows = rows_.cut().kept();
+    }
+    std::size_t read(char* into, std::size_t size) override { return rows_.read(into, size); }
+    [[nodiscard]] std::size_t number_in_file(std::size_t number) const override {
+        return rows_.number_in_file(number);
+    }
+    [[nodiscard]] const RowCut& cut() const { return rows_.cut(); }
+    [[nodiscard]] const RecordTable& table() const { return table_; }
+
+  private:
+    KeptRows rows_;
+    RecordTable table_;
+};
+
+}  // namespace
+
+std::unique_ptr<LogReader> read_records(std::unique_ptr<ByteSource> source, std::string first_bytes,
+                                        const ReadOptions& options, MakeRecords make) {
+    if (const auto* const kept = dynamic_cast<const KeptRecords*>(source.get())) {
+        RecordTable table = kept->table();
+        return std::make_unique<NpyReader>(std::move(source), std::move(table), options);
+    }
+    Records records = make(std::move(source), std::move(first_bytes), options);
+    return std::make_unique<NpyReader>(std::move(records.bytes), std::move(records.table), options);
+}
+
+LogCut cut_records(std::unique_ptr<ByteSource> source, std::string first_bytes, const ReadOptions& options,
+                   MakeRecords make) {
+    Records records = make(std::move(source), std::move(first_bytes), options);
+    NpyReader whole(std::move(records.bytes), std::move(records.table), clock_only(options), true);
+    auto bytes = std::make_unique<KeptRecords>(whole, options);
+    auto outside = bytes->cut().outside();
+    return {std::move(bytes), whole.layout(), std::move(outside)};
+}
+
 namespace {
 
 constexpr std::size_t clock_size = sizeof(std::int64_t), joined_buffer = std::size_t{1} << 18;

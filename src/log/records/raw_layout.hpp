@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "log/npy/npy_field.hpp"
+#include "log/npy/npy_header.hpp"
 
 namespace ripplenotch {
 

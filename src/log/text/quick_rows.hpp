@@ -7,10 +7,92 @@
 #include <string_view>
 #include <vector>
 
-#include "log/text/row_parser.hpp"
+#include "log/clock/stamp.hpp"
+#include "log/text/text_cells.hpp"
 #include "ripplenotch/log/format.hpp"
 
 namespace ripplenotch {
+
+// Internal to the log room: which number of a row goes where.
+
+/// Where a row's numbers go: time first, then velocity, torque and position of each joint.
+enum RowSlot : std::size_t { time_slot, velocity_slot, torque_slot, position_slot };  // of the first joint
+inline constexpr std::size_t slots_a_joint = 3;
+constexpr std::size_t slot_of(RowSlot of_first, std::size_t joint) {
+    return of_first == time_slot ? time_slot : of_first + slots_a_joint * joint;
+}
+constexpr std::size_t joint_of(std::size_t slot) { return (slot - velocity_slot) / slots_a_joint; }
+constexpr bool is_torque(std::size_t slot) { return slot % slots_a_joint == torque_slot; }
+constexpr bool is_position(std::size_t slot) {
+    return slot != time_slot && slot % slots_a_joint == position_slot % slots_a_joint;
+}
+constexpr std::size_t slot_count(std::size_t joints) { return 1 + slots_a_joint * joints; }
+
+/// One wanted column: its place in the row and where its number goes.
+struct WantedColumn {
+    std::size_t column = 0;
+    std::size_t slot = 0;
+    bool fraction = false;  ///< nanoseconds, to be added to the seconds of another column
+};
+
+/// Where a slot's numbers are kept.
+inline std::vector<double>& numbers_of(RowBlock& block, std::size_t slot) {
+    if (slot == time_slot) return block.time_s;
+    JointRows& joint = block.joints[joint_of(slot)];
+    const std::size_t of_first = slot - slots_a_joint * joint_of(slot);
+    return of_first == velocity_slot ? joint.velocity_deg_s
+           : of_first == torque_slot ? joint.torque_nm
+                                     : joint.position_deg;
+}
+
+inline constexpr double seconds_per_nanosecond = 1e-9;
+
+/// Those that tell a row's time; none where a rate was stated.
+[[nodiscard]] std::vector<WantedColumn> time_columns(const Layout& layout);
+/// Every column that is wanted of a layout, with its slot, in the order of the slots.
+[[nodiscard]] std::vector<WantedColumn> wanted_columns(const Layout& layout);
+[[nodiscard]] StampRule stamp_rule(const Layout& layout, char decimal_mark);
+/// What the numbers of each slot are multiplied with to be in the tool's units.
+[[nodiscard]] std::vector<double> slot_factors(const Layout& layout, const std::vector<WantedColumn>& wanted);
+
+// The quick way through a row of numbers: finds the wanted cells, reads them, counts all cells. It accepts
+// only what is certainly well formed; whatever else is left to the careful way, which also finds the words
+// for what is wrong.
+
+/// The numbers of a row and the places of the torque cells.
+struct ParsedRow {
+    struct Place {
+        const char* begin = nullptr;
+        const char* end = nullptr;
+    };
+    explicit ParsedRow(std::size_t joints = 1) : values(slot_count(joints)), torques(joints) {}
+
+    std::vector<double> values;         ///< by slot
+    std::vector<Place> torques;         ///< by joint; null without a torque column
+    const char* content_end = nullptr;  ///< just past the last cell
+};
+
+/// What a time that comes in parts begins with: a time of -0 stays one.
+constexpr double nothing_yet = -0.0;
+
+class RowParser {
+  public:
+    /// `wanted` sorted by column.
+    RowParser(CellRules rules, std::size_t columns, std::vector<WantedColumn> wanted, StampRule stamp = {})
+        : rules_(rules), columns_(columns), wanted_(std::move(wanted)), stamp_(stamp) {}
+
+    /// True when every wanted cell held a plain finite number and the row has the right number of cells,
+    /// without quotes. `row` has room for the slots that are wanted.
+    [[nodiscard]] bool parse(const char* begin, const char* end, ParsedRow& row) const;
+
+  private:
+    [[nodiscard]] bool add_stamp(std::string_view text, bool fraction, double& time) const;
+
+    CellRules rules_;
+    std::size_t columns_;
+    std::vector<WantedColumn> wanted_;
+    StampRule stamp_;
+};
 
 /// What rows look like and where their numbers go.
 struct RowPlan {

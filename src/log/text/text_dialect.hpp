@@ -5,11 +5,14 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "log/columns/decide_layout.hpp"
+#include "log/text/quick_rows.hpp"
 #include "log/text/text_cells.hpp"
 #include "ripplenotch/core/files.hpp"
 #include "ripplenotch/log/layout.hpp"
@@ -55,5 +58,122 @@ struct TextPlace {
     std::size_t line = 1, column = 1;
 };
 [[nodiscard]] TextPlace place_of(std::string_view bytes, std::size_t offset, char line_end);
+
+// The opening of a text log as lines: comments apart from content, what is no text refused.
+
+struct TextLine {
+    std::size_t begin = 0, end = 0;  ///< content, without line end
+    std::size_t next = 0;            ///< offset of the next line
+    std::size_t number = 1;
+    [[nodiscard]] std::string_view of(std::string_view bytes) const {
+        return bytes.substr(begin, end - begin);
+    }
+};
+
+struct TextLines {
+    char line_end = '\n';            ///< '\r' for files of old Macintoshes
+    std::vector<TextLine> comments;  ///< before the first content
+    std::vector<TextLine> content;   ///< neither blank nor comment; never empty
+    std::optional<char> delimiter;   ///< from a first line "sep=;", as Excel writes and reads it
+};
+
+/// `bytes` is the opening of a file, all of it when `whole`; its first `skip_lines` lines count for nothing.
+/// Throws DataError that begins with `source`: for an empty file, bytes that no text has, UTF-16, a line
+/// longer than longest_line, nothing but comments.
+[[nodiscard]] TextLines opening_lines(std::string_view bytes, bool whole, const ByteSource& source,
+                                      std::size_t skip_lines = 0);
+
+// Internal to the log room: the wanted numbers of lines that nobody has judged yet.
+
+class TextRow {
+  public:
+    /// `wanted` in any order.
+    TextRow(const TextDialect& dialect, std::vector<WantedColumn> wanted, StampRule stamp);
+
+    /// The wanted numbers of a line without its line end, by slot; false where one of them cannot be read or
+    /// the line has not as many cells as a row.
+    bool parse(std::string_view line);
+    [[nodiscard]] double value(std::size_t slot) const { return row_.values[slot]; }
+    /// The text of a cell of a line that is a row; empty where there is none such.
+    [[nodiscard]] std::string_view cell(std::string_view line, std::size_t column);
+
+  private:
+    bool parse_carefully(std::string_view line);
+
+    CellRules rules_;
+    std::size_t columns_;
+    std::vector<WantedColumn> wanted_;
+    StampRule stamp_;
+    RowParser parser_;
+    ParsedRow row_;
+    CellSplit split_;
+};
+
+/// Without the carriage return of a line end of two bytes.
+[[nodiscard]] inline std::string_view line_content(std::string_view line) {
+    if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+    return line;
+}
+
+// Rows of the opening of a text log, for what they say about units.
+
+/// All whole lines of `bytes`, which begin with the first row. Rows that are no numbers are left out. Without
+/// a time column, time counts the rows.
+[[nodiscard]] MotionSample text_motion_sample(std::string_view bytes, const TextDialect& dialect,
+                                              const MotionPlaces& places);
+
+// Internal to the log room: text put together piece by piece in a string that is used again and again.
+
+/// Text is written at end(), where ensure() has seen to it that there is room.
+class TextRoom {
+  public:
+    /// Keeps what `room` holds of size: making a string longer fills it, which takes as long as the text.
+    TextRoom(std::string& room, std::size_t expected) : room_(room) {
+        if (room_.size() < expected) room_.resize(expected);
+    }
+
+    /// Room for so many bytes at what it returns, the end of what has been written.
+    [[nodiscard]] char* ensure(std::size_t size) {
+        if (used_ + size > room_.size()) room_.resize(2 * (used_ + size));
+        return room_.data() + used_;
+    }
+    /// What has been written ends here.
+    void written_until(const char* end) { used_ = static_cast<std::size_t>(end - room_.data()); }
+    [[nodiscard]] std::string_view text() const { return {room_.data(), used_}; }
+
+  private:
+    std::string& room_;
+    std::size_t used_ = 0;
+};
+
+/// Copies of pieces of one text, one behind the other. Most pieces are short, and copying a fixed number of
+/// bytes is one instruction or two, so where it can it copies more than a piece: there must be room for
+/// `over` bytes behind it.
+class PieceCopier {
+  public:
+    static constexpr std::size_t over = 32;
+
+    explicit PieceCopier(std::string_view text)
+        : text_(text.data()), short_until_(text.size() < over ? 0 : text.size() - over + 1) {}
+    /// The bytes from where it is, until `to`; returns the end of the copy.
+    char* copy_until(std::size_t to, char* into) {
+        const std::size_t size = to - done_;
+        const char* const from = text_ + done_;
+        if (size <= over && done_ < short_until_) [[likely]]
+            std::memcpy(into, from, over);
+        else
+            std::memcpy(into, from, size);
+        done_ = to;
+        return into + size;
+    }
+    /// Goes on behind what stands before `to`.
+    void skip_until(std::size_t to) { done_ = to; }
+    [[nodiscard]] std::size_t done() const { return done_; }
+
+  private:
+    const char* text_;
+    std::size_t short_until_;  ///< from there on a short piece would reach behind the text
+    std::size_t done_ = 0;
+};
 
 }  // namespace ripplenotch

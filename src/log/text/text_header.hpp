@@ -4,11 +4,13 @@
 // comment before the numbers.
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "log/text/text_cells.hpp"
 #include "log/text/text_dialect.hpp"
-#include "log/text/text_lines.hpp"
 
 namespace ripplenotch {
 
@@ -21,5 +23,22 @@ namespace ripplenotch {
 [[nodiscard]] std::size_t read_header(std::string_view bytes, const TextLines& lines,
                                       const std::string& source, const ReadOptions& options,
                                       TextDialect& dialect);
+
+// What some programs write above a table: the heads of LabVIEW measurement files and TwinCAT Scope exports,
+// and any other lines that are no row of it.
+
+struct Preamble {
+    std::size_t lines = 0;  ///< of content, before the names or, without names, the first row
+    std::size_t names_line = 0, first_row = 0;
+    /// From a head that says them channel by channel; empty where a line over the rows holds them.
+    std::vector<std::string> names, units;
+    std::vector<std::size_t> clock_of;  ///< by column: where its times stand, if each has its own; else empty
+    /// Seconds from row to row where the head says them (LabVIEW's Delta_X), alike for all channels.
+    std::optional<double> row_step_s;
+};
+
+/// `content` with rows of `columns` cells somewhere below. None where the first line may be names or a row.
+[[nodiscard]] Preamble find_preamble(std::string_view bytes, const std::vector<TextLine>& content,
+                                     const CellRules& rules, std::size_t columns);
 
 }  // namespace ripplenotch

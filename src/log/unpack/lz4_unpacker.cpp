@@ -5,8 +5,7 @@
 
 #include <algorithm>
 
-#include "log/unpack/unpacker.hpp"
-#include "log/unpack/whole_units.hpp"
+#include "log/unpack/unpacked_source.hpp"
 #include "ripplenotch/core/error.hpp"
 
 #if defined(RIPPLENOTCH_HAS_LZ4)

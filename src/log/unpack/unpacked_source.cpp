@@ -4,16 +4,52 @@
 #include <algorithm>
 #include <array>
 #include <condition_variable>
+#include <cstddef>
+#include <cstdint>
 #include <cstring>
 #include <exception>
+#include <memory>
 #include <mutex>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
 #include <thread>
 #include <vector>
 
 #include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/files.hpp"
 
 namespace ripplenotch {
+
+std::span<const Packing* const> all_packings() {
+    static constexpr std::array all = {&packings::gzip, &packings::zstd, &packings::lz4, &packings::xz};
+    return all;
+}
+
+const Packing* packing_of(std::string_view first_bytes) {
+    for (const Packing* packing : all_packings()) {
+        if (first_bytes.starts_with(packing->magic)) return packing;
+    }
+    return nullptr;
+}
+
 namespace {
+
+// Throws UsageError, beginning with `source`, where this build cannot unpack it.
+std::unique_ptr<Unpacker> unpacker_of(const Packing& packing, const std::string& source) {
+    if (packing.make == nullptr) {
+        raise<UsageError>(
+            "{}: read a {} file, and this build was made without {}; unpack it: {} {} | "
+            "ripplenotch ... -",
+            source, packing.name, packing.lacks, packing.program, source);
+    }
+    return packing.make();
+}
+
+/// Bytes that give more than this many times what they take are no log but a trap; asked only once so much
+/// has come out.
+constexpr std::uint64_t most_unpacked_for_one = 500, unpacked_unasked = std::uint64_t{64} << 20;
 
 constexpr std::size_t packed_piece = std::size_t{1} << 16;
 constexpr std::size_t unpacked_piece = std::size_t{1} << 18;

@@ -2,17 +2,100 @@
 #pragma once
 // A compressed file as the bytes inside it, in bounded memory.
 
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <memory>
+#include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 
-#include "log/unpack/unpacker.hpp"
 #include "ripplenotch/core/files.hpp"
 
 namespace ripplenotch {
 
-/// Bytes that give more than this many times what they take are no log but a trap; asked only once so much
-/// has come out.
-inline constexpr std::uint64_t most_unpacked_for_one = 500, unpacked_unasked = std::uint64_t{64} << 20;
+// Compressed bytes, unpacked a piece at a time: what the four kinds of compressed files have in common.
+
+/// Unpacks one stream of bytes; streams that follow each other are one, as their own programs have it.
+class Unpacker {
+  public:
+    virtual ~Unpacker() = default;
+    struct Step {
+        std::size_t taken = 0;  ///< of the packed bytes
+        std::size_t given = 0;  ///< put into the room
+        std::string damage;     ///< why nothing more comes, without a source's name; what was given counts
+    };
+    /// Takes from `packed`, gives into `into`. Neither for want of bytes. What is given before the damage of
+    /// damaged bytes, or of bytes that ask for more than 128 MiB to be unpacked, does not depend on the
+    /// pieces in which they come.
+    virtual Step step(std::string_view packed, std::span<char> into) = 0;
+    /// Whether what was taken so far is whole.
+    [[nodiscard]] virtual bool complete() const = 0;
+};
+
+/// Of the deflate method, as containers have it inside: zlib's own wrapping (RFC 1950) or none (RFC 1951).
+enum class Deflate { wrapped, bare };
+
+/// Throws UsageError, beginning with `source`, where this build lacks zlib.
+[[nodiscard]] std::unique_ptr<Unpacker> make_inflater(Deflate kind, const std::string& source);
+
+/// CRC-32 as gzip and many others have it; none where this build lacks zlib.
+[[nodiscard]] std::optional<std::uint32_t> crc32_of(std::string_view bytes, std::uint32_t before = 0);
+
+/// One kind of compressed file.
+struct Packing {
+    std::string_view name;     ///< "gzip"
+    std::string_view magic;    ///< the first bytes of such a file
+    std::string_view program;  ///< that unpacks it to a pipe: "zcat"
+    std::string_view lacks;    ///< the library that this build lacks; empty where it has it
+    std::unique_ptr<Unpacker> (*make)() = nullptr;  ///< null where it lacks it
+};
+
+namespace packings {
+extern const Packing gzip, zstd, lz4, xz;
+}
+
+/// All kinds.
+[[nodiscard]] std::span<const Packing* const> all_packings();
+
+/// The kind that begins with these bytes; null where it is none.
+[[nodiscard]] const Packing* packing_of(std::string_view first_bytes);
+
+// Internal: packed bytes in whole units, as a library asks for them, however they arrive. A call that meets
+// damage does not say what it has given before; with whole units it has given nothing, and what was given
+// before it does not depend on the pieces.
+
+class WholeUnits {
+  public:
+    /// The next unit, whole or empty; takes from `packed` what it keeps for later and says how much.
+    [[nodiscard]] std::string_view next(std::string_view packed, std::size_t& taken) {
+        taken = 0;
+        from_kept_ = !kept_.empty() || packed.size() < wanted_;
+        if (!from_kept_) return packed.substr(0, wanted_);
+        if (kept_.size() < wanted_) {
+            taken = std::min(packed.size(), wanted_ - kept_.size());
+            kept_.append(packed.substr(0, taken));
+        }
+        return std::string_view(kept_).substr(0, kept_.size() < wanted_ ? 0 : wanted_);
+    }
+
+    /// What the library used of the unit, and the size of the one that it wants next.
+    void used(std::size_t size, std::size_t wanted, std::size_t& taken) {
+        if (from_kept_)
+            kept_.erase(0, size);
+        else
+            taken = size;
+        wanted_ = std::max<std::size_t>(1, wanted);
+    }
+
+    [[nodiscard]] bool keeps_some() const { return !kept_.empty(); }
+
+  private:
+    std::string kept_;
+    std::size_t wanted_ = 1;
+    bool from_kept_ = false;
+};
 
 /// What `packed` holds behind its `first_bytes`, which have been read from it already, under its name. A file
 /// is unpacked by a thread of its own, ahead of who reads; a pipe in read() itself, since waiting for it must

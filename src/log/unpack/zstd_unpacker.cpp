@@ -3,8 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "log/unpack/unpacker.hpp"
-#include "log/unpack/whole_units.hpp"
+#include "log/unpack/unpacked_source.hpp"
 #include "ripplenotch/core/error.hpp"
 
 #if defined(RIPPLENOTCH_HAS_ZSTD)

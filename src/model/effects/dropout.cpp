@@ -6,8 +6,7 @@
 
 #include "model/effects.hpp"
 #include "ripplenotch/core/portable_math.hpp"
-#include "ripplenotch/model/detection.hpp"
-#include "ripplenotch/model/noise.hpp"
+#include "ripplenotch/model/fit.hpp"
 
 namespace ripplenotch {
 namespace {

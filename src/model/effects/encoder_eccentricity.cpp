@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "model/effects.hpp"
-#include "model/many_cosines.hpp"
+#include "model/evaluate.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "core/functions/many_numbers.hpp"
-#include "model/direction.hpp"
+#include "model/catalogue.hpp"
 #include "model/effects.hpp"
 
 namespace ripplenotch {

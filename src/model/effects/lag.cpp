@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "model/effects.hpp"
-#include "model/motion/lost_rows.hpp"
-#include "model/spring/between_samples.hpp"
+#include "model/motion/motion.hpp"
+#include "model/spring/mass_on_spring.hpp"
 
 namespace ripplenotch {
 namespace {

@@ -3,7 +3,7 @@
 
 #include "core/functions/many_numbers.hpp"
 #include "model/effects.hpp"
-#include "model/many_cosines.hpp"
+#include "model/evaluate.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {

@@ -5,7 +5,7 @@
 #include <set>
 
 #include "model/effects.hpp"
-#include "ripplenotch/model/detection.hpp"
+#include "ripplenotch/model/fit.hpp"
 
 namespace ripplenotch {
 namespace {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "model/effects.hpp"
-#include "model/motion/lost_rows.hpp"
+#include "model/motion/motion.hpp"
 #include "model/spring/mass_on_spring.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 

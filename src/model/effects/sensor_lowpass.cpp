@@ -2,7 +2,7 @@
 #include <numbers>
 
 #include "model/effects.hpp"
-#include "model/motion/lost_rows.hpp"
+#include "model/motion/motion.hpp"
 #include "model/spring/mass_on_spring.hpp"
 
 namespace ripplenotch {

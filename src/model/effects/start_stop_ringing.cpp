@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 
-#include "model/direction.hpp"
+#include "model/catalogue.hpp"
 #include "model/effects.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "model/effects.hpp"
-#include "model/many_cosines.hpp"
+#include "model/evaluate.hpp"
 
 namespace ripplenotch {
 namespace {

@@ -4,15 +4,274 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
+#include <span>
+#include <unordered_map>
 #include <vector>
 
-#include "model/spring/between_samples.hpp"
-#include "model/spring/free_move.hpp"
-#include "model/spring/turning_drive.hpp"
+#include "core/vectors/dot.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
+
+namespace {
+
+/// Samples of the polynomial about a step between two of them.
+constexpr int step_points = 6;  // by hand
+
+using StepWeights = std::array<double, step_points>;
+
+// Value at a place of the signal that goes on as its ends.
+double at(std::span<const double> values, std::ptrdiff_t place) {
+    const auto last = static_cast<std::ptrdiff_t>(values.size()) - 1;
+    return values[static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(place, 0, last))];
+}
+
+constexpr int shift_points = 16;  // by hand
+constexpr int lag_points = step_points;
+
+// Weights of the samples at -(count / 2 - 1), ..., count / 2 for the value at u in [0, 1).
+template <int count>
+std::array<double, count> lagrange_weights(double u) {
+    std::array<double, count> weights{};
+    for (int i = 0; i < count; ++i) {
+        double weight = 1.0;
+        for (int j = 0; j < count; ++j) {
+            if (j != i) weight *= (u - (j - count / 2 + 1)) / static_cast<double>(i - j);
+        }
+        weights[static_cast<std::size_t>(i)] = weight;
+    }
+    return weights;
+}
+
+// integral from 0 to 1 of u^m rate exp(-(1 - u) rate), m = 0 ... lag_points - 1. Partial integration ties
+// neighbours together: I(m) = 1 - m / rate * I(m - 1). Upwards it is stable for a large rate, downwards for a
+// small one.
+std::array<double, lag_points> moments(double rate) {
+    std::array<double, lag_points> found{};
+    if (rate > lag_points) {
+        found[0] = 1.0 - portable::exp(-std::min(rate, 700.0));
+        for (int m = 1; m < lag_points; ++m)
+            found[static_cast<std::size_t>(m)] = 1.0 - m / rate * found[static_cast<std::size_t>(m - 1)];
+        return found;
+    }
+    constexpr int far = 60;  // by hand: where the recurrence begins
+    double moment = rate / (far + 1.0);
+    for (int m = far; m > 0; --m) {
+        moment = (1.0 - moment) * rate / m;
+        if (m <= lag_points) found[static_cast<std::size_t>(m - 1)] = moment;
+    }
+    return found;
+}
+
+// Coefficients of u^0, u^1, ... of the polynomial that is 1 at sample i and 0 at the others.
+std::array<double, lag_points> lagrange_coefficients(int i) {
+    std::array<double, lag_points> coefficients{1.0};
+    for (int j = 0; j < lag_points; ++j) {
+        if (j == i) continue;
+        const double zero = j - lag_points / 2 + 1, scale = i - j;
+        for (std::size_t m = lag_points - 1; m > 0; --m)
+            coefficients[m] = (coefficients[m - 1] - zero * coefficients[m]) / scale;
+        coefficients[0] = -zero * coefficients[0] / scale;
+    }
+    return coefficients;
+}
+
+// values[k] becomes the sum of weights[i] * before[k + first + i], in this order, for every k.
+void weigh_neighbours(std::span<const double> before, std::span<const double> weights, std::ptrdiff_t first,
+                      std::span<double> values) {
+    const auto n = static_cast<std::ptrdiff_t>(before.size()),
+               points = static_cast<std::ptrdiff_t>(weights.size());
+    // Where all points are samples, point after point for many samples at once: the same sums.
+    const std::ptrdiff_t begin = std::clamp<std::ptrdiff_t>(-first, 0, n),
+                         end = std::clamp<std::ptrdiff_t>(n - first - points + 1, begin, n);
+    const auto by_itself = [&](std::ptrdiff_t k) {
+        double sum = 0.0;
+        for (std::ptrdiff_t i = 0; i < points; ++i)
+            sum += weights[static_cast<std::size_t>(i)] * at(before, k + first + i);
+        values[static_cast<std::size_t>(k)] = sum;
+    };
+    for (std::ptrdiff_t k = 0; k < begin; ++k) by_itself(k);
+    constexpr std::ptrdiff_t block = 512;
+    for (std::ptrdiff_t k = begin; k < end; k += block) {
+        const auto count = static_cast<std::size_t>(std::min(block, end - k));
+        std::fill_n(values.data() + k, count, 0.0);
+        for (std::ptrdiff_t i = 0; i < points; ++i) {
+            add_scaled(weights[static_cast<std::size_t>(i)], before.data() + k + first + i, values.data() + k,
+                       count);
+        }
+    }
+    for (std::ptrdiff_t k = end; k < n; ++k) by_itself(k);
+}
+
+}  // namespace
+
+void shift_samples(std::span<double> values, double delay) {
+    if (values.empty()) return;
+    const double whole = std::ceil(delay);
+    const auto weights = lagrange_weights<shift_points>(whole - delay);
+    const std::vector<double> before(values.begin(), values.end());
+    weigh_neighbours(before, weights, -static_cast<std::ptrdiff_t>(whole) - (shift_points / 2 - 1), values);
+}
+
+namespace {
+
+// Weights of the samples at -2, ..., 3 from the beginning of a step for the integral over it of the
+// polynomial times anything; moments[m]: the integral of that times u^m, u from 0 to 1 along the step.
+StepWeights step_weights(const std::array<double, step_points>& moments) {
+    StepWeights weights{};
+    for (int i = 0; i < step_points; ++i) {
+        const auto coefficients = lagrange_coefficients(i);
+        for (std::size_t m = 0; m < step_points; ++m)
+            weights[static_cast<std::size_t>(i)] += coefficients[m] * moments[m];
+    }
+    return weights;
+}
+
+// Entry k: the integral over the step that ends at sample k. Before the first sample and after the last, the
+// signal is taken as constant.
+std::vector<double> over_steps(std::span<const double> values, const StepWeights& weights) {
+    std::vector<double> found(values.size());
+    // From sample k - 1 (u = 0) to sample k (u = 1).
+    weigh_neighbours(values, weights, -1 - (step_points / 2 - 1), found);
+    return found;
+}
+
+}  // namespace
+
+void first_order_lag(std::span<double> values, double time_constant) {
+    if (values.empty()) return;
+    const double rate = 1.0 / time_constant;
+    const StepWeights weights = step_weights(moments(rate));
+    const double kept = portable::exp(-std::min(rate, 700.0));
+    const std::vector<double> before(values.begin(), values.end());
+    // From sample k - 1 (u = 0) to sample k (u = 1).
+    weigh_neighbours(before, weights, -1 - (lag_points / 2 - 1), values);
+    values[0] = before[0];
+    for (std::size_t k = 1; k < values.size(); ++k) values[k] += kept * values[k - 1];
+}
+
+namespace {
+
+// Between two known moves, radians. At damping 2, the most that a spring may have, the first term that is
+// left out is then 1e-15 of the move.
+constexpr double spacing = 0.005;
+constexpr double longest_known = 20.0;  // by hand: bounds the memory
+
+}  // namespace
+
+FreeMove free_move(double damping, double radians) {
+    const double square = damping * damping - 1.0;
+    double even = 0.0, odd = 0.0;
+    if (const double root = std::sqrt(std::abs(square)); root * radians < 1e-4) {
+        // Near critical damping, or hardly any time: differences of exponentials are lost in rounding.
+        const double left = portable::exp(-std::min(damping * radians, 700.0));
+        even = left * (1.0 + square * radians * radians / 2.0);
+        odd = left * radians * (1.0 + square * radians * radians / 6.0);
+    } else if (square < 0.0) {
+        const double left = portable::exp(-std::min(damping * radians, 700.0));
+        even = left * portable::cos(root * radians);
+        odd = left * portable::sin(root * radians) / root;
+    } else {
+        const double slow = portable::exp(-std::min((damping - root) * radians, 700.0)),
+                     fast = portable::exp(-std::min((damping + root) * radians, 700.0));
+        even = 0.5 * (slow + fast);
+        odd = 0.5 * (slow - fast) / root;
+    }
+    return {even + damping * odd, odd, even - damping * odd};
+}
+
+FreeMoves::FreeMoves(double damping) : damping_(damping), at_of_at_{1.0, 0.0}, at_of_moving_{0.0, 1.0} {
+    // x'' + 2 damping x' + x = 0, power by power.
+    for (Series* series : {&at_of_at_, &at_of_moving_}) {
+        for (std::size_t n = 2; n < terms; ++n) {
+            const auto power = static_cast<double>(n);
+            (*series)[n] = -(2.0 * damping * (power - 1.0) * (*series)[n - 1] + (*series)[n - 2]) /
+                           (power * (power - 1.0));
+        }
+    }
+}
+
+FreeMove FreeMoves::shortly(double radians) const {
+    double at = 0.0, moving = 0.0;
+    for (std::size_t n = terms; n-- > 0;) {
+        at = at * radians + at_of_at_[n];
+        moving = moving * radians + at_of_moving_[n];
+    }
+    return {at, moving, at - 2.0 * damping_ * moving};
+}
+
+FreeMove FreeMoves::within(double radians) {
+    if (!(radians < longest_known)) return free_move(damping_, radians);
+    const auto place = static_cast<std::size_t>(radians / spacing + 0.5);
+    if (place >= known_.size()) known_.resize(place + 1);
+    const double known_radians = spacing * static_cast<double>(place);
+    if (!known_[place]) known_[place] = free_move(damping_, known_radians);
+    const FreeMove &most = *known_[place], rest = shortly(radians - known_radians);
+    return {most.at_of_at * rest.at_of_at - most.at_of_moving * rest.at_of_moving,
+            most.at_of_at * rest.at_of_moving + most.at_of_moving * rest.moving_of_moving,
+            most.moving_of_moving * rest.moving_of_moving - most.at_of_moving * rest.at_of_moving};
+}
+
+namespace {
+
+// Times are told to a few bits; steps that differ by less than this part of the usual one are one step.
+constexpr double same_step = 1e-9;
+
+void find_steps(const Motion& motion, TurningDrive& drive) {
+    const double usual_s = 1.0 / motion.sample_rate.value();
+    std::unordered_map<long long, std::size_t> known;
+    drive.steps_s.push_back(usual_s);
+    drive.step.assign(motion.size(), 0);
+    for (std::size_t k = 1; k < motion.size(); ++k) {
+        const double step_s = motion.time_s[k] - motion.time_s[k - 1];
+        const double beside = (step_s / usual_s - 1.0) / same_step;
+        if (!(step_s > 0.0) || std::abs(beside) < 0.5) continue;
+        constexpr double most = 9e18;  // what a whole number holds: longer steps are one, which all dies in
+        const auto [found, is_new] =
+            known.try_emplace(std::llround(std::min(beside, most)), drive.steps_s.size());
+        if (is_new) drive.steps_s.push_back(step_s);
+        drive.step[k] = found->second;
+    }
+}
+
+TurningDrive found_drive(const Motion& motion, double cycles_per_deg) {
+    TurningDrive drive;
+    const std::size_t samples = motion.size();
+    drive.hz.resize(samples);
+    drive.cosine.resize(samples);
+    drive.sine.resize(samples);
+    std::vector<double> angle_deg(samples);
+    for (std::size_t k = 0; k < samples; ++k) {
+        const std::size_t before = k - std::min<std::size_t>(k, 1);
+        const double deg_s = 0.5 * (motion.velocity_deg_s[before] + motion.velocity_deg_s[k]);
+        drive.hz[k] = cycles_per_deg * deg_s;
+        angle_deg[k] = -360.0 * cycles_per_deg * deg_s * (motion.time_s[k] - motion.time_s[before]);
+    }
+    portable::cos_degrees(angle_deg, drive.cosine);
+    portable::sin_degrees(angle_deg, drive.sine);
+    find_steps(motion, drive);
+    return drive;
+}
+
+}  // namespace
+
+std::shared_ptr<const TurningDrive> turning_drive(const Motion& motion, double cycles_per_deg) {
+    struct Asked {
+        std::vector<double> time_s, velocity_deg_s;
+        double rate_hz = 0.0, cycles_per_deg = 0.0;
+        std::shared_ptr<const TurningDrive> drive;
+    };
+    thread_local Asked last;
+    if (last.drive == nullptr || last.cycles_per_deg != cycles_per_deg ||
+        last.rate_hz != motion.sample_rate.value() || last.velocity_deg_s != motion.velocity_deg_s ||
+        last.time_s != motion.time_s)
+        last = {motion.time_s, motion.velocity_deg_s, motion.sample_rate.value(), cycles_per_deg,
+                std::make_shared<const TurningDrive>(found_drive(motion, cycles_per_deg))};
+    return last.drive;
+}
+
 namespace {
 
 // Square of ringing that is no more than rounding.

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+namespace ripplenotch {
+
+// Internal to the core room: the shortest text that reads back as the same double, for the numbers that logs
+// are made of.
+
+/// At `into`, where there are 32 bytes, and returns its end; null, with nothing of use written, for zero,
+/// powers of two, magnitudes below 2^-13 or from 2^26 on, and what is no finite number. The text is that of
+/// the formatting library's "{}": of all decimals between the halfway points to the neighbouring doubles one
+/// with the fewest digits, and of these the nearest.
+char* put_usual_shortest(char* into, double value);
+
+}  // namespace ripplenotch

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <cmath>
+#include <complex>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "export/text.hpp"
+#include "ripplenotch/core/portable_math.hpp"
+#include "ripplenotch/export/filter_set.hpp"
+#include "ripplenotch/export/target.hpp"
+
+namespace ripplenotch {
+
+// One method as C and as the same loops here: a file each.
+
+/// How a header is written.
+struct CodeStyle {
+    std::string name;
+    bool is_float = true;
+
+    /// "static const float NAME_what[3] = {...};"
+    [[nodiscard]] std::string array(std::string_view what, const std::vector<double>& values) const;
+    /// Fields @name@, @NAME@, @real@ and mathematics functions filled in.
+    [[nodiscard]] std::string filled(std::string_view code) const;
+    /// The numbers of an array().
+    [[nodiscard]] std::vector<double> read(TextReader& reader, std::string_view what,
+                                           std::size_t count) const;
+};
+
+/// By the keys name and precision. Throws UsageError.
+[[nodiscard]] CodeStyle style_of(const Settings& settings);
+
+/// Sine and cosine of an angle in turns, of a float by its own series, of a double by the library; the
+/// nearest whole number; a b + c.
+[[nodiscard]] std::string_view turn_code(bool is_float);
+/// "first + a b + c d", as nested calls; each pair is a product.
+[[nodiscard]] std::string sum_code(std::string first,
+                                   std::span<const std::pair<std::string, std::string>> products);
+
+template <class Real>
+struct OnCircle {
+    Real cosine, sine;
+};
+
+/// The same, operation by operation.
+[[nodiscard]] inline OnCircle<double> on_circle(double turns) {
+    const double angle = 6.283185307179586 * (turns - std::floor(turns));
+    const std::complex<double> at = portable::phasor(angle);
+    return {at.real(), at.imag()};
+}
+/// What is beyond the nearest whole number.
+[[nodiscard]] inline double beside_whole(double value) { return value - std::floor(value + 0.5); }
+[[nodiscard]] inline float beside_whole(float value) {
+    value -= static_cast<float>(static_cast<int>(value));
+    return value - static_cast<float>(static_cast<int>(value + value));
+}
+[[nodiscard]] inline OnCircle<float> on_circle(float turns) {
+    const float quarters = 4.0F * turns;
+    const int quarter = static_cast<int>(quarters + (quarters < 0.0F ? -0.5F : 0.5F));
+    const float a = quarters - static_cast<float>(quarter), s = a * a;
+    float y = s * (s * -4.60214921e-3F + 7.96802176e-2F) + -6.45963478e-1F;
+    float x = s * (s * 9.06739898e-4F + -2.08615283e-2F) + 2.5366941e-1F;
+    y = a * (s * y + 1.57079632F);
+    x = s * (s * x + -1.23370055F) + 1.0F;
+    if ((quarter & 1) != 0) {
+        const float turned = x;
+        x = -y;
+        y = turned;
+    }
+    return (quarter & 2) != 0 ? OnCircle<float>{-x, -y} : OnCircle<float>{x, y};
+}
+
+[[nodiscard]] std::string tracking_header(const TrackingDesign& design, const CodeStyle& style);
+[[nodiscard]] LoadedCode tracking_loaded(TextReader& reader, const TrackingDesign& design,
+                                         const CodeStyle& style);
+[[nodiscard]] std::string oscillator_header(const OscillatorDesign& design, const CodeStyle& style);
+[[nodiscard]] LoadedCode oscillator_loaded(TextReader& reader, const OscillatorDesign& design,
+                                           const CodeStyle& style);
+
+}  // namespace ripplenotch
+
+namespace ripplenotch::c_code {
+
+// The fixed parts of the C header, with @fields@ to fill in. Its arithmetic is that of
+// export/run/structure.hpp, operation by operation.
+
+/// Declarations by which a reader knows the form of a header.
+inline constexpr std::string_view svf_fields = "a1, a2, a3, m0, m1, m2;";
+inline constexpr std::string_view df1_memory = "x1, x2, y1, y2;";
+
+[[nodiscard]] std::string declarations(Form form);
+[[nodiscard]] std::string regions_open();
+[[nodiscard]] std::string section_functions(Form form);
+[[nodiscard]] std::string step_function(bool by_speed);
+[[nodiscard]] std::string self_test_open();
+[[nodiscard]] std::string self_test_function(bool by_speed);
+[[nodiscard]] std::string filled(std::string text,
+                                 std::span<const std::pair<std::string_view, std::string>> fields);
+
+}  // namespace ripplenotch::c_code

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <complex>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "ripplenotch/core/gear_account.hpp"
+#include "ripplenotch/core/trace.hpp"
+#include "ripplenotch/design/ripple_map.hpp"
+#include "ripplenotch/filter/map_fit.hpp"
+
+namespace ripplenotch {
+
+// What a map is fitted to: the amplitudes of every few motor turns of all logs, in blocks.
+
+/// Amplitudes of all orders in a window, in the form of RippleMap.
+struct MapWindow {
+    MapState state;  ///< means
+    std::vector<std::complex<double>> value;
+    std::vector<double> noise;  ///< by order: mean square of what is no ripple in `value`
+    std::size_t block = 0, log = 0;
+    double middle = 0.0, length = 0.0;  ///< in motor turns along the log, back and forth added up
+    bool scored = true;                 ///< it shares no sample with another block
+};
+
+/// Blocks are windows in a row, of one log each.
+struct MapData {
+    std::vector<MapWindow> windows;
+    RippleMap frame;  ///< gear ratio, orders, zero and the ranges of the windows, without values
+    std::size_t blocks = 0;
+};
+
+/// Angles count from `zero_deg`. Temperatures are of each log's rows, or empty where none is stated.
+[[nodiscard]] MapData map_data(std::span<const TraceView> logs, const GearAccount& gear, double zero_deg,
+                               std::span<const std::vector<double>> temperatures_degc);
+
+}  // namespace ripplenotch

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Units as log headers spell them: "[rad/s]", "(deg/sec)", "_Nm", "1/min". The result is a name that
+// core/quantity knows.
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "log/columns/decide_layout.hpp"
+#include "ripplenotch/core/quantity.hpp"
+#include "ripplenotch/log/layout.hpp"
+
+namespace ripplenotch {
+
+/// The unit's usual name ("rad/s" for "rad s^-1"), or empty when no time, angle, speed, torque or current
+/// unit is meant. With a role, spellings that depend on it are understood: "nm" is Nm in a torque, "s"
+/// seconds in a time.
+[[nodiscard]] std::optional<std::string> usual_unit(std::string_view written, Role role);
+
+/// What a role measures: time, speed, torque (or current), angle.
+[[nodiscard]] Dimension dimension_of(Role role);
+
+/// Factor from `unit` to the tool's unit for the role; torque accepts A and mA, with `nm_per_ampere`.
+[[nodiscard]] std::optional<double> role_factor(Role role, std::string_view unit, double nm_per_ampere);
+
+/// True for A and mA.
+[[nodiscard]] bool is_current_unit(std::string_view unit);
+
+/// A column name taken apart: what it calls the quantity, and the unit it ends in, if any.
+struct NameAndUnit {
+    std::string name;        ///< "dq" of "dq [rad/s]"
+    std::string unit;        ///< "rad/s", as written; empty when none is there
+    bool bracketed = false;  ///< in brackets: surely meant as a unit
+};
+[[nodiscard]] NameAndUnit split_unit(std::string_view column_name);
+
+// A part of decide_layout: units that --unit states, and what is said of units that nobody stated.
+
+/// The unit that --unit gives to the column, by its name or by its role.
+[[nodiscard]] std::optional<std::string> asked_unit(const ReadOptions& options, const std::string& name,
+                                                    Role role);
+
+/// Units that a column of this role may have, as messages list them.
+[[nodiscard]] std::string unit_list(Role role);
+
+/// Adds warnings: units that were assumed, currents without a torque constant, a torque constant without
+/// currents. Throws UsageError for a --unit that names neither a role nor a column.
+void state_units(Layout& layout, const ColumnFacts& facts, const ReadOptions& options);
+
+/// Marks a layout whose joints lack a velocity that their position can give, with a warning.
+void state_derived_velocity(Layout& layout, const ColumnFacts& facts);
+
+}  // namespace ripplenotch

@@ -1,0 +1,351 @@
+// SPDX-License-Identifier: MIT
+// The way through the messages of a topic, written down while the first is gone through.
+
+#include "log/messages/cdr.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <cstring>
+#include <string_view>
+
+#include "ripplenotch/core/error.hpp"
+
+namespace ripplenotch {
+
+namespace {
+
+// Where a message in CDR is read: numbers at multiples of their size, texts and lists behind their lengths.
+
+constexpr std::size_t cdr_head = 4;  // says the byte order
+
+/// Throws DataError, without a source's name, where the message ends.
+class CdrCursor {
+  public:
+    explicit CdrCursor(std::string_view message) : bytes_(message) {
+        if (message.size() < cdr_head)
+            raise<DataError>("a message of {} bytes, expected 4 or more", message.size());
+        if (message[0] != '\0' || (message[1] != '\0' && message[1] != '\1'))
+            raise<DataError>("a message in another encoding of CDR ({:#04x} {:#04x}), expected version 1",
+                             static_cast<unsigned char>(message[0]), static_cast<unsigned char>(message[1]));
+        swaps_ = (message[1] == '\0') != (std::endian::native == std::endian::big);
+        bytes_.remove_prefix(cdr_head);
+    }
+    // Numbers stand at multiples of their size.
+    const char* take(std::size_t size, std::size_t count = 1) {
+        const std::size_t at = (at_ + size - 1) & ~(size - 1);
+        if (at > bytes_.size() || count > (bytes_.size() - at) / size)
+            raise<DataError>("a message that ends after {} bytes, expected {} numbers of {} bytes more",
+                             bytes_.size() + cdr_head, count, size);
+        at_ = at + count * size;
+        return bytes_.data() + at;
+    }
+    void number(std::size_t size, char* into) {
+        const char* const from = take(size);
+        if (swaps_)
+            std::reverse_copy(from, from + size, into);
+        else
+            std::memcpy(into, from, size);
+    }
+    std::uint32_t length() {
+        std::uint32_t value = 0;
+        number(4, reinterpret_cast<char*>(&value));
+        return value;
+    }
+    // Of things that take a byte or more each.
+    std::uint32_t list_length() {
+        const std::uint32_t count = length();
+        if (count > bytes_.size() - at_)
+            raise<DataError>("a list of {} things in the {} bytes that are left of a message, expected fewer",
+                             count, bytes_.size() - at_);
+        return count;
+    }
+    std::string_view text() {
+        const std::uint32_t size = length();
+        std::string_view text(take(1, size), size);
+        if (text.ends_with('\0')) text.remove_suffix(1);
+        return text;
+    }
+    std::int64_t stamp() {
+        std::int32_t seconds = 0;
+        std::uint32_t nanoseconds = 0;
+        number(4, reinterpret_cast<char*>(&seconds));
+        number(4, reinterpret_cast<char*>(&nanoseconds));
+        return std::int64_t{seconds} * 1'000'000'000 + nanoseconds;
+    }
+
+  private:
+    std::string_view bytes_;
+    std::size_t at_ = 0;
+    bool swaps_ = false;
+};
+
+// Reads on over what a step says, and checks what it demands.
+void pass_cdr(CdrCursor& cursor, const CdrStep& step);
+
+void pass_cdr(CdrCursor& cursor, const std::vector<CdrStep>& steps) {
+    for (const CdrStep& step : steps) pass_cdr(cursor, step);
+}
+
+void pass_cdr(CdrCursor& cursor, const CdrStep& step) {
+    switch (step.kind) {
+        case CdrStep::Kind::number:
+            cursor.take(step.size);
+            break;
+        case CdrStep::Kind::stamp:
+            cursor.take(4, 2);
+            break;
+        case CdrStep::Kind::skip:
+            if (step.count > 0) cursor.take(step.size, step.count);
+            break;
+        case CdrStep::Kind::skip_any:
+            if (const std::uint32_t count = cursor.length(); count > 0) cursor.take(step.size, count);
+            break;
+        case CdrStep::Kind::text:
+            cursor.text();
+            break;
+        case CdrStep::Kind::texts:
+            for (std::uint32_t left = cursor.list_length(); left > 0; --left) cursor.text();
+            break;
+        case CdrStep::Kind::text_is:
+            if (const std::string_view text = cursor.text(); text != step.expected)
+                raise<DataError>(
+                    "'{}' as {}, expected '{}' as in the first message; record the joints on topics of their "
+                    "own",
+                    text.substr(0, 60), step.path, step.expected);
+            break;
+        case CdrStep::Kind::length_is:
+            if (const std::uint32_t count = cursor.length(); count != step.count)
+                raise<DataError>(
+                    "{} elements of {}, expected {} as in the first message; record messages of one shape on "
+                    "a topic",
+                    count, step.path, step.count);
+            break;
+        case CdrStep::Kind::repeat_any:
+            for (std::uint32_t left = cursor.list_length(); left > 0; --left) pass_cdr(cursor, step.inner);
+            break;
+    }
+}
+
+bool keeps(const CdrStep& step) {
+    return step.kind == CdrStep::Kind::number || step.kind == CdrStep::Kind::stamp;
+}
+
+class CdrReader final : public MessageReader {
+  public:
+    CdrReader(std::shared_ptr<const std::vector<CdrStep>> steps, const LeafOffsets& offsets)
+        : steps_(std::move(steps)), count_(steps_->size()), offsets_(offsets) {
+        // Behind the last useful step there is nothing to go on for.
+        const auto useful = [&](const CdrStep& step) {
+            return keeps(step) ? offsets_[step.leaf] >= 0 : step.kind == CdrStep::Kind::length_is;
+        };
+        while (count_ > 0 && !useful((*steps_)[count_ - 1])) --count_;
+    }
+    void read(std::string_view message, char* into) override {
+        CdrCursor cursor(message);
+        for (std::size_t s = 0; s < count_; ++s) {
+            const CdrStep& step = (*steps_)[s];
+            if (!keeps(step) || offsets_[step.leaf] < 0) {
+                pass_cdr(cursor, step);
+            } else if (step.kind == CdrStep::Kind::number) {
+                cursor.number(step.size, into + offsets_[step.leaf]);
+            } else {
+                const std::int64_t stamp = cursor.stamp();
+                std::memcpy(into + offsets_[step.leaf], &stamp, sizeof stamp);
+            }
+        }
+    }
+
+  private:
+    std::shared_ptr<const std::vector<CdrStep>> steps_;
+    std::size_t count_;
+    LeafOffsets offsets_;
+};
+
+class CdrProgram final : public MessageProgram {
+  public:
+    explicit CdrProgram(std::vector<CdrStep> steps)
+        : steps_(std::make_shared<const std::vector<CdrStep>>(std::move(steps))) {}
+    [[nodiscard]] std::unique_ptr<MessageReader> reader(const LeafOffsets& offsets) const override {
+        return std::make_unique<CdrReader>(steps_, offsets);
+    }
+
+  private:
+    std::shared_ptr<const std::vector<CdrStep>> steps_;
+};
+
+}  // namespace
+
+std::shared_ptr<const MessageProgram> cdr_program(std::vector<CdrStep> steps) {
+    return std::make_shared<CdrProgram>(std::move(steps));
+}
+
+namespace {
+
+constexpr std::size_t most_leaves = 4096, most_steps = 100000;
+
+/// Goes through the first message and writes down the way.
+class LayOut {
+  public:
+    explicit LayOut(std::string_view message) : cursor_(message) {}
+    void record(const RosType& type, const std::string& prefix, std::vector<CdrStep>& steps) {
+        const std::vector<std::string>* const outer = names_;
+        std::vector<std::string> names;
+        names_ = nullptr;
+        for (const RosField& field : type.fields) {
+            const bool joint_names =
+                field.name == "name" || field.name == "joint_names" || field.name == "names";
+            const bool texts = field.type.kind == RosType::Kind::text && field.count == RosField::Count::any;
+            if (joint_names && texts) {
+                take_names(prefix + field.name, names, steps);
+                names_ = &names;
+            } else {
+                add_field(field, prefix + field.name, steps);
+            }
+        }
+        names_ = outer;
+    }
+    std::vector<MessageLeaf> leaves;
+
+  private:
+    void take_names(const std::string& path, std::vector<std::string>& names, std::vector<CdrStep>& steps) {
+        const std::uint32_t count = cursor_.length();
+        if (count > 10000) raise<DataError>("{} names of joints", count);
+        steps.push_back({CdrStep::Kind::length_is, 0, count, 0, path, {}, {}});
+        for (std::uint32_t i = 0; i < count; ++i) {
+            names.emplace_back(cursor_.text());
+            steps.push_back(
+                {CdrStep::Kind::text_is, 0, 1, 0, fmt::format("{}[{}]", path, i), names.back(), {}});
+        }
+    }
+    void add_field(const RosField& field, const std::string& path, std::vector<CdrStep>& steps) {
+        if (field.count == RosField::Count::one) return add_one(field.type, path, path, steps);
+        const bool any = field.count == RosField::Count::any;
+        CdrCursor ahead = cursor_;
+        const std::size_t count = any ? ahead.length() : field.fixed;
+        const bool listed =
+            count > 0 && count <= most_listed_elements && field.type.kind != RosType::Kind::text;
+        if (!listed) return pass_over(field, count, steps);
+        if (any) {
+            cursor_.length();
+            steps.push_back({CdrStep::Kind::length_is, 0, count, 0, path, {}, {}});
+        }
+        for (std::size_t i = 0; i < count; ++i) {
+            const bool named = names_ != nullptr && names_->size() == count;
+            add_one(field.type, fmt::format("{}[{}]", path, i),
+                    named ? fmt::format("{} {}", (*names_)[i], field.name) : fmt::format("{}[{}]", path, i),
+                    steps);
+        }
+    }
+    void add_one(const RosType& type, const std::string& path, const std::string& read_as,
+                 std::vector<CdrStep>& steps) {
+        CdrStep step;
+        step.path = path;
+        switch (type.kind) {
+            case RosType::Kind::record:
+                return record(type, path + ".", steps);
+            case RosType::Kind::wide_text:
+                raise<DataError>("the field {} of wide text, which is not read", path);
+            case RosType::Kind::text:
+                step.kind = CdrStep::Kind::text;
+                break;
+            case RosType::Kind::number:
+            case RosType::Kind::stamp: {
+                const bool stamp = type.kind == RosType::Kind::stamp;
+                step.kind = stamp ? CdrStep::Kind::stamp : CdrStep::Kind::number;
+                step.size = type.size;
+                step.leaf = leaves.size();
+                MessageLeaf leaf{path, read_as, {}, stamp, path == "header.stamp"};
+                leaf.type.kind = stamp ? 'i' : type.number;
+                leaf.type.size = stamp ? 8 : type.size;
+                leaf.type.big_endian = std::endian::native == std::endian::big;
+                if (leaves.size() == most_leaves)
+                    raise<DataError>("messages of more than {} numbers", most_leaves);
+                leaves.push_back(leaf);
+                break;
+            }
+        }
+        pass_cdr(cursor_, step);
+        steps.push_back(std::move(step));
+    }
+    // Without leaves, whatever its length in the next message.
+    void pass_over(const RosField& field, std::size_t count, std::vector<CdrStep>& steps) {
+        const bool any = field.count == RosField::Count::any;
+        CdrStep step;
+        if (field.type.kind == RosType::Kind::number) {
+            step = {any ? CdrStep::Kind::skip_any : CdrStep::Kind::skip,
+                    field.type.size,
+                    count,
+                    0,
+                    field.name,
+                    {},
+                    {}};
+        } else if (field.type.kind == RosType::Kind::text && any) {
+            step.kind = CdrStep::Kind::texts;
+        } else {
+            RosField one = field;
+            one.count = RosField::Count::one;
+            std::vector<CdrStep> inner = steps_without_leaves(one);
+            if (!any) {
+                for (std::size_t i = 0; i < count; ++i) {
+                    pass_cdr(cursor_, inner);
+                    if (steps.size() > most_steps)
+                        raise<DataError>("messages of more than {} fields", most_steps);
+                    steps.insert(steps.end(), inner.begin(), inner.end());
+                }
+                return;
+            }
+            step.kind = CdrStep::Kind::repeat_any;
+            step.inner = std::move(inner);
+        }
+        pass_cdr(cursor_, step);
+        steps.push_back(std::move(step));
+    }
+    static std::vector<CdrStep> steps_without_leaves(const RosField& field) {
+        std::vector<CdrStep> steps;
+        const bool any = field.count == RosField::Count::any;
+        for (std::size_t i = 0; i < (any ? 1 : field.fixed); ++i) {
+            CdrStep step;
+            if (field.type.kind == RosType::Kind::number) {
+                step = {CdrStep::Kind::skip, field.type.size, 1, 0, field.name, {}, {}};
+            } else if (field.type.kind == RosType::Kind::stamp) {
+                step = {CdrStep::Kind::skip, 4, 2, 0, field.name, {}, {}};
+            } else if (field.type.kind == RosType::Kind::text) {
+                step.kind = CdrStep::Kind::text;
+            } else if (field.type.kind == RosType::Kind::wide_text) {
+                raise<DataError>("the field {} of wide text, which is not read", field.name);
+            } else {
+                for (const RosField& inner : field.type.fields) {
+                    const auto more = steps_without_leaves(inner);
+                    steps.insert(steps.end(), more.begin(), more.end());
+                    if (steps.size() > most_steps)
+                        raise<DataError>("messages of more than {} fields", most_steps);
+                }
+                continue;
+            }
+            steps.push_back(step);
+            if (steps.size() > most_steps) raise<DataError>("messages of more than {} fields", most_steps);
+        }
+        if (!any) return steps;
+        CdrStep loop;
+        loop.kind = CdrStep::Kind::repeat_any;
+        loop.inner = std::move(steps);
+        return {loop};
+    }
+
+    CdrCursor cursor_;
+    const std::vector<std::string>* names_ = nullptr;  ///< of joints, in the record that is laid out
+};
+
+}  // namespace
+
+MessageLayout lay_out_cdr(const RosType& type, std::string_view message) {
+    std::vector<CdrStep> steps;
+    LayOut work(message);
+    work.record(type, "", steps);
+    return {std::move(work.leaves), cdr_program(std::move(steps))};
+}
+
+}  // namespace ripplenotch

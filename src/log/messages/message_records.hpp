@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "log/containers/stored_array.hpp"
+#include "log/npy/npy_header.hpp"
+#include "log/records/joined_records.hpp"
+#include "ripplenotch/core/error.hpp"
+
+namespace ripplenotch {
+
+// Recorded messages, whatever they are recorded in.
+
+/// One topic, as a recording names it.
+struct MessageChannel {
+    std::string topic, type;      ///< "/joint_states", "sensor_msgs/msg/JointState"
+    std::string encoding;         ///< of the messages: "cdr"
+    std::string schema_encoding;  ///< "ros2msg"
+    std::string schema;           ///< the definition of the type, with those of the types inside it
+};
+
+struct RecordedMessage {
+    std::size_t channel = 0;  ///< index of MessageSource::channels()
+    std::int64_t log_time_ns = 0;
+    std::string_view bytes;    ///< until the next message is asked for
+    std::uint64_t number = 0;  ///< in the recording, from 1
+};
+
+class MessageSource {
+  public:
+    virtual ~MessageSource() = default;
+    /// Grows while messages are read.
+    [[nodiscard]] virtual const std::vector<MessageChannel>& channels() const = 0;
+    /// False at the end. Throws DataError, beginning with the source's name.
+    virtual bool next(RecordedMessage& message) = 0;
+    /// Begins again, with the messages of these channels only.
+    virtual void restart(const std::vector<std::size_t>& channels) = 0;
+    /// Messages of a channel in the whole recording, where it says so itself.
+    [[nodiscard]] virtual std::optional<std::uint64_t> count_of(std::size_t /*channel*/) const {
+        return std::nullopt;
+    }
+    [[nodiscard]] virtual const std::string& name() const = 0;
+};
+
+[[nodiscard]] std::unique_ptr<MessageSource> open_mcap(std::shared_ptr<StoredBytes> file);
+[[nodiscard]] std::unique_ptr<MessageSource> open_rosbag2(std::shared_ptr<StoredBytes> file);
+
+/// The same recording from its beginning, as often as it is asked for.
+using OpenMessages = std::function<std::unique_ptr<MessageSource>()>;
+
+/// The records of one topic: of that which --columns names, else of the one whose fields say most. What
+/// --columns names of other topics stands beside them, joined by time (ReadOptions::join). Throws DataError
+/// where no topic has numbers, UsageError where --columns or --clock ask for what is not there.
+[[nodiscard]] Records records_of_messages(const OpenMessages& open, const std::string& format,
+                                          const ReadOptions& options);
+
+// Which numbers the messages of a topic hold, and how they are read from the next million, whatever the
+// encoding.
+
+/// Longer lists of numbers are no columns.
+inline constexpr std::size_t most_listed_elements = 64;
+
+/// A number that every message of a topic has.
+struct MessageLeaf {
+    std::string path;     ///< in the message: "effort[3]"
+    std::string read_as;  ///< "elbow effort" where the message names its joints
+    NpyField type;        ///< without a place
+    bool stamp = false;   ///< seconds and nanoseconds, given as nanoseconds in 64 bits
+    bool clock = false;   ///< the stamp of the message itself
+};
+
+/// Where the numbers of a message go in a record: the offset of each leaf; negative: it is left out.
+using LeafOffsets = std::vector<std::ptrdiff_t>;
+
+class MessageReader {
+  public:
+    virtual ~MessageReader() = default;
+    /// Each number in the processor's byte order at its offset. Throws DataError, without a source's name,
+    /// where a message is not as the first one was: shorter, a list of another length, a joint of another
+    /// name.
+    virtual void read(std::string_view message, char* into) = 0;
+};
+
+/// How to read the messages of a topic.
+class MessageProgram {
+  public:
+    virtual ~MessageProgram() = default;
+    [[nodiscard]] virtual std::unique_ptr<MessageReader> reader(const LeafOffsets& offsets) const = 0;
+};
+
+struct MessageLayout {
+    std::vector<MessageLeaf> leaves;
+    std::shared_ptr<const MessageProgram> program;
+};
+
+/// Of the first message of a channel: lists of numbers have the lengths that they have in it, and keep them.
+/// Lists longer than 64 and what is empty give no leaves. Throws DataError, without a source's name, where
+/// the message does not fit its type.
+[[nodiscard]] MessageLayout lay_out_message(const MessageChannel& channel, std::string_view first);
+
+}  // namespace ripplenotch

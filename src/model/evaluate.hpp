@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// What the terms of a model bring along a motion, before they are summed: shared by a whole evaluation and by
+// Prediction, which asks for parts of one.
+
+#include <algorithm>
+#include <array>
+#include <complex>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "ripplenotch/core/portable_math.hpp"
+#include "ripplenotch/model/model.hpp"
+
+namespace ripplenotch {
+
+using Gain = std::vector<std::complex<double>>;
+
+template <class Action>
+void each(const Model& model, Side side, const Action& action) {
+    for (const Term& term : model.terms) {
+        if (side_of(term) == side) action(*term.effect, values_of(term));
+    }
+}
+
+/// Whether the torques behind this term see another motion than the log's.
+[[nodiscard]] inline bool changes_motion(const Term& term) {
+    return term.effect->change_motion != nullptr && side_of(term) != Side::ripple;
+}
+
+/// The motion that the joint's torques see, and the gear ratio; empty where it is the log's.
+[[nodiscard]] std::optional<Motion> motion_behind(const Model& model, const Motion& logged, GearRatio& ratio);
+
+/// Throws UsageError that lists the values which the model does not state.
+void refuse_missing_values(const Model& model);
+
+/// Torque of what bears load; nothing when no effect asks for it.
+[[nodiscard]] std::vector<double> load_nm(const Model& model, const Situation& situation);
+
+/// Of a ripple term of the order given; empty when nothing changes the model's ripple.
+[[nodiscard]] Gain gain_of(const Model& model, const Situation& situation, double order);
+
+/// Of this term; empty when it is no ripple.
+[[nodiscard]] Gain gain_for(const Model& model, const Term& term, const Situation& situation);
+
+/// Adds the torque of one joint effect.
+void add_torque(const Term& term, const Situation& situation, const Gain& gain, std::span<double> torque_nm);
+
+// Cosines of an angle at every sample, in rooms that stay in the first cache.
+
+/// use(k, cosine of angle_deg(k)) for each sample k.
+template <class AngleDeg, class Use>
+void with_cosines(std::size_t samples, AngleDeg angle_deg, Use use) {
+    std::array<double, 256> angles{}, cosines{};
+    for (std::size_t first = 0; first < samples; first += angles.size()) {
+        const std::size_t count = std::min(angles.size(), samples - first);
+        for (std::size_t i = 0; i < count; ++i) angles[i] = angle_deg(first + i);
+        portable::cos_degrees(std::span(angles).first(count), cosines);
+        for (std::size_t i = 0; i < count; ++i) use(first + i, cosines[i]);
+    }
+}
+
+/// use(k, cosine, sine) of angle_deg(k) for each sample k.
+template <class AngleDeg, class Use>
+void with_cosines_and_sines(std::size_t samples, AngleDeg angle_deg, Use use) {
+    std::array<double, 256> angles{}, cosines{}, sines{};
+    for (std::size_t first = 0; first < samples; first += angles.size()) {
+        const std::size_t count = std::min(angles.size(), samples - first);
+        for (std::size_t i = 0; i < count; ++i) angles[i] = angle_deg(first + i);
+        portable::cos_degrees(std::span(angles).first(count), cosines);
+        portable::sin_degrees(std::span(angles).first(count), sines);
+        for (std::size_t i = 0; i < count; ++i) use(first + i, cosines[i], sines[i]);
+    }
+}
+
+}  // namespace ripplenotch
