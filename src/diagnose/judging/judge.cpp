@@ -92,6 +92,8 @@ void find_rivals(const ModelBench& bench, const Candidate& model, const Candidat
     const DiagnosisRules::JudgeRules& rules = bench.rules().judge;
     const std::size_t most = bench.work().ended() ? 1 : rules.most_rivals;
     std::size_t tried = 0;
+    std::vector<const Effect*> others(effects.begin(), effects.end());
+    std::erase(others, model.stated.terms[term].effect);
     Hearing hearing(bench.rules(), finding.decisions);
     for (const Trial& trial : screen(bench, fewer, effects)) {
         if (trial.start.effect == model.stated.terms[term].effect) continue;
@@ -100,7 +102,11 @@ void find_rivals(const ModelBench& bench, const Candidate& model, const Candidat
         const Candidate other = with_trial(bench, fewer, trial);
         const bool is_form_alone =
             is_fixed_curve(*trial.start.effect) && is_fixed_curve(*model.stated.terms[term].effect);
-        const double margin = margin_of(bench, model, other, is_form_alone, something_left);
+        double margin = margin_of(bench, model, other, is_form_alone, something_left);
+        // What such a rival lacks is too small to be added by a search, and may be part of the same cause: a
+        // payload adds some inertia to its weight, which together may be a multiple of the simulation.
+        if (margin >= rules.tie_margin && bench.share(model, other) < bench.material_sigma())
+            margin = std::min(margin, one_ahead(bench, other, others).criterion() - model.criterion());
         // At a bound it stands in for something else: a warm-up that never ends is a constant friction.
         if (std::abs(margin) < rules.tie_margin &&
             !bend_of(bench, other, other.stated.terms.size() - 1).parameter.empty())
