@@ -275,7 +275,7 @@ class DiagnosisRun {
         found.ground = {};  // its columns are not needed any more
         if (other_ && !(has_position_ && other_has_position_)) before.of_other(*other_);
         Candidate last = tested(found, before.has_other());
-        if (is_residual_left(found)) {
+        if (is_residual_left(found, last)) {
             const ModelBench plain = *found.bench;
             first_bench_ = &plain;
             found = search_again(found, part, model_, effects_, more_work_, rules_);
@@ -369,11 +369,10 @@ class DiagnosisRun {
         own = place;
     }
 
-    [[nodiscard]] bool is_residual_left(const Searched& found) const {
+    [[nodiscard]] bool is_residual_left(const Searched& found, const Candidate& last) const {
         const bool doubtful = std::any_of(told_.rounds.begin(), told_.rounds.end(), is_doubtful);
-        return (doubtful || !told_.unexplained.empty()) &&
-               rms(found.bench->cleared_residual(found.last.stated)) >
-                   rules_.beside.least_left * found.noise.rms_nm;
+        return (doubtful || !told_.unexplained.empty()) && rms(found.bench->cleared_residual(last.stated)) >
+                                                               rules_.beside.least_left * found.noise.rms_nm;
     }
 
     // The excerpt chose; the whole log gives the values.

@@ -321,17 +321,15 @@ std::optional<Candidate> other_addition(const ModelBench& bench, const Candidate
     return ripple_with_change(bench, now, trials, effects);
 }
 
-// Coulomb and viscous friction together, the most that a simulation of rigid bodies lacks, in the place of a
-// curve that is nearer to the two than either alone. With a further effect each the two are compared at three
-// terms.
+// Coulomb and viscous friction together, the most that a simulation of rigid bodies lacks. Alone, each may be
+// a worse first step than a curve that is nearer to the two; a curve is compared with them at three terms.
 std::optional<Candidate> frictions_instead(const ModelBench& bench, const Candidate& now,
                                            const Candidate& next, std::span<const Effect* const> effects) {
     const Effect* const plain[] = {&find_effect("coulomb-friction"), &find_effect("viscous-friction")};
     const auto is_plain = [&](const Term& term) {
         return std::ranges::find(plain, term.effect) != std::end(plain);
     };
-    if (!next.stated.terms.back().effect->resists || std::ranges::any_of(next.stated.terms, is_plain))
-        return std::nullopt;
+    if (std::ranges::any_of(now.stated.terms, is_plain)) return std::nullopt;
     Candidate both = now;
     for (const Effect* friction : plain) {
         const auto trials = screen(bench, both, effects);
@@ -340,6 +338,9 @@ std::optional<Candidate> frictions_instead(const ModelBench& bench, const Candid
         if (trial == trials.end() || bench.work().is_over()) return std::nullopt;
         both = with_trial(bench, both, *trial);
     }
+    if (both.criterion() < next.criterion()) return both;
+    const Term& curve = next.stated.terms.back();
+    if (!curve.effect->resists || is_plain(curve)) return std::nullopt;
     const Candidate ahead = one_ahead(bench, one_ahead(bench, next, effects), effects);
     if (one_ahead(bench, both, effects).criterion() >= ahead.criterion()) return std::nullopt;
     return both;
