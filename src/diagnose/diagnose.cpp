@@ -277,13 +277,25 @@ class DiagnosisRun {
         Candidate last = tested(found, before.has_other());
         if (is_residual_left(found, last)) {
             const ModelBench plain = *found.bench;
+            Diagnosis told = told_;
+            const std::size_t own = own_;
             first_bench_ = &plain;
-            found = search_again(found, part, model_, effects_, more_work_, rules_);
-            last = tested(found, before.has_other());
-            told_.unexplained = leftovers(plain, last.stated);
-            told_.gap.noise_floor_nm = plain.floor_nm(last.stated);
-            told_.residual_in_noise = true;
+            Searched again = search_again(found, part, model_, effects_, more_work_, rules_);
+            Candidate last_again = tested(again, before.has_other());
             first_bench_ = nullptr;
+            const auto left_nm = [&](const Candidate& model) {
+                return rms(plain.cleared_residual(model.stated));
+            };
+            if (left_nm(last_again) < left_nm(last)) {
+                found = std::move(again);
+                last = std::move(last_again);
+                told_.unexplained = leftovers(plain, last.stated);
+                told_.gap.noise_floor_nm = plain.floor_nm(last.stated);
+                told_.residual_in_noise = true;
+            } else {
+                told_ = std::move(told);
+                own_ = own;
+            }
         }
         told_.angle = before.account(whole_, other_ ? &*other_ : nullptr);
         if (!has_position_) told_.undecidable = undecidable(*found.bench, last, effects_, without_);

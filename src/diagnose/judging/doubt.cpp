@@ -240,6 +240,7 @@ void doubt_for_size(Finding& finding, const std::vector<Finding>& findings, cons
                                 : evidence.share_nm;
     const double share_sigma = evidence.share_sigma * share_nm / std::max(evidence.share_nm, 1e-12);
     for (const Finding& other : findings) {
+        if (&other == &finding) continue;
         const Effect& larger = *other.term.effect;
         const bool slight = share_sigma < rules.slight_sigma;
         const bool stands =

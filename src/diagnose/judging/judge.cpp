@@ -92,8 +92,8 @@ void find_rivals(const ModelBench& bench, const Candidate& model, const Candidat
     const DiagnosisRules::JudgeRules& rules = bench.rules().judge;
     const std::size_t most = bench.work().ended() ? 1 : rules.most_rivals;
     std::size_t tried = 0;
-    std::vector<const Effect*> others(effects.begin(), effects.end());
-    std::erase(others, model.stated.terms[term].effect);
+    const Effect* const load[] = {&find_effect("gravity"), &find_effect("inertia")};
+    const bool is_scale = model.stated.terms[term].effect == &find_effect("simulation-scale");
     Hearing hearing(bench.rules(), finding.decisions);
     for (const Trial& trial : screen(bench, fewer, effects)) {
         if (trial.start.effect == model.stated.terms[term].effect) continue;
@@ -103,12 +103,9 @@ void find_rivals(const ModelBench& bench, const Candidate& model, const Candidat
         const bool is_form_alone =
             is_fixed_curve(*trial.start.effect) && is_fixed_curve(*model.stated.terms[term].effect);
         double margin = margin_of(bench, model, other, is_form_alone, something_left);
-        // A load is weight and inertia, and the two may be a multiple of a simulation: what one of these
-        // leaves more than another is too small to be added by a search, and may be the other part of the
-        // same load.
-        if (margin >= rules.tie_margin && trial.start.effect->bears_load &&
-            model.stated.terms[term].effect->bears_load && bench.share(model, other) < bench.material_sigma())
-            margin = std::min(margin, one_ahead(bench, other, others).criterion() - model.criterion());
+        // A payload is weight and inertia, one cause, which together may be a multiple of the simulation.
+        if (is_scale && std::ranges::find(load, trial.start.effect) != std::end(load))
+            margin -= other.gain_left - one_ahead(bench, other, load).gain_left;
         // At a bound it stands in for something else: a warm-up that never ends is a constant friction.
         if (std::abs(margin) < rules.tie_margin &&
             !bend_of(bench, other, other.stated.terms.size() - 1).parameter.empty())
