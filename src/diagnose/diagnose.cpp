@@ -381,10 +381,12 @@ class DiagnosisRun {
         own = place;
     }
 
+    // What doubtful findings would explain beside a known torque is that torque's error, and is left.
     [[nodiscard]] bool is_residual_left(const Searched& found, const Candidate& last) const {
         const bool doubtful = std::any_of(told_.rounds.begin(), told_.rounds.end(), is_doubtful);
-        return (doubtful || !told_.unexplained.empty()) && rms(found.bench->cleared_residual(last.stated)) >
-                                                               rules_.beside.least_left * found.noise.rms_nm;
+        const Model& model = options_.given.empty() ? found.last.stated : last.stated;
+        return (doubtful || !told_.unexplained.empty()) &&
+               rms(found.bench->cleared_residual(model)) > rules_.beside.least_left * found.noise.rms_nm;
     }
 
     // The excerpt chose; the whole log gives the values.
