@@ -286,7 +286,7 @@ class DiagnosisRun {
             const auto left_nm = [&](const Candidate& model) {
                 return rms(plain.cleared_residual(model.stated));
             };
-            if (left_nm(last_again) < left_nm(last)) {
+            if (options_.given.empty() || left_nm(last_again) < left_nm(last)) {
                 found = std::move(again);
                 last = std::move(last_again);
                 told_.unexplained = leftovers(plain, last.stated);
