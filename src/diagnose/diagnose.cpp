@@ -275,15 +275,27 @@ class DiagnosisRun {
         found.ground = {};  // its columns are not needed any more
         if (other_ && !(has_position_ && other_has_position_)) before.of_other(*other_);
         Candidate last = tested(found, before.has_other());
-        if (is_residual_left(found)) {
+        if (is_residual_left(found, last)) {
             const ModelBench plain = *found.bench;
+            Diagnosis told = told_;
+            const std::size_t own = own_;
             first_bench_ = &plain;
-            found = search_again(found, part, model_, effects_, more_work_, rules_);
-            last = tested(found, before.has_other());
-            told_.unexplained = leftovers(plain, last.stated);
-            told_.gap.noise_floor_nm = plain.floor_nm(last.stated);
-            told_.residual_in_noise = true;
+            Searched again = search_again(found, part, model_, effects_, more_work_, rules_);
+            Candidate last_again = tested(again, before.has_other());
             first_bench_ = nullptr;
+            const auto left_nm = [&](const Candidate& model) {
+                return rms(plain.cleared_residual(model.stated));
+            };
+            if (options_.given.empty() || left_nm(last_again) < left_nm(last)) {
+                found = std::move(again);
+                last = std::move(last_again);
+                told_.unexplained = leftovers(plain, last.stated);
+                told_.gap.noise_floor_nm = plain.floor_nm(last.stated);
+                told_.residual_in_noise = true;
+            } else {
+                told_ = std::move(told);
+                own_ = own;
+            }
         }
         told_.angle = before.account(whole_, other_ ? &*other_ : nullptr);
         if (!has_position_) told_.undecidable = undecidable(*found.bench, last, effects_, without_);
@@ -369,11 +381,12 @@ class DiagnosisRun {
         own = place;
     }
 
-    [[nodiscard]] bool is_residual_left(const Searched& found) const {
+    // What doubtful findings would explain beside a known torque is that torque's error, and is left.
+    [[nodiscard]] bool is_residual_left(const Searched& found, const Candidate& last) const {
         const bool doubtful = std::any_of(told_.rounds.begin(), told_.rounds.end(), is_doubtful);
+        const Model& model = options_.given.empty() ? found.last.stated : last.stated;
         return (doubtful || !told_.unexplained.empty()) &&
-               rms(found.bench->cleared_residual(found.last.stated)) >
-                   rules_.beside.least_left * found.noise.rms_nm;
+               rms(found.bench->cleared_residual(model)) > rules_.beside.least_left * found.noise.rms_nm;
     }
 
     // The excerpt chose; the whole log gives the values.

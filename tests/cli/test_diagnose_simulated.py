@@ -343,7 +343,7 @@ class Known(unittest.TestCase):
         for scale in ("", ",scale=1"):
             with self.subTest(scale=scale):
                 found = self.diagnosed(WHOLE, RIGID, scale)
-                self.check_explained(found, "viscous-friction", "coulomb-friction", "ripple")
+                self.check_explained(found, "coulomb-friction", "viscous-friction", "ripple")
                 self.assertAlmostEqual(self.sizes(found, "coulomb-friction", "torque_nm")[0], 1.5, delta=0.01)
                 self.assertAlmostEqual(self.sizes(found, "viscous-friction", "coefficient_nm_per_deg_s")[0], 0.03, delta=1e-4)
                 for size, truth in zip(self.sizes(found, "ripple", "amplitude_nm"), (0.6, 0.9), strict=True):

@@ -48,7 +48,7 @@ Finding named(std::string_view term, double share_sigma) {
     Finding finding;
     finding.term = parse_term(term);
     finding.evidence.share_sigma = share_sigma;
-    finding.evidence.share_nm = finding.evidence.own_nm = share_sigma * noise_nm;
+    finding.evidence.share_nm = finding.evidence.own_nm = finding.evidence.sized_nm = share_sigma * noise_nm;
     return finding;
 }
 
@@ -171,6 +171,18 @@ TEST_CASE("a slight finding beside a far larger one of its kind may only mend it
     Finding larger = named("viscous-friction,coefficient_nm_per_deg_s=0.003", 6.0);
     doubt_for_size(larger, findings, standard);
     CHECK(larger.status == FindingStatus::confirmed);
+}
+
+TEST_CASE(
+    "a phase alone, which acts without a size, may only mend the form of what changes the ripple as well") {
+    std::vector<Finding> findings = {
+        named("resonance,frequency_hz=27,damping=0.1", 4.0),
+        named("ripple-direction-dependence,gain_percent=20,phase_deg=3,width_deg_s=0.2", 1.3)};
+    doubt_for_size(findings[1], findings, standard);
+    CHECK(findings[1].status == FindingStatus::confirmed);
+    findings[1].evidence.sized_nm = 0.03 * noise_nm;
+    doubt_for_size(findings[1], findings, standard);
+    CHECK(findings[1].status == FindingStatus::shape_correction);
 }
 
 TEST_CASE("what the log does by itself, nearly as slowly, speaks against a slow finding") {

@@ -100,7 +100,7 @@ TEST_CASE("the ratio that puts the ripple on its lines comes first") {
     Model truth = joint();
     truth.gear_ratio = GearRatio(80.0);
     const Case c = case_of(plain_log(truth, 66));
-    const RatioCandidates found = likely_ratios(c, c.torque_nm, {1.0, 2.0}, 100.0, standard);
+    const RatioCandidates found = likely_ratios(c, c.torque_nm, {1.0, 2.0}, {40.0, 250.0}, standard);
     REQUIRE(found.ratios.size() == standard.screening.most_ratios);
     CHECK(found.ratios[0] == Approx(80.0).margin(0.5));
     CHECK(found.compared > 100.0);

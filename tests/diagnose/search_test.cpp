@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The search adds what is worth its price, and says of the last candidates why they were not.
 #include "diagnose/search/search.hpp"
+#include "diagnose/search/search_starts.hpp"
 
 #include "bench_fixture.hpp"
 #include "support/catch.hpp"
@@ -96,4 +97,17 @@ TEST_CASE("a wrong ratio and a delay that hide each other are added together") {
     truth.gear_ratio = GearRatio(120.0);
     CHECK(found_in(truth, standard, effects_of_the_ripple()).names ==
           std::vector<std::string>{"delay", "gear-ratio"});
+}
+
+TEST_CASE("only an order that the user stated tells which multiple of the gear ratio is meant") {
+    const TestBench on(case_of(plain_log(joint(), 67)));
+    Candidate model = on.fitted(joint());
+    const RatioRange stated = ratios_beside(model, 100.0, standard);
+    CHECK(stated.highest == Approx(100.0 * standard.screening.highest_ratio));
+    model.prices.assign(model.prices.size(), 30.0);
+    const RatioRange chosen = ratios_beside(model, 100.0, standard);
+    CHECK(chosen.lowest > 50.0);
+    CHECK(chosen.lowest < 100.0);
+    CHECK(chosen.highest > 100.0);
+    CHECK(chosen.highest < 200.0);
 }

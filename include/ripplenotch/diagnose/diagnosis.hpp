@@ -69,6 +69,7 @@ struct Evidence {
     double share_nm = 0.0;     ///< rms torque that only this finding explains
     double share_sigma = 0.0;  ///< the same in units of the noise floor
     double own_nm = 0.0;       ///< rms of its whole torque, of which others might explain a part as well
+    double sized_nm = 0.0;     ///< the same of its size alone, without a number that acts where the size is 0
     double raw_gain = 0.0;     ///< fall of the sum of squares of the residual, Nm^2
     double elsewhere = 0.0;    ///< part of the gain that is left without its best stretch of the log
     double t = 0.0;            ///< the gain in units of its own standard error over blocks of the log

@@ -141,22 +141,21 @@ std::vector<double> strongest_tones_hz(const Case& looked_at, const std::vector<
 }
 
 RatioCandidates likely_ratios(const Case& looked_at, const std::vector<double>& torque_nm,
-                              const std::vector<double>& orders, double about, const DiagnosisRules& rules) {
+                              const std::vector<double>& orders, RatioRange range,
+                              const DiagnosisRules& rules) {
     const auto samples = counted(looked_at, looked_at.motion.position_deg, torque_nm);
     if (orders.empty() || samples.where.size() < rules.lines.fewest_samples) return {};
     const double highest_order = *std::max_element(orders.begin(), orders.end());
-    const LineSpectrum spectrum = spectrum_of(
-        samples, 1.04 * rules.screening.highest_ratio * about * highest_order / 360.0, rules.lines);
+    const LineSpectrum spectrum =
+        spectrum_of(samples, 1.04 * range.highest * highest_order / 360.0, rules.lines);
     // The finest order decides how closely ratios are compared.
     const double step = 0.5 * spectrum.spacing * 360.0 / highest_order;
     // Beyond the spectrum there is nothing to score, however far a clock that is wrong says that the joint
     // turned.
     const double finest = 2.0 * static_cast<double>(spectrum.power.size()) * highest_order /
                           *std::min_element(orders.begin(), orders.end());
-    const auto first =
-        static_cast<std::size_t>(std::min(rules.screening.lowest_ratio * about / step, finest));
-    const auto last =
-        static_cast<std::size_t>(std::min(rules.screening.highest_ratio * about / step, finest));
+    const auto first = static_cast<std::size_t>(std::min(range.lowest / step, finest));
+    const auto last = static_cast<std::size_t>(std::min(range.highest / step, finest));
     std::vector<double> score(last + 1, 0.0);
     for (std::size_t r = first; r <= last; ++r) {
         for (const double order : orders) {

@@ -35,13 +35,18 @@ struct StatedRipple {
 
 /// Gear ratios that put `orders` on the strongest lines of a torque over the angle, the best first; how many
 /// were compared comes with them. At most rules.screening.most_ratios.
+/// Gear ratios that are compared.
+struct RatioRange {
+    double lowest, highest;
+};
+
 struct RatioCandidates {
     std::vector<double> ratios;
     double compared = 1.0;
     double strongest_nm2 = 0.0;  ///< squared amplitudes that the orders have at the best one, in all
 };
 [[nodiscard]] RatioCandidates likely_ratios(const Case& looked_at, const std::vector<double>& torque_nm,
-                                            const std::vector<double>& orders, double about,
+                                            const std::vector<double>& orders, RatioRange range,
                                             const DiagnosisRules& rules);
 
 }  // namespace ripplenotch

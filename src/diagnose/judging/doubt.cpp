@@ -233,16 +233,23 @@ void doubt_for_leftovers(Finding& finding, double excess_nm, const ModelBench& b
 void doubt_for_size(Finding& finding, const std::vector<Finding>& findings, const DiagnosisRules& all) {
     const DoubtRules& rules = all.doubt;
     const Evidence& evidence = finding.evidence;
+    // A number that acts without the size says less of what is there: the phase of a ripple differs by
+    // direction wherever the form of its resonance is not quite the catalogue's.
+    const double share_nm = evidence.sized_nm < evidence.own_nm
+                                ? std::min(evidence.share_nm, evidence.sized_nm)
+                                : evidence.share_nm;
+    const double share_sigma = evidence.share_sigma * share_nm / std::max(evidence.share_nm, 1e-12);
     for (const Finding& other : findings) {
+        if (&other == &finding) continue;
         const Effect& larger = *other.term.effect;
-        const bool slight = evidence.share_sigma < rules.slight_sigma;
-        const bool stands = evidence.share_sigma > rules.stands_sigma &&
-                            evidence.own_nm > rules.shape_part * other.evidence.own_nm;
+        const bool slight = share_sigma < rules.slight_sigma;
+        const bool stands =
+            share_sigma > rules.stands_sigma && evidence.own_nm > rules.shape_part * other.evidence.own_nm;
         const double larger_nm = std::max(other.evidence.share_nm, other.evidence.own_nm);
-        if (evidence.share_nm > rules.shape_part * larger_nm || stands ||
+        if (share_nm > rules.shape_part * larger_nm || stands ||
             !(slight || of_one_kind(finding.term.effect->domain, larger.domain)))
             continue;
-        Hearing(all, finding.decisions).asked("doubt.shape_part", evidence.share_nm / larger_nm, true);
+        Hearing(all, finding.decisions).asked("doubt.shape_part", share_nm / larger_nm, true);
         finding.status = is_doubtful(other) ? FindingStatus::tentative : FindingStatus::shape_correction;
         finding.reason = fmt::format("it may only mend the form of {}, which is {}", larger.name,
                                      is_doubtful(other) ? "in doubt" : "far larger");

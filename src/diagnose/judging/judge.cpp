@@ -92,6 +92,8 @@ void find_rivals(const ModelBench& bench, const Candidate& model, const Candidat
     const DiagnosisRules::JudgeRules& rules = bench.rules().judge;
     const std::size_t most = bench.work().ended() ? 1 : rules.most_rivals;
     std::size_t tried = 0;
+    const Effect* const load[] = {&find_effect("gravity"), &find_effect("inertia")};
+    const bool is_scale = model.stated.terms[term].effect == &find_effect("simulation-scale");
     Hearing hearing(bench.rules(), finding.decisions);
     for (const Trial& trial : screen(bench, fewer, effects)) {
         if (trial.start.effect == model.stated.terms[term].effect) continue;
@@ -100,7 +102,10 @@ void find_rivals(const ModelBench& bench, const Candidate& model, const Candidat
         const Candidate other = with_trial(bench, fewer, trial);
         const bool is_form_alone =
             is_fixed_curve(*trial.start.effect) && is_fixed_curve(*model.stated.terms[term].effect);
-        const double margin = margin_of(bench, model, other, is_form_alone, something_left);
+        double margin = margin_of(bench, model, other, is_form_alone, something_left);
+        // A payload is weight and inertia, one cause, which together may be a multiple of the simulation.
+        if (is_scale && std::ranges::find(load, trial.start.effect) != std::end(load))
+            margin -= other.gain_left - one_ahead(bench, other, load).gain_left;
         // At a bound it stands in for something else: a warm-up that never ends is a constant friction.
         if (std::abs(margin) < rules.tie_margin &&
             !bend_of(bench, other, other.stated.terms.size() - 1).parameter.empty())
@@ -118,6 +123,28 @@ double squares(const ModelBench& bench, const Model& stated) {
     return sum;
 }
 
+// rms over the rows that count.
+double counted_rms(const ModelBench& bench, const std::vector<double>& torque_nm) {
+    std::vector<double> counted_nm;
+    for (const std::size_t k : bench.rows()) counted_nm.push_back(torque_nm[k]);
+    return rms(counted_nm);
+}
+
+// rms of the torque of a term's size alone. The phase of a ripple that differs by direction acts without a
+// size.
+double sized_rms(const ModelBench& bench, const Model& stated, std::size_t term, double own_nm) {
+    const std::span<const Parameter> parameters = stated.terms[term].effect->parameters;
+    Model without_size = stated, size_alone = stated;
+    bool has_size = false;
+    for (std::size_t p = 0; p < parameters.size(); ++p) {
+        has_size = has_size || parameters[p].linear;
+        if (parameters[p].left_out != LeftOut::fitted) continue;
+        (parameters[p].linear ? without_size : size_alone).terms[term].values[p] = parameters[p].neutral;
+    }
+    if (!has_size || counted_rms(bench, bench.torque_of(without_size, term)) == 0.0) return own_nm;
+    return counted_rms(bench, bench.torque_of(size_alone, term));
+}
+
 Finding judged_finding(const ModelBench& bench, const Candidate& model, const Candidate& fewer,
                        std::size_t term, const std::vector<double>& torque_nm) {
     Finding finding;
@@ -131,9 +158,8 @@ Finding judged_finding(const ModelBench& bench, const Candidate& model, const Ca
     evidence.share_sigma = bench.share(model, fewer);
     evidence.share_nm = evidence.share_sigma * bench.noise().material_nm;
     // Of the rows that the share is of: where a resonance is largest may be what is left out.
-    std::vector<double> counted_nm;
-    for (const std::size_t k : bench.rows()) counted_nm.push_back(torque_nm[k]);
-    evidence.own_nm = rms(counted_nm);
+    evidence.own_nm = counted_rms(bench, torque_nm);
+    evidence.sized_nm = sized_rms(bench, model.stated, term, evidence.own_nm);
     evidence.raw_gain = squares(bench, fewer.stated) - squares(bench, model.stated);
     evidence.elsewhere = gain_elsewhere(bench, model.stated, fewer.stated);
     take_blocks(bench, model.stated, fewer.stated, evidence);

@@ -18,12 +18,11 @@ const Effect* among(std::span<const Effect* const> effects, std::string_view nam
     return found == effects.end() ? nullptr : *found;
 }
 
-LateRatio best_late_ratio(const ModelBench& bench, const Effect& delay, const Model& guess,
-                          const std::vector<double>& torque_nm) {
-    const StatedRipple ripple = stated_ripple(guess);
+LateRatio best_late_ratio(const ModelBench& bench, const Effect& delay, const StatedRipple& ripple,
+                          RatioRange range, const std::vector<double>& torque_nm) {
     const auto ratios_at = [&](double delay_s) {
         return LateRatio{delay_s, likely_ratios(seen_late(bench.looked_at(), Seconds(delay_s)), torque_nm,
-                                                ripple.orders, ripple.ratio.value(), bench.rules())};
+                                                ripple.orders, range, bench.rules())};
     };
     LateRatio best = ratios_at(0.0);
     const double alone_nm2 = best.ratios.strongest_nm2;
@@ -94,7 +93,11 @@ std::optional<Candidate> with_late_ratio(const ModelBench& bench, const Candidat
     KeptBeside<LateRatio>& kept = bench.kept()->late_ratios;
     const LateRatio* before = kept.find(seen, bench.looked_at().use, bench.same_model_nm2());
     const LateRatio& best =
-        before != nullptr ? *before : kept.keep(seen, best_late_ratio(bench, *delay, guess, torque_nm));
+        before != nullptr
+            ? *before
+            : kept.keep(seen,
+                        best_late_ratio(bench, *delay, ripple,
+                                        ratios_beside(now, ripple.ratio.value(), bench.rules()), torque_nm));
     if (best.ratios.ratios.empty() ||
         !(best.ratios.strongest_nm2 > bench.rules().screening.late_ratio * best.strongest_alone_nm2))
         return std::nullopt;

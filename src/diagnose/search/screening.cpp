@@ -294,7 +294,7 @@ std::vector<Trial> screen(const ModelBench& bench, const Candidate& model,
         for (Trial& trial : trials) trial.gain *= before->unit_nm2 / unit_nm2;
         return sorted(std::move(trials));
     }
-    const Hints hints = hints_of(bench, model.stated, left_nm);
+    const Hints hints = hints_of(bench, model, left_nm);
     const std::size_t count = bench.rules().screening.sketch_samples;
     const Screening thinned(bench, model, left_nm, sketch(bench.looked_at(), count), hints,
                             Screening::all_lags);

@@ -102,18 +102,6 @@ bool worth_it(const ModelBench& bench, const Candidate& now, const Candidate& ne
     return !hearing.asked("search.fair_part", part, part < rules.fair_part);
 }
 
-// A candidate with the best that the screening beside it finds, or as it is.
-Candidate one_ahead(const ModelBench& bench, const Candidate& candidate,
-                    std::span<const Effect* const> effects) {
-    Candidate best = candidate;
-    const std::vector<Trial> trials = screen(bench, candidate, effects);
-    for (std::size_t i = 0; i < std::min(bench.rules().search.looked_ahead, trials.size()); ++i) {
-        Candidate next = with_trial(bench, candidate, trials[i]);
-        if (next.criterion() < best.criterion()) best = std::move(next);
-    }
-    return best;
-}
-
 // Two effects that act on the same ripple may each do little alone, and a third, which does a part of both,
 // more than either. Where the best addition leaves much of the gap, the finalists are compared by what they
 // come to with one more. One that comes to the best itself is the same two in another order.
@@ -260,12 +248,21 @@ Candidate without_term(const ModelBench& bench, const Candidate& model, std::siz
     return bench.fitted(open, guess, std::move(prices));
 }
 
+Candidate one_ahead(const ModelBench& bench, const Candidate& candidate,
+                    std::span<const Effect* const> effects) {
+    Candidate best = candidate;
+    const std::vector<Trial> trials = screen(bench, candidate, effects);
+    for (std::size_t i = 0; i < std::min(bench.rules().search.looked_ahead, trials.size()); ++i) {
+        Candidate next = with_trial(bench, candidate, trials[i]);
+        if (next.criterion() < best.criterion()) best = std::move(next);
+    }
+    return best;
+}
+
 namespace {
 
 // What changes a ripple or a torque as a whole.
 bool transforms(const Term& term) { return term.effect->side != Side::joint; }
-
-bool is_friction(const Term& term) { return term.effect->resists; }
 
 // Two effects that change the same ripple in the place of one whose form is neither's: amplitude by speed and
 // phase by direction are together nearly a resonance.
@@ -324,8 +321,35 @@ std::optional<Candidate> other_addition(const ModelBench& bench, const Candidate
     return ripple_with_change(bench, now, trials, effects);
 }
 
-Candidate search_from(ModelBench& bench, const Candidate& start, std::size_t own_terms,
-                      std::span<const Effect* const> effects, std::vector<RefusedCandidate>& refused) {
+// Coulomb and viscous friction together, the most that a simulation of rigid bodies lacks. Alone, each may be
+// a worse first step than a curve that is nearer to the two; a curve is compared with them at three terms.
+std::optional<Candidate> frictions_instead(const ModelBench& bench, const Candidate& now,
+                                           const Candidate& next, std::span<const Effect* const> effects) {
+    const Effect* const plain[] = {&find_effect("coulomb-friction"), &find_effect("viscous-friction")};
+    const auto is_plain = [&](const Term& term) {
+        return std::ranges::find(plain, term.effect) != std::end(plain);
+    };
+    if (std::ranges::any_of(now.stated.terms, is_plain)) return std::nullopt;
+    Candidate both = now;
+    for (const Effect* friction : plain) {
+        const auto trials = screen(bench, both, effects);
+        const auto trial =
+            std::ranges::find(trials, friction, [](const Trial& one) { return one.start.effect; });
+        if (trial == trials.end() || bench.work().is_over()) return std::nullopt;
+        both = with_trial(bench, both, *trial);
+    }
+    if (both.criterion() < next.criterion()) return both;
+    const Term& curve = next.stated.terms.back();
+    if (!curve.effect->resists || is_plain(curve)) return std::nullopt;
+    const Candidate ahead = one_ahead(bench, one_ahead(bench, next, effects), effects);
+    if (one_ahead(bench, both, effects).criterion() >= ahead.criterion()) return std::nullopt;
+    return both;
+}
+
+}  // namespace
+
+Candidate search(ModelBench& bench, const Candidate& start, std::size_t own_terms,
+                 std::span<const Effect* const> effects, std::vector<RefusedCandidate>& refused) {
     const SearchRules& rules = bench.rules().search;
     Candidate now = start;
     const auto add_all = [&] {
@@ -345,6 +369,10 @@ Candidate search_from(ModelBench& bench, const Candidate& start, std::size_t own
                 if (auto other = best_with_one_more(bench, now, *next, tried, effects);
                     other && worth_it(bench, now, *other, decisions))
                     next = std::move(other);
+            }
+            if (next) {
+                if (auto frictions = frictions_instead(bench, now, *next, effects))
+                    next = std::move(frictions);
             }
             if (!next || !worth_it(bench, now, *next, decisions))
                 next = bench.beside_residual() ? other_addition(bench, now, trials, tried, effects)
@@ -373,51 +401,6 @@ Candidate search_from(ModelBench& bench, const Candidate& start, std::size_t own
         add_all();
     }
     drop_slight_twins(bench, now, own_terms);
-    return now;
-}
-
-// Coulomb and viscous friction together, the most that a simulation of rigid bodies lacks. Where a further
-// friction is missing as well, each alone is the worst first step: a curve between them is nearer.
-std::optional<Candidate> with_frictions(const ModelBench& bench, const Candidate& start,
-                                        std::span<const Effect* const> effects) {
-    Candidate now = start;
-    for (const std::string_view name : {"coulomb-friction", "viscous-friction"}) {
-        const Effect& effect = find_effect(name);
-        const bool is_tried = std::ranges::find(effects, &effect) != effects.end();
-        if (!is_tried ||
-            std::ranges::any_of(start.stated.terms, [&](const Term& term) { return term.effect == &effect; }))
-            return std::nullopt;
-    }
-    for (const Trial& trial : screen(bench, start, effects)) {
-        if (trial.start.effect->name == "coulomb-friction") now = with_trial(bench, now, trial);
-    }
-    for (const Trial& trial : screen(bench, now, effects)) {
-        if (trial.start.effect->name == "viscous-friction") return with_trial(bench, now, trial);
-    }
-    return std::nullopt;
-}
-
-}  // namespace
-
-Candidate search(ModelBench& bench, const Candidate& start, std::size_t own_terms,
-                 std::span<const Effect* const> effects, std::vector<RefusedCandidate>& refused) {
-    Candidate now = search_from(bench, start, own_terms, effects, refused);
-    const auto found = now.stated.terms.begin() + static_cast<std::ptrdiff_t>(own_terms);
-    const bool is_curve = std::any_of(found, now.stated.terms.end(), [](const Term& term) {
-        return is_friction(term) && term.effect->name != "coulomb-friction" &&
-               term.effect->name != "viscous-friction";
-    });
-    if (!is_curve || bench.work().is_over()) return now;
-    if (const auto other_start = with_frictions(bench, start, effects)) {
-        std::vector<RefusedCandidate> other_refused;
-        bench.settle_on(other_start->stated);
-        Candidate other = search_from(bench, *other_start, own_terms, effects, other_refused);
-        if (other.criterion() < now.criterion()) {
-            refused = std::move(other_refused);
-            return other;
-        }
-        bench.settle_on(now.stated);
-    }
     return now;
 }
 

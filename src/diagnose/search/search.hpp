@@ -22,5 +22,8 @@ namespace ripplenotch {
 
 [[nodiscard]] Candidate without_term(const ModelBench& bench, const Candidate& model, std::size_t term);
 [[nodiscard]] Candidate with_trial(const ModelBench& bench, const Candidate& model, const Trial& trial);
+/// The candidate with the best that the screening beside it finds, or as it is.
+[[nodiscard]] Candidate one_ahead(const ModelBench& bench, const Candidate& candidate,
+                                  std::span<const Effect* const> effects);
 
 }  // namespace ripplenotch

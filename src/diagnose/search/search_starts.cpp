@@ -113,7 +113,25 @@ double value_for_ratio(const Effect& effect, std::size_t parameter, GearRatio st
     return effect.parameters[parameter].neutral + (wanted - at_neutral.value()) / slope;
 }
 
-Hints hints_of(const ModelBench& bench, const Model& stated, const std::vector<double>& left_nm) {
+RatioRange ratios_beside(const Candidate& model, double about, const DiagnosisRules& rules) {
+    const RatioRange all{rules.screening.lowest_ratio * about, rules.screening.highest_ratio * about};
+    RatioRange range = all;
+    for (std::size_t t = 0; t < model.stated.terms.size(); ++t) {
+        const Term& term = model.stated.terms[t];
+        const auto place = term.effect->ripple_order;
+        if (!place) continue;
+        if (model.prices[t] == 0.0) return all;
+        for (const double other : term.effect->parameters[*place].tried) {
+            const double between = about * std::sqrt(other / *term.values[*place]);
+            if (between < about) range.lowest = std::max(range.lowest, between);
+            if (between > about) range.highest = std::min(range.highest, between);
+        }
+    }
+    return range;
+}
+
+Hints hints_of(const ModelBench& bench, const Candidate& model, const std::vector<double>& left_nm) {
+    const Model& stated = model.stated;
     Hints hints;
     if (bench.looked_at().expected_delay) hints.delay_s = bench.looked_at().expected_delay->value();
     hints.tones_hz = strongest_tones_hz(bench.looked_at(), left_nm, bench.rules());
@@ -125,7 +143,7 @@ Hints hints_of(const ModelBench& bench, const Model& stated, const std::vector<d
                   [](const Term& term) { return term.effect->ripple_order.has_value(); });
     hints.ratios =
         likely_ratios(seen_late(bench.looked_at(), lateness_of(stated)), bench.raw_residual(without_ripple),
-                      hints.orders, hints.ratio.value(), bench.rules());
+                      hints.orders, ratios_beside(model, hints.ratio.value(), bench.rules()), bench.rules());
     hints.least_order =
         360.0 * bench.rules().screening.least_cycle / std::max(both_ways_deg(bench.looked_at()), 1e-9);
     hints.changes = change_times(bench.looked_at(), left_nm, bench.noise().rms_nm, bench.rules());

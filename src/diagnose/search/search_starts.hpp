@@ -27,7 +27,12 @@ struct Hints {
 [[nodiscard]] double value_for_ratio(const Effect& effect, std::size_t parameter, GearRatio stated,
                                      double wanted);
 
-[[nodiscard]] Hints hints_of(const ModelBench& bench, const Model& stated,
+/// Gear ratios that are compared beside a model whose ratio is `about`. An order that the search chose from
+/// its list states nothing: a ratio that brings it nearer to another one of the list is that order of the
+/// same gear.
+[[nodiscard]] RatioRange ratios_beside(const Candidate& model, double about, const DiagnosisRules& rules);
+
+[[nodiscard]] Hints hints_of(const ModelBench& bench, const Candidate& model,
                              const std::vector<double>& left_nm);
 
 /// The effect with every combination of the values at which its search may begin. `samples`: of the log.
