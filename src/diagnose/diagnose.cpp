@@ -249,7 +249,9 @@ class DiagnosisRun {
         model_.widest_step_deg_s = rules_.search.widest_step * fastest_deg_s(whole_.motion);
         own_ = model_.terms.size();
         without_.assign(options.without.begin(), options.without.end());
-        if (!is_scale_open(options.given)) without_.emplace_back("simulation-scale");
+        // A fault of the set-up explains a wrong scale.
+        if (!is_scale_open(options.given) || !options.setup.empty())
+            without_.emplace_back("simulation-scale");
         // An arm has inertia and gravity of its own.
         if (is_given(options.given, "arm"))
             without_.insert(without_.end(), {"inertia", "gravity", "payload-change"});
@@ -263,6 +265,7 @@ class DiagnosisRun {
 
     [[nodiscard]] Diagnosis run() {
         told_.has_position = has_position_;
+        told_.setup.assign(options_.setup.begin(), options_.setup.end());
         told_.false_alarm = rules_.screening.false_alarm;
         told_.samples = whole_.size();
         told_.faults = find_faults(whole_, rules_.faults);
@@ -308,7 +311,8 @@ class DiagnosisRun {
                                                            : told_.unexplained;
         told_.rounds = judge(bench, found.last, own, effects_, unexplained);
         drop_balanced(found, unexplained);
-        if (fits_offset_) promote_offset(found, own, unexplained);
+        if (fits_offset_ && options_.setup.empty()) promote_offset(found, own, unexplained);
+        doubt_for_setup();
         own_ = own;
         told_.refused = found.refused;
         told_.baseline = as_given(bench, found.first).stated;
@@ -369,7 +373,18 @@ class DiagnosisRun {
         own = place;
     }
 
+    // A fault of the set-up leaves torques that effects of the joint may imitate.
+    void doubt_for_setup() {
+        if (options_.setup.empty()) return;
+        for (Finding& finding : told_.rounds) {
+            if (!is_trusted(finding)) continue;
+            finding.status = FindingStatus::tentative;
+            finding.reason = "the fault of the set-up may cause it";
+        }
+    }
+
     [[nodiscard]] bool is_residual_left(const Searched& found) const {
+        if (!options_.setup.empty()) return false;
         const bool doubtful = std::any_of(told_.rounds.begin(), told_.rounds.end(), is_doubtful);
         return (doubtful || !told_.unexplained.empty()) &&
                rms(found.bench->cleared_residual(found.last.stated)) >

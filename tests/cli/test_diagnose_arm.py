@@ -39,7 +39,7 @@ def torques(a, b):
     return one, two + m2 * G * l2 * math.cos(q1 + q2)
 
 
-def write_log(path, seed, coulomb_nm=0.0, seconds=30.0, rate=250.0):
+def write_log(path, seed, coulomb_nm=0.0, seconds=30.0, rate=250.0, sign=(1, 1)):
     noise = random.Random(seed)
     with open(path, "w") as log:
         log.write("time_s," + ",".join(f"j{j}_{kind}" for j in (1, 2) for kind in
@@ -49,8 +49,9 @@ def write_log(path, seed, coulomb_nm=0.0, seconds=30.0, rate=250.0):
             joints = motion(t, 0.3 * seed), motion(0.83 * t + seed, 1.0)
             joints = joints[0], (joints[1][0], 0.83 * joints[1][1], 0.83 ** 2 * joints[1][2])
             cells = [f"{t:.4f}"]
-            for (q, v, _), torque in zip(joints, torques(*joints)):
+            for (q, v, _), torque, side in zip(joints, torques(*joints), sign):
                 torque += coulomb_nm * math.tanh(math.degrees(v) / 0.5) + noise.gauss(0.0, 0.05)
+                torque *= side
                 cells += [f"{math.degrees(q):.6f}", f"{math.degrees(v) + noise.gauss(0.0, 0.02):.5f}", f"{torque:.5f}"]
             log.write(",".join(cells) + "\n")
 
@@ -96,6 +97,20 @@ class Arm(unittest.TestCase):
         self.assertLess(max(map(abs, curves["before"])), 3.0)
         self.assertLess(max(map(abs, curves["after"])), 8 * found["gap"]["after_nm"])
         self.assertLess(max(map(abs, curves["after"])), 0.6 * max(map(abs, curves["before"])))
+
+    def test_a_wrong_set_up_is_reported_first_and_nothing_is_confirmed_with_it(self):
+        for sign, gravity, fault, option in (((1, 1), "gravity=0:9.81:0", "gravity-direction", "gravity=0:-9.81:0"),
+                                             ((1, 1), "gravity=0:0:-9.81", "gravity-direction", "gravity=0:-9.81:0"),
+                                             ((1, -1), DOWN, "torque-sign", ""), ((-1, -1), DOWN, "torque-sign", "")):
+            with self.subTest(sign=sign, gravity=gravity):
+                write_log(self.folder / "log.csv", 1, coulomb_nm=1.2, sign=sign)
+                found = self.diagnosed("log.csv", "--joint", "j2", "--arm", f"dh,file=dh.csv,{gravity}")
+                self.assertEqual([(one["fault"], one["option"]) for one in found["setup"]], [(fault, option)])
+                self.assertEqual((found["named"], found["verdict"]), ([], "unexplained"))
+                self.assertIn("correct the set-up", found["next"][0])
+        done = self.tool("diagnose", "log.csv", "--joint", "j2", "--arm", f"dh,file=dh.csv,{DOWN}", "--gear-ratio", "100", "-q")
+        self.assertEqual(done.stdout.splitlines()[2], "Check the set-up: the torque of joints j1, j2 has its sign reversed: "
+                                                      "friction would drive the arm.")
 
     def test_an_arm_without_friction_has_no_name(self):
         write_log(self.folder / "log.csv", 3)

@@ -20,11 +20,13 @@ struct ArmSetupLimits {
     double least_friction = 1.0;
 };
 
-/// Torques whose sign is reversed: with it turned the joints, which share the links, fit one arm clearly
-/// better on fifths of the log left out; of all signs and their opposites friction says which. Then, with
-/// those signs turned, whether another direction of gravity along an axis of the base fits clearly better.
-/// `fit`: of these, as fit_arm made it with these options. Takes a fit of the arm with one window a joint and
-/// five more.
+/// Torques whose sign is reversed or whose unit is mNm: with that corrected the joints, which share the
+/// links, fit one arm clearly better on held-out fifths of the log; of all signs and their opposites friction
+/// decides. Then, with those torques corrected, whether another direction of gravity along an axis of the
+/// base fits clearly better; where all that is right, whether two joints are exchanged. `fit`: of these, as
+/// fit_arm made it with these options. Takes as long as a fit of the arm with one window for each joint, five
+/// directions and each pair of joints. A factor that all torques share cannot be found: heavier links have
+/// it.
 [[nodiscard]] std::vector<SetupFault> suspect_arm(const Chain& chain, const ArmLog& log, const ArmFit& fit,
                                                   const ArmFitOptions& options = {},
                                                   const ArmSetupLimits& limits = {});

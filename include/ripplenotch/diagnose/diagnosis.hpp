@@ -233,6 +233,9 @@ struct DiagnosisOptions {
     /// Terms that are stated and not searched, a column per value and a row per row of the log; the same of
     /// the validation log, where there is one.
     std::span<const GivenTerm> given = {}, validation_given = {};
+    /// Faults of the set-up that are known beforehand. The known terms are wrong then, so that no name is
+    /// confirmed.
+    std::span<const SetupFault> setup = {};
     /// A delay at which the search for one begins as well.
     std::optional<Seconds> expected_delay = {};
     DiagnosisRules rules = {};

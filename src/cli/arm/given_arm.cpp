@@ -45,6 +45,17 @@ const ArmFit& GivenArm::fit(std::size_t joint, const std::vector<bool>& use) {
     return fits_.emplace(alone ? joint : 0, fit_arm(chain(), reading_.view(), options)).first->second;
 }
 
+const std::vector<SetupFault>& GivenArm::setup_faults(std::size_t joint) {
+    const bool alone = chain().lengths_are_guessed;
+    const auto known = faults_.find(alone ? joint : 0);
+    if (known != faults_.end()) return known->second;
+    ArmFitOptions options;
+    if (alone) options.joints = {joint};
+    return faults_
+        .emplace(alone ? joint : 0, suspect_arm(chain(), reading_.view(), fit(joint), options))
+        .first->second;
+}
+
 GivenTerm GivenArm::term(std::size_t joint, const ArmReading& log) {
     const ArmFit& found = fit(joint);
     const ArmLog view = log.view();

@@ -113,6 +113,7 @@ std::string answer(const Diagnosis& diagnosis) {
     for (const Tie& tie : diagnosis.ambiguous) add(joined(tie.effects, " or "));
     const DiagnosisGap& gap = diagnosis.gap;
     const std::string head = !names.empty()                  ? "Missing: " + names
+                             : !diagnosis.setup.empty()      ? "No effect can be confirmed with this set-up"
                              : diagnosis.unexplained.empty() ? "Nothing is missing"
                                                              : "Unexplained";
     return fmt::format("{}; residual {} to {} Nm rms, noise {} Nm rms.\n", head, short_number(gap.before_nm),
@@ -205,7 +206,9 @@ std::string closing(const Diagnosis& diagnosis) {
                        ? "partly explained: this log does not confirm what you accepted"
                        : "partly explained: something is left";
         case DiagnosisVerdict::unexplained:
-            return "unexplained: no effect of the catalogue accounts for what is left";
+            return diagnosis.setup.empty()
+                       ? "unexplained: no effect of the catalogue accounts for what is left"
+                       : "unexplained: correct the set-up first";
         case DiagnosisVerdict::undecided:
             return "cannot tell";
     }

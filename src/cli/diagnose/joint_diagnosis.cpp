@@ -91,14 +91,17 @@ std::optional<Seconds> expected_delay(const GivenTerms& given) {
 Diagnosis diagnosed(const DiagnoseRequest& request, const Model& model, const JointDiagnosis& one,
                     const std::optional<Log>& other) {
     try {
-        return diagnose_readings(model, one.log, other ? &*other : nullptr,
-                                 {.smoothing = request.smoothing,
-                                  .without = request.without,
-                                  .accept = request.accept,
-                                  .given = one.given.log,
-                                  .validation_given = one.given.validation,
-                                  .expected_delay = expected_delay(one.given),
-                                  .rules = rules_of(request)});
+        return diagnose_readings(
+            model, one.log, other ? &*other : nullptr,
+            {.smoothing = request.smoothing,
+             .without = request.without,
+             .accept = request.accept,
+             .given = one.given.log,
+             .validation_given = one.given.validation,
+             .setup = one.given.setup ? std::span<const SetupFault>(one.given.setup->faults)
+                                      : std::span<const SetupFault>(),
+             .expected_delay = expected_delay(one.given),
+             .rules = rules_of(request)});
     } catch (const DataError& error) {  // the library knows no file
         raise<DataError>("{}: {}", request.path, error.what());
     }
@@ -149,10 +152,7 @@ JointDiagnosis diagnosed_joint(const DiagnoseRequest& request, const std::option
     for (const std::string& file : one.given.files) one.provenance.inputs.push_back(input_record(file));
     Progress::current().begin("looking for what is missing", "", 0);
     one.diagnosis = diagnosed(request, model.model, one, other);
-    if (one.given.setup) {
-        one.diagnosis.setup = one.given.setup->faults;
-        one.diagnosis.alignment = one.given.setup->motion_lag;
-    }
+    if (one.given.setup) one.diagnosis.alignment = one.given.setup->motion_lag;
     return one;
 }
 
