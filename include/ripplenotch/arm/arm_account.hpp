@@ -3,9 +3,11 @@
 // What there is to say of an arm that a diagnosis was given.
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "ripplenotch/arm/arm_lag.hpp"
 #include "ripplenotch/arm/arm_travel.hpp"
 #include "ripplenotch/core/units.hpp"
 
@@ -22,8 +24,10 @@ struct ArmAccount {
     bool lengths_are_guessed = false;
     double pull = 0.0;
     Seconds smoothing;
-    double gap_before_nm = 0.0;  ///< rms of the torque about its mean
-    double gap_nm = 0.0;         ///< rms of what arm and friction beside it leave, on fifths left out
+    double gap_before_nm = 0.0;   ///< rms of the torque about its mean
+    double gap_nm = 0.0;          ///< rms of what arm and friction beside it leave, on fifths left out
+    std::optional<ArmLag> lag;    ///< of the torques of all joints behind their motion
+    bool lag_is_applied = false;  ///< known to the model as a delay of that size
     std::vector<std::string> warnings, notes;
 };
 

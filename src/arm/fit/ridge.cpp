@@ -112,8 +112,10 @@ ArmRidge::Word ArmRidge::word_of(std::size_t j, double noise_nm) const {
     }
     const MatrixXd between = weight * sums.rows_by_rows.topRightCorner(links, own);
     const DefiniteFactors factored(of_own);
-    return {weight * sums.rows_by_rows.topLeftCorner(links, links) -
-                between * factored.solve(MatrixXd(between.transpose())),
+    // What the joint's own values take up of a link's leaves rounding that may be below 0.
+    MatrixXd of_links = weight * sums.rows_by_rows.topLeftCorner(links, links);
+    of_links.diagonal() *= 1.0 + rounding_of_definite;
+    return {of_links - between * factored.solve(MatrixXd(between.transpose())),
             weight * sums.rows_by_torque.head(links) -
                 between * factored.solve(VectorXd(weight * sums.rows_by_torque.tail(own)))};
 }

@@ -11,6 +11,7 @@
 #include "cli/readings/readings.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/memory.hpp"
+#include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/progress.hpp"
 
 namespace ripplenotch {
@@ -81,6 +82,19 @@ void say_arm(const CommonOptions& common, const ArmAccount& arm) {
     say_warnings(common, arm.warnings);
 }
 
+// One controller has one clock: the delay of an arm's torques is known from all its joints, and is not
+// searched in one of them, unless that one contradicts the others. Names that are not tried then.
+std::vector<std::string> take_lag(const DiagnoseRequest& request, const JointDiagnosis& one, Model& model) {
+    std::vector<std::string> without = request.without;
+    const std::optional<ArmAccount>& arm = one.given.account;
+    const bool has_delay =
+        std::ranges::any_of(model.terms, [](const Term& term) { return term.effect->name == "delay"; });
+    if (!arm || !arm->lag || has_delay) return without;
+    if (arm->lag_is_applied) model.terms.push_back({&find_effect("delay"), {to_digits(arm->lag->delay_s)}});
+    if (!arm->lag->contradicted_by(one.given.fitted_arm->find(one.joint))) without.emplace_back("delay");
+    return without;
+}
+
 // Where no motion of the simulation says how late the log is, the torques may.
 std::optional<Seconds> expected_delay(const GivenTerms& given) {
     if (!given.setup || given.setup->motion_lag || !given.setup->torque_lag) return std::nullopt;
@@ -88,13 +102,14 @@ std::optional<Seconds> expected_delay(const GivenTerms& given) {
     return lag.identifiable ? std::optional(Seconds(lag.delay_s)) : std::nullopt;
 }
 
-Diagnosis diagnosed(const DiagnoseRequest& request, const Model& model, const JointDiagnosis& one,
+Diagnosis diagnosed(const DiagnoseRequest& request, Model model, const JointDiagnosis& one,
                     const std::optional<Log>& other) {
+    const std::vector<std::string> without = take_lag(request, one, model);
     try {
         return diagnose_readings(
             model, one.log, other ? &*other : nullptr,
             {.smoothing = request.smoothing,
-             .without = request.without,
+             .without = without,
              .accept = request.accept,
              .given = one.given.log,
              .validation_given = one.given.validation,

@@ -163,6 +163,18 @@ Json arm_json(const ArmAccount& arm) {
     json["all_joints_at_once"] = arm.all_joints_at_once;
     json["lambda"] = arm.pull;
     json["gap_nm"] = six_digits(arm.gap_nm);
+    if (arm.lag) {
+        json["lag"] = {
+            {"delay_s", six_digits(arm.lag->delay_s)},
+            {"ci95_s", {six_digits(arm.lag->delay_95_s.low), six_digits(arm.lag->delay_95_s.high)}},
+            {"applied", arm.lag_is_applied},
+            {"joints", Json::array()}};
+        for (const JointLag& joint : arm.lag->joints)
+            list_in(json["lag"], "joints")
+                .push_back({{"name", arm.joints.at(joint.joint).name},
+                            {"delay_s", six_digits(joint.delay_s)},
+                            {"contradicts", joint.contradicts}});
+    }
     return json;
 }
 
