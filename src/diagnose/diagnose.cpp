@@ -313,6 +313,7 @@ class DiagnosisRun {
         drop_balanced(found, unexplained);
         if (fits_offset_ && options_.setup.empty()) promote_offset(found, own, unexplained);
         doubt_for_setup();
+        doubt_for_travel(bench.looked_at());
         own_ = own;
         told_.refused = found.refused;
         told_.baseline = as_given(bench, found.first).stated;
@@ -371,6 +372,22 @@ class DiagnosisRun {
         found.last.prices[place] = model.prices[place];
         told_.rounds.insert(told_.rounds.begin(), std::move(offset));
         own = place;
+    }
+
+    // A torque that repeats with the output angle has to be seen to repeat: over a whole turn, or at least
+    // over two of its cycles. Over less, the weight of this joint or of those behind it bends alike.
+    void doubt_for_travel(const Case& c) {
+        const auto [low, high] = std::ranges::minmax(c.motion.position_deg);
+        const double turns = (high - low) / 360.0;
+        for (Finding& finding : told_.rounds) {
+            if (!is_trusted(finding) || finding.term.effect->name != "output-ripple") continue;
+            const double cycles = turns * finding.term.values[0].value_or(1.0);
+            if (turns >= 1.0 || cycles >= 2.0) continue;
+            finding.status = FindingStatus::tentative;
+            finding.reason =
+                fmt::format("the travel of {:.0f} deg is {:.2g} of its cycles: it is not seen to repeat",
+                            high - low, cycles);
+        }
     }
 
     // A fault of the set-up leaves torques that effects of the joint may imitate.

@@ -59,6 +59,16 @@ class Diagnose(unittest.TestCase):
         self.assertEqual(json.loads((pathlib.Path(self.folder.name) / "improved.json").read_text())["effects"],
                          found["model"]["effects"])
 
+    def test_a_torque_of_the_output_angle_that_is_not_seen_to_repeat_is_not_confirmed(self):
+        self.log("log.csv", move(0, 130, 10, 120, 5), "output-ripple,order=2,amplitude_nm=70,phase_deg=20")
+        done = self.run_tool("diagnose", "log.csv", "--model", "model.json", "--json", "-q")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        found = json.loads(done.stdout)
+        self.assertNotIn("output-ripple", found["named"])
+        for one in found["rounds"]:
+            if one["effect"] == "output-ripple":
+                self.assertIn("not seen to repeat", one["reason"])
+
     def test_the_same_log_gives_the_same_bytes_and_a_conclusive_verdict_can_be_asked_for(self):
         self.log("log.csv", move(0, 120, -60), "offset,torque_nm=0.4")
         first = self.run_tool("diagnose", "log.csv", "--model", "model.json", "--require-conclusive")

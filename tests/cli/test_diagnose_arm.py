@@ -136,6 +136,15 @@ class Arm(unittest.TestCase):
             self.assertFalse(found["arm"]["lag"]["applied"])
             self.assertNotIn("delay", found["named"])
 
+    def test_without_the_arm_the_next_step_says_that_other_joints_move(self):
+        write_log(self.folder / "log.csv", 1, coulomb_nm=1.2)
+        (self.folder / "own.json").write_text('{"schema": "ripplenotch/model/1", "gear_ratio": 100, "effects": [{"effect": "inertia"}]}')
+        done = self.tool("diagnose", "log.csv", "--joint", "j1", "--model", "own.json", "--json", "-q")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        found = json.loads(done.stdout)
+        self.assertIn("the log has 2 joints", found["next"][0])
+        self.assertIn("--arm", found["next"][0])
+
     def test_an_arm_without_friction_has_no_name(self):
         write_log(self.folder / "log.csv", 3)
         found = self.diagnosed("log.csv", "--joint", "j2", "--arm", f"dh,file=dh.csv,{DOWN}")

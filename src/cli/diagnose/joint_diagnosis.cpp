@@ -137,6 +137,22 @@ GivenTerms given_of(const DiagnoseRequest& request, const ModelWithGiven& model,
     return given;
 }
 
+// Of an arm the motion of its other joints is torque of this one, which the effects of a joint may imitate.
+void advise_arm(JointDiagnosis& one) {
+    const std::size_t joints = one.log.layout.joints.size();
+    const bool is_of_position = std::ranges::any_of(one.diagnosis.rounds, [](const Finding& finding) {
+        return finding.term.effect->domain == Domain::position || finding.term.effect->name == "gravity";
+    });
+    const bool is_open = is_of_position || !one.diagnosis.unexplained.empty();
+    if (joints < 2 || !one.given.log.empty() || !is_open) return;
+    one.diagnosis.next.insert(
+        one.diagnosis.next.begin(),
+        fmt::format(
+            "the log has {} joints, and where the others move, their weight and acceleration act on this "
+            "one: --arm takes their motion into account",
+            joints));
+}
+
 }  // namespace
 
 bool JointDiagnosis::is_conclusive() const {
@@ -167,6 +183,7 @@ JointDiagnosis diagnosed_joint(const DiagnoseRequest& request, const std::option
     for (const std::string& file : one.given.files) one.provenance.inputs.push_back(input_record(file));
     Progress::current().begin("looking for what is missing", "", 0);
     one.diagnosis = diagnosed(request, model.model, one, other);
+    advise_arm(one);
     if (one.given.setup) one.diagnosis.alignment = one.given.setup->motion_lag;
     return one;
 }
