@@ -19,6 +19,7 @@
 #include "diagnose/judging/values.hpp"
 #include "diagnose/search/search.hpp"
 #include "diagnose/telling/summary.hpp"
+#include "diagnose/telling/unused_rows.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/diagnose/diagnosis.hpp"
@@ -268,7 +269,10 @@ class DiagnosisRun {
         told_.setup.assign(options_.setup.begin(), options_.setup.end());
         told_.false_alarm = rules_.screening.false_alarm;
         told_.samples = whole_.size();
+        add_unused_rows(told_.unused, whole_,
+                        "where the acceleration jumps, smoothing hides the torque of the inertia");
         told_.faults = find_faults(whole_, rules_.faults);
+        add_unused_rows(told_.unused, whole_, "spoiled by a fault of the log");
         std::vector<Leftover> spoiled = nameless(told_.faults, options_.without), aside;
         AngleBefore before(whole_, has_position_);
         if (!has_position_) straighten(whole_, model_, rules_);
@@ -421,6 +425,8 @@ class DiagnosisRun {
             told_.baseline = bench.fitted(first.open, first.stated, first.prices, 4).stated;
         }
         told_.samples_used = all.used();
+        add_unused_rows(told_.unused, all, "a disturbance of short duration");
+        told_.acts_where_unused = mainly_unused(effects_, all, model_);
         while (true) {
             const Candidate settled =
                 told_values(all, found.noise, last, {told_.faults, told_.rounds, own_}, work_, rules_);

@@ -179,6 +179,18 @@ struct AngleAccount {
     std::optional<double> validation_start_deg;
 };
 
+/// Rows of the log that nothing is fitted to.
+struct UnusedRows {
+    std::string reason;
+    std::size_t rows = 0;
+};
+
+/// An effect that acts mainly in rows that nothing is fitted to.
+struct EffectOfUnusedRows {
+    std::string effect;
+    std::size_t rows = 0, unused = 0;  ///< in which it acts, and of these
+};
+
 struct Diagnosis {
     DiagnosisVerdict verdict = DiagnosisVerdict::matches;
     Model baseline;  ///< the model as given, with the values that were fitted to it alone
@@ -210,6 +222,8 @@ struct Diagnosis {
     bool residual_in_noise = false;  ///< names were weighed against noise that holds what nothing explains
     std::vector<Leftover> disagreement;  ///< where the model as given and the log disagree, largest first
     std::size_t samples = 0, samples_used = 0;
+    std::vector<UnusedRows> unused;                     ///< with those of `samples_used` all samples
+    std::vector<EffectOfUnusedRows> acts_where_unused;  ///< of the effects that are tried
     /// Evaluations of a model along the samples searched, and whether the search was ended for their number.
     double evaluations = 0.0;
     bool search_ended = false;

@@ -269,6 +269,11 @@ std::string diagnosis_story(const Diagnosis& diagnosis, bool explain) {
     text += fmt::format("named: {}\n", diagnosis.named.empty() ? "nothing" : joined(diagnosis.named, ", "));
     text += fmt::format("{} samples, {} used; noise floor {} Nm rms\n", diagnosis.samples,
                         diagnosis.samples_used, short_number(gap.noise_floor_nm));
+    for (const UnusedRows& rows : diagnosis.unused)
+        text += fmt::format("  {} samples not used: {}\n", rows.rows, rows.reason);
+    for (const EffectOfUnusedRows& one : diagnosis.acts_where_unused)
+        text += fmt::format("  {} acts in {} samples, of which {} are not used: it may be missed\n",
+                            one.effect, one.rows, one.unused);
     text += fmt::format("gap of the model as given: {} Nm rms\n", short_number(gap.before_nm));
     for (std::size_t i = 0; i < std::min<std::size_t>(diagnosis.disagreement.size(), 3); ++i)
         text += fmt::format("  disagrees {}\n", leftover_text(diagnosis.disagreement[i]));

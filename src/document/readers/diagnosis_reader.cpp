@@ -208,7 +208,8 @@ Diagnosis read_diagnosis(std::string_view text, const std::string& source) {
     fields.ignore_head();
     // Of the model as given, and who says it; what was given beside it; what was written beside it. The
     // chance that a name is wrong follows from the rest.
-    fields.ignore({"gear", "arm", "mjcf", "plan", "wrong_percent", "setup", "alignment"});
+    fields.ignore({"gear", "arm", "mjcf", "plan", "wrong_percent", "setup", "alignment", "samples_not_used",
+                   "acts_where_not_used"});
     Diagnosis diagnosis;
     diagnosis.verdict = enumerator_of(fields, "verdict", DiagnosisVerdict::undecided, verdict_name);
     if (fields.has("doubt")) diagnosis.doubt = fields.text("doubt");

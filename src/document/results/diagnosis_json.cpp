@@ -222,6 +222,13 @@ void put_diagnosis(Json& json, const Diagnosis& diagnosis, const GearAccount& ge
     json["own_terms"] = baseline_json(diagnosis);
     json["samples"] = diagnosis.samples;
     json["samples_used"] = diagnosis.samples_used;
+    json["samples_not_used"] = Json::array();
+    for (const UnusedRows& rows : diagnosis.unused)
+        list_in(json, "samples_not_used").push_back({{"reason", rows.reason}, {"samples", rows.rows}});
+    json["acts_where_not_used"] = Json::array();
+    for (const EffectOfUnusedRows& one : diagnosis.acts_where_unused)
+        list_in(json, "acts_where_not_used")
+            .push_back({{"effect", one.effect}, {"samples", one.rows}, {"not_used", one.unused}});
     json["position_in_log"] = diagnosis.has_position;
     put_angle(json, diagnosis);
     json["search"] = {{"evaluations", std::round(diagnosis.evaluations)}, {"ended", diagnosis.search_ended}};
