@@ -86,7 +86,8 @@ TEST_CASE("a torque in mNm and exchanged joints are found", "[arm]") {
     auto faults = record.faults();
     REQUIRE(faults.size() == 1);
     CHECK(faults.front().kind == SetupFaultKind::torque_unit);
-    CHECK_THAT(faults.front().statement, Catch::Contains("joint " + record.chain.joints[1].name + " is in mNm"));
+    CHECK_THAT(faults.front().statement,
+               Catch::Contains("joint " + record.chain.joints[1].name + " is in mNm"));
     for (double& each : record.traces[1].torque_nm) each /= 1000.0;
     std::swap(record.traces[1], record.traces[2]);
     faults = record.faults();

@@ -62,7 +62,7 @@ GivenTerm arm_term(const Chain& chain, const ArmFit& fit, const ArmLog& log, std
         term.deviation = fit.deviation;
     }
     leave_out_links_before(joint, term);
-    if (rotor_is_told(chain, joint)) {
+    if (rotor_is_identifiable(chain, joint)) {
         std::vector<double> rotor = motions[joint].acceleration_deg_s2;
         const double unit = chain.joints[joint].kind == JointKind::revolute ? std::numbers::pi / 180.0 : 1.0;
         for (double& value : rotor) value *= unit;

@@ -21,7 +21,7 @@ StatedJoints StatedArm::stated_joints() const {
 ArmValues arm_values(const Chain& chain, const ArmFit& fit, std::size_t joint,
                      std::span<const double> of_term, ArmKnowledge knowledge) {
     const ArmJointFit* const own = fit.find(joint);
-    const bool rotor = rotor_is_told(chain, joint);
+    const bool rotor = rotor_is_identifiable(chain, joint);
     const std::size_t links = values_of_a_link * chain.size(), before = values_of_a_link * joint;
     if (own == nullptr || of_term.size() != links - before + (rotor ? 1 : 0))
         raise<UsageError>("arm: {} values for joint {} of {}", of_term.size(), joint + 1, chain.source);

@@ -109,14 +109,14 @@ Finding finding_at(Fields& fields, std::size_t place) {
     return finding;
 }
 
-std::vector<Leftover> leftovers_of(Fields& fields, std::string_view name) {
-    std::vector<Leftover> leftovers;
+std::vector<ResidualRegion> regions_of(Fields& fields, std::string_view name) {
+    std::vector<ResidualRegion> residual_regions;
     fields.each(name, [&](Fields& entry) {
-        leftovers.push_back({enumerator_of(entry, "kind", LeftoverKind::speed, leftover_kind_name),
-                             place_of(entry, "where"), number_or_unknown(entry, "rms_nm"),
-                             number_or_unknown(entry, "part_of_gap")});
+        residual_regions.push_back({enumerator_of(entry, "kind", RegionKind::speed, region_kind_name),
+                                    place_of(entry, "where"), number_or_unknown(entry, "rms_nm"),
+                                    number_or_unknown(entry, "part_of_gap")});
     });
-    return leftovers;
+    return residual_regions;
 }
 
 DiagnosisGap gap_of(Fields& fields) {
@@ -196,8 +196,8 @@ void findings_of(Fields& fields, Diagnosis& diagnosis) {
         diagnosis.undecidable.push_back(
             {effect_of(entry).name, entry.text("reason"), number_or_unknown(entry, "would_explain_nm")});
     });
-    diagnosis.unexplained = leftovers_of(fields, "unexplained");
-    diagnosis.disagreement = leftovers_of(fields, "disagreement");
+    diagnosis.unexplained = regions_of(fields, "unexplained");
+    diagnosis.disagreement = regions_of(fields, "disagreement");
 }
 
 }  // namespace

@@ -97,13 +97,13 @@ Json fault_json(const Fault& fault) {
             {"words", fault.words}};
 }
 
-Json leftovers_json(const std::vector<Leftover>& leftovers) {
+Json regions_json(const std::vector<ResidualRegion>& residual_regions) {
     Json list = Json::array();
-    for (const Leftover& leftover : leftovers) {
-        list.push_back({{"kind", leftover_kind_name(leftover.kind)},
-                        {"where", place_json(leftover.where)},
-                        {"rms_nm", six_digits(leftover.rms_nm)},
-                        {"part_of_gap", six_digits(leftover.part)}});
+    for (const ResidualRegion& region : residual_regions) {
+        list.push_back({{"kind", region_kind_name(region.kind)},
+                        {"where", place_json(region.where)},
+                        {"rms_nm", six_digits(region.rms_nm)},
+                        {"part_of_gap", six_digits(region.part)}});
     }
     return list;
 }
@@ -206,8 +206,8 @@ void put_diagnosis(Json& json, const Diagnosis& diagnosis, const GearAccount& ge
     json["ambiguous"] = Json::array();
     for (const Tie& tie : diagnosis.ambiguous)
         list_in(json, "ambiguous").push_back({{"effects", tie.effects}, {"advice", tie.advice}});
-    json["unexplained"] = leftovers_json(diagnosis.unexplained);
-    json["disagreement"] = leftovers_json(diagnosis.disagreement);
+    json["unexplained"] = regions_json(diagnosis.unexplained);
+    json["disagreement"] = regions_json(diagnosis.disagreement);
     json["undecidable"] = Json::array();
     for (const Undecidable& entry : diagnosis.undecidable)
         list_in(json, "undecidable")
