@@ -44,13 +44,12 @@ inline constexpr Parameter cosine_phase_parameter = {
     .upper = 360.0};
 
 /// State of what remembers the last reversal.
-inline constexpr Parameter initial_state_parameter = {
-    .name = "initial_state",
-    .unit = "",
-    .help = "state at the start of the log, -1 to 1",
-    .lower = -1.0,
-    .upper = 1.0,
-    .left_out = LeftOut::assumed};
+inline constexpr Parameter initial_state_parameter = {.name = "initial_state",
+                                                      .unit = "",
+                                                      .help = "state at the start of the log, -1 to 1",
+                                                      .lower = -1.0,
+                                                      .upper = 1.0,
+                                                      .left_out = LeftOut::assumed};
 constexpr Parameter reversal_width_parameter(std::string_view help, std::span<const double> tried) {
     return {.name = "width_deg",
             .unit = "deg",

@@ -348,7 +348,7 @@ Candidate search_from(ModelBench& bench, const Candidate& start, std::size_t own
             }
             if (!next || !worth_it(bench, now, *next, decisions))
                 next = bench.noise_holds_residual() ? other_addition(bench, now, trials, tried, effects)
-                                               : std::nullopt;
+                                                    : std::nullopt;
             if (!next) {
                 refused = refused_by(bench, now, trials, tried);
                 return;
