@@ -380,19 +380,18 @@ class DiagnosisRun {
         own = place;
     }
 
-    // A torque that repeats with the output angle has to be seen to repeat: over a whole turn, or at least
-    // over two of its cycles. Over less, the weight of this joint or of those behind it bends alike.
+    // A torque that repeats with the output angle has to be seen over a cycle of its own: over less, any
+    // weight bends alike. The weight of other joints that move needs a whole turn to be distinguished.
     void doubt_for_travel(const Case& c) {
         const auto [low, high] = std::ranges::minmax(c.motion.position_deg);
         const double turns = (high - low) / 360.0;
         for (Finding& finding : result_.rounds) {
             if (!is_trusted(finding) || finding.term.effect->name != "output-ripple") continue;
             const double cycles = turns * finding.term.values[0].value_or(1.0);
-            if (turns >= 1.0 || cycles >= 2.0) continue;
+            if (cycles >= 1.0 && (turns >= 1.0 || !options_.others_move)) continue;
             finding.status = FindingStatus::tentative;
-            finding.reason =
-                fmt::format("the travel of {:.0f} deg is {:.2g} of its cycles: it is not seen to repeat",
-                            high - low, cycles);
+            finding.reason = fmt::format("the travel is {:.0f} deg, {:.2g} of its cycles{}", high - low,
+                                         cycles, cycles < 1.0 ? "" : ", while other joints move");
         }
     }
 

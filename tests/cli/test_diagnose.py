@@ -59,7 +59,7 @@ class Diagnose(unittest.TestCase):
         self.assertEqual(json.loads((pathlib.Path(self.folder.name) / "improved.json").read_text())["effects"],
                          found["model"]["effects"])
 
-    def test_a_torque_of_the_output_angle_that_is_not_seen_to_repeat_is_not_confirmed(self):
+    def test_a_torque_of_the_output_angle_over_less_than_its_cycle_is_not_confirmed(self):
         self.log("log.csv", move(0, 130, 10, 120, 5), "output-ripple,order=2,amplitude_nm=70,phase_deg=20")
         done = self.run_tool("diagnose", "log.csv", "--model", "model.json", "--json", "-q")
         self.assertEqual(done.returncode, 0, done.stderr)
@@ -67,7 +67,7 @@ class Diagnose(unittest.TestCase):
         self.assertNotIn("output-ripple", found["named"])
         for one in found["rounds"]:
             if one["effect"] == "output-ripple":
-                self.assertIn("not seen to repeat", one["reason"])
+                self.assertIn("of its cycles", one["reason"])
 
     def test_samples_that_are_not_used_have_their_reason(self):
         words = []

@@ -251,6 +251,7 @@ struct DiagnosisOptions {
     /// Faults of the set-up that are known beforehand. The known terms are wrong then, so that no name is
     /// confirmed.
     std::span<const SetupFault> setup = {};
+    bool others_move = false;  ///< joints of the same arm, whose torque on this one no term holds
     /// A delay at which the search for one begins as well.
     std::optional<Seconds> expected_delay = {};
     DiagnosisRules rules = {};

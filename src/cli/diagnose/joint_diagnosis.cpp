@@ -82,6 +82,11 @@ void say_arm(const CommonOptions& common, const ArmAccount& arm) {
     say_warnings(common, arm.warnings);
 }
 
+// A log of an arm of which nothing is known but this joint.
+bool others_move(const JointDiagnosis& one) {
+    return one.log.layout.joints.size() > 1 && one.given.log.empty();
+}
+
 // One controller has one clock: the delay of an arm's torques is known from all its joints, and is not
 // searched in one of them, unless that one contradicts the others. Names that are not tried then.
 std::vector<std::string> take_lag(const DiagnoseRequest& request, const JointDiagnosis& one, Model& model) {
@@ -115,6 +120,7 @@ Diagnosis diagnosed(const DiagnoseRequest& request, Model model, const JointDiag
              .validation_given = one.given.validation,
              .setup = one.given.setup ? std::span<const SetupFault>(one.given.setup->faults)
                                       : std::span<const SetupFault>(),
+             .others_move = others_move(one),
              .expected_delay = expected_delay(one.given),
              .rules = rules_of(request)});
     } catch (const DataError& error) {  // the library knows no file
@@ -139,18 +145,17 @@ GivenTerms given_of(const DiagnoseRequest& request, const ModelWithGiven& model,
 
 // Of an arm the motion of its other joints is torque of this one, which the effects of a joint may imitate.
 void advise_arm(JointDiagnosis& one) {
-    const std::size_t joints = one.log.layout.joints.size();
     const bool is_of_position = std::ranges::any_of(one.diagnosis.rounds, [](const Finding& finding) {
         return finding.term.effect->domain == Domain::position || finding.term.effect->name == "gravity";
     });
     const bool is_open = is_of_position || !one.diagnosis.unexplained.empty();
-    if (joints < 2 || !one.given.log.empty() || !is_open) return;
+    if (!others_move(one) || !is_open) return;
     one.diagnosis.next.insert(
         one.diagnosis.next.begin(),
         fmt::format(
             "the log has {} joints, and where the others move, their weight and acceleration act on this "
             "one: --arm takes their motion into account",
-            joints));
+            one.log.layout.joints.size()));
 }
 
 }  // namespace
