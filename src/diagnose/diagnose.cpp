@@ -318,7 +318,7 @@ class DiagnosisRun {
         drop_collinear(found, unexplained);
         if (fits_offset_ && options_.setup.empty()) promote_offset(found, own, unexplained);
         doubt_for_setup();
-        doubt_for_travel(bench.looked_at());
+        doubt_for_travel(bench.looked_at(), found.last.stated);
         own_ = own;
         result_.refused = found.refused;
         result_.baseline = as_given(bench, found.first).stated;
@@ -380,18 +380,31 @@ class DiagnosisRun {
         own = place;
     }
 
-    // A torque that repeats with the output angle has to be seen over a cycle of its own: over less, any
-    // weight bends alike. The weight of other joints that move needs a whole turn to be distinguished.
-    void doubt_for_travel(const Case& c) {
+    // Cycles per output turn of a torque of the output angle.
+    static std::optional<double> output_order(const Term& term) {
+        if (term.effect->name == "gravity") return 1.0;
+        return term.effect->name == "output-ripple" ? term.values[0] : std::nullopt;
+    }
+
+    // A torque that repeats with the output angle has to be seen over a cycle of its own, and two of them
+    // until they are in opposition: over less, any weight bends alike. Where other joints move, or more than
+    // noise is left, it needs a whole turn to be distinguished from what that is.
+    void doubt_for_travel(const Case& c, const Model& model) {
         const auto [low, high] = std::ranges::minmax(c.motion.position_deg);
         const double turns = (high - low) / 360.0;
+        const bool may_be_other = options_.others_move || first_bench_ != nullptr;
         for (Finding& finding : result_.rounds) {
             if (!is_trusted(finding) || finding.term.effect->name != "output-ripple") continue;
-            const double cycles = turns * finding.term.values[0].value_or(1.0);
-            if (cycles >= 1.0 && (turns >= 1.0 || !options_.others_move)) continue;
+            const double order = finding.term.values[0].value_or(1.0);
+            const bool is_alike = std::ranges::any_of(model.terms, [&](const Term& term) {
+                const auto other = output_order(term);
+                return other && *other != order && std::abs(*other - order) * turns < 0.5;
+            });
+            if (turns * order >= 1.0 && !is_alike && (turns >= 1.0 || !may_be_other)) continue;
             finding.status = FindingStatus::tentative;
-            finding.reason = fmt::format("the travel is {:.0f} deg, {:.2g} of its cycles{}", high - low,
-                                         cycles, cycles < 1.0 ? "" : ", while other joints move");
+            finding.reason =
+                fmt::format("the travel of {:.0f} deg, {:.2g} of its cycles, does not distinguish it from {}",
+                            high - low, turns * order, is_alike ? "another order" : "a weight");
         }
     }
 

@@ -94,7 +94,7 @@ struct Factors {
 // What a mistake multiplies the torque of a joint by, undone. mNm for Nm is asked only where a thousandth is
 // nearer to the torques of the other joints, on the scale of factors.
 std::vector<double> possible_factors(const ArmLog& log, const ArmFit& fit, std::size_t joint) {
-    constexpr double of_milli = 1e-3;
+    constexpr double of_milli = 1e-3;  // by the definition of the unit
     double others = 0.0;
     for (const ArmJointFit& other : fit.joints)
         if (other.joint != joint)
