@@ -14,11 +14,12 @@
 #include "diagnose/examined.hpp"
 #include "diagnose/judging/doubt.hpp"
 #include "diagnose/judging/judge.hpp"
-#include "diagnose/judging/leftover.hpp"
 #include "diagnose/judging/reproduction.hpp"
+#include "diagnose/judging/residual_regions.hpp"
 #include "diagnose/judging/values.hpp"
 #include "diagnose/search/search.hpp"
 #include "diagnose/telling/summary.hpp"
+#include "diagnose/telling/unused_rows.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/diagnose/diagnosis.hpp"
@@ -70,7 +71,7 @@ Searched search_case(const Case& c, const Model& model, std::span<const Effect* 
 }
 
 // The gap after each addition, in the order of adoption.
-void tell_rounds(Diagnosis& diagnosis, const ModelBench& bench, const Candidate& last, std::size_t own) {
+void measure_rounds(Diagnosis& diagnosis, const ModelBench& bench, const Candidate& last, std::size_t own) {
     Candidate now = last;
     now.open.terms.resize(own);
     now.stated.terms.resize(own);
@@ -85,13 +86,13 @@ void tell_rounds(Diagnosis& diagnosis, const ModelBench& bench, const Candidate&
     }
 }
 
-bool set_aside(Case& c, const std::vector<Leftover>& left, const DiagnosisRules& rules) {
+bool set_aside(Case& c, const std::vector<ResidualRegion>& left, const DiagnosisRules& rules) {
     bool any = false;
-    const double margin_s = rules.leftover.aside_margin_s;
-    for (const Leftover& leftover : left) {
-        if (!is_confined(leftover, c, rules)) continue;
+    const double margin_s = rules.regions.aside_margin_s;
+    for (const ResidualRegion& region : left) {
+        if (!is_confined(region, c, rules)) continue;
         for (std::size_t k = 0; k < c.size(); ++k) {
-            for (const Span& span : leftover.where.time_s) {
+            for (const Span& span : region.where.time_s) {
                 if (c.motion.time_s[k] < span.from - margin_s || c.motion.time_s[k] > span.to + margin_s)
                     continue;
                 any = any || c.use[k] != 0;
@@ -102,11 +103,11 @@ bool set_aside(Case& c, const std::vector<Leftover>& left, const DiagnosisRules&
     return any;
 }
 
-double confined_part(const Case& c, const std::vector<Leftover>& left) {
+double confined_part(const Case& c, const std::vector<ResidualRegion>& left) {
     double total_s = 0.0;
-    for (const Leftover& leftover : left) {
-        for (const Span& span : leftover.where.time_s)
-            total_s += leftover.kind == LeftoverKind::time ? span.to - span.from : 0.0;
+    for (const ResidualRegion& region : left) {
+        for (const Span& span : region.where.time_s)
+            total_s += region.kind == RegionKind::time ? span.to - span.from : 0.0;
     }
     return total_s / (c.motion.time_s.back() - c.motion.time_s.front());
 }
@@ -135,22 +136,22 @@ std::vector<Undecidable> undecidable(const ModelBench& bench, const Candidate& m
 // A disturbance of short duration bends everything that is fitted to it. It is told, set aside, and the rest
 // of the log is diagnosed without it.
 Searched search_rest(Case& part, const Model& model, std::span<const Effect* const> effects,
-                     Diagnosis& diagnosis, std::vector<Leftover>& aside, Work& work,
+                     Diagnosis& diagnosis, std::vector<ResidualRegion>& aside, Work& work,
                      const DiagnosisRules& rules) {
     Searched found = search_case(part, model, effects, work, rules);
     {
         ModelBench bench(part, found.noise, work, rules);
         bench.settle_on(found.first.stated);
-        diagnosis.disagreement = leftovers(bench, found.first.stated);
+        diagnosis.disagreement = residual_regions(bench, found.first.stated);
     }
-    for (std::size_t look = 0; look < rules.leftover.most_asides; ++look) {
-        const auto left = leftovers(*found.bench, found.last.stated);
+    for (std::size_t look = 0; look < rules.regions.most_asides; ++look) {
+        const auto left = residual_regions(*found.bench, found.last.stated);
         // What is set aside has to be searched once more from the start.
-        if (confined_part(part, left) > rules.leftover.most_aside_part || work.is_over() ||
+        if (confined_part(part, left) > rules.regions.most_aside_part || work.is_over() ||
             !set_aside(part, left, rules))
             break;
-        for (const Leftover& leftover : left) {
-            if (leftover.kind == LeftoverKind::time) aside.push_back(leftover);
+        for (const ResidualRegion& region : left) {
+            if (region.kind == RegionKind::time) aside.push_back(region);
         }
         found = search_case(part, model, effects, work, rules);
     }
@@ -159,7 +160,7 @@ Searched search_rest(Case& part, const Model& model, std::span<const Effect* con
 
 // What was found may tell more of the angle than the model as given did; then the search goes on from there.
 Searched search_straight(Case& whole, Case& part, const Model& model, std::span<const Effect* const> effects,
-                         Diagnosis& diagnosis, std::vector<Leftover>& aside, Work& work,
+                         Diagnosis& diagnosis, std::vector<ResidualRegion>& aside, Work& work,
                          const DiagnosisRules& rules, bool has_position) {
     Searched found = search_rest(part, model, effects, diagnosis, aside, work, rules);
     if (has_position || !straightened_by(whole, found.last, found.bench->floor_nm(found.last.stated), rules))
@@ -249,7 +250,9 @@ class DiagnosisRun {
         model_.widest_step_deg_s = rules_.search.widest_step * fastest_deg_s(whole_.motion);
         own_ = model_.terms.size();
         without_.assign(options.without.begin(), options.without.end());
-        if (!is_scale_open(options.given)) without_.emplace_back("simulation-scale");
+        // A fault of the set-up explains a wrong scale.
+        if (!is_scale_open(options.given) || !options.setup.empty())
+            without_.emplace_back("simulation-scale");
         // An arm has inertia and gravity of its own.
         if (is_given(options.given, "arm"))
             without_.insert(without_.end(), {"inertia", "gravity", "payload-change"});
@@ -262,22 +265,26 @@ class DiagnosisRun {
     }
 
     [[nodiscard]] Diagnosis run() {
-        told_.has_position = has_position_;
-        told_.false_alarm = rules_.screening.false_alarm;
-        told_.samples = whole_.size();
-        told_.faults = find_faults(whole_, rules_.faults);
-        std::vector<Leftover> spoiled = nameless(told_.faults, options_.without), aside;
+        result_.has_position = has_position_;
+        result_.setup.assign(options_.setup.begin(), options_.setup.end());
+        result_.false_alarm = rules_.screening.false_alarm;
+        result_.samples = whole_.size();
+        add_unused_rows(result_.unused, whole_,
+                        "where the acceleration jumps, smoothing hides the torque of the inertia");
+        result_.faults = find_faults(whole_, rules_.faults);
+        add_unused_rows(result_.unused, whole_, "spoiled by a fault of the log");
+        std::vector<ResidualRegion> spoiled = nameless(result_.faults, options_.without), aside;
         AngleBefore before(whole_, has_position_);
         if (!has_position_) straighten(whole_, model_, rules_);
         Case part = excerpt(whole_, rules_.recording);
         Searched found =
-            search_straight(whole_, part, model_, effects_, told_, aside, work_, rules_, has_position_);
+            search_straight(whole_, part, model_, effects_, result_, aside, work_, rules_, has_position_);
         found.ground = {};  // its columns are not needed any more
         if (other_ && !(has_position_ && other_has_position_)) before.of_other(*other_);
         Candidate last = tested(found, before.has_other());
         if (is_residual_left(found, last)) {
             const ModelBench plain = *found.bench;
-            Diagnosis told = told_;
+            Diagnosis first_result = result_;
             const std::size_t own = own_;
             first_bench_ = &plain;
             Searched again = search_again(found, part, model_, effects_, more_work_, rules_);
@@ -289,21 +296,21 @@ class DiagnosisRun {
             if (options_.given.empty() || left_nm(last_again) < left_nm(last)) {
                 found = std::move(again);
                 last = std::move(last_again);
-                told_.unexplained = leftovers(plain, last.stated);
-                told_.gap.noise_floor_nm = plain.floor_nm(last.stated);
-                told_.residual_in_noise = true;
+                result_.unexplained = residual_regions(plain, last.stated);
+                result_.gap.noise_floor_nm = plain.floor_nm(last.stated);
+                result_.residual_in_noise = true;
             } else {
-                told_ = std::move(told);
+                result_ = std::move(first_result);
                 own_ = own;
             }
         }
-        told_.angle = before.account(whole_, other_ ? &*other_ : nullptr);
-        if (!has_position_) told_.undecidable = undecidable(*found.bench, last, effects_, without_);
+        result_.angle = before.account(whole_, other_ ? &*other_ : nullptr);
+        if (!has_position_) result_.undecidable = undecidable(*found.bench, last, effects_, without_);
         measure_at_samples(spoiled, whole_, last.stated);
-        told_.unexplained.insert(told_.unexplained.begin(), spoiled.begin(), spoiled.end());
-        told_.unexplained.insert(told_.unexplained.begin(), aside.begin(), aside.end());
+        result_.unexplained.insert(result_.unexplained.begin(), spoiled.begin(), spoiled.end());
+        result_.unexplained.insert(result_.unexplained.begin(), aside.begin(), aside.end());
         report(found, last, part, aside);
-        return std::move(told_);
+        return std::move(result_);
     }
 
   private:
@@ -311,51 +318,55 @@ class DiagnosisRun {
     [[nodiscard]] Candidate tested(Searched& found, bool other_begins_anywhere) {
         const ModelBench& bench = *found.bench;
         std::size_t own = model_.terms.size();
-        told_.unexplained = leftovers(bench, found.last.stated);
+        result_.unexplained = residual_regions(bench, found.last.stated);
         // A known torque is never right everywhere, and what it leaves says nothing against a finding that
         // stands out of it. A model of the joint alone should leave nothing.
-        const bool may_be_left = bench.beside_residual() && !options_.given.empty();
-        const auto unexplained = may_be_left               ? std::vector<Leftover>()
-                                 : first_bench_ != nullptr ? leftovers(*first_bench_, found.last.stated)
-                                                           : told_.unexplained;
-        told_.rounds = judge(bench, found.last, own, effects_, unexplained);
-        drop_balanced(found, unexplained);
-        if (fits_offset_) promote_offset(found, own, unexplained);
+        const bool may_be_left = bench.noise_holds_residual() && !options_.given.empty();
+        const auto unexplained = may_be_left ? std::vector<ResidualRegion>()
+                                 : first_bench_ != nullptr
+                                     ? residual_regions(*first_bench_, found.last.stated)
+                                     : result_.unexplained;
+        result_.rounds = judge(bench, found.last, own, effects_, unexplained);
+        drop_collinear(found, unexplained);
+        if (fits_offset_ && options_.setup.empty()) promote_offset(found, own, unexplained);
+        doubt_for_setup();
+        doubt_for_travel(bench.looked_at(), found.last.stated);
         own_ = own;
-        told_.refused = found.refused;
-        told_.baseline = as_given(bench, found.first).stated;
-        told_.evaluations =
+        result_.refused = found.refused;
+        result_.baseline = as_given(bench, found.first).stated;
+        result_.evaluations =
             bench.work().spent() * Work::unit_samples / static_cast<double>(bench.looked_at().size());
-        told_.search_ended = bench.work().ended();
-        told_.gap.noise_floor_nm = bench.floor_nm(found.last.stated);
-        told_.noise_color = found.noise.color;
-        tell_rounds(told_, bench, found.last, own);
-        Candidate last = believed(bench, found.last, own, told_.rounds);
+        result_.search_ended = bench.work().ended();
+        result_.gap.noise_floor_nm = bench.floor_nm(found.last.stated);
+        result_.noise_color = found.noise.color;
+        measure_rounds(result_, bench, found.last, own);
+        Candidate last = believed(bench, found.last, own, result_.rounds);
         if (other_ && other_begins_anywhere) put_in_place(*other_, last.stated, bench.rules().recording);
-        if (other_) last = reproduced(bench, found.last, last, told_.baseline, *other_, own, told_.rounds);
+        if (other_)
+            last = reproduced(bench, found.last, last, result_.baseline, *other_, own, result_.rounds);
         // What a doubtful finding would explain is not explained.
         if (last.stated.terms.size() < found.last.stated.terms.size())
-            told_.unexplained = leftovers(bench, last.stated);
+            result_.unexplained = residual_regions(bench, last.stated);
         return last;
     }
 
-    // Findings whose torques are held in balance by one another hide what each of them would be without the
+    // Findings whose torques are nearly collinear hide what each of them would be without the
     // other: the weakest goes, and the others are tested without it.
-    void drop_balanced(Searched& found, const std::vector<Leftover>& unexplained) {
+    void drop_collinear(Searched& found, const std::vector<ResidualRegion>& unexplained) {
         const std::size_t own = model_.terms.size();
-        for (std::size_t most = told_.rounds.size(); most > 0; --most) {
-            const auto doubtful = std::ranges::count_if(told_.rounds, is_doubtful);
-            if (std::ranges::count(told_.rounds, FindingStatus::unidentifiable, &Finding::status) == 0 ||
+        for (std::size_t most = result_.rounds.size(); most > 0; --most) {
+            const auto doubtful = std::ranges::count_if(result_.rounds, is_doubtful);
+            if (std::ranges::count(result_.rounds, FindingStatus::unidentifiable, &Finding::status) == 0 ||
                 doubtful < 2)
                 return;
             std::optional<std::size_t> weakest;
-            for (std::size_t i = 0; i < told_.rounds.size(); ++i) {
-                const bool weaker =
-                    !weakest || told_.rounds[i].evidence.share_nm < told_.rounds[*weakest].evidence.share_nm;
-                if (is_doubtful(told_.rounds[i]) && weaker) weakest = i;
+            for (std::size_t i = 0; i < result_.rounds.size(); ++i) {
+                const bool weaker = !weakest || result_.rounds[i].evidence.share_nm <
+                                                    result_.rounds[*weakest].evidence.share_nm;
+                if (is_doubtful(result_.rounds[i]) && weaker) weakest = i;
             }
             found.last = without_term(*found.bench, found.last, own + *weakest);
-            told_.rounds = judge(*found.bench, found.last, own, effects_, unexplained);
+            result_.rounds = judge(*found.bench, found.last, own, effects_, unexplained);
         }
     }
 
@@ -365,7 +376,7 @@ class DiagnosisRun {
     }
 
     // The offset beside an arm is a finding where it passes the same tests, and is larger than what is left.
-    void promote_offset(Searched& found, std::size_t& own, const std::vector<Leftover>& unexplained) {
+    void promote_offset(Searched& found, std::size_t& own, const std::vector<ResidualRegion>& unexplained) {
         const ModelBench& bench = *found.bench;
         Candidate model = found.last;
         const std::size_t place = own - 1;
@@ -377,20 +388,60 @@ class DiagnosisRun {
             offset.evidence.share_nm < rms(bench.cleared_residual(model.stated)))
             return;
         found.last.prices[place] = model.prices[place];
-        told_.rounds.insert(told_.rounds.begin(), std::move(offset));
+        result_.rounds.insert(result_.rounds.begin(), std::move(offset));
         own = place;
+    }
+
+    // Cycles per output turn of a torque of the output angle.
+    static std::optional<double> output_order(const Term& term) {
+        if (term.effect->name == "gravity") return 1.0;
+        return term.effect->name == "output-ripple" ? term.values[0] : std::nullopt;
+    }
+
+    // A torque that repeats with the output angle has to be seen over a cycle of its own, and two of them
+    // until they are in opposition: over less, any weight bends alike. Where other joints move, or more than
+    // noise is left, it needs a whole turn to be distinguished from what that is.
+    void doubt_for_travel(const Case& c, const Model& model) {
+        const auto [low, high] = std::ranges::minmax(c.motion.position_deg);
+        const double turns = (high - low) / 360.0;
+        const bool may_be_other = options_.others_move || first_bench_ != nullptr;
+        for (Finding& finding : result_.rounds) {
+            if (!is_trusted(finding) || finding.term.effect->name != "output-ripple") continue;
+            const double order = finding.term.values[0].value_or(1.0);
+            const bool is_alike = std::ranges::any_of(model.terms, [&](const Term& term) {
+                const auto other = output_order(term);
+                return other && *other != order && std::abs(*other - order) * turns < 0.5;
+            });
+            if (turns * order >= 1.0 && !is_alike && (turns >= 1.0 || !may_be_other)) continue;
+            finding.status = FindingStatus::tentative;
+            finding.reason =
+                fmt::format("the travel of {:.0f} deg, {:.2g} of its cycles, does not distinguish it from {}",
+                            high - low, turns * order, is_alike ? "another order" : "a weight");
+        }
+    }
+
+    // A fault of the set-up leaves torques that effects of the joint may imitate.
+    void doubt_for_setup() {
+        if (options_.setup.empty()) return;
+        for (Finding& finding : result_.rounds) {
+            if (!is_trusted(finding)) continue;
+            finding.status = FindingStatus::tentative;
+            finding.reason = "the fault of the set-up may cause it";
+        }
     }
 
     // What doubtful findings would explain beside a known torque is that torque's error, and is left.
     [[nodiscard]] bool is_residual_left(const Searched& found, const Candidate& last) const {
-        const bool doubtful = std::any_of(told_.rounds.begin(), told_.rounds.end(), is_doubtful);
+        if (!options_.setup.empty()) return false;
+        const bool doubtful = std::any_of(result_.rounds.begin(), result_.rounds.end(), is_doubtful);
         const Model& model = options_.given.empty() ? found.last.stated : last.stated;
-        return (doubtful || !told_.unexplained.empty()) &&
-               rms(found.bench->cleared_residual(model)) > rules_.beside.least_left * found.noise.rms_nm;
+        return (doubtful || !result_.unexplained.empty()) &&
+               rms(found.bench->cleared_residual(model)) > rules_.residual.least_left * found.noise.rms_nm;
     }
 
     // The excerpt chose; the whole log gives the values.
-    void report(const Searched& found, Candidate last, const Case& part, const std::vector<Leftover>& aside) {
+    void report(const Searched& found, Candidate last, const Case& part,
+                const std::vector<ResidualRegion>& aside) {
         const bool is_excerpt = part.size() < whole_.size();
         Case all = is_excerpt ? whole_ : part;
         if (is_excerpt) {
@@ -399,34 +450,36 @@ class DiagnosisRun {
             bench.settle_on(last.stated);
             last = bench.fitted(last.open, last.stated, last.prices, 4);
             const Candidate first = as_given(bench, found.first);
-            told_.baseline = bench.fitted(first.open, first.stated, first.prices, 4).stated;
+            result_.baseline = bench.fitted(first.open, first.stated, first.prices, 4).stated;
         }
-        told_.samples_used = all.used();
+        result_.samples_used = all.used();
+        add_unused_rows(result_.unused, all, "a disturbance of short duration");
+        result_.acts_where_unused = mainly_unused(effects_, all, model_);
         while (true) {
             const Candidate settled =
-                told_values(all, found.noise, last, {told_.faults, told_.rounds, own_}, work_, rules_);
-            tell_model(settled);
+                final_values(all, found.noise, last, {result_.faults, result_.rounds, own_}, work_, rules_);
+            report_model(settled);
             measure(settled, found.noise, all);
             if (!withdraw_for_gap(*found.bench, last)) break;
         }
-        name_findings(told_, rules_);
-        for (const Fault& fault : told_.faults) told_.named.emplace_back(fault.term.effect->name);
-        told_.verdict = verdict_of(told_);
+        name_findings(result_, rules_);
+        for (const Fault& fault : result_.faults) result_.named.emplace_back(fault.term.effect->name);
+        result_.verdict = verdict_of(result_);
     }
 
     // The improved model with its values, and those of each finding.
-    void tell_model(const Candidate& last) {
-        told_.model = last.stated;
-        told_.values = last.values;
-        for (FittedValue& value : told_.values)
+    void report_model(const Candidate& last) {
+        result_.model = last.stated;
+        result_.values = last.values;
+        for (FittedValue& value : result_.values)
             widen_interval(value, last.stated.terms[value.term].effect->parameters[value.parameter],
                            rules_.values.interval_factor);
         std::size_t place = own_;
-        for (Finding& finding : told_.rounds) {
+        for (Finding& finding : result_.rounds) {
             if (is_doubtful(finding)) continue;
             finding.term = last.stated.terms[place];
             finding.values.clear();
-            for (const FittedValue& value : told_.values) {
+            for (const FittedValue& value : result_.values) {
                 if (value.term == place) finding.values.push_back(value);
             }
             ++place;
@@ -437,8 +490,8 @@ class DiagnosisRun {
     void measure(const Candidate& last, const NoiseFloor& noise, const Case& all) {
         const KnownValues known = fit_known_values(all, last.stated, noise);
         // What is uncertain of an arm is fitted beside the model as given, too.
-        const KnownValues alone = fit_known_values(all, told_.baseline, noise);
-        told_.given = reported_values(options_.given, known);
+        const KnownValues alone = fit_known_values(all, result_.baseline, noise);
+        result_.given = reported_values(options_.given, known);
         given_alone_ = reported_values(options_.given, alone);
         const Case improved = with_known_values(whole_, known), as_given = with_known_values(whole_, alone);
         const auto of_other = [&](const KnownValues& values) {
@@ -446,32 +499,33 @@ class DiagnosisRun {
         };
         const std::optional<Case> other = of_other(known), other_as_given = of_other(alone);
         // A fault of the converter belongs to the model where that predicts the log better with it.
-        for (const Fault& fault : told_.faults) {
-            Model with = told_.model;
+        for (const Fault& fault : result_.faults) {
+            Model with = result_.model;
             with.terms.push_back(fault.term);
-            if (left_rms(improved, with) <= left_rms(improved, told_.model)) told_.model = std::move(with);
+            if (left_rms(improved, with) <= left_rms(improved, result_.model))
+                result_.model = std::move(with);
         }
         const GapCase log_gap{as_given, improved};
         const std::optional<GapCase> other_gap =
             other ? std::optional<GapCase>({*other_as_given, *other}) : std::nullopt;
-        measure_gap(told_, log_gap, other_gap ? &*other_gap : nullptr, rules_);
+        measure_gap(result_, log_gap, other_gap ? &*other_gap : nullptr, rules_);
         if (options_.given.empty()) return;
-        told_.residual_before_nm = residual_nm(as_given, told_.baseline);
-        told_.residual_after_nm = residual_nm(improved, told_.model);
-        told_.beside_given_nm = residual_nm(improved, {told_.model.gear_ratio, {}});
+        result_.residual_before_nm = residual_nm(as_given, result_.baseline);
+        result_.residual_after_nm = residual_nm(improved, result_.model);
+        result_.beside_given_nm = residual_nm(improved, {result_.model.gear_ratio, {}});
     }
 
     // No model is an improvement that leaves more than the one given, here or on the validation log: the
     // newest finding goes, and where there is none the values as they were. True when something was
     // withdrawn.
     [[nodiscard]] bool withdraw_for_gap(const ModelBench& bench, Candidate& last) {
-        const DiagnosisGap& gap = told_.gap;
+        const DiagnosisGap& gap = result_.gap;
         const bool grows_here = gap.after_nm > gap.before_nm;
         const bool grows_there =
             gap.validation_after_nm && *gap.validation_after_nm > *gap.validation_before_nm;
         if (!grows_here && !grows_there) return false;
         std::size_t place = last.stated.terms.size();
-        for (auto finding = told_.rounds.rbegin(); finding != told_.rounds.rend(); ++finding) {
+        for (auto finding = result_.rounds.rbegin(); finding != result_.rounds.rend(); ++finding) {
             if (is_doubtful(*finding)) continue;
             finding->status = FindingStatus::not_reproduced;
             finding->reason =
@@ -480,14 +534,14 @@ class DiagnosisRun {
             last = without_term(bench, last, --place);
             return true;
         }
-        told_.model = told_.baseline;
-        told_.given = given_alone_;
-        told_.gap.after_nm = gap.before_nm;
-        told_.gap.validation_after_nm = gap.validation_before_nm;
-        told_.gap.closed_percent = told_.gap.closed_percent ? std::optional(0.0) : std::nullopt;
-        told_.gap.validation_closed_percent =
-            told_.gap.validation_closed_percent ? std::optional(0.0) : std::nullopt;
-        told_.residual_after_nm = told_.residual_before_nm;
+        result_.model = result_.baseline;
+        result_.given = given_alone_;
+        result_.gap.after_nm = gap.before_nm;
+        result_.gap.validation_after_nm = gap.validation_before_nm;
+        result_.gap.closed_percent = result_.gap.closed_percent ? std::optional(0.0) : std::nullopt;
+        result_.gap.validation_closed_percent =
+            result_.gap.validation_closed_percent ? std::optional(0.0) : std::nullopt;
+        result_.residual_after_nm = result_.residual_before_nm;
         return false;
     }
 
@@ -503,7 +557,7 @@ class DiagnosisRun {
     std::size_t own_ = 0;                      ///< terms of the model as given
     std::vector<std::string> without_;
     std::vector<const Effect*> effects_;
-    Diagnosis told_;
+    Diagnosis result_;
 };
 
 }  // namespace

@@ -24,32 +24,32 @@ std::vector<const Effect*> examined(std::span<const std::string> without, bool o
     return effects;
 }
 
-std::vector<Leftover> nameless(std::vector<Fault>& faults, std::span<const std::string> without) {
-    std::vector<Leftover> left;
+std::vector<ResidualRegion> nameless(std::vector<Fault>& faults, std::span<const std::string> without) {
+    std::vector<ResidualRegion> left;
     for (const Fault& fault : faults) {
         if (is_among(without, fault.term.effect->name))
-            left.push_back({LeftoverKind::time, {fault.time_s, {}, {}, {}, {}, {}}, 0.0, 0.0});
+            left.push_back({RegionKind::time, {fault.time_s, {}, {}, {}, {}, {}}, 0.0, 0.0});
     }
     std::erase_if(faults, [&](const Fault& fault) { return is_among(without, fault.term.effect->name); });
     return left;
 }
 
-void measure_at_samples(std::vector<Leftover>& nameless, const Case& c, const Model& stated) {
+void measure_at_samples(std::vector<ResidualRegion>& nameless, const Case& c, const Model& stated) {
     std::vector<double> left = predict_nm(stated, c.motion);
     double all = 0.0;
     for (std::size_t k = 0; k < left.size(); ++k) {
         left[k] = c.torque_nm[k] - left[k];
         all += left[k] * left[k];
     }
-    for (Leftover& leftover : nameless) {
+    for (ResidualRegion& region : nameless) {
         double sum = 0.0, count = 0.0;
-        for (const Span& span : leftover.where.time_s) {
+        for (const Span& span : region.where.time_s) {
             const auto first = std::lower_bound(c.motion.time_s.begin(), c.motion.time_s.end(), span.from);
             for (auto at = first; at != c.motion.time_s.end() && *at <= span.to; ++at, count += 1.0)
                 sum += portable::pow(left[static_cast<std::size_t>(at - c.motion.time_s.begin())], 2);
         }
-        leftover.rms_nm = std::sqrt(sum / std::max(count, 1.0));
-        leftover.part = sum / std::max(all, 1e-300);
+        region.rms_nm = std::sqrt(sum / std::max(count, 1.0));
+        region.part = sum / std::max(all, 1e-300);
     }
 }
 

@@ -20,10 +20,10 @@ namespace ripplenotch {
 
 /// Faults whose effect is not to be tried have no name: what they spoiled is unexplained. They are taken out
 /// of `faults`.
-[[nodiscard]] std::vector<Leftover> nameless(std::vector<Fault>& faults,
-                                             std::span<const std::string> without);
+[[nodiscard]] std::vector<ResidualRegion> nameless(std::vector<Fault>& faults,
+                                                   std::span<const std::string> without);
 
 /// What stands in spoiled samples, known when there is a model of the others.
-void measure_at_samples(std::vector<Leftover>& nameless, const Case& c, const Model& stated);
+void measure_at_samples(std::vector<ResidualRegion>& nameless, const Case& c, const Model& stated);
 
 }  // namespace ripplenotch

@@ -43,6 +43,25 @@ inline constexpr Parameter cosine_phase_parameter = {
     .lower = -360.0,
     .upper = 360.0};
 
+/// State of what remembers the last reversal.
+inline constexpr Parameter initial_state_parameter = {.name = "initial_state",
+                                                      .unit = "",
+                                                      .help = "state at the start of the log, -1 to 1",
+                                                      .lower = -1.0,
+                                                      .upper = 1.0,
+                                                      .left_out = LeftOut::assumed};
+constexpr Parameter reversal_width_parameter(std::string_view help, std::span<const double> tried) {
+    return {.name = "width_deg",
+            .unit = "deg",
+            .help = help,
+            .neutral = 1.0,
+            .start = 1.0,
+            .lower = 0.001,
+            .upper = 1000.0,
+            .logarithmic = true,
+            .tried = tried};
+}
+
 /// Which ripple terms an effect changes.
 inline constexpr Parameter ripple_order_parameter = {
     .name = "order",

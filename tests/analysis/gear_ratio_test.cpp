@@ -84,6 +84,15 @@ TEST_CASE("strong lines off the comb of a multiple decide for the ratio that exp
     CHECK_THAT(*result.fit.value, WithinRel(45.0, 1e-6));
 }
 
+TEST_CASE("two reasons for the same ratio are one ratio") {
+    GearRatioFit fit;
+    fit.candidates = {
+        {100.0, 0.3, "the speed is in rpm", true}, {100.0001, 0.2, "n = 12"}, {120.0, 0.1, "n = 10"}};
+    CHECK(undecided_ratios(fit) == std::vector{100.0, 120.0});
+    fit.candidates.pop_back();
+    CHECK(undecided_ratios(fit).empty());
+}
+
 TEST_CASE(
     "a low ratio is found as any other: 16 or its half, not 32, and 6 is what a shaft without a gear may "
     "show, "

@@ -79,3 +79,18 @@ TEST_CASE("torques whose sign is reversed are found: of one joint, and of all by
     REQUIRE(faults.size() == 1);
     CHECK_THAT(faults.front().statement, Catch::Contains("friction would drive the arm"));
 }
+
+TEST_CASE("a torque in mNm and exchanged joints are found", "[arm]") {
+    ArmRecord record(5, 2.0);
+    for (double& each : record.traces[1].torque_nm) each *= 1000.0;
+    auto faults = record.faults();
+    REQUIRE(faults.size() == 1);
+    CHECK(faults.front().kind == SetupFaultKind::torque_unit);
+    CHECK_THAT(faults.front().statement,
+               Catch::Contains("joint " + record.chain.joints[1].name + " is in mNm"));
+    for (double& each : record.traces[1].torque_nm) each /= 1000.0;
+    std::swap(record.traces[1], record.traces[2]);
+    faults = record.faults();
+    REQUIRE(faults.size() == 1);
+    CHECK(faults.front().kind == SetupFaultKind::wrong_joint);
+}

@@ -255,8 +255,8 @@ TEST_CASE("a Panda has 43 values, which is what those who identified it count", 
     for (std::size_t j = 0; j < 7; ++j) each.push_back(arm_values_there(chain, j));
     CHECK(each == std::vector<std::size_t>{38, 42, 35, 28, 21, 14, 7});
     // About the first joint the links' inertia is a rotor's; about the third it is not.
-    CHECK_FALSE(rotor_is_told(chain, 0));
-    CHECK(rotor_is_told(chain, 2));
+    CHECK_FALSE(rotor_is_identifiable(chain, 0));
+    CHECK(rotor_is_identifiable(chain, 2));
 }
 
 TEST_CASE("a joint that is kept still is part of the link before", "[arm]") {

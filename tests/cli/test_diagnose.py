@@ -59,6 +59,33 @@ class Diagnose(unittest.TestCase):
         self.assertEqual(json.loads((pathlib.Path(self.folder.name) / "improved.json").read_text())["effects"],
                          found["model"]["effects"])
 
+    def test_a_torque_of_the_output_angle_over_less_than_its_cycle_is_not_confirmed(self):
+        self.log("log.csv", move(0, 130, 10, 120, 5), "output-ripple,order=2,amplitude_nm=70,phase_deg=20")
+        done = self.run_tool("diagnose", "log.csv", "--model", "model.json", "--json", "-q")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        found = json.loads(done.stdout)
+        self.assertNotIn("output-ripple", found["named"])
+        for one in found["rounds"]:
+            if one["effect"] == "output-ripple":
+                self.assertIn("of its cycles", one["reason"])
+
+    def test_samples_that_are_not_used_have_their_reason(self):
+        words = []
+        for k in range(6):  # trapezoids, whose acceleration jumps
+            for speed, seconds in ((90, 0.1), (90, 1), (0, 0.1), (-90, 0.1), (-90, 1), (0, 0.1)):
+                words += ["--motion", f"ramp,to-speed={speed}deg/s,duration={seconds}s"]
+        self.log("log.csv", words)
+        done = self.run_tool("diagnose", "log.csv", "--model", "model.json", "--json", "-q")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        found = json.loads(done.stdout)
+        unused = found["samples_not_used"]
+        self.assertEqual(sum(one["samples"] for one in unused), found["samples"] - found["samples_used"])
+        self.assertIn("acceleration jumps", unused[0]["reason"])
+        for one in found["acts_where_not_used"]:
+            self.assertGreater(2 * one["not_used"], one["samples"])
+        self.assertIn(f"  {unused[0]['samples']} samples not used: where the acceleration jumps",
+                      self.run_tool("diagnose", "log.csv", "--model", "model.json", "-q").stdout)
+
     def test_the_same_log_gives_the_same_bytes_and_a_conclusive_verdict_can_be_asked_for(self):
         self.log("log.csv", move(0, 120, -60), "offset,torque_nm=0.4")
         first = self.run_tool("diagnose", "log.csv", "--model", "model.json", "--require-conclusive")

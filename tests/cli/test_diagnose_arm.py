@@ -39,18 +39,23 @@ def torques(a, b):
     return one, two + m2 * G * l2 * math.cos(q1 + q2)
 
 
-def write_log(path, seed, coulomb_nm=0.0, seconds=30.0, rate=250.0):
+def joints_at(t, seed):
+    one, (q, v, a) = motion(t, 0.3 * seed), motion(0.83 * t + seed, 1.0)
+    return one, (q, 0.83 * v, 0.83 ** 2 * a)
+
+
+def write_log(path, seed, coulomb_nm=0.0, seconds=30.0, rate=250.0, sign=(1, 1), delay_s=(0.0, 0.0)):
     noise = random.Random(seed)
     with open(path, "w") as log:
         log.write("time_s," + ",".join(f"j{j}_{kind}" for j in (1, 2) for kind in
                                        ("position_deg", "velocity_deg_s", "torque_nm")) + "\n")
         for k in range(int(seconds * rate)):
             t = k / rate
-            joints = motion(t, 0.3 * seed), motion(0.83 * t + seed, 1.0)
-            joints = joints[0], (joints[1][0], 0.83 * joints[1][1], 0.83 ** 2 * joints[1][2])
             cells = [f"{t:.4f}"]
-            for (q, v, _), torque in zip(joints, torques(*joints)):
-                torque += coulomb_nm * math.tanh(math.degrees(v) / 0.5) + noise.gauss(0.0, 0.05)
+            for joint, ((q, v, _), side, delay) in enumerate(zip(joints_at(t, seed), sign, delay_s)):
+                then = joints_at(t - delay, seed)
+                torque = torques(*then)[joint] + coulomb_nm * math.tanh(math.degrees(then[joint][1]) / 0.5)
+                torque = side * (torque + noise.gauss(0.0, 0.05))
                 cells += [f"{math.degrees(q):.6f}", f"{math.degrees(v) + noise.gauss(0.0, 0.02):.5f}", f"{torque:.5f}"]
             log.write(",".join(cells) + "\n")
 
@@ -96,6 +101,49 @@ class Arm(unittest.TestCase):
         self.assertLess(max(map(abs, curves["before"])), 3.0)
         self.assertLess(max(map(abs, curves["after"])), 8 * found["gap"]["after_nm"])
         self.assertLess(max(map(abs, curves["after"])), 0.6 * max(map(abs, curves["before"])))
+
+    def test_a_wrong_set_up_is_reported_first_and_nothing_is_confirmed_with_it(self):
+        for sign, gravity, fault, option in (((1, 1), "gravity=0:9.81:0", "gravity-direction", "gravity=0:-9.81:0"),
+                                             ((1, 1), "gravity=0:0:-9.81", "gravity-direction", "gravity=0:-9.81:0"),
+                                             ((1, -1), DOWN, "torque-sign", ""), ((-1, -1), DOWN, "torque-sign", "")):
+            with self.subTest(sign=sign, gravity=gravity):
+                write_log(self.folder / "log.csv", 1, coulomb_nm=1.2, sign=sign)
+                found = self.diagnosed("log.csv", "--joint", "j2", "--arm", f"dh,file=dh.csv,{gravity}")
+                self.assertEqual([(one["fault"], one["option"]) for one in found["setup"]], [(fault, option)])
+                self.assertEqual((found["named"], found["verdict"]), ([], "unexplained"))
+                self.assertIn("correct the set-up", found["next"][0])
+        done = self.tool("diagnose", "log.csv", "--joint", "j2", "--arm", f"dh,file=dh.csv,{DOWN}", "--gear-ratio", "100", "-q")
+        self.assertEqual(done.stdout.splitlines()[2], "Check the set-up: the torque of joints j1, j2 has its sign reversed: "
+                                                      "friction would drive the arm.")
+
+    def test_a_delay_of_the_torques_is_one_number_for_all_joints_and_no_name(self):
+        write_log(self.folder / "log.csv", 1, coulomb_nm=1.2, delay_s=(0.012, 0.012))
+        for joint in ("j1", "j2"):
+            with self.subTest(joint=joint):
+                found = self.diagnosed("log.csv", "--joint", joint, "--arm", f"dh,file=dh.csv,{DOWN}")
+                lag = found["arm"]["lag"]
+                self.assertAlmostEqual(lag["delay_s"], 0.012, delta=5e-4)
+                self.assertEqual((lag["applied"], [one["contradicts"] for one in lag["joints"]]), (True, [False, False]))
+                self.assertEqual(found["named"], ["coulomb-friction"])
+                (delay,) = (one["delay_s"] for one in found["model"]["effects"] if one["effect"] == "delay")
+                self.assertAlmostEqual(delay, lag["delay_s"], delta=1e-7)
+                self.assertLess(found["gap"]["after_nm"], 0.08)
+
+    def test_delays_that_differ_between_joints_are_not_confirmed(self):
+        write_log(self.folder / "log.csv", 1, coulomb_nm=1.2, delay_s=(0.009, -0.013))
+        for joint in ("j1", "j2"):
+            found = self.diagnosed("log.csv", "--joint", joint, "--arm", f"dh,file=dh.csv,{DOWN}")
+            self.assertFalse(found["arm"]["lag"]["applied"])
+            self.assertNotIn("delay", found["named"])
+
+    def test_without_the_arm_the_next_step_says_that_other_joints_move(self):
+        write_log(self.folder / "log.csv", 1, coulomb_nm=1.2)
+        (self.folder / "own.json").write_text('{"schema": "ripplenotch/model/1", "gear_ratio": 100, "effects": [{"effect": "inertia"}]}')
+        done = self.tool("diagnose", "log.csv", "--joint", "j1", "--model", "own.json", "--json", "-q")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        found = json.loads(done.stdout)
+        self.assertIn("the log has 2 joints", found["next"][0])
+        self.assertIn("--arm", found["next"][0])
 
     def test_an_arm_without_friction_has_no_name(self):
         write_log(self.folder / "log.csv", 3)

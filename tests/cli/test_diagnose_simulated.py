@@ -360,6 +360,10 @@ class Known(unittest.TestCase):
         found = self.diagnosed(WHOLE, WHOLE, times=-1.0)
         self.assertEqual(found["setup"][0]["fault"], "torque-sign")
         self.assertEqual(found["setup"][0]["option"], "scale=-1")
+        # The fault explains it: no scale of -200 % is missing as well.
+        self.assertEqual(found["named"], [])
+        self.assertNotIn("simulation-scale", [one["effect"] for one in found["rounds"]])
+        self.assertIn("correct the set-up (scale=-1)", found["next"][0])
 
     def test_a_sign_that_the_user_has_put_right_is_no_fault_any_more(self):
         found = self.diagnosed(WHOLE, WHOLE, ",scale=-1", times=-1.0)

@@ -80,7 +80,7 @@ TEST_CASE("a delay of half a sample is a matter of when a sample is said to be t
     CHECK(found.last.number == Approx(0.5));
 }
 
-TEST_CASE("a torque far larger than what it explains is held in balance by another") {
+TEST_CASE("a torque far larger than what it explains is nearly collinear with another") {
     Evidence evidence = sound();
     evidence.own_nm = 6.0;
     const Doubted found = doubted(evidence);
@@ -118,12 +118,12 @@ TEST_CASE(
     CHECK(rms(on.bench.torque_of(model.stated, 3)) > 8.0 * counted_nm);
 }
 
-TEST_CASE("beside more than it explains a finding is in doubt, and beside a leftover of its own kind") {
+TEST_CASE("beside more than it explains a finding is in doubt, and beside a region of its own kind") {
     const TestBench on(case_of(plain_log(joint(), 55)));
-    const Leftover at_speed{LeftoverKind::speed, {}, 0.3, 0.2}, slight{LeftoverKind::speed, {}, 0.1, 0.02};
-    const auto with = [&](std::string_view term, double excess_nm, const std::vector<Leftover>& left) {
+    const ResidualRegion at_speed{RegionKind::speed, {}, 0.3, 0.2}, slight{RegionKind::speed, {}, 0.1, 0.02};
+    const auto with = [&](std::string_view term, double excess_nm, const std::vector<ResidualRegion>& left) {
         Finding finding = named(term, 8.0);
-        doubt_for_leftovers(finding, excess_nm, on.bench, left);
+        doubt_for_residual(finding, excess_nm, on.bench, left);
         return std::pair(finding.status, last_against(finding.decisions).rule);
     };
     const std::string_view friction = "viscous-friction,coefficient_nm_per_deg_s=0.006";

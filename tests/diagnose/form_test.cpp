@@ -35,7 +35,7 @@ const std::vector<const Effect*>& curves() {
 }
 
 // Of quadratic friction in a log that holds a tone besides, which the model does not.
-Finding judged_beside_a_tone(const std::vector<Leftover>& unexplained, double& left) {
+Finding judged_beside_a_tone(const std::vector<ResidualRegion>& unexplained, double& left) {
     const char* friction = "quadratic-viscous-friction,coefficient_nm_per_deg2_s2=2e-5";
     DiagnosisRules rules;
     rules.judge.rival_gain = 0.1;  // every rival is looked at
@@ -75,7 +75,7 @@ TEST_CASE("friction that grows with another power of the speed is none of the tw
 TEST_CASE("where something is left a curve has to be ahead of another by more than that") {
     double left = 0.0;
     const Finding alone = judged_beside_a_tone({}, left);
-    const Finding beside = judged_beside_a_tone({Leftover{}}, left);
+    const Finding beside = judged_beside_a_tone({ResidualRegion{}}, left);
     REQUIRE(left > 1000.0);
     REQUIRE(!alone.alternatives.empty());
     REQUIRE(!beside.alternatives.empty());

@@ -28,7 +28,7 @@ std::vector<double> with_line(double cycles, const std::vector<double>& where) {
 }
 
 std::vector<ResidualLine> told(const std::vector<double>& values) {
-    return standing_out(along_tour(), values, standard.leftover.line_prominence, 4, standard.lines);
+    return standing_out(along_tour(), values, standard.regions.line_prominence, 4, standard.lines);
 }
 
 }  // namespace
@@ -56,7 +56,7 @@ TEST_CASE("a tone is heard on both sides of a gap of any length") {
         for (std::size_t k = far.size() / 3; k < far.size(); ++k) far.motion.time_s[k] += gap_s;
         const auto values = with_line(37.0, far.motion.time_s);
         INFO("a gap of " << gap_s << " s");
-        const auto lines = standing_out(far, values, standard.leftover.line_prominence, 4, standard.lines);
+        const auto lines = standing_out(far, values, standard.regions.line_prominence, 4, standard.lines);
         REQUIRE(!lines.empty());
         CHECK(!lines[0].by_angle);
         CHECK(lines[0].frequency == Approx(37.0).margin(0.02));
@@ -64,7 +64,7 @@ TEST_CASE("a tone is heard on both sides of a gap of any length") {
         const auto tones = strongest_tones_hz(far, values, standard);
         REQUIRE(!tones.empty());
         CHECK(tones[0] == Approx(37.0).margin(0.02));
-        CHECK(standing_out(far, noise(67), standard.leftover.line_prominence, 4, standard.lines).empty());
+        CHECK(standing_out(far, noise(67), standard.regions.line_prominence, 4, standard.lines).empty());
     }
 }
 

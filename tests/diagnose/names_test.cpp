@@ -28,9 +28,9 @@ Names sorted(Names names) {
     return names;
 }
 
-bool tells(const Diagnosis& found, LeftoverKind kind) {
+bool tells(const Diagnosis& found, RegionKind kind) {
     return std::any_of(found.unexplained.begin(), found.unexplained.end(),
-                       [&](const Leftover& leftover) { return leftover.kind == kind; });
+                       [&](const ResidualRegion& region) { return region.kind == kind; });
 }
 
 }  // namespace
@@ -58,10 +58,10 @@ TEST_CASE("a ripple that may not be named is unexplained at its order") {
     tell(found);
     CHECK(found.named.empty());
     double order = 0.0, most_nm = 0.0;
-    for (const Leftover& leftover : found.unexplained) {
-        if (leftover.kind != LeftoverKind::order || leftover.rms_nm < most_nm) continue;
-        order = leftover.where.order[0];
-        most_nm = leftover.rms_nm;
+    for (const ResidualRegion& region : found.unexplained) {
+        if (region.kind != RegionKind::order || region.rms_nm < most_nm) continue;
+        order = region.where.order[0];
+        most_nm = region.rms_nm;
     }
     CHECK(order == Approx(4.0).margin(0.01));
     CHECK(most_nm == Approx(0.3 / std::numbers::sqrt2).epsilon(0.2));
@@ -171,7 +171,7 @@ TEST_CASE("faults that may not be named are unexplained at their samples") {
     const Diagnosis found = diagnose(opened(joint()), log.view(), nullptr, {.without = spikes});
     CHECK(found.named.empty());
     CHECK(found.faults.empty());
-    REQUIRE(tells(found, LeftoverKind::time));
+    REQUIRE(tells(found, RegionKind::time));
     CHECK(found.unexplained[0].rms_nm > 3.0);
     CHECK(found.unexplained[0].where.time_s.size() >= 5);
 }

@@ -5,7 +5,7 @@
 #include "bench_fixture.hpp"
 #include "diagnose/case/place.hpp"
 #include "diagnose/judging/evenness.hpp"
-#include "diagnose/judging/leftover.hpp"
+#include "diagnose/judging/residual_regions.hpp"
 #include "support/catch.hpp"
 
 using namespace ripplenotch;
@@ -37,13 +37,13 @@ TEST_CASE("friction of a slow joint is left over at its speeds and positions, in
     const Model friction = joint_with({"coulomb-friction,torque_nm=0.3,width_deg_s=0.002"});
     const TestBench on(case_of(slow_log(friction, 79)));
     std::size_t at_speeds = 0, at_positions = 0;
-    for (const Leftover& leftover : leftovers(on.bench, joint())) {
-        if (leftover.kind == LeftoverKind::speed) ++at_speeds;
-        if (leftover.kind == LeftoverKind::position) ++at_positions;
-        if (leftover.kind != LeftoverKind::speed) continue;
-        CHECK(leftover.rms_nm == Approx(0.3).epsilon(0.1));
-        CHECK((leftover.where.direction == Direction::positive ||
-               leftover.where.direction == Direction::negative));
+    for (const ResidualRegion& region : residual_regions(on.bench, joint())) {
+        if (region.kind == RegionKind::speed) ++at_speeds;
+        if (region.kind == RegionKind::position) ++at_positions;
+        if (region.kind != RegionKind::speed) continue;
+        CHECK(region.rms_nm == Approx(0.3).epsilon(0.1));
+        CHECK(
+            (region.where.direction == Direction::positive || region.where.direction == Direction::negative));
     }
     CHECK(at_speeds == 2);
     CHECK(at_positions == 2);

@@ -51,9 +51,9 @@ Candidate told_of(const Case& looked_at, const Model& open, const Model& near,
                   const std::vector<Fault>& faults) {
     Work work(1e9);
     std::vector<Finding> none;
-    return told_values(looked_at, {noise_nm, noise_nm, {}},
-                       {open, near, {}, std::vector<double>(open.terms.size(), 0.0), 0.0, true},
-                       {faults, none, open.terms.size()}, work, standard);
+    return final_values(looked_at, {noise_nm, noise_nm, {}},
+                        {open, near, {}, std::vector<double>(open.terms.size(), 0.0), 0.0, true},
+                        {faults, none, open.terms.size()}, work, standard);
 }
 
 Candidate told(const Trace& log, const Model& open, const Model& near) {
@@ -143,13 +143,13 @@ TEST_CASE("a name whose size the values told in the end do not tell is taken bac
     Model open = opened(truth);
     Work work(1e9);
     const Candidate found =
-        told_values(whole_case(log.view(), default_smoothing, standard.recording), {noise_nm, noise_nm, {}},
-                    {open, truth, {}, std::vector<double>(open.terms.size(), 0.0), 0.0, true},
-                    {no_fault, findings, 3}, work, standard);
+        final_values(whole_case(log.view(), default_smoothing, standard.recording), {noise_nm, noise_nm, {}},
+                     {open, truth, {}, std::vector<double>(open.terms.size(), 0.0), 0.0, true},
+                     {no_fault, findings, 3}, work, standard);
     CHECK(findings[0].status == FindingStatus::confirmed);
     if (offset_nm == 0.0) {
         CHECK(findings[1].status == FindingStatus::unidentifiable);
-        CHECK(findings[1].reason == "this log does not tell its torque_nm");
+        CHECK(findings[1].reason == "its torque_nm is not identifiable from this log");
         CHECK(found.stated.terms.size() == 4);
     } else {
         CHECK(findings[1].status == FindingStatus::confirmed);

@@ -262,3 +262,13 @@ TEST_CASE("a fit refuses what it does not search for, and a log that is too shor
     CHECK_THROWS_WITH(fit(opened(base_model()), shortest_motion, std::vector<double>(3, 0.0)),
                       Contains("3 samples"));
 }
+
+TEST_CASE("a torque beyond the bound of a linear value leaves that at its bound") {
+    const Effect& friction = find_effect("coulomb-friction");
+    const double upper = friction.parameters[0].upper;
+    std::vector<double> torque_nm =
+        predict_nm({GearRatio(100.0), {{&friction, {0.5 * upper, 0.2}}}}, strokes());
+    for (double& value : torque_nm) value *= 4.0;
+    const Fit found = fit({GearRatio(100.0), {{&friction, {std::nullopt, 0.2}}}}, strokes(), torque_nm, {});
+    CHECK(found.model.terms[0].values[0] == upper);
+}

@@ -36,7 +36,7 @@ class Run(unittest.TestCase):
     def test_a_limit_above_every_torque_misses_what_is_hidden(self):
         done = prove.prove("--sensitivity", "--rule", "judge.material_sigma", "--option=--rule",
                            "--option=judge.material_sigma=10", "--option=--rule",
-                           "--option=beside.least_left=100", "--study", "single", "--only", "viscous-friction", "--seeds", "1")
+                           "--option=residual.least_left=100", "--study", "single", "--only", "viscous-friction", "--seeds", "1")
         self.assertEqual(done.returncode, 0, done.stderr)
         usual, moved = done.stdout.splitlines()[2:4]
         self.assertIn("| 0/1 | 1 | 0 |", usual)

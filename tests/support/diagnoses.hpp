@@ -53,8 +53,8 @@ inline Diagnosis full_diagnosis() {
     diagnosis.named = {"coulomb-friction"};
     diagnosis.ambiguous = {{{"tone", "ripple"}, "move at another speed"}};
     diagnosis.unexplained = {
-        {LeftoverKind::time, {{{3.0, 3.5}}, {}, {}, {}, {}, Direction::positive}, 0.25, 0.125}};
-    diagnosis.disagreement = {{LeftoverKind::order, {{}, {}, {}, {}, {2.0}}, 0.4, 0.75}};
+        {RegionKind::time, {{{3.0, 3.5}}, {}, {}, {}, {}, Direction::positive}, 0.25, 0.125}};
+    diagnosis.disagreement = {{RegionKind::order, {{}, {}, {}, {}, {2.0}}, 0.4, 0.75}};
     diagnosis.undecidable = {{find_effect("gravity").name, "the log has no position", 0.1}};
     diagnosis.gap = {0.434974, 0.0475, 0.0474, 99.9, {}, {}, {}};
     diagnosis.samples = 9050;

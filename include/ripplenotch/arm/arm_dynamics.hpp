@@ -34,6 +34,6 @@ inline constexpr std::size_t values_of_a_link = 10;
 [[nodiscard]] std::size_t arm_values_there(const Chain& chain, std::size_t joint);
 
 /// Whether an inertia that turns with the motor of this joint alone can be told from the links'.
-[[nodiscard]] bool rotor_is_told(const Chain& chain, std::size_t joint);
+[[nodiscard]] bool rotor_is_identifiable(const Chain& chain, std::size_t joint);
 
 }  // namespace ripplenotch

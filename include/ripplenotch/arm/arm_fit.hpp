@@ -166,22 +166,4 @@ struct JointTravel {
 [[nodiscard]] std::vector<std::string> arm_warnings(const ArmFit& fit,
                                                     const std::vector<JointTravel>& travel);
 
-// What there is to say of an arm that a diagnosis was given.
-
-struct ArmAccount {
-    std::string source;  ///< "ur10.urdf", "axes zyyzyz"
-    std::string rule;    ///< how joints were matched: "by name"
-    std::string option;  ///< that would force it
-    std::vector<JointTravel> joints;
-    std::size_t values_there = 0, values_told = 0;
-    bool values_are_stated = false;   ///< by a model; there is no fit then, and nothing below of one
-    bool all_joints_at_once = false;  ///< or this joint alone
-    bool lengths_are_guessed = false;
-    double pull = 0.0;
-    Seconds smoothing;
-    double gap_before_nm = 0.0;  ///< rms of the torque about its mean
-    double gap_nm = 0.0;         ///< rms of what arm and friction beside it leave, on fifths left out
-    std::vector<std::string> warnings, notes;
-};
-
 }  // namespace ripplenotch

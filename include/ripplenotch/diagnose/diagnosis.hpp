@@ -116,13 +116,13 @@ struct Tie {
     std::string advice;  ///< the experiment that would
 };
 
-/// What a leftover is confined to.
-enum class LeftoverKind { time, tone, order, position, speed };
-[[nodiscard]] std::string_view leftover_kind_name(LeftoverKind kind);
+/// What a region is confined to.
+enum class RegionKind { time, tone, order, position, speed };
+[[nodiscard]] std::string_view region_kind_name(RegionKind kind);
 
 /// Something that no effect of the catalogue explains.
-struct Leftover {
-    LeftoverKind kind = LeftoverKind::time;
+struct ResidualRegion {
+    RegionKind kind = RegionKind::time;
     Place where;
     double rms_nm = 0.0;  ///< within the place
     double part = 0.0;    ///< of the squared residual of the whole log
@@ -179,6 +179,18 @@ struct AngleAccount {
     std::optional<double> validation_start_deg;
 };
 
+/// Rows of the log that nothing is fitted to.
+struct UnusedRows {
+    std::string reason;
+    std::size_t rows = 0;
+};
+
+/// An effect that acts mainly in rows that nothing is fitted to.
+struct EffectOfUnusedRows {
+    std::string effect;
+    std::size_t rows = 0, unused = 0;  ///< in which it acts, and of these
+};
+
 struct Diagnosis {
     DiagnosisVerdict verdict = DiagnosisVerdict::matches;
     Model baseline;  ///< the model as given, with the values that were fitted to it alone
@@ -190,7 +202,7 @@ struct Diagnosis {
     std::vector<std::string> named;
     std::string doubt;  ///< one sentence, where the verdict is undecided
     std::vector<Tie> ambiguous;
-    std::vector<Leftover> unexplained;
+    std::vector<ResidualRegion> unexplained;
     std::vector<Undecidable> undecidable;
     DiagnosisGap gap;
     std::vector<GivenValue> given;  ///< values of the given terms, in their order
@@ -208,8 +220,11 @@ struct Diagnosis {
     /// shifted by that: it is no effect of the model.
     std::optional<SimulationLag> alignment;
     bool residual_in_noise = false;  ///< names were weighed against noise that holds what nothing explains
-    std::vector<Leftover> disagreement;  ///< where the model as given and the log disagree, largest first
+    std::vector<ResidualRegion>
+        disagreement;  ///< where the model as given and the log disagree, largest first
     std::size_t samples = 0, samples_used = 0;
+    std::vector<UnusedRows> unused;                     ///< with those of `samples_used` all samples
+    std::vector<EffectOfUnusedRows> acts_where_unused;  ///< of the effects that are tried
     /// Evaluations of a model along the samples searched, and whether the search was ended for their number.
     double evaluations = 0.0;
     bool search_ended = false;
@@ -220,7 +235,7 @@ struct Diagnosis {
 };
 
 /// Chance in percent that one of the confirmed names is wrong, as counted over simulated logs that ended with
-/// the same verdict. Empty where nothing is named, and of names beside a leftover, which those logs do not
+/// the same verdict. Empty where nothing is named, and of names beside a region, which those logs do not
 /// have.
 [[nodiscard]] std::optional<double> wrong_percent(const Diagnosis& diagnosis);
 
@@ -233,6 +248,10 @@ struct DiagnosisOptions {
     /// Terms that are stated and not searched, a column per value and a row per row of the log; the same of
     /// the validation log, where there is one.
     std::span<const GivenTerm> given = {}, validation_given = {};
+    /// Faults of the set-up that are known beforehand. The known terms are wrong then, so that no name is
+    /// confirmed.
+    std::span<const SetupFault> setup = {};
+    bool others_move = false;  ///< joints of the same arm, whose torque on this one no term holds
     /// A delay at which the search for one begins as well.
     std::optional<Seconds> expected_delay = {};
     DiagnosisRules rules = {};

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "ripplenotch/arm/arm_fit.hpp"
+#include "ripplenotch/arm/arm_setup.hpp"
 #include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/diagnose/diagnosis.hpp"
 #include "ripplenotch/diagnose/plan.hpp"

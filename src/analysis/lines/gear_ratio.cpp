@@ -18,13 +18,6 @@ constexpr double least_score = 0.8;           // for a ratio to be reported: a j
 constexpr double least_listed_score = 0.005;  // for a candidate to be listed
 constexpr std::size_t most_candidates = 8;    // by hand: a list that a person reads
 
-/// Two-sided 95 % quantile of Student's t.
-double student_95(double freedom) {
-    constexpr std::array table{12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228};
-    if (freedom <= 10.0) return table[static_cast<std::size_t>(std::max(freedom, 1.0)) - 1];
-    return 1.960 + 2.4 / freedom + 3.5 / (freedom * freedom);
-}
-
 /// What one line says about the ratio; weight 0 where it lies off the combs.
 struct Estimate {
     double ratio = 0.0, variance = 1.0, weight = 0.0;

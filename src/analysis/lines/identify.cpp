@@ -101,10 +101,16 @@ std::optional<double> motor_order(const Line& line) {
 
 std::vector<double> undecided_ratios(const GearRatioFit& fit) {
     constexpr double probable = 0.2, beside_it = 0.1;  // by hand: the first of all, the others of the first
+    constexpr double same_ratio = 0.5e-4;              // the five digits that are printed
     std::vector<double> ratios;
     if (fit.value || fit.candidates.empty() || fit.candidates.front().score < probable) return ratios;
     for (const RatioCandidate& one : fit.candidates) {
-        if (one.score > beside_it * fit.candidates.front().score) ratios.push_back(one.value);
+        // Two reasons for one number, such as another unit of the speed, are one ratio.
+        const auto is_same = [&](double ratio) {
+            return std::abs(ratio - one.value) <= same_ratio * one.value;
+        };
+        if (one.score > beside_it * fit.candidates.front().score && std::ranges::none_of(ratios, is_same))
+            ratios.push_back(one.value);
     }
     return ratios.size() > 1 ? ratios : std::vector<double>{};
 }

@@ -184,13 +184,23 @@ std::string with_ratio(const Identification& found) {
         besides(found));
 }
 
+// One number may have several reasons, such as another unit of the speed: it is listed once, with each of
+// them.
 std::string candidates(const Identification& found) {
-    std::vector<std::string> words;
+    std::vector<std::pair<std::string, std::string>> merged;
     for (const RatioCandidate& candidate : found.gear_ratio.candidates) {
-        if (words.size() < 4 && candidate.score > 0.0)
-            words.push_back(fmt::format("{:.2f} ({})", candidate.value, candidate.reason));
+        if (!(candidate.score > 0.0)) continue;
+        const std::string value = fmt::format("{:.2f}", candidate.value);
+        const auto same = std::ranges::find(merged, value, &std::pair<std::string, std::string>::first);
+        if (same != merged.end())
+            same->second += "; or " + candidate.reason;
+        else if (merged.size() < 4)
+            merged.emplace_back(value, candidate.reason);
     }
-    return fmt::format("{}", fmt::join(words, ", "));
+    std::string text;
+    for (const auto& [value, reason] : merged)
+        text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", value, reason);
+    return text;
 }
 
 /// "cannot tell which of 100 and 200 is the gear ratio: 100.00 (why), 200.00 (why)"

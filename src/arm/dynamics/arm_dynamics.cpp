@@ -194,7 +194,7 @@ std::size_t arm_values_there(const Chain& chain, std::size_t joint) {
     return rank(random_rows(chain, joint, joint + 1, false));
 }
 
-bool rotor_is_told(const Chain& chain, std::size_t joint) {
+bool rotor_is_identifiable(const Chain& chain, std::size_t joint) {
     return rank(random_rows(chain, joint, joint + 1, true)) > arm_values_there(chain, joint);
 }
 

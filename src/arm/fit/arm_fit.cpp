@@ -220,7 +220,7 @@ constexpr double clearly = 0.002;
 constexpr double first_noise = 0.03;    // of a torque, before anything has been fitted
 constexpr double full_size_nm = 100.0;  // by hand
 // Of the eigenvalues of what the log says about the links, each scaled alone.
-constexpr double told_of_largest = 1e-6;
+constexpr double identifiable_share = 1e-6;
 
 struct Found {
     double pull = 0.0;
@@ -303,7 +303,7 @@ std::size_t told(const ArmRidge& ridge, const Found& found, std::size_t links) {
         scale[v] = scale[v] > 1e-12 * largest ? 1.0 / std::sqrt(scale[v]) : 0.0;
     const MatrixXd scaled = scale.asDiagonal() * said * scale.asDiagonal();
     const VectorXd sizes = singular_directions(scaled).lengths;
-    return static_cast<std::size_t>((sizes.array() > told_of_largest * sizes.maxCoeff()).count());
+    return static_cast<std::size_t>((sizes.array() > identifiable_share * sizes.maxCoeff()).count());
 }
 
 // What all joints but one say of the links.
@@ -321,7 +321,7 @@ void add_others(const ArmRidge& ridge, const Found& found, std::size_t links, Ar
             precision += words[other].matrix;
             side += words[other].side;
         }
-        const VectorXd mean = solve_definite(precision, side);
+        const VectorXd mean = ScaledDefiniteFactors(precision, rounding_of_definite).solve(side);
         fit.joints[j].mean.assign(mean.begin(), mean.end());
         fit.joints[j].precision.assign(precision.data(), precision.data() + precision.size());
     }

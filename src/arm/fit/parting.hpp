@@ -2,6 +2,7 @@
 #pragma once
 // Knowledge of values that belong together as knowledge of as many others that do not.
 
+#include "arm/fit/ridge.hpp"
 #include "core/matrices/factorisations.hpp"
 #include "ripplenotch/arm/arm_fit.hpp"
 
@@ -16,7 +17,8 @@ class Parting {
         const Eigen::MatrixXd precision = Eigen::Map<const Eigen::MatrixXd>(own.precision.data(), n, n);
         scale_ = precision.diagonal().cwiseSqrt();
         const Eigen::VectorXd inverse = scale_.cwiseInverse();
-        const Eigen::MatrixXd scaled = inverse.asDiagonal() * precision * inverse.asDiagonal();
+        Eigen::MatrixXd scaled = inverse.asDiagonal() * precision * inverse.asDiagonal();
+        scaled.diagonal().array() += rounding_of_definite;
         lower_ = DefiniteFactors(scaled).lower();
     }
 

@@ -17,8 +17,6 @@ using Eigen::VectorXd;
 constexpr double mass_kg = 5.0, moment_kgm = 0.5, inertia_kgm2 = 0.1, rotor_kgm2 = 1.0;
 // Friction is not drawn anywhere.
 constexpr double beside_nm = 1000.0;
-// What rounding leaves of a matrix whose diagonal is 1.
-constexpr double rounding = 1e-12;
 
 double geometric_mean(const std::vector<double>& numbers) {
     double sum = 0.0;
@@ -27,13 +25,6 @@ double geometric_mean(const std::vector<double>& numbers) {
 }
 
 }  // namespace
-
-VectorXd solve_definite(MatrixXd matrix, const VectorXd& side) {
-    const VectorXd scale = matrix.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-    matrix = scale.asDiagonal() * matrix * scale.asDiagonal();
-    matrix.diagonal().array() += rounding;
-    return scale.cwiseProduct(DefiniteFactors(matrix).solve(VectorXd(scale.cwiseProduct(side))));
-}
 
 double ArmRidge::Errors::smoothed_mean() const { return geometric_mean(smoothed_nm); }
 double ArmRidge::Errors::logged_mean() const { return geometric_mean(logged_nm); }
@@ -79,7 +70,7 @@ std::vector<VectorXd> ArmRidge::solve(double pull, std::span<const double> noise
         const double far = reach(static_cast<std::size_t>(v));
         matrix(v, v) += pull / (far * far);
     }
-    const VectorXd values = solve_definite(std::move(matrix), side);
+    const VectorXd values = ScaledDefiniteFactors(std::move(matrix), rounding_of_definite).solve(side);
     std::vector<VectorXd> by_joint;
     for (std::size_t j = 0; j < joints_.size(); ++j) {
         VectorXd joined(links + own);
@@ -121,8 +112,10 @@ ArmRidge::Word ArmRidge::word_of(std::size_t j, double noise_nm) const {
     }
     const MatrixXd between = weight * sums.rows_by_rows.topRightCorner(links, own);
     const DefiniteFactors factored(of_own);
-    return {weight * sums.rows_by_rows.topLeftCorner(links, links) -
-                between * factored.solve(MatrixXd(between.transpose())),
+    // What the joint's own values take up of a link's leaves rounding that may be below 0.
+    MatrixXd of_links = weight * sums.rows_by_rows.topLeftCorner(links, links);
+    of_links.diagonal() *= 1.0 + rounding_of_definite;
+    return {of_links - between * factored.solve(MatrixXd(between.transpose())),
             weight * sums.rows_by_torque.head(links) -
                 between * factored.solve(VectorXd(weight * sums.rows_by_torque.tail(own)))};
 }

@@ -45,7 +45,7 @@ class ArmRidge {
     std::vector<std::vector<FoldSums>> without_;  ///< by joint and fold left out; the last: none
 };
 
-/// Solution of a symmetric system that is definite but for rounding.
-[[nodiscard]] Eigen::VectorXd solve_definite(Eigen::MatrixXd matrix, const Eigen::VectorXd& side);
+/// What rounding leaves of a matrix whose diagonal is 1.
+inline constexpr double rounding_of_definite = 1e-12;
 
 }  // namespace ripplenotch

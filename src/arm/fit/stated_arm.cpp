@@ -143,7 +143,7 @@ GivenTerm arm_term(const Chain& chain, const ArmFit& fit, const ArmLog& log, std
         term.deviation = fit.deviation;
     }
     leave_out_links_before(joint, term);
-    if (rotor_is_told(chain, joint)) {
+    if (rotor_is_identifiable(chain, joint)) {
         std::vector<double> rotor = motions[joint].acceleration_deg_s2;
         const double unit = chain.joints[joint].kind == JointKind::revolute ? std::numbers::pi / 180.0 : 1.0;
         for (double& value : rotor) value *= unit;
@@ -243,7 +243,7 @@ StatedJoints StatedArm::stated_joints() const {
 ArmValues arm_values(const Chain& chain, const ArmFit& fit, std::size_t joint,
                      std::span<const double> of_term, ArmKnowledge knowledge) {
     const ArmJointFit* const own = fit.find(joint);
-    const bool rotor = rotor_is_told(chain, joint);
+    const bool rotor = rotor_is_identifiable(chain, joint);
     const std::size_t links = values_of_a_link * chain.size(), before = values_of_a_link * joint;
     if (own == nullptr || of_term.size() != links - before + (rotor ? 1 : 0))
         raise<UsageError>("arm: {} values for joint {} of {}", of_term.size(), joint + 1, chain.source);

@@ -14,16 +14,16 @@
 namespace ripplenotch {
 namespace {
 
-// A log of an arm whose torques are its own, so that signs can be turned.
-struct TurnedLog {
+// A log of an arm with the torque of each joint multiplied by a factor.
+struct ScaledLog {
     ArmLog log;
     std::vector<std::vector<double>> torques_nm;
 
-    TurnedLog(const ArmLog& of, const std::vector<bool>& turned) : log(of), torques_nm(of.joints.size()) {
+    ScaledLog(const ArmLog& of, const std::vector<double>& factors) : log(of), torques_nm(of.joints.size()) {
         for (std::size_t j = 0; j < torques_nm.size(); ++j) {
-            if (!turned[j]) continue;
+            if (factors[j] == 1.0) continue;
             torques_nm[j].assign(of.joints[j].torque_nm.begin(), of.joints[j].torque_nm.end());
-            for (double& each : torques_nm[j]) each = -each;
+            for (double& each : torques_nm[j]) each *= factors[j];
             log.joints[j].torque_nm = torques_nm[j];
         }
     }
@@ -53,11 +53,19 @@ FrictionOfJoint friction_along(const Chain& chain, const ArmLog& log, const ArmJ
     return found;
 }
 
-// Geometric mean over the joints, on fifths left out.
-double mean_error_nm(const ArmFit& fit) {
+double rms_of_torque(const TraceView& joint) {
+    double squares = 0.0;
+    for (const double each : joint.torque_nm) squares += each * each;
+    return std::sqrt(squares / static_cast<double>(joint.torque_nm.size()));
+}
+
+// Geometric mean over the joints of the error on held-out fifths, each relative to its torque, so that it
+// does not depend on the unit.
+double mean_error(const ArmFit& fit, const ArmLog& log) {
     double sum = 0.0;
     for (const ArmJointFit& joint : fit.joints)
-        sum += portable::log(std::max(joint.smoothed_error_nm, 1e-12));
+        sum += portable::log(std::max(joint.smoothed_error_nm, 1e-12) /
+                             std::max(rms_of_torque(log.joints[joint.joint]), 1e-12));
     return portable::exp(sum / static_cast<double>(fit.joints.size()));
 }
 
@@ -77,26 +85,44 @@ double explained_by(const ArmFit& fit, const ArmLog& log) {
     return sum;
 }
 
-// Which torques are taken with the other sign, and the fit of that.
-struct Signs {
+// Factors by which the torques are multiplied, and the fit of that.
+struct Factors {
     ArmFit fit;
-    std::vector<bool> turned;
+    std::vector<double> of;
 };
 
-// The same with the sign of one more joint turned, where that fits clearly better; of several the best.
-std::optional<Signs> one_more_turned(const Chain& chain, const ArmLog& log, const Signs& signs,
-                                     const ArmFitOptions& options, const ArmSetupLimits& limits) {
-    std::optional<Signs> best;
-    if (signs.fit.joints.size() < 2) return best;
-    double least_nm = limits.most_error * mean_error_nm(signs.fit);
-    for (const ArmJointFit& joint : signs.fit.joints) {
-        if (signs.turned[joint.joint]) continue;
-        Signs one{{}, signs.turned};
-        one.turned[joint.joint] = true;
-        one.fit = fit_arm(chain, TurnedLog(log, one.turned).log, options);
-        if (mean_error_nm(one.fit) >= least_nm) continue;
-        least_nm = mean_error_nm(one.fit);
-        best = std::move(one);
+// What a mistake multiplies the torque of a joint by, undone. mNm for Nm is asked only where a thousandth is
+// nearer to the torques of the other joints, on the scale of factors.
+std::vector<double> possible_factors(const ArmLog& log, const ArmFit& fit, std::size_t joint) {
+    constexpr double of_milli = 1e-3;  // by the definition of the unit
+    double others = 0.0;
+    for (const ArmJointFit& other : fit.joints)
+        if (other.joint != joint)
+            others += portable::log(std::max(rms_of_torque(log.joints[other.joint]), 1e-12)) /
+                      static_cast<double>(fit.joints.size() - 1);
+    const double distance = portable::log(std::max(rms_of_torque(log.joints[joint]), 1e-12)) - others;
+    if (distance > -0.5 * portable::log(of_milli)) return {-1.0, of_milli};
+    return {-1.0};
+}
+
+// The same with the torque of one more joint changed, where that fits clearly better; of several the best.
+std::optional<Factors> one_more_changed(const Chain& chain, const ArmLog& log, const Factors& now,
+                                        const ArmFitOptions& options, const ArmSetupLimits& limits) {
+    std::optional<Factors> best;
+    if (now.fit.joints.size() < 2) return best;
+    double least = limits.most_error * mean_error(now.fit, log);
+    for (const ArmJointFit& joint : now.fit.joints) {
+        if (now.of[joint.joint] != 1.0) continue;
+        for (const double factor : possible_factors(log, now.fit, joint.joint)) {
+            Factors one{{}, now.of};
+            one.of[joint.joint] = factor;
+            const ScaledLog scaled(log, one.of);
+            one.fit = fit_arm(chain, scaled.log, options);
+            const double error = mean_error(one.fit, scaled.log);
+            if (error >= least) continue;
+            least = error;
+            best = std::move(one);
+        }
     }
     return best;
 }
@@ -112,21 +138,54 @@ bool friction_drives(const Chain& chain, const ArmLog& log, const ArmFit& fit, c
     return drives > resists;
 }
 
-SetupFault sign_fault(const Chain& chain, const ArmLog& log, const ArmFit& fit, const Signs& signs) {
+// The fault of all joints whose torque has the same factor; nothing where none has.
+std::optional<SetupFault> factor_fault(const Chain& chain, const ArmLog& log, const ArmFit& fit,
+                                       const Factors& found, double factor) {
     std::vector<std::string> names;
-    for (std::size_t j = 0; j < signs.turned.size(); ++j)
-        if (signs.turned[j]) names.push_back(chain.joints[j].name);
+    for (std::size_t j = 0; j < found.of.size(); ++j)
+        if (found.of[j] == factor) names.push_back(chain.joints[j].name);
+    if (names.empty()) return {};
     const bool all = names.size() == fit.joints.size();
-    SetupFault fault{SetupFaultKind::torque_sign,
-                     fmt::format("the torque of {} {} has its sign reversed: {}",
-                                 names.size() == 1 ? "joint" : "joints", fmt::join(names, ", "),
+    SetupFault fault{factor < 0.0 ? SetupFaultKind::torque_sign : SetupFaultKind::torque_unit,
+                     fmt::format("the torque of {} {} {}: {}", names.size() == 1 ? "joint" : "joints",
+                                 fmt::join(names, ", "),
+                                 factor < 0.0 ? "has its sign reversed" : "is in mNm where Nm are expected",
                                  all ? "friction would drive the arm"
-                                     : "with it turned the joints fit one arm on fifths of the log left out"),
+                                     : "with that corrected the joints fit one arm on held-out fifths of the "
+                                       "log"),
                      {},
-                     -1.0};
+                     factor};
     fault.explained_before = explained_by(fit, log);
-    fault.explained_after = explained_by(signs.fit, TurnedLog(log, signs.turned).log);
+    fault.explained_after = explained_by(found.fit, ScaledLog(log, found.of).log);
     return fault;
+}
+
+// Two joints of the log that are exchanged, where the arm fits clearly better so.
+std::optional<SetupFault> exchanged_joints(const Chain& chain, const ArmLog& log, const ArmFit& fit,
+                                           const ArmFitOptions& options, const ArmSetupLimits& limits) {
+    std::optional<SetupFault> best;
+    double least = limits.most_error * mean_error(fit, log);
+    for (std::size_t i = 0; i < fit.joints.size(); ++i) {
+        for (std::size_t k = i + 1; k < fit.joints.size(); ++k) {
+            const std::size_t a = fit.joints[i].joint, b = fit.joints[k].joint;
+            if (chain.joints[a].kind != chain.joints[b].kind) continue;
+            ArmLog other = log;
+            std::swap(other.joints[a], other.joints[b]);
+            const ArmFit again = fit_arm(chain, other, options);
+            const double error = mean_error(again, other);
+            if (error >= least) continue;
+            best = SetupFault{
+                SetupFaultKind::wrong_joint,
+                fmt::format("joints {} and {} are exchanged in the log: the other way round the "
+                            "error on held-out fifths is {:.2g} of this",
+                            chain.joints[a].name, chain.joints[b].name, error / mean_error(fit, log)),
+                {}};
+            best->explained_before = explained_by(fit, log);
+            best->explained_after = explained_by(again, other);
+            least = error;
+        }
+    }
+    return best;
 }
 
 std::string gravity_text(const Vector3& gravity) {
@@ -154,39 +213,44 @@ std::vector<SetupFault> suspect_arm(const Chain& chain, const ArmLog& log, const
     std::vector<SetupFault> faults;
     ArmFitOptions alike = options;
     alike.smoothing = fit.smoothing;
-    Signs signs{fit, std::vector<bool>(log.joints.size(), false)};
-    while (auto better = one_more_turned(chain, log, signs, alike, limits)) signs = *std::move(better);
-    // All signs turned fit as well: friction says which.
-    const TurnedLog as_found(log, signs.turned);
-    if (friction_drives(chain, as_found.log, signs.fit, limits)) {
-        for (const ArmJointFit& joint : fit.joints) signs.turned[joint.joint] = !signs.turned[joint.joint];
-        signs.fit = fit_arm(chain, TurnedLog(log, signs.turned).log, alike);
+    Factors factors{fit, std::vector<double>(log.joints.size(), 1.0)};
+    while (auto better = one_more_changed(chain, log, factors, alike, limits)) factors = *std::move(better);
+    // All signs reversed fit as well: friction decides.
+    const ScaledLog as_found(log, factors.of);
+    if (friction_drives(chain, as_found.log, factors.fit, limits)) {
+        for (const ArmJointFit& joint : fit.joints) factors.of[joint.joint] *= -1.0;
+        factors.fit = fit_arm(chain, ScaledLog(log, factors.of).log, alike);
     }
-    const ArmFit& best = signs.fit;
-    const std::vector<bool>& turned = signs.turned;
-    if (std::find(turned.begin(), turned.end(), true) != turned.end())
-        faults.push_back(sign_fault(chain, log, fit, signs));
+    for (const double factor : {-1.0, 1e-3})
+        if (auto fault = factor_fault(chain, log, fit, factors, factor)) faults.push_back(*std::move(fault));
+    const ArmFit& best = factors.fit;
+    const ScaledLog corrected(log, factors.of);
     const Vector3& g = chain.gravity_m_s2;
-    if (!(portable::hypot(g[0], g[1], g[2]) > 0.0)) return faults;
-    const TurnedLog judged(log, turned);
-    double least = limits.most_error * mean_error_nm(best);
+    const double now = mean_error(best, corrected.log);
+    double least = limits.most_error * now;
     std::optional<SetupFault> direction;
-    for (const Vector3& gravity : other_directions(g)) {
-        Chain other = chain;
-        other.gravity_m_s2 = gravity;
-        const ArmFit again = fit_arm(other, judged.log, alike);
-        if (mean_error_nm(again) >= least) continue;
-        least = mean_error_nm(again);
-        direction = SetupFault{
-            SetupFaultKind::gravity_direction,
-            fmt::format("gravity acts along another axis of the base: {} leaves {:.2g} of the error that {} "
-                        "leaves on fifths of the log left out",
-                        gravity_text(gravity), least / mean_error_nm(best), gravity_text(g)),
-            gravity_text(gravity)};
-        direction->explained_before = explained_by(best, judged.log);
-        direction->explained_after = explained_by(again, judged.log);
+    if (portable::hypot(g[0], g[1], g[2]) > 0.0) {
+        for (const Vector3& gravity : other_directions(g)) {
+            Chain other = chain;
+            other.gravity_m_s2 = gravity;
+            const ArmFit again = fit_arm(other, corrected.log, alike);
+            const double error = mean_error(again, corrected.log);
+            if (error >= least) continue;
+            least = error;
+            direction = SetupFault{
+                SetupFaultKind::gravity_direction,
+                fmt::format(
+                    "gravity acts along another axis of the base: with {} the error on held-out fifths "
+                    "of the log is {:.2g} of that with {}",
+                    gravity_text(gravity), error / now, gravity_text(g)),
+                gravity_text(gravity)};
+            direction->explained_before = explained_by(best, corrected.log);
+            direction->explained_after = explained_by(again, corrected.log);
+        }
     }
     if (direction) faults.push_back(*std::move(direction));
+    if (!faults.empty()) return faults;
+    if (auto fault = exchanged_joints(chain, log, fit, alike, limits)) faults.push_back(*std::move(fault));
     return faults;
 }
 

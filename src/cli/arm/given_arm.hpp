@@ -11,6 +11,7 @@
 #include "cli/arm/arm_option.hpp"
 #include "cli/readings/readings.hpp"
 #include "ripplenotch/arm/arm_fit.hpp"
+#include "ripplenotch/arm/arm_setup.hpp"
 
 namespace ripplenotch {
 
@@ -31,8 +32,10 @@ class GivenArm {
     [[nodiscard]] std::size_t find(const std::string& joint) const { return reading_.find(chain(), joint); }
 
     /// One fit for all joints; where lengths are guessed, rows of two joints do not agree, and each has a fit
-    /// of its own. Made when it is first asked for. `use`: rows that count, by the first call; empty: all.
-    const ArmFit& fit(std::size_t joint, const std::vector<bool>& use = {});
+    /// of its own. Made when it is first asked for.
+    const ArmFit& fit(std::size_t joint);
+    /// Faults of arm and log, of all joints at once where they have one fit. Found when first asked for.
+    const std::vector<SetupFault>& setup_faults(std::size_t joint);
     /// Columns for the rows of the log that the arm was fitted to, or for those of another one; `log` is
     /// reading() or other().
     [[nodiscard]] GivenTerm term(std::size_t joint, const ArmReading& log);
@@ -49,7 +52,15 @@ class GivenArm {
     std::vector<JointTravel> travel_;
     /// Of a log, for all its joints; by smoothing.
     std::map<std::pair<const ArmReading*, double>, std::vector<Motion>> motions_;
-    std::map<std::size_t, ArmFit> fits_;  ///< by joint; all joints at once: under 0
+    struct Fitted {
+        ArmFit fit;  ///< of the torques moved ahead by the common lag, where it is applied
+        std::vector<SetupFault> faults;
+        std::optional<ArmLag> lag;
+    };
+    [[nodiscard]] const Fitted& fitted(std::size_t joint);
+    [[nodiscard]] bool is_applied(const ArmLag& lag) const;
+    [[nodiscard]] ArmFitOptions options_for(std::size_t joint) const;
+    std::map<std::size_t, Fitted> fits_;  ///< by joint; all joints at once: under 0
 };
 
 /// "arm: 6 joints of ur10.urdf matched by number (-v shows them); 36 of 36 combinations ... 0.1 s", and what

@@ -18,7 +18,7 @@ std::string value_text(const Term& term, const FittedValue& value) {
     if (value.at_bound) text += " (at its bound)";
     // An interval over all that the parameter may be says nothing, in whatever digits.
     if (value.ci95 && value.ci95->low <= parameter.lower && value.ci95->high >= parameter.upper) {
-        text += " (this log does not tell its size)";
+        text += " (not identifiable from this log)";
     } else if (value.ci95) {
         text += fmt::format(" [{}, {}]", short_number(value.ci95->low), short_number(value.ci95->high));
     }

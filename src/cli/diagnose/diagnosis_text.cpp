@@ -113,6 +113,7 @@ std::string answer(const Diagnosis& diagnosis) {
     for (const Tie& tie : diagnosis.ambiguous) add(joined(tie.effects, " or "));
     const DiagnosisGap& gap = diagnosis.gap;
     const std::string head = !names.empty()                  ? "Missing: " + names
+                             : !diagnosis.setup.empty()      ? "No effect can be confirmed with this set-up"
                              : diagnosis.unexplained.empty() ? "Nothing is missing"
                                                              : "Unexplained";
     return fmt::format("{}; residual {} to {} Nm rms, noise {} Nm rms.\n", head, short_number(gap.before_nm),
@@ -143,8 +144,11 @@ std::string round_text(const Finding& finding, std::size_t number) {
                             short_number(*finding.validation_after_nm));
     }
     for (const RivalFinding& rival : finding.alternatives)
-        text += fmt::format("  instead of it, {} would leave {} more (a tie below 12)\n", rival.effect,
-                            short_number(rival.margin));
+        text += fmt::format(
+            "  instead of it, {} would leave {} more{}\n", rival.effect, short_number(rival.margin),
+            finding.status == FindingStatus::ambiguous && rival.margin < DiagnosisRules{}.judge.tie_margin
+                ? " (a tie)"
+                : "");
     return text;
 }
 
@@ -169,23 +173,23 @@ std::string decisions_text(const std::vector<Decision>& decisions) {
     return passed + decided;
 }
 
-std::string leftover_text(const Leftover& leftover) {
-    return fmt::format("{} Nm rms {} ({:.0f} % of the squared residual)", short_number(leftover.rms_nm),
-                       where_text(leftover.where), 100.0 * std::min(leftover.part, 1.0));
+std::string region_text(const ResidualRegion& region) {
+    return fmt::format("{} Nm rms {} ({:.0f} % of the squared residual)", short_number(region.rms_nm),
+                       where_text(region.where), 100.0 * std::min(region.part, 1.0));
 }
 
 // Places of one kind are told together beyond the largest: a log may disagree in dozens of stretches of time.
-std::string leftovers_text(const std::vector<Leftover>& leftovers, std::string_view verb) {
+std::string regions_text(const std::vector<ResidualRegion>& residual_regions, std::string_view verb) {
     std::string text;
     std::map<std::string_view, std::pair<std::size_t, double>> more;  // number and part, by the kind's name
-    std::map<LeftoverKind, std::size_t> told;
-    for (const Leftover& leftover : leftovers) {
-        if (told[leftover.kind]++ < most_of_a_kind) {
-            text += fmt::format("{} {}\n", verb, leftover_text(leftover));
+    std::map<RegionKind, std::size_t> told;
+    for (const ResidualRegion& region : residual_regions) {
+        if (told[region.kind]++ < most_of_a_kind) {
+            text += fmt::format("{} {}\n", verb, region_text(region));
         } else {
-            auto& [number, part] = more[leftover_kind_name(leftover.kind)];
+            auto& [number, part] = more[region_kind_name(region.kind)];
             ++number;
-            part += leftover.part;
+            part += region.part;
         }
     }
     for (const auto& [kind, rest] : more)
@@ -205,7 +209,9 @@ std::string closing(const Diagnosis& diagnosis) {
                        ? "partly explained: this log does not confirm what you accepted"
                        : "partly explained: something is left";
         case DiagnosisVerdict::unexplained:
-            return "unexplained: no effect of the catalogue accounts for what is left";
+            return diagnosis.setup.empty()
+                       ? "unexplained: no effect of the catalogue accounts for what is left"
+                       : "unexplained: correct the set-up first";
         case DiagnosisVerdict::undecided:
             return "cannot tell";
     }
@@ -266,16 +272,21 @@ std::string diagnosis_story(const Diagnosis& diagnosis, bool explain) {
     text += fmt::format("named: {}\n", diagnosis.named.empty() ? "nothing" : joined(diagnosis.named, ", "));
     text += fmt::format("{} samples, {} used; noise floor {} Nm rms\n", diagnosis.samples,
                         diagnosis.samples_used, short_number(gap.noise_floor_nm));
+    for (const UnusedRows& rows : diagnosis.unused)
+        text += fmt::format("  {} samples not used: {}\n", rows.rows, rows.reason);
+    for (const EffectOfUnusedRows& one : diagnosis.acts_where_unused)
+        text += fmt::format("  {} acts in {} samples, of which {} are not used: it may be missed\n",
+                            one.effect, one.rows, one.unused);
     text += fmt::format("gap of the model as given: {} Nm rms\n", short_number(gap.before_nm));
     for (std::size_t i = 0; i < std::min<std::size_t>(diagnosis.disagreement.size(), 3); ++i)
-        text += fmt::format("  disagrees {}\n", leftover_text(diagnosis.disagreement[i]));
+        text += fmt::format("  disagrees {}\n", region_text(diagnosis.disagreement[i]));
     text += angle_text(diagnosis);
     for (const Fault& fault : diagnosis.faults)
         text += fmt::format("fault of the log: {}, {}\n", fault.term.effect->name, fault.words);
     text += findings_text(diagnosis, explain);
     for (const Tie& tie : diagnosis.ambiguous)
         text += fmt::format("{}: this log cannot tell; {} would\n", joined(tie.effects, " or "), tie.advice);
-    text += leftovers_text(diagnosis.unexplained, "unexplained:");
+    text += regions_text(diagnosis.unexplained, "unexplained:");
     for (const Undecidable& entry : diagnosis.undecidable) {
         text += fmt::format("not examined: {}: {}", entry.effect, entry.reason);
         if (entry.would_explain_nm > 0.0)

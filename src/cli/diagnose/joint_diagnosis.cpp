@@ -11,6 +11,7 @@
 #include "cli/readings/readings.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/files.hpp"
+#include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/progress.hpp"
 
 namespace ripplenotch {
@@ -81,6 +82,24 @@ void say_arm(const CommonOptions& common, const ArmAccount& arm) {
     say_warnings(common, arm.warnings);
 }
 
+// A log of an arm of which nothing is known but this joint.
+bool others_move(const JointDiagnosis& one) {
+    return one.log.layout.joints.size() > 1 && one.given.log.empty();
+}
+
+// One controller has one clock: the delay of an arm's torques is known from all its joints, and is not
+// searched in one of them, unless that one contradicts the others. Names that are not tried then.
+std::vector<std::string> take_lag(const DiagnoseRequest& request, const JointDiagnosis& one, Model& model) {
+    std::vector<std::string> without = request.without;
+    const std::optional<ArmAccount>& arm = one.given.account;
+    const bool has_delay =
+        std::ranges::any_of(model.terms, [](const Term& term) { return term.effect->name == "delay"; });
+    if (!arm || !arm->lag || has_delay) return without;
+    if (arm->lag_is_applied) model.terms.push_back({&find_effect("delay"), {to_digits(arm->lag->delay_s)}});
+    if (!arm->lag->contradicted_by(one.given.fitted_arm->find(one.joint))) without.emplace_back("delay");
+    return without;
+}
+
 // Where no motion of the simulation says how late the log is, the torques may.
 std::optional<Seconds> expected_delay(const GivenTerms& given) {
     if (!given.setup || given.setup->motion_lag || !given.setup->torque_lag) return std::nullopt;
@@ -88,17 +107,22 @@ std::optional<Seconds> expected_delay(const GivenTerms& given) {
     return lag.identifiable ? std::optional(Seconds(lag.delay_s)) : std::nullopt;
 }
 
-Diagnosis diagnosed(const DiagnoseRequest& request, const Model& model, const JointDiagnosis& one,
+Diagnosis diagnosed(const DiagnoseRequest& request, Model model, const JointDiagnosis& one,
                     const std::optional<Log>& other) {
+    const std::vector<std::string> without = take_lag(request, one, model);
     try {
-        return diagnose_readings(model, one.log, other ? &*other : nullptr,
-                                 {.smoothing = request.smoothing,
-                                  .without = request.without,
-                                  .accept = request.accept,
-                                  .given = one.given.log,
-                                  .validation_given = one.given.validation,
-                                  .expected_delay = expected_delay(one.given),
-                                  .rules = rules_of(request)});
+        return diagnose_readings(
+            model, one.log, other ? &*other : nullptr,
+            {.smoothing = request.smoothing,
+             .without = without,
+             .accept = request.accept,
+             .given = one.given.log,
+             .validation_given = one.given.validation,
+             .setup = one.given.setup ? std::span<const SetupFault>(one.given.setup->faults)
+                                      : std::span<const SetupFault>(),
+             .others_move = others_move(one),
+             .expected_delay = expected_delay(one.given),
+             .rules = rules_of(request)});
     } catch (const DataError& error) {  // the library knows no file
         raise<DataError>("{}: {}", request.path, error.what());
     }
@@ -117,6 +141,21 @@ GivenTerms given_of(const DiagnoseRequest& request, const ModelWithGiven& model,
     say_warnings(request.common, {warnings.begin() + static_cast<std::ptrdiff_t>(said), warnings.end()});
     if (given.account) say_arm(request.common, *given.account);
     return given;
+}
+
+// Of an arm the motion of its other joints is torque of this one, which the effects of a joint may imitate.
+void advise_arm(JointDiagnosis& one) {
+    const bool is_of_position = std::ranges::any_of(one.diagnosis.rounds, [](const Finding& finding) {
+        return finding.term.effect->domain == Domain::position || finding.term.effect->name == "gravity";
+    });
+    const bool is_open = is_of_position || !one.diagnosis.unexplained.empty();
+    if (!others_move(one) || !is_open) return;
+    one.diagnosis.next.insert(
+        one.diagnosis.next.begin(),
+        fmt::format(
+            "the log has {} joints, and where the others move, their weight and acceleration act on this "
+            "one: --arm takes their motion into account",
+            one.log.layout.joints.size()));
 }
 
 }  // namespace
@@ -149,10 +188,8 @@ JointDiagnosis diagnosed_joint(const DiagnoseRequest& request, const std::option
     for (const std::string& file : one.given.files) one.provenance.inputs.push_back(input_record(file));
     Progress::current().begin("looking for what is missing", "", 0);
     one.diagnosis = diagnosed(request, model.model, one, other);
-    if (one.given.setup) {
-        one.diagnosis.setup = one.given.setup->faults;
-        one.diagnosis.alignment = one.given.setup->motion_lag;
-    }
+    advise_arm(one);
+    if (one.given.setup) one.diagnosis.alignment = one.given.setup->motion_lag;
     return one;
 }
 

@@ -169,6 +169,11 @@ void GivenSource::add_arm(GivenTerms& terms, const ModelWithGiven& stated, const
     if (terms.arm->values && !terms.arm->smoothing) terms.arm->smoothing = default_smoothing;
     terms.account =
         terms.arm->values ? given->stated_account(joint, *terms.arm->smoothing) : given->account(joint);
+    if (checks_setup_ && !terms.arm->values) {
+        if (!terms.setup) terms.setup.emplace();
+        const auto& faults = given->setup_faults(joint);
+        terms.setup->faults.insert(terms.setup->faults.begin(), faults.begin(), faults.end());
+    }
     add_arm_terms(terms.log, *given, *terms.arm, given->reading(), log.log, joint);
     if (validation == nullptr) return;
     add_arm_terms(terms.validation, *given, *terms.arm, given->other(validation->path, reading),

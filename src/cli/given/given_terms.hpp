@@ -13,6 +13,7 @@
 #include "cli/options/options.hpp"
 #include "cli/options/simulated_option.hpp"
 #include "ripplenotch/arm/arm_fit.hpp"
+#include "ripplenotch/arm/arm_setup.hpp"
 #include "ripplenotch/diagnose/diagnosis.hpp"
 #include "ripplenotch/diagnose/setup.hpp"
 #include "ripplenotch/document/model_json.hpp"

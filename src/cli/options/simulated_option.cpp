@@ -19,15 +19,7 @@ namespace ripplenotch {
 namespace {
 
 constexpr std::array<std::string_view, 1> aligns = {"start"};
-constexpr Key column_keys[] = {
-    {.name = "name", .kind = KeyKind::text, .required = true, .help = "of the column"},
-    {.name = "scale",
-     .kind = KeyKind::number,
-     .help = "factor that is known; left out: 1, unless the log shows another"},
-    {.name = "delay", .kind = KeyKind::text, .default_text = "0s", .help = "of the column, if it is known"},
-    {.name = "position", .kind = KeyKind::text, .help = "column of its position"},
-    {.name = "velocity", .kind = KeyKind::text, .help = "column of its velocity"},
-};
+// Those of a file of its own; the last ones hold for a column of the log as well.
 constexpr Key log_keys[] = {
     {.name = "file", .kind = KeyKind::text, .required = true, .help = "the simulation's log"},
     {.name = "column", .kind = KeyKind::text, .required = true, .help = "of its torque"},
@@ -40,6 +32,8 @@ constexpr Key log_keys[] = {
     {.name = "position", .kind = KeyKind::text, .help = "column of its position"},
     {.name = "velocity", .kind = KeyKind::text, .help = "column of its velocity"},
 };
+constexpr Key name_key = {.name = "name", .kind = KeyKind::text, .required = true, .help = "of the column"};
+constexpr Key column_keys[] = {name_key, log_keys[4], log_keys[5], log_keys[6], log_keys[7]};
 
 // The cubic through the four samples about a time.
 double cubic_at(const std::vector<double>& time_s, const std::vector<double>& value, double at_s) {

@@ -16,6 +16,20 @@ MatrixXd DefiniteFactors::lower() const { return factored_.matrixL(); }
 VectorXd DefiniteFactors::solve(const VectorXd& right) const { return factored_.solve(right); }
 MatrixXd DefiniteFactors::solve(const MatrixXd& right) const { return factored_.solve(right); }
 
+ScaledDefiniteFactors::ScaledDefiniteFactors(MatrixXd matrix, double least)
+    : scale_(matrix.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse()) {
+    matrix = scale_.asDiagonal() * matrix * scale_.asDiagonal();
+    matrix.diagonal().array() += least;
+    factored_ = DefiniteFactors(matrix);
+}
+VectorXd ScaledDefiniteFactors::solve(const VectorXd& right) const {
+    return scale_.cwiseProduct(factored_.solve(VectorXd(scale_.cwiseProduct(right))));
+}
+VectorXd ScaledDefiniteFactors::inverse_diagonal() const {
+    const MatrixXd unit = MatrixXd::Identity(scale_.size(), scale_.size());
+    return factored_.solve(unit).diagonal().cwiseProduct(scale_).cwiseProduct(scale_);
+}
+
 HermitianFactors::HermitianFactors(const MatrixXcd& matrix) : factored_(matrix) {}
 MatrixXcd HermitianFactors::solve(const MatrixXcd& right) const { return factored_.solve(right); }
 

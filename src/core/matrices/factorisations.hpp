@@ -36,6 +36,21 @@ class DefiniteFactors {
     Eigen::LLT<Eigen::MatrixXd> factored_;
 };
 
+/// The same of a matrix whose unknowns may have any units: each is scaled to a diagonal of 1, to which
+/// `least` is added, so that a matrix that is singular but for rounding shares between equal unknowns.
+class ScaledDefiniteFactors {
+  public:
+    ScaledDefiniteFactors() = default;
+    ScaledDefiniteFactors(Eigen::MatrixXd matrix, double least);
+
+    [[nodiscard]] Eigen::VectorXd solve(const Eigen::VectorXd& right) const;
+    [[nodiscard]] Eigen::VectorXd inverse_diagonal() const;
+
+  private:
+    Eigen::VectorXd scale_;
+    DefiniteFactors factored_;
+};
+
 /// L D L* of a Hermitian matrix, of which the lower half is read; it may be singular.
 class HermitianFactors {
   public:

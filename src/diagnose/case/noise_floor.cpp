@@ -175,9 +175,9 @@ NoiseFloor noise_of_residual(const Case& looked_at, const std::vector<double>& r
                              const NoiseFloor& floor, const DiagnosisRules& rules) {
     const double samples = static_cast<double>(looked_at.used());
     const auto lags = static_cast<std::size_t>(
-        std::min(rules.beside.memory_s * looked_at.motion.sample_rate.value(), samples / 10.0));
+        std::min(rules.residual.memory_s * looked_at.motion.sample_rate.value(), samples / 10.0));
     std::vector<double> covariance = autocovariance(residual_nm, looked_at, lags);
-    covariance[0] *= 1.0 + rules.beside.color_floor;
+    covariance[0] *= 1.0 + rules.residual.color_floor;
     NoiseFloor noise = modelled(std::move(covariance), samples, rules.noise_floor.lag_price, 1.0);
     noise.material_nm = floor.rms_nm;
     return noise;

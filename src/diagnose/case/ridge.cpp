@@ -10,42 +10,33 @@ namespace ripplenotch {
 using Eigen::Index;
 
 Ridge::Ridge(const std::vector<std::vector<double>>& columns, std::span<const double> deviation, double noise)
-    : columns_(columns), noise_(noise), scale_(static_cast<Index>(columns.size())) {
+    : columns_(columns), noise_(noise) {
     // Columns that are as good as one another share what they explain in place of dividing by nothing.
     constexpr double least_of_its_own = 1e-9;
-    const auto m = scale_.size();
-    const auto product = [&](Index r, Index c) {
-        const auto &one = columns[static_cast<std::size_t>(r)], &other = columns[static_cast<std::size_t>(c)];
-        return dot(one.data(), other.data(), one.size());
-    };
-    for (Index r = 0; r < m; ++r) {
-        const double square = product(r, r);
-        scale_[r] = square > 0.0 ? std::sqrt(square) : 1.0;
+    Eigen::MatrixXd products(static_cast<Index>(columns.size()), static_cast<Index>(columns.size()));
+    for (std::size_t r = 0; r < columns.size(); ++r) {
+        for (std::size_t c = 0; c <= r; ++c) {
+            const double product = dot(columns[r].data(), columns[c].data(), columns[r].size());
+            products(static_cast<Index>(r), static_cast<Index>(c)) = product;
+            products(static_cast<Index>(c), static_cast<Index>(r)) = product;
+        }
+        const double prior = noise / deviation[r];
+        products(static_cast<Index>(r), static_cast<Index>(r)) += prior * prior;
     }
-    Eigen::MatrixXd products(m, m);
-    for (Index r = 0; r < m; ++r) {
-        const double drawn = noise / (deviation[static_cast<std::size_t>(r)] * scale_[r]);
-        for (Index c = 0; c <= r; ++c) products(r, c) = product(r, c) / (scale_[r] * scale_[c]);
-        products(r, r) += drawn * drawn + least_of_its_own;
-    }
-    factored_ = DefiniteFactors(products);
+    factored_ = ScaledDefiniteFactors(std::move(products), least_of_its_own);
 }
 
 std::vector<double> Ridge::solve(std::span<const double> target) const {
-    Eigen::VectorXd products(scale_.size());
-    for (Index r = 0; r < products.size(); ++r)
-        products[r] =
-            dot(columns_[static_cast<std::size_t>(r)].data(), target.data(), target.size()) / scale_[r];
-    const Eigen::VectorXd values = factored_.solve(products).cwiseQuotient(scale_);
+    Eigen::VectorXd products(static_cast<Index>(columns_.size()));
+    for (std::size_t r = 0; r < columns_.size(); ++r)
+        products[static_cast<Index>(r)] = dot(columns_[r].data(), target.data(), target.size());
+    const Eigen::VectorXd values = factored_.solve(products);
     return {values.begin(), values.end()};
 }
 
 std::vector<double> Ridge::standard_errors() const {
-    const Index m = scale_.size();
-    const Eigen::MatrixXd inverse = factored_.solve(Eigen::MatrixXd(Eigen::MatrixXd::Identity(m, m)));
-    std::vector<double> errors;
-    for (Index r = 0; r < m; ++r) errors.push_back(noise_ * std::sqrt(inverse(r, r)) / scale_[r]);
-    return errors;
+    const Eigen::VectorXd errors = noise_ * factored_.inverse_diagonal().cwiseSqrt();
+    return {errors.begin(), errors.end()};
 }
 
 }  // namespace ripplenotch

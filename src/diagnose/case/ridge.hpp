@@ -26,8 +26,7 @@ class Ridge {
   private:
     const std::vector<std::vector<double>>& columns_;
     double noise_;
-    Eigen::VectorXd scale_;
-    DefiniteFactors factored_;
+    ScaledDefiniteFactors factored_;
 };
 
 }  // namespace ripplenotch

@@ -12,7 +12,7 @@
 #include <string_view>
 
 #include "diagnose/judging/evenness.hpp"
-#include "diagnose/judging/leftover.hpp"
+#include "diagnose/judging/residual_regions.hpp"
 #include "diagnose/judging/wandering.hpp"
 #include "diagnose/search/bent_shape.hpp"
 #include "diagnose/search/hearing.hpp"
@@ -26,16 +26,16 @@ using DoubtRules = DiagnosisRules::DoubtRules;
 constexpr const char* more_is_left = "more is left unexplained than it explains";
 
 // Domains in which something unexplained casts doubt on an effect.
-bool touches(Domain domain, const Leftover& leftover) {
-    switch (leftover.kind) {
-        case LeftoverKind::order:
-        case LeftoverKind::tone:
+bool touches(Domain domain, const ResidualRegion& region) {
+    switch (region.kind) {
+        case RegionKind::order:
+        case RegionKind::tone:
             return domain == Domain::order || domain == Domain::frequency;
-        case LeftoverKind::position:
+        case RegionKind::position:
             return domain == Domain::position;
-        case LeftoverKind::speed:
+        case RegionKind::speed:
             return domain == Domain::speed;
-        case LeftoverKind::time:
+        case RegionKind::time:
             return domain == Domain::time || domain == Domain::speed || domain == Domain::position;
     }
     return false;
@@ -51,8 +51,8 @@ std::string uneven_words(const Unevenness& uneven) {
 double most_uneven(const Term& term, const ModelBench& bench) {
     if (term.effect->ripple_order) return 1.0;
     const DiagnosisRules& rules = bench.rules();
-    const bool beside_known = bench.beside_residual() && !bench.looked_at().motion.known_nm.empty();
-    return beside_known ? rules.beside.most_uneven : rules.evenness.most_uneven;
+    const bool beside_known = bench.noise_holds_residual() && !bench.looked_at().motion.known_nm.empty();
+    return beside_known ? rules.residual.most_uneven : rules.evenness.most_uneven;
 }
 
 bool is_fast(Domain d) { return d == Domain::order || d == Domain::frequency; }
@@ -117,7 +117,8 @@ RaisedDoubt doubt_of_error(const Candidate& model, std::size_t term, const Doubt
                            Hearing& hearing) {
     const auto size = size_of(model.stated.terms[term], model.values, term, rules.most_error);
     if (size && hearing.asked("doubt.most_error", size->error, !(size->error < rules.most_error)))
-        return {FindingStatus::unidentifiable, fmt::format("this log does not tell its {}", size->name)};
+        return {FindingStatus::unidentifiable,
+                fmt::format("its {} is not identifiable from this log", size->name)};
     return {};
 }
 
@@ -127,11 +128,11 @@ RaisedDoubt doubt_of_size(const ModelBench& bench, const Candidate& model, std::
     const Term& stated = model.stated.terms[term];
     const DoubtRules& rules = bench.rules().doubt;
     bool slight =
-        !bench.beside_residual() && hearing.asked(material_rule(bench.looked_at()), evidence.share_sigma,
-                                                  evidence.share_sigma < bench.material_sigma());
+        !bench.noise_holds_residual() && hearing.asked(material_rule(bench.looked_at()), evidence.share_sigma,
+                                                       evidence.share_sigma < bench.material_sigma());
     // Instead it has to gain in most of the log's blocks.
-    if (bench.beside_residual() &&
-        hearing.asked("beside.least_t", evidence.t, evidence.t < bench.rules().beside.least_t))
+    if (bench.noise_holds_residual() &&
+        hearing.asked("residual.least_t", evidence.t, evidence.t < bench.rules().residual.least_t))
         return {FindingStatus::tentative, "its gain is that of a few blocks of the log"};
     // A delay of part of a sample is a matter of when a sample is said to be taken.
     if (const auto samples = shortest_delay_samples(stated, bench); samples && !slight)
@@ -143,8 +144,9 @@ RaisedDoubt doubt_of_size(const ModelBench& bench, const Candidate& model, std::
     const double share_nm = std::max(evidence.share_nm, 1e-12);
     if (hearing.asked("doubt.most_inflation", evidence.own_nm / share_nm,
                       evidence.own_nm > rules.most_inflation * share_nm))
-        return {FindingStatus::unidentifiable,
-                "most of its torque is held in balance by another effect's: this log cannot tell them"};
+        return {
+            FindingStatus::unidentifiable,
+            "its torque is nearly collinear with that of another effect: this log cannot distinguish them"};
     return doubt_of_error(model, term, rules, hearing);
 }
 
@@ -185,7 +187,7 @@ void doubt_alone(Finding& finding, const ModelBench& bench, const Candidate& mod
     finding.reason = std::move(doubt.reason);
 }
 
-bool doubt_told(Finding& finding, const Candidate& told, std::size_t term, const DiagnosisRules& rules) {
+bool doubt_size(Finding& finding, const Candidate& told, std::size_t term, const DiagnosisRules& rules) {
     std::vector<Decision> decisions;
     Hearing hearing(rules, decisions);
     const RaisedDoubt doubt = doubt_of_error(told, term, rules.doubt, hearing);
@@ -205,8 +207,8 @@ double excess_of(const ModelBench& bench, const Model& stated) {
     return std::sqrt(std::max(left_nm * left_nm - portable::pow(bench.noise().rms_nm, 2), 0.0));
 }
 
-void doubt_for_leftovers(Finding& finding, double excess_nm, const ModelBench& bench,
-                         const std::vector<Leftover>& unexplained) {
+void doubt_for_residual(Finding& finding, double excess_nm, const ModelBench& bench,
+                        const std::vector<ResidualRegion>& unexplained) {
     const DoubtRules& rules = bench.rules().doubt;
     const double share_nm = finding.evidence.share_nm;
     Hearing hearing(bench.rules(), finding.decisions);
@@ -215,8 +217,8 @@ void doubt_for_leftovers(Finding& finding, double excess_nm, const ModelBench& b
         finding.status = FindingStatus::tentative;
         finding.reason = more_is_left;
     }
-    const Leftover* largest = nullptr;
-    for (const Leftover& place : unexplained) {
+    const ResidualRegion* largest = nullptr;
+    for (const ResidualRegion& place : unexplained) {
         if (!touches(finding.term.effect->domain, place) ||
             is_confined(place, bench.looked_at(), bench.rules()))
             continue;

@@ -16,12 +16,12 @@ void doubt_alone(Finding& finding, const ModelBench& bench, const Candidate& mod
 
 /// The same for its size alone, beside the values that are told in the end: true, and unidentifiable, where
 /// the error covers it.
-[[nodiscard]] bool doubt_told(Finding& finding, const Candidate& told, std::size_t term,
+[[nodiscard]] bool doubt_size(Finding& finding, const Candidate& told, std::size_t term,
                               const DiagnosisRules& rules);
 
 /// Where more is left over than a finding explains, it may have fed on that. `excess_nm`: of excess_of().
-void doubt_for_leftovers(Finding& finding, double excess_nm, const ModelBench& bench,
-                         const std::vector<Leftover>& unexplained);
+void doubt_for_residual(Finding& finding, double excess_nm, const ModelBench& bench,
+                        const std::vector<ResidualRegion>& unexplained);
 
 /// A finding that is slight beside a far larger one may only mend its form. One whose torque is large, and of
 /// which others explain much because they look alike, is no such thing.

@@ -36,7 +36,7 @@ void take_blocks(const ModelBench& bench, const Model& with, const Model& withou
     const auto now = bench.residual(with), before = bench.residual(without);
     const double memory = 5.0 * static_cast<double>(bench.noise().color.size());
     const auto length = static_cast<std::size_t>(std::max(
-        {bench.rules().beside.block_s * bench.looked_at().motion.sample_rate.value(), memory, 20.0}));
+        {bench.rules().residual.block_s * bench.looked_at().motion.sample_rate.value(), memory, 20.0}));
     double sum = 0.0, squares = 0.0;
     for (std::size_t r = 0; r < bench.rows().size(); ++evidence.blocks) {
         double gain = 0.0;
@@ -187,7 +187,8 @@ Finding tested_finding(const ModelBench& bench, const Candidate& model, std::siz
 }  // namespace
 
 std::vector<Finding> judge(const ModelBench& bench, const Candidate& found, std::size_t own_terms,
-                           std::span<const Effect* const> effects, const std::vector<Leftover>& unexplained) {
+                           std::span<const Effect* const> effects,
+                           const std::vector<ResidualRegion>& unexplained) {
     std::vector<Finding> findings;
     const Candidate model = bench.with_errors(found);
     for (std::size_t term = own_terms; term < model.stated.terms.size(); ++term)
@@ -195,14 +196,14 @@ std::vector<Finding> judge(const ModelBench& bench, const Candidate& found, std:
     const double excess_nm = excess_of(bench, model.stated);
     for (Finding& finding : findings) {
         if (!is_trusted(finding)) continue;
-        doubt_for_leftovers(finding, excess_nm, bench, unexplained);
+        doubt_for_residual(finding, excess_nm, bench, unexplained);
         doubt_for_size(finding, findings, bench.rules());
     }
     return findings;
 }
 
 Finding judged_alone(const ModelBench& bench, const Candidate& found, std::size_t term,
-                     std::span<const Effect* const> effects, const std::vector<Leftover>& unexplained) {
+                     std::span<const Effect* const> effects, const std::vector<ResidualRegion>& unexplained) {
     return tested_finding(bench, bench.with_errors(found), term, effects, !unexplained.empty());
 }
 

@@ -15,12 +15,12 @@ namespace ripplenotch {
 /// A finding for each term from `own_terms` on, in their order. `unexplained`: what is left over.
 [[nodiscard]] std::vector<Finding> judge(const ModelBench& bench, const Candidate& model,
                                          std::size_t own_terms, std::span<const Effect* const> effects,
-                                         const std::vector<Leftover>& unexplained);
+                                         const std::vector<ResidualRegion>& unexplained);
 
 /// One term, as if it were a finding, whatever else there is.
 [[nodiscard]] Finding judged_alone(const ModelBench& bench, const Candidate& model, std::size_t term,
                                    std::span<const Effect* const> effects,
-                                   const std::vector<Leftover>& unexplained);
+                                   const std::vector<ResidualRegion>& unexplained);
 
 /// The model without findings that are in doubt. Those that stay are looked at once more without these:
 /// beside a surrogate of its own domain a finding may look right that does not by itself, and a curve over

@@ -38,7 +38,7 @@ std::optional<std::size_t> untold(const Candidate& told, const ToldOf& of, const
     std::size_t term = of.own_terms;
     for (Finding& finding : of.findings) {
         if (is_doubtful(finding)) continue;
-        if (is_trusted(finding) && doubt_told(finding, told, term, rules)) return term;
+        if (is_trusted(finding) && doubt_size(finding, told, term, rules)) return term;
         ++term;
     }
     return std::nullopt;
@@ -46,8 +46,8 @@ std::optional<std::size_t> untold(const Candidate& told, const ToldOf& of, const
 
 }  // namespace
 
-Candidate told_values(Case looked_at, const NoiseFloor& noise, const Candidate& chosen, const ToldOf& of,
-                      Work& work, const DiagnosisRules& rules) {
+Candidate final_values(Case looked_at, const NoiseFloor& noise, const Candidate& chosen, const ToldOf& of,
+                       Work& work, const DiagnosisRules& rules) {
     leave_out_limited(looked_at, chosen.stated, of.faults, noise.rms_nm, rules.values);
     ModelBench bench(looked_at, noise, work, rules);
     bench.settle_on(chosen.stated);

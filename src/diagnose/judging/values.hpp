@@ -17,7 +17,7 @@ struct ToldOf {
 /// The values of a model that is chosen, from samples that pull them to no side, with intervals that hold for
 /// noise with a memory and for what the model lacks here and there. A finding whose size these values do not
 /// tell (doubt.most_error) is unidentifiable, and its term goes.
-[[nodiscard]] Candidate told_values(Case looked_at, const NoiseFloor& noise, const Candidate& chosen,
-                                    const ToldOf& of, Work& work, const DiagnosisRules& rules);
+[[nodiscard]] Candidate final_values(Case looked_at, const NoiseFloor& noise, const Candidate& chosen,
+                                     const ToldOf& of, Work& work, const DiagnosisRules& rules);
 
 }  // namespace ripplenotch

@@ -74,7 +74,7 @@ class ModelBench {
     [[nodiscard]] double material_sigma() const { return ripplenotch::material_sigma(case_, rules_); }
     [[nodiscard]] Work& work() const { return work_; }
     /// Whether what no effect explains is part of the noise.
-    [[nodiscard]] bool beside_residual() const { return noise_.material_nm < noise_.rms_nm; }
+    [[nodiscard]] bool noise_holds_residual() const { return noise_.material_nm < noise_.rms_nm; }
     [[nodiscard]] const NoiseFloor& noise() const { return noise_; }
     [[nodiscard]] const std::vector<std::size_t>& rows() const { return weighing_.rows(); }
     [[nodiscard]] double samples() const { return static_cast<double>(weighing_.rows().size()); }

@@ -86,13 +86,13 @@ bool worth_it(const ModelBench& bench, const Candidate& now, const Candidate& ne
     if (hearing.asked_price(gain, next.prices.back(), next.criterion() >= now.criterion())) return false;
     // What is small against the noise floor still stands out of the residual where that is quiet.
     const double share = bench.share(next, now);
-    if (!bench.beside_residual() &&
+    if (!bench.noise_holds_residual() &&
         hearing.asked(material_rule(bench.looked_at()), share, share < bench.material_sigma()))
         return false;
     const double gap = now.gain_left - samples;
     const SearchRules& rules = bench.rules().search;
     // What changes the torque as a whole takes up errors of whatever makes it.
-    if (bench.beside_residual() && next.stated.terms.back().effect->side != Side::joint) {
+    if (bench.noise_holds_residual() && next.stated.terms.back().effect->side != Side::joint) {
         const double part = raw_part(bench, now, next);
         if (hearing.asked("search.fair_part", part, part < rules.fair_part)) return false;
     }
@@ -375,8 +375,8 @@ Candidate search(ModelBench& bench, const Candidate& start, std::size_t own_term
                     next = std::move(frictions);
             }
             if (!next || !worth_it(bench, now, *next, decisions))
-                next = bench.beside_residual() ? other_addition(bench, now, trials, tried, effects)
-                                               : std::nullopt;
+                next = bench.noise_holds_residual() ? other_addition(bench, now, trials, tried, effects)
+                                                    : std::nullopt;
             if (!next) {
                 refused = refused_by(bench, now, trials, tried);
                 return;

@@ -118,7 +118,7 @@ Diagnosis diagnose_in_full(const Model& model, const TraceView& log, const Trace
                            const DiagnosisOptions& options) {
     Diagnosis told = diagnose(model, log, validation, options);
     if (!options.accept.empty()) told = with_accepted(model, log, validation, options, std::move(told));
-    if (!told.ambiguous.empty() || !told.undecidable.empty() ||
+    if (!told.setup.empty() || !told.ambiguous.empty() || !told.undecidable.empty() ||
         std::any_of(told.rounds.begin(), told.rounds.end(), is_doubtful))
         told.next = next_steps(told, motion_along(log, options.smoothing), options.rules);
     if (!told.residual_after_nm.empty())

@@ -20,7 +20,7 @@ std::string_view direction_name(Direction direction) {
     return names[static_cast<std::size_t>(direction)];
 }
 
-std::string_view leftover_kind_name(LeftoverKind kind) {
+std::string_view region_kind_name(RegionKind kind) {
     constexpr std::string_view names[] = {"time", "tone", "order", "position", "speed"};
     return names[static_cast<std::size_t>(kind)];
 }

@@ -99,6 +99,11 @@ void add_doubtful(const Diagnosis& diagnosis, std::vector<std::string>& steps) {
 std::vector<std::string> next_steps(const Diagnosis& diagnosis, const Motion& smoothed,
                                     const DiagnosisRules& rules) {
     std::vector<std::string> steps;
+    if (!diagnosis.setup.empty()) {
+        const std::string& option = diagnosis.setup.front().option;
+        return {"correct the set-up" + (option.empty() ? "" : fmt::format(" ({})", option)) +
+                " and diagnose again"};
+    }
     add_ties(diagnosis, steps);
     add_doubtful(diagnosis, steps);
     if (in_doubt(diagnosis).empty()) return steps;

@@ -110,14 +110,14 @@ Finding finding_at(Fields& fields, std::size_t place) {
     return finding;
 }
 
-std::vector<Leftover> leftovers_of(Fields& fields, std::string_view name) {
-    std::vector<Leftover> leftovers;
+std::vector<ResidualRegion> regions_of(Fields& fields, std::string_view name) {
+    std::vector<ResidualRegion> residual_regions;
     fields.each(name, [&](Fields& entry) {
-        leftovers.push_back({enumerator_of(entry, "kind", LeftoverKind::speed, leftover_kind_name),
-                             place_of(entry, "where"), number_or_unknown(entry, "rms_nm"),
-                             number_or_unknown(entry, "part_of_gap")});
+        residual_regions.push_back({enumerator_of(entry, "kind", RegionKind::speed, region_kind_name),
+                                    place_of(entry, "where"), number_or_unknown(entry, "rms_nm"),
+                                    number_or_unknown(entry, "part_of_gap")});
     });
-    return leftovers;
+    return residual_regions;
 }
 
 DiagnosisGap gap_of(Fields& fields) {
@@ -197,8 +197,8 @@ void findings_of(Fields& fields, Diagnosis& diagnosis) {
         diagnosis.undecidable.push_back(
             {effect_of(entry).name, entry.text("reason"), number_or_unknown(entry, "would_explain_nm")});
     });
-    diagnosis.unexplained = leftovers_of(fields, "unexplained");
-    diagnosis.disagreement = leftovers_of(fields, "disagreement");
+    diagnosis.unexplained = regions_of(fields, "unexplained");
+    diagnosis.disagreement = regions_of(fields, "disagreement");
 }
 
 }  // namespace
@@ -209,7 +209,8 @@ Diagnosis read_diagnosis(std::string_view text, const std::string& source) {
     fields.ignore_head();
     // Of the model as given, and who says it; what was given beside it; what was written beside it. The
     // chance that a name is wrong follows from the rest.
-    fields.ignore({"gear", "arm", "mjcf", "plan", "wrong_percent", "setup", "alignment"});
+    fields.ignore({"gear", "arm", "mjcf", "plan", "wrong_percent", "setup", "alignment", "samples_not_used",
+                   "acts_where_not_used"});
     Diagnosis diagnosis;
     diagnosis.verdict = enumerator_of(fields, "verdict", DiagnosisVerdict::undecided, verdict_name);
     if (fields.has("doubt")) diagnosis.doubt = fields.text("doubt");
@@ -318,13 +319,13 @@ Json fault_json(const Fault& fault) {
             {"words", fault.words}};
 }
 
-Json leftovers_json(const std::vector<Leftover>& leftovers) {
+Json regions_json(const std::vector<ResidualRegion>& residual_regions) {
     Json list = Json::array();
-    for (const Leftover& leftover : leftovers) {
-        list.push_back({{"kind", leftover_kind_name(leftover.kind)},
-                        {"where", place_json(leftover.where)},
-                        {"rms_nm", six_digits(leftover.rms_nm)},
-                        {"part_of_gap", six_digits(leftover.part)}});
+    for (const ResidualRegion& region : residual_regions) {
+        list.push_back({{"kind", region_kind_name(region.kind)},
+                        {"where", place_json(region.where)},
+                        {"rms_nm", six_digits(region.rms_nm)},
+                        {"part_of_gap", six_digits(region.part)}});
     }
     return list;
 }
@@ -384,6 +385,18 @@ Json arm_json(const ArmAccount& arm) {
     json["all_joints_at_once"] = arm.all_joints_at_once;
     json["lambda"] = arm.pull;
     json["gap_nm"] = six_digits(arm.gap_nm);
+    if (arm.lag) {
+        json["lag"] = {
+            {"delay_s", six_digits(arm.lag->delay_s)},
+            {"ci95_s", {six_digits(arm.lag->delay_95_s.low), six_digits(arm.lag->delay_95_s.high)}},
+            {"applied", arm.lag_is_applied},
+            {"joints", Json::array()}};
+        for (const JointLag& joint : arm.lag->joints)
+            list_in(json["lag"], "joints")
+                .push_back({{"name", arm.joints.at(joint.joint).name},
+                            {"delay_s", six_digits(joint.delay_s)},
+                            {"contradicts", joint.contradicts}});
+    }
     return json;
 }
 
@@ -415,8 +428,8 @@ void put_diagnosis(Json& json, const Diagnosis& diagnosis, const GearAccount& ge
     json["ambiguous"] = Json::array();
     for (const Tie& tie : diagnosis.ambiguous)
         list_in(json, "ambiguous").push_back({{"effects", tie.effects}, {"advice", tie.advice}});
-    json["unexplained"] = leftovers_json(diagnosis.unexplained);
-    json["disagreement"] = leftovers_json(diagnosis.disagreement);
+    json["unexplained"] = regions_json(diagnosis.unexplained);
+    json["disagreement"] = regions_json(diagnosis.disagreement);
     json["undecidable"] = Json::array();
     for (const Undecidable& entry : diagnosis.undecidable)
         list_in(json, "undecidable")
@@ -431,6 +444,13 @@ void put_diagnosis(Json& json, const Diagnosis& diagnosis, const GearAccount& ge
     json["own_terms"] = baseline_json(diagnosis);
     json["samples"] = diagnosis.samples;
     json["samples_used"] = diagnosis.samples_used;
+    json["samples_not_used"] = Json::array();
+    for (const UnusedRows& rows : diagnosis.unused)
+        list_in(json, "samples_not_used").push_back({{"reason", rows.reason}, {"samples", rows.rows}});
+    json["acts_where_not_used"] = Json::array();
+    for (const EffectOfUnusedRows& one : diagnosis.acts_where_unused)
+        list_in(json, "acts_where_not_used")
+            .push_back({{"effect", one.effect}, {"samples", one.rows}, {"not_used", one.unused}});
     json["position_in_log"] = diagnosis.has_position;
     put_angle(json, diagnosis);
     json["search"] = {{"evaluations", std::round(diagnosis.evaluations)}, {"ended", diagnosis.search_ended}};

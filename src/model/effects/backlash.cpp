@@ -17,21 +17,8 @@ constexpr Parameter parameters[] = {
      .start = 0.5,
      .upper = 1e5,
      .linear = true},
-    {.name = "width_deg",
-     .unit = "deg",
-     .help = "play: angle from the contact of one flank to that of the other",
-     .neutral = 1.0,
-     .start = 1.0,
-     .lower = 0.001,
-     .upper = 1000.0,
-     .logarithmic = true,
-     .tried = tried_widths},
-    {.name = "initial_state",
-     .unit = "",
-     .help = "place within the play when the log begins, -1 to 1",
-     .lower = -1.0,
-     .upper = 1.0,
-     .left_out = LeftOut::assumed},
+    reversal_width_parameter("play: angle from the contact of one flank to that of the other", tried_widths),
+    initial_state_parameter,
 };
 
 constexpr LookAlike look_alikes[] = {

@@ -19,21 +19,8 @@ constexpr Parameter parameters[] = {
      .start = 0.5,
      .upper = 1e5,
      .linear = true},
-    {.name = "width_deg",
-     .unit = "deg",
-     .help = "angle after a reversal in which 63 % of the change is made",
-     .neutral = 1.0,
-     .start = 1.0,
-     .lower = 0.001,
-     .upper = 1000.0,
-     .logarithmic = true,
-     .tried = tried_widths},
-    {.name = "initial_state",
-     .unit = "",
-     .help = "part of the torque that is there when the log begins, -1 to 1",
-     .lower = -1.0,
-     .upper = 1.0,
-     .left_out = LeftOut::assumed},
+    reversal_width_parameter("angle after a reversal in which 63 % of the change is made", tried_widths),
+    initial_state_parameter,
 };
 
 constexpr LookAlike look_alikes[] = {

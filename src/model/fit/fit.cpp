@@ -308,7 +308,9 @@ std::vector<double> slope_nm(const Prediction& prediction, const Coordinates& co
         other[c] = value;
         return prediction.changed(coordinate.term, coordinates.at(other).terms[coordinate.term]);
     };
-    const double up = std::min(point[c] + coordinate.step, coordinate.upper);
+    double up = std::min(point[c] + coordinate.step, coordinate.upper);
+    // At its upper bound what is linear has the slope of a step down.
+    if (coordinate.linear && !(up > point[c])) up = point[c] - coordinate.step;
     const double down = coordinate.linear ? point[c] : std::max(point[c] - coordinate.step, coordinate.lower);
     std::vector<double> slope = at(up);
     if (!coordinate.linear) add_scaled(-1.0, at(down).data(), slope.data(), slope.size());

@@ -30,9 +30,9 @@ TEST_CASE("something touched for a third of a second is unexplained, at its time
     CHECK(found.named.empty());
     CHECK(found.verdict == DiagnosisVerdict::unexplained);
     REQUIRE(!found.unexplained.empty());
-    CHECK(found.unexplained[0].kind == LeftoverKind::time);
+    CHECK(found.unexplained[0].kind == RegionKind::time);
     CHECK(holds(found.unexplained[0].where.time_s, 7.06));
-    const Leftover& touch = found.unexplained[0];
+    const ResidualRegion& touch = found.unexplained[0];
     CHECK(touch.rms_nm > 0.5);
     // What was added there, beside the noise; and what part that is of the squares of all that is left.
     const Span& when = touch.where.time_s.at(0);

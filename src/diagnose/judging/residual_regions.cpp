@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "diagnose/judging/leftover.hpp"
+#include "diagnose/judging/residual_regions.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,7 +13,7 @@
 namespace ripplenotch {
 namespace {
 
-using LeftoverRules = DiagnosisRules::LeftoverRules;
+using RegionRules = DiagnosisRules::RegionRules;
 
 struct Window {
     std::size_t first = 0, end = 0;  ///< places in rows
@@ -24,7 +24,7 @@ class Residual {
   public:
     Residual(const ModelBench& bench, const Model& stated)
         : bench_(bench),
-          rules_(bench.rules().leftover),
+          rules_(bench.rules().regions),
           raw_nm_(bench.raw_residual(stated)),
           white_(bench.residual(stated)) {
         // Errors of the measured motion are no disagreement.
@@ -47,7 +47,7 @@ class Residual {
     }
     [[nodiscard]] double sigma_nm() const { return bench_.noise().rms_nm; }
 
-    [[nodiscard]] std::vector<Leftover> in_time() const {
+    [[nodiscard]] std::vector<ResidualRegion> in_time() const {
         std::vector<Window> windows;
         const double rate = bench_.looked_at().motion.sample_rate.value();
         for (const double length_s : {rules_.shortest_window_s, rules_.short_window_s, rules_.long_window_s,
@@ -71,24 +71,24 @@ class Residual {
     }
 
     // Mean in bins of a quantity, per direction.
-    [[nodiscard]] std::vector<Leftover> in_bins(const std::vector<double>& quantity, LeftoverKind kind,
-                                                std::size_t bins, double least_range) const {
+    [[nodiscard]] std::vector<ResidualRegion> in_bins(const std::vector<double>& quantity, RegionKind kind,
+                                                      std::size_t bins, double least_range) const {
         const auto [low, high] = std::minmax_element(quantity.begin(), quantity.end());
-        std::vector<Leftover> found;
+        std::vector<ResidualRegion> found;
         if (!(*high - *low > least_range)) return found;
         for (const Direction direction : {Direction::negative, Direction::positive}) {
             Bins all{*low, (*high - *low) / static_cast<double>(bins), {}, {}};
             all.sum.assign(bins, 0.0);
             all.count.assign(bins, 0.0);
             fill(all, quantity, *high - *low, direction);
-            const Leftover leftover = in_direction(all, kind, direction);
-            if (leftover.rms_nm > 0.0) found.push_back(leftover);
+            const ResidualRegion region = in_direction(all, kind, direction);
+            if (region.rms_nm > 0.0) found.push_back(region);
         }
         return found;
     }
 
-    [[nodiscard]] std::vector<Leftover> in_lines(const GearRatio& ratio) const {
-        std::vector<Leftover> found;
+    [[nodiscard]] std::vector<ResidualRegion> in_lines(const GearRatio& ratio) const {
+        std::vector<ResidualRegion> found;
         std::vector<double> left_nm = raw_nm_;
         for (std::size_t peeled = 0; peeled < rules_.most_lines; ++peeled) {
             // One at a time: what is beside a strong line is often its own foot.
@@ -98,16 +98,16 @@ class Residual {
             const ResidualLine& line = lines[0];
             const double rms_nm = peel(line, left_nm);
             if (rms_nm < bench_.material_sigma() * sigma_nm()) break;
-            Leftover leftover{line.by_angle ? LeftoverKind::order : LeftoverKind::tone,
-                              {},
-                              rms_nm,
-                              part(rms_nm, bench_.samples())};
+            ResidualRegion region{line.by_angle ? RegionKind::order : RegionKind::tone,
+                                  {},
+                                  rms_nm,
+                                  part(rms_nm, bench_.samples())};
             if (line.by_angle) {
-                leftover.where.order.push_back(line.frequency * 360.0 / ratio.value());
+                region.where.order.push_back(line.frequency * 360.0 / ratio.value());
             } else {
-                leftover.where.hz.push_back(line.frequency);
+                region.where.hz.push_back(line.frequency);
             }
-            found.push_back(leftover);
+            found.push_back(region);
         }
         return found;
     }
@@ -132,8 +132,8 @@ class Residual {
     }
 
     // Of the bins whose mean is significant and matters; nothing when there are none.
-    [[nodiscard]] Leftover in_direction(const Bins& bins, LeftoverKind kind, Direction direction) const {
-        Leftover leftover{kind, {}, 0.0, 0.0};
+    [[nodiscard]] ResidualRegion in_direction(const Bins& bins, RegionKind kind, Direction direction) const {
+        ResidualRegion region{kind, {}, 0.0, 0.0};
         double squares = 0.0, total = 0.0;
         for (std::size_t b = 0; b < bins.sum.size(); ++b) {
             if (bins.count[b] < rules_.fewest_in_bin) continue;
@@ -142,8 +142,7 @@ class Residual {
                 std::abs(mean) < matters_mean_)
                 continue;
             const double from = bins.low + static_cast<double>(b) * bins.width;
-            auto& spans =
-                kind == LeftoverKind::position ? leftover.where.position_deg : leftover.where.speed_deg_s;
+            auto& spans = kind == RegionKind::position ? region.where.position_deg : region.where.speed_deg_s;
             if (!spans.empty() && std::abs(spans.back().to - from) < 1e-9 * (1.0 + std::abs(from))) {
                 spans.back().to = from + bins.width;
             } else {
@@ -152,11 +151,11 @@ class Residual {
             squares += mean * mean * bins.count[b];
             total += bins.count[b];
         }
-        if (total == 0.0) return leftover;
-        leftover.where.direction = direction;
-        leftover.rms_nm = sigma_nm() * std::sqrt(squares / total);
-        leftover.part = part(leftover.rms_nm, total);
-        return leftover;
+        if (total == 0.0) return region;
+        region.where.direction = direction;
+        region.rms_nm = sigma_nm() * std::sqrt(squares / total);
+        region.part = part(region.rms_nm, total);
+        return region;
     }
 
     // Takes the line out of the rows that count; its rms in them.
@@ -225,10 +224,10 @@ class Residual {
         }
     }
 
-    [[nodiscard]] std::vector<Leftover> merged(const std::vector<Window>& windows) const {
+    [[nodiscard]] std::vector<ResidualRegion> merged(const std::vector<Window>& windows) const {
         const auto& rows = bench_.rows();
         const auto& motion = bench_.looked_at().motion;
-        std::vector<Leftover> found;
+        std::vector<ResidualRegion> found;
         std::size_t last = 0;
         std::vector<std::pair<std::size_t, std::size_t>> stretches;
         for (const Window& window : windows) {
@@ -240,54 +239,54 @@ class Residual {
             last = window.end;
         }
         for (const auto& [first, end] : stretches) {
-            Leftover leftover{LeftoverKind::time, {}, 0.0, 0.0};
-            leftover.where.time_s.push_back({motion.time_s[rows[first]], motion.time_s[rows[end - 1]]});
+            ResidualRegion region{RegionKind::time, {}, 0.0, 0.0};
+            region.where.time_s.push_back({motion.time_s[rows[first]], motion.time_s[rows[end - 1]]});
             double squares = 0.0, slow = 1e300, fast = -1e300;
             for (std::size_t r = first; r < end; ++r) {
                 squares += raw_nm_[rows[r]] * raw_nm_[rows[r]];
                 slow = std::min(slow, motion.velocity_deg_s[rows[r]]);
                 fast = std::max(fast, motion.velocity_deg_s[rows[r]]);
             }
-            leftover.where.speed_deg_s.push_back({slow, fast});
-            leftover.rms_nm = std::sqrt(squares / static_cast<double>(end - first));
-            leftover.part = part(leftover.rms_nm, static_cast<double>(end - first));
-            found.push_back(leftover);
+            region.where.speed_deg_s.push_back({slow, fast});
+            region.rms_nm = std::sqrt(squares / static_cast<double>(end - first));
+            region.part = part(region.rms_nm, static_cast<double>(end - first));
+            found.push_back(region);
         }
         return found;
     }
 
     const ModelBench& bench_;
-    const LeftoverRules& rules_;
+    const RegionRules& rules_;
     std::vector<double> raw_nm_, white_;
     double inflation_ = 1.0, matters_mean_ = 0.0, matters_power_ = 0.0;
 };
 
 }  // namespace
 
-std::vector<Leftover> leftovers(const ModelBench& bench, const Model& stated) {
+std::vector<ResidualRegion> residual_regions(const ModelBench& bench, const Model& stated) {
     const Residual residual(bench, stated);
-    std::vector<Leftover> found = residual.in_time();
+    std::vector<ResidualRegion> found = residual.in_time();
     const Motion& motion = bench.looked_at().motion;
-    const auto append = [&](std::vector<Leftover> more) {
+    const auto append = [&](std::vector<ResidualRegion> more) {
         found.insert(found.end(), more.begin(), more.end());
     };
     append(residual.in_lines(stated.gear_ratio));
-    const LeftoverRules& rules = bench.rules().leftover;
-    append(residual.in_bins(motion.position_deg, LeftoverKind::position, rules.position_bins,
+    const RegionRules& rules = bench.rules().regions;
+    append(residual.in_bins(motion.position_deg, RegionKind::position, rules.position_bins,
                             rules.least_travel_deg));
-    append(residual.in_bins(motion.velocity_deg_s, LeftoverKind::speed, rules.speed_bins,
+    append(residual.in_bins(motion.velocity_deg_s, RegionKind::speed, rules.speed_bins,
                             rules.least_speeds * bench.looked_at().moving_deg_s));
     std::stable_sort(found.begin(), found.end(),
-                     [](const Leftover& a, const Leftover& b) { return a.rms_nm > b.rms_nm; });
+                     [](const ResidualRegion& a, const ResidualRegion& b) { return a.rms_nm > b.rms_nm; });
     return found;
 }
 
-bool is_confined(const Leftover& leftover, const Case& looked_at, const DiagnosisRules& rules) {
-    if (leftover.kind != LeftoverKind::time) return false;
+bool is_confined(const ResidualRegion& region, const Case& looked_at, const DiagnosisRules& rules) {
+    if (region.kind != RegionKind::time) return false;
     const auto& time_s = looked_at.motion.time_s;
     double total_s = 0.0;
-    for (const Span& span : leftover.where.time_s) total_s += span.to - span.from;
-    return total_s < rules.leftover.confined_part * (time_s.back() - time_s.front());
+    for (const Span& span : region.where.time_s) total_s += span.to - span.from;
+    return total_s < rules.regions.confined_part * (time_s.back() - time_s.front());
 }
 
 }  // namespace ripplenotch

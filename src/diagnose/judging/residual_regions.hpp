@@ -12,10 +12,11 @@ namespace ripplenotch {
 
 /// Disagreements of the model with the log that are both significant and large enough to matter, the largest
 /// first.
-[[nodiscard]] std::vector<Leftover> leftovers(const ModelBench& bench, const Model& stated);
+[[nodiscard]] std::vector<ResidualRegion> residual_regions(const ModelBench& bench, const Model& stated);
 
-/// True when the leftover is confined to less than rules.leftover.confined_part of the log's time, so that
+/// True when the region is confined to less than rules.regions.confined_part of the log's time, so that
 /// the rest of the log can be diagnosed without it.
-[[nodiscard]] bool is_confined(const Leftover& leftover, const Case& looked_at, const DiagnosisRules& rules);
+[[nodiscard]] bool is_confined(const ResidualRegion& region, const Case& looked_at,
+                               const DiagnosisRules& rules);
 
 }  // namespace ripplenotch
