@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "ripplenotch/arm/arm_fit.hpp"
-#include "ripplenotch/core/units.hpp"
+#include "ripplenotch/core/quantity.hpp"
 #include "ripplenotch/model/fit.hpp"
 #include "ripplenotch/model/setup_fault.hpp"
 
