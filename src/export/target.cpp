@@ -7,9 +7,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "ripplenotch/core/spec.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/portable_math.hpp"
+#include "ripplenotch/core/spec.hpp"
 #include "ripplenotch/export/filter_set.hpp"
 #include "ripplenotch/export/target.hpp"
 

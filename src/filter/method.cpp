@@ -6,8 +6,8 @@
 
 #include <iterator>
 
-#include "ripplenotch/core/spec.hpp"
 #include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/spec.hpp"
 #include "ripplenotch/filter/method.hpp"
 
 namespace ripplenotch {

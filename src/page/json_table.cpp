@@ -110,9 +110,7 @@ Spoken spoken(std::string name) {
     return {name, unit};
 }
 
-namespace {
-
-}  // namespace
+namespace {}  // namespace
 
 std::string value_text(const Json& json) {
     if (json.is_null()) return "-";

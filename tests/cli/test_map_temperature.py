@@ -108,7 +108,7 @@ class Warm(Case):
         self.write((20, 40))
         self.made(self.log, *self.COLUMN)
         method, out = f"map,map={self.map}", self.folder / "out.csv"
-        for words, code, message in ((("--joint", "elbow"), 2, "--joint elbow"), (("--unit", "velocity=Nm"), 2, "velocity=Nm"),
+        for words, code, message in ((("--joint", "elbow"), 2, "--joint elbow"), (("--unit", "velocity=Nm"), 2, "'Nm' is no unit of velocity"),
                                      (("--columns", "torque=torque_nm,velocity=nix"), 2, "'nix'")):
             done = run("filter", self.log, "--method", method, "-o", out, "--force", *words)
             self.assertEqual(done.returncode, code, done.stderr)

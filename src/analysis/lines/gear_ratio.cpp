@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "core/matrices/least_squares.hpp"
 #include "ripplenotch/analysis/identification.hpp"
 
 #include <fmt/format.h>

@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ripplenotch/core/spec.hpp"
 #include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/spec.hpp"
 #include "ripplenotch/export/map_target.hpp"
 
 namespace ripplenotch {

@@ -10,11 +10,11 @@
 #include <vector>
 
 #include "model/motions.hpp"
-#include "ripplenotch/core/spec.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/median.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
+#include "ripplenotch/core/spec.hpp"
 #include "ripplenotch/model/motion.hpp"
 
 namespace ripplenotch {
