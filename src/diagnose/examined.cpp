@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "diagnose/case/undecidable.hpp"
+#include "diagnose/case/case.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {

@@ -8,7 +8,6 @@
 #include <fstream>
 
 #include "arm/arm_support.hpp"
-#include "cli/arm/given_arm.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "support/catch.hpp"
 

@@ -7,7 +7,6 @@
 
 #include "bench_fixture.hpp"
 #include "diagnose/judging/judge.hpp"
-#include "diagnose/judging/wandering.hpp"
 #include "support/catch.hpp"
 
 using namespace ripplenotch;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A real effect has one size wherever it acts; a stand-in has several.
-#include "diagnose/judging/evenness.hpp"
+#include "diagnose/judging/doubt.hpp"
 
 #include "bench_fixture.hpp"
 #include "support/catch.hpp"

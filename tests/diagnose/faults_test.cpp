@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Faults of the converter, each with what can be taken for it.
-#include "diagnose/case/faults.hpp"
+#include "diagnose/case/case.hpp"
 
 #include <fmt/format.h>
 

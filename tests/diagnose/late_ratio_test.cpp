@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A wrong gear ratio and a late torque are found together, and neither where only one of them is there.
-#include "diagnose/search/late_ratio.hpp"
+#include "diagnose/search/search_starts.hpp"
 
 #include "bench_fixture.hpp"
 #include "support/catch.hpp"

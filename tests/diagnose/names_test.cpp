@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "diagnose/case/undecidable.hpp"
+#include "diagnose/case/case.hpp"
 #include "diagnose_fixture.hpp"
 #include "support/catch.hpp"
 

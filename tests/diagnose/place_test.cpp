@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Where in a log a torque acts.
-#include "diagnose/case/place.hpp"
+#include "diagnose/case/case.hpp"
 
 #include "bench_fixture.hpp"
 #include "support/catch.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What columns explain is the same from their products as from columns at right angles.
-#include "diagnose/search/projection.hpp"
+#include "diagnose/search/model_bench.hpp"
 
 #include <cmath>
 #include <random>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Least squares in which each value is drawn towards 0 as by a measurement of its own.
-#include "diagnose/case/ridge.hpp"
+#include "diagnose/case/known_torque.hpp"
 
 #include <cmath>
 #include <random>

@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "bench_fixture.hpp"
-#include "diagnose/search/change_times.hpp"
 #include "diagnose/search/search.hpp"
+#include "diagnose/search/search_starts.hpp"
 #include "support/catch.hpp"
 
 using namespace ripplenotch;

@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "bench_fixture.hpp"
-#include "diagnose/case/place.hpp"
-#include "diagnose/judging/evenness.hpp"
+#include "diagnose/case/case.hpp"
+#include "diagnose/judging/doubt.hpp"
 #include "diagnose/judging/residual_regions.hpp"
 #include "support/catch.hpp"
 

@@ -2,7 +2,7 @@
 // The values told at the end: what pulls them to one side is away, and their intervals hold the truth.
 #include <cmath>
 
-#include "diagnose/judging/values.hpp"
+#include "diagnose/judging/judge.hpp"
 #include "diagnose/search/search.hpp"
 #include "diagnose_fixture.hpp"
 #include "ripplenotch/model/motion.hpp"

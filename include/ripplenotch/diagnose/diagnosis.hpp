@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "ripplenotch/core/trace.hpp"
-#include "ripplenotch/diagnose/alignment.hpp"
 #include "ripplenotch/diagnose/rules.hpp"
+#include "ripplenotch/diagnose/setup.hpp"
 #include "ripplenotch/model/fit.hpp"
 #include "ripplenotch/model/model.hpp"
 #include "ripplenotch/model/motion.hpp"

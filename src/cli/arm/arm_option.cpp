@@ -4,14 +4,18 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cmath>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "ripplenotch/arm/chain.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/spec.hpp"
+#include "ripplenotch/diagnose/rules.hpp"
 
 namespace ripplenotch {
+
 namespace {
 
 constexpr Key file_key{.name = "file", .kind = KeyKind::text, .required = true, .help = "the description"};
@@ -121,6 +125,141 @@ ArmOption read_arm_option(std::string_view words) {
         if (bar == std::string_view::npos) return option;
         rest.remove_prefix(bar + 1);
     }
+}
+
+namespace {
+
+double deviation(std::span<const double> values) {
+    double mean = 0.0, squares = 0.0;
+    for (const double value : values) mean += value / static_cast<double>(values.size());
+    for (const double value : values) squares += (value - mean) * (value - mean);
+    return std::sqrt(squares / static_cast<double>(values.size()));
+}
+
+std::string lag_text(const ArmAccount& account) {
+    if (!account.lag) return {};
+    const ArmLag& lag = *account.lag;
+    std::string text = fmt::format(
+        "  delay of the torque behind the motion, one for all joints: {:.3g} ms, 95 % interval {:.3g} to "
+        "{:.3g} "
+        "ms{}\n",
+        1e3 * lag.delay_s, 1e3 * lag.delay_95_s.low, 1e3 * lag.delay_95_s.high,
+        account.lag_is_applied ? "; part of the model" : "; none is assumed");
+    for (const JointLag& joint : lag.joints)
+        if (joint.contradicts)
+            text += fmt::format("  joint {} contradicts it: {:.3g} ms\n", account.joints[joint.joint].name,
+                                1e3 * joint.delay_s);
+    return text;
+}
+
+}  // namespace
+
+GivenArm::GivenArm(ArmOption option, const std::string& path, const ReadOptions& options,
+                   std::optional<Seconds> smoothing, std::size_t most_rows)
+    : option_(std::move(option)),
+      smoothing_(smoothing),
+      most_rows_(most_rows),
+      reading_(read_arm(path, options, most_rows, option_.chain, option_.stated)),
+      travel_(arm_travel(option_.chain, reading_.view(), reading_.names)) {}
+
+const ArmReading& GivenArm::other(const std::string& path, const ReadOptions& options) {
+    const auto known = others_.find(path);
+    if (known != others_.end()) return known->second;
+    ArmReading other = read_arm(path, options, most_rows_, option_.chain, option_.stated);
+    (void)arm_travel(option_.chain, other.view(), other.names);
+    return others_.emplace(path, std::move(other)).first->second;
+}
+
+ArmFitOptions GivenArm::options_for(std::size_t joint) const {
+    ArmFitOptions options;
+    options.smoothing = smoothing_;
+    if (chain().lengths_are_guessed) options.joints = {joint};
+    return options;
+}
+
+const GivenArm::Fitted& GivenArm::fitted(std::size_t joint) {
+    const std::size_t key = chain().lengths_are_guessed ? joint : 0;
+    const auto made = fits_.find(key);
+    if (made != fits_.end()) return made->second;
+    const ArmFitOptions options = options_for(joint);
+    const ArmLog log = reading_.view();
+    Fitted found{fit_arm(chain(), log, options), {}, {}};
+    found.faults = suspect_arm(chain(), log, found.fit, options);
+    // With a wrong set-up a delay would be of the wrong arm.
+    if (found.faults.empty()) found.lag = common_lag(chain(), log, found.fit, options);
+    if (found.lag && is_applied(*found.lag))
+        found.fit = fit_arm(chain(), AdvancedLog(log, found.lag->delay_s).log, options);
+    return fits_.emplace(key, std::move(found)).first->second;
+}
+
+bool GivenArm::is_applied(const ArmLag& lag) const {
+    // The rule of a delay that is found in one joint holds here, too: a shorter one is a matter of when a
+    // sample is said to be taken.
+    const double period_s = 1.0 / reading_.view().joints.front().sample_rate.value();
+    return lag.is_there() && std::abs(lag.delay_s) >= DiagnosisRules{}.doubt.least_delay_samples * period_s;
+}
+
+const ArmFit& GivenArm::fit(std::size_t joint) { return fitted(joint).fit; }
+
+const std::vector<SetupFault>& GivenArm::setup_faults(std::size_t joint) { return fitted(joint).faults; }
+
+GivenTerm GivenArm::term(std::size_t joint, const ArmReading& log) {
+    const ArmFit& found = fit(joint);
+    const ArmLog view = log.view();
+    std::vector<Motion>& motions = motions_[{&log, found.smoothing.value()}];
+    if (motions.empty()) motions = arm_motions(view, found.smoothing);
+    return arm_term(chain(), found, view, joint, ArmKnowledge::other_joints, {}, motions);
+}
+
+ArmAccount GivenArm::stated_account(std::size_t joint, Seconds smoothing) const {
+    ArmAccount account;
+    account.source = chain().source;
+    account.rule = reading_.match.rule;
+    account.option = reading_.match.option;
+    account.joints = travel_;
+    account.values_are_stated = true;
+    account.lengths_are_guessed = chain().lengths_are_guessed;
+    account.smoothing = smoothing;
+    account.gap_before_nm = deviation(reading_.logs[joint].trace.torque_nm);
+    account.warnings = reading_.match.warnings;
+    account.notes = reading_.match.notes;
+    return account;
+}
+
+ArmAccount GivenArm::account(std::size_t joint) {
+    const ArmFit& found = fit(joint);
+    ArmAccount account = stated_account(joint, found.smoothing);
+    account.values_are_stated = false;
+    account.values_there = found.values_there;
+    account.values_told = found.values_told;
+    account.all_joints_at_once = found.joints.size() > 1;
+    account.pull = found.pull;
+    account.lag = fitted(joint).lag;
+    account.lag_is_applied = account.lag && is_applied(*account.lag);
+    if (const ArmJointFit* const own = found.find(joint)) account.gap_nm = own->error_nm;
+    for (std::string& warning : arm_warnings(found, travel_)) account.warnings.push_back(std::move(warning));
+    return account;
+}
+
+std::string arm_text(const ArmAccount& account) {
+    if (account.values_are_stated)
+        return fmt::format(
+            "arm: {} joints of {} matched {} (-v shows them); its values are the model's, motion smoothed "
+            "over "
+            "{:g} s\n",
+            account.joints.size(), account.source, account.rule, account.smoothing.value());
+    return fmt::format(
+               "arm: {} joints of {} matched {} (-v shows them); {} of {} combinations of its masses told by "
+               "this "
+               "log, {}, motion smoothed over {:g} s{}\n  {:.3g} -> {:.3g} Nm rms with friction beside it, "
+               "on "
+               "fifths "
+               "of the log left out\n",
+               account.joints.size(), account.source, account.rule, account.values_told, account.values_there,
+               account.all_joints_at_once ? "all joints fitted at once" : "this joint fitted alone",
+               account.smoothing.value(), account.lengths_are_guessed ? ", lengths of its links guessed" : "",
+               account.gap_before_nm, account.gap_nm) +
+           lag_text(account);
 }
 
 }  // namespace ripplenotch

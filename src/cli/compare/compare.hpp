@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "cli/gear/chosen_method.hpp"
-#include "cli/options/gates.hpp"
 #include "cli/options/options.hpp"
 #include "ripplenotch/document/provenance.hpp"
 #include "ripplenotch/evaluate/comparison.hpp"

@@ -2,15 +2,16 @@
 // ripplenotch diagnose: which effect a model of a joint misses, and how far the gap shrinks with it.
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "cli/command.hpp"
 #include "cli/diagnose/diagnosis_text.hpp"
-#include "cli/diagnose/improved_mjcf.hpp"
 #include "cli/diagnose/joint_diagnosis.hpp"
-#include "cli/diagnose/joints_table.hpp"
 #include "cli/diagnose/planned_motion.hpp"
 #include "cli/gear/chosen_method.hpp"
 #include "cli/talk.hpp"
@@ -19,7 +20,31 @@
 #include "ripplenotch/document/diagnosis_json.hpp"
 
 namespace ripplenotch {
+
 namespace {
+
+// The diagnoses of all joints in one table.
+
+std::string nm(const std::optional<double>& value) { return value ? fmt::format("{:.4g}", *value) : "-"; }
+
+// A row a joint: rms before and after, on the validation log where there is one, and what is named.
+std::string joints_table(const std::vector<JointDiagnosis>& joints) {
+    const bool validated = std::any_of(joints.begin(), joints.end(), [](const JointDiagnosis& one) {
+        return one.diagnosis.gap.validation_before_nm.has_value();
+    });
+    std::vector<std::vector<std::string>> cells = {{"joint", "before, Nm", "after, Nm"}};
+    if (validated) cells.front().insert(cells.front().end(), {"validation before", "validation after"});
+    cells.front().insert(cells.front().end(), {"verdict", "named"});
+    for (const JointDiagnosis& one : joints) {
+        const Diagnosis& row = one.diagnosis;
+        auto& line = cells.emplace_back(std::vector{one.joint, nm(row.gap.before_nm), nm(row.gap.after_nm)});
+        if (validated)
+            line.insert(line.end(), {nm(row.gap.validation_before_nm), nm(row.gap.validation_after_nm)});
+        line.emplace_back(verdict_name(row.verdict));
+        line.push_back(row.named.empty() ? "nothing" : fmt::format("{}", fmt::join(row.named, ", ")));
+    }
+    return text_table(cells, validated ? "lrrrrll" : "lrrll");
+}
 
 /// Every rule with its value, those of --rule included.
 std::string rules_text(const DiagnosisRules& rules) {

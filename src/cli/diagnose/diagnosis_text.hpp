@@ -3,10 +3,20 @@
 // A diagnosis as a story for people.
 
 #include <string>
+#include <vector>
 
 #include "ripplenotch/diagnose/diagnosis.hpp"
 
 namespace ripplenotch {
+
+// The end of the story: what was accepted, where the gap is, what to do next; and numbers as a story has
+// them.
+
+/// Four digits.
+[[nodiscard]] std::string short_number(double value);
+
+/// "torque_nm = 0.8 [0.7, 0.9]"
+[[nodiscard]] std::string value_text(const Term& term, const FittedValue& value);
 
 /// `explain`: with the rules that were asked about each finding and each refused candidate.
 [[nodiscard]] std::string diagnosis_story(const Diagnosis& diagnosis, bool explain = false);

@@ -4,8 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
-#include "cli/diagnose/model_from_log.hpp"
+#include "cli/diagnose/planned_motion.hpp"
 #include "cli/gear/chosen_method.hpp"
 #include "cli/gear/gear_choice.hpp"
 #include "cli/readings/readings.hpp"
@@ -13,8 +14,129 @@
 #include "ripplenotch/core/files.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/progress.hpp"
+#include "ripplenotch/model/model.hpp"
 
 namespace ripplenotch {
+
+namespace {
+
+// --model auto: the model that identify gives of the log itself.
+
+/// What --model says for it.
+constexpr std::string_view model_from_log = "auto";
+
+// At one speed nothing tells an inertia from an offset.
+bool speed_changes(const Trace& trace) {
+    constexpr double enough = 0.1;  // of the fastest
+    double least = 0.0, greatest = 0.0;
+    for (const double speed : trace.velocity_deg_s) {
+        if (!std::isfinite(speed)) continue;
+        least = std::min(least, speed);
+        greatest = std::max(greatest, speed);
+    }
+    double slowest = std::max(-least, greatest);
+    const double fastest = slowest;
+    for (const double speed : trace.velocity_deg_s)
+        if (std::isfinite(speed)) slowest = std::min(slowest, std::abs(speed));
+    return fastest > 0.0 && fastest - slowest > enough * fastest;
+}
+
+// Gear ratio and ripple orders as identify finds them in the log of the request (--gear-ratio goes before
+// what it finds), and an inertia where the speed changes. All values are left out, to be fitted. Throws
+// DataError, with identify's own verdict, where the log tells no gear ratio.
+Model identified_model(const DiagnoseRequest& request, const LogOptions& words) {
+    ReadOptions reading = words.resolve();
+    reading.gear_ratio = request.gear.ratio;
+    reading.takes_motor_units = true;
+    std::vector<Log> logs;
+    logs.push_back(read_log_in_part(request.path, reading, most_rows_held));
+    IdentifyOptions options;
+    std::optional<GearRatio> stated;
+    if (request.gear.ratio) options.hint = stated = GearRatio(*request.gear.ratio);
+    const JointFile joint{request.path, request.path, identify_readings(logs, options)};
+    const JointFacts facts = joint.facts(stated);
+    if (!facts.gear_ratio)
+        raise<DataError>(
+            "{}: --model auto: identify tells no gear ratio from it ({}); give --gear-ratio N, or --model "
+            "FILE",
+            request.path, joint.found.verdict);
+    Model model{*facts.gear_ratio, {}};
+    if (speed_changes(logs.front().trace)) model.terms.push_back(parse_term("inertia"));
+    for (const Order order : facts.orders)
+        model.terms.push_back(parse_term(fmt::format("ripple,order={}", shortest(order.value()))));
+    return model;
+}
+
+// "gear ratio 100, inertia, ripple of orders 1 and 2".
+std::string model_in_words(const Model& model) {
+    std::string text = fmt::format("gear ratio {:.6g}", model.gear_ratio.value());
+    std::vector<std::string> orders;
+    for (const Term& term : model.terms) {
+        if (term.effect->name == "ripple") {
+            orders.push_back(shortest(term.values.front().value_or(0.0)));
+        } else {
+            text += fmt::format(", {}", term.effect->name);
+        }
+    }
+    if (!orders.empty())
+        text += fmt::format(", ripple of order{} {}", orders.size() == 1 ? "" : "s",
+                            fmt::join(orders, orders.size() == 2 ? " and " : ", "));
+    return text;
+}
+
+void check_model(const DiagnoseRequest& request) {
+    if (request.model.empty() && !request.given.any())
+        raise<UsageError>(
+            "--model is missing: the model.json whose gap to the log is to be explained; --model auto makes "
+            "one "
+            "of the log itself, from what identify finds in it, and -o FILE writes it with what was added");
+    if (request.model.empty() && !request.gear.ratio)
+        raise<UsageError>("--gear-ratio is missing; give it, or --model FILE, which states it");
+    if (!request.model.empty() && request.model != model_from_log && request.gear.ratio)
+        raise<UsageError>("--gear-ratio: the model of {} states the gear ratio; change it there",
+                          request.model == "-" ? "standard input" : request.model);
+    check_gear(request.gear);
+    if (request.path == "-" && request.model == model_from_log)
+        raise<UsageError>(
+            "--model auto reads the log twice, and standard input can be read once; give a file");
+    if (request.path == "-" && request.model == "-")
+        raise<UsageError>("--model - and LOG -: standard input holds one of them");
+}
+
+void check_joints(const DiagnoseRequest& request) {
+    if (!request.all_joints()) return;
+    if (request.path == "-" || request.model == "-")
+        raise<UsageError>("--joint all: standard input can be read once only; give a file");
+    if (request.plot.wanted()) raise<UsageError>("--plot draws one joint, and --joint all asks for each");
+    if (request.common.output != "-" && !names_joint(request.common.output))
+        raise<UsageError>("-o {}: each joint has a model of its own; put {{joint}} into the name",
+                          request.common.output);
+}
+
+}  // namespace
+
+void check(const DiagnoseRequest& request) {
+    if (request.path.empty()) raise<UsageError>("LOG is missing: the measured log; - is standard input");
+    check_model(request);
+    if (request.validate && *request.validate == "-") raise<UsageError>("--validate -: give a file");
+    if (request.smoothing.value() < 0.0)
+        raise<UsageError>("--smoothing: {} s is below 0", shortest(request.smoothing.value()));
+    for (const std::string& name : request.without) (void)find_effect(name);
+    for (const std::string& name : request.accept) (void)find_effect(name);
+    check_output_name(request.common.output, "a model", ".json .xml .mjcf");
+    check_joints(request);
+    check_plan(request);
+    check_plot(request.plot, request.common);
+    if (request.plot.path == "-" && request.common.json)
+        raise<UsageError>("--plot - and --json would both go to standard output; name a file with --plot");
+}
+
+DiagnosisRules rules_of(const DiagnoseRequest& request) {
+    DiagnosisRules rules;
+    for (const std::string& assignment : request.rules) set_rule(rules, assignment);
+    return rules;
+}
+
 namespace {
 
 // With all that is made of them, 256 MiB, also with an arm of seven joints, most of which is its columns

@@ -20,7 +20,7 @@
 #include "cli/command.hpp"
 #include "cli/gear/chosen_method.hpp"
 #include "cli/gear/gear_choice.hpp"
-#include "cli/options/name_list.hpp"
+#include "cli/options/lists.hpp"
 #include "cli/options/options.hpp"
 #include "cli/talk.hpp"
 #include "ripplenotch/core/error.hpp"

@@ -14,8 +14,7 @@
 
 #include "cli/command.hpp"
 #include "cli/filter/filter_work.hpp"
-#include "cli/options/file_claims.hpp"
-#include "cli/options/name_list.hpp"
+#include "cli/options/lists.hpp"
 #include "cli/readings/side_column.hpp"
 #include "ripplenotch/core/files.hpp"
 #include "ripplenotch/core/number.hpp"

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "cli/gear/chosen_method.hpp"
-#include "cli/options/gates.hpp"
 #include "cli/options/options.hpp"
 #include "cli/options/plot_request.hpp"
 #include "ripplenotch/core/files.hpp"

@@ -1,15 +1,43 @@
 // SPDX-License-Identifier: MIT
 #include "cli/given/given_terms.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
 
+#include "cli/arm/arm_option.hpp"
 #include "cli/gear/chosen_method.hpp"
+#include "cli/options/options.hpp"
+#include "cli/options/simulated_option.hpp"
+#include "core/matrices/least_squares.hpp"
+#include "core/rows/row_facts.hpp"
 #include "core/vectors/dot.hpp"
+#include "ripplenotch/arm/arm_fit.hpp"
+#include "ripplenotch/arm/arm_setup.hpp"
 #include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/number.hpp"
+#include "ripplenotch/diagnose/diagnosis.hpp"
+#include "ripplenotch/diagnose/setup.hpp"
+#include "ripplenotch/document/model_json.hpp"
+#include "ripplenotch/log/log.hpp"
+#include "ripplenotch/model/model.hpp"
+#include "ripplenotch/model/motion.hpp"
 
 namespace ripplenotch {
+
 namespace {
+
+constexpr std::string_view simulated_option_help =
+    "torque of your own simulation, as a known part of the model: a column of the log, tau_model, or "
+    "of another file, log,file=sim.csv,column=torque; scale=1 states that its size is right, delay=2ms how "
+    "much later it is";
 
 constexpr std::string_view arm_name = "arm", nuisance_name = "nuisance",
                            once = "arm: standard input cannot be read twice; give the log as a file";
@@ -180,6 +208,10 @@ void GivenSource::add_arm(GivenTerms& terms, const ModelWithGiven& stated, const
                   validation->log, joint);
 }
 
+namespace {
+
+// The sum of terms with their values as given, a number a row: torque at the joint, before any sensor. Empty
+// without terms.
 std::vector<double> known_torque_nm(const std::vector<GivenTerm>& terms, std::size_t rows) {
     std::vector<double> sum(terms.empty() ? 0 : rows, 0.0);
     for (const GivenTerm& term : terms) {
@@ -189,10 +221,146 @@ std::vector<double> known_torque_nm(const std::vector<GivenTerm>& terms, std::si
     return sum;
 }
 
+}  // namespace
+
 void take_joint_of(const ModelWithGiven& model, std::optional<std::string>& joint) {
     if (!model.arm || joint) return;
     const auto place = model.arm->chain.find(model.arm->joint);
     joint = model.arm->log_joints[*place];
+}
+
+namespace {
+
+// What a diagnosis found of the given terms, as a part of the improved model.
+
+std::vector<double> values_named(const Diagnosis& diagnosis, std::string_view name) {
+    std::vector<double> values;
+    for (const GivenValue& given : diagnosis.given) {
+        if (given.name == name) values.push_back(given.value);
+    }
+    return values;
+}
+
+// A scale that nothing has shown to be another is 1; one that was found is an effect of the model.
+SimulatedTerm fitted(SimulatedTerm simulated) {
+    simulated.scale = simulated.scale.value_or(1.0);
+    return simulated;
+}
+
+StatedArm fitted(const GivenTerms& given, const Diagnosis& diagnosis) {
+    StatedArm arm = *given.arm;
+    if (!given.fitted_arm) return arm;
+    GivenArm& found = *given.fitted_arm;
+    const std::size_t joint = *arm.chain.find(arm.joint);
+    const ArmFit& fit = found.fit(joint);
+    ArmValues values = arm_values(found.chain(), fit, joint, values_named(diagnosis, "arm"));
+    for (double& value : values.links) value = to_digits(value);
+    values.rotor_inertia_kgm2 = to_digits(values.rotor_inertia_kgm2);
+    arm.values = std::move(values);
+    arm.smoothing = fit.smoothing;
+    return arm;
+}
+
+// What was fitted has no more digits in the model than in the story and its JSON.
+Model with_fitted_digits(Model model) {
+    for (Term& term : model.terms) {
+        for (std::optional<double>& value : term.values) {
+            if (value) value = to_digits(*value);
+        }
+    }
+    return model;
+}
+
+}  // namespace
+
+ModelWithGiven improved_model(const GivenTerms& given, const Diagnosis& diagnosis) {
+    ModelWithGiven model{with_fitted_digits(diagnosis.model)};
+    if (given.simulated) model.simulated = fitted(*given.simulated);
+    if (given.arm) model.arm = fitted(given, diagnosis);
+    return model;
+}
+
+std::vector<double> stated_torque_along(const GivenOptions& options, const ModelWithGiven& model,
+                                        const ReadOptions& reading, const GivenLog& log) {
+    if (!options.any() && !model.any_given()) return {};
+    GivenSource source(options);
+    const GivenTerms given = source.read(model, reading, log, nullptr);
+    const auto open = given.open();
+    if (!open.empty())
+        raise<UsageError>(
+            "the model does not state {}; give the value, or fit it to a log first: diagnose -o",
+            fmt::join(open, ", "));
+    return known_torque_nm(given.log, log.log.trace.size());
+}
+
+namespace {
+
+// The scale that leaves least of the log's torque beside an offset, where it is not stated. What is in the
+// torque besides may move it a little.
+void settle_simulation(std::vector<GivenTerm>& terms, const Trace& log) {
+    for (GivenTerm& term : terms) {
+        if (term.name != "simulated") continue;
+        if (term.deviation[0] == stated_deviation) continue;
+        const std::vector<double> offset(log.size(), 1.0);
+        term.mean[0] = least_squares({term.torque_nm[0], offset}, log.torque_nm)[0];
+    }
+}
+
+ModelWithGiven residual_model(const ResidualOptions& residual, const std::string& joint) {
+    // Without a model nothing depends on its ratio.
+    if (!residual.model) return {{GearRatio(1.0), {}}};
+    const std::string path = with_joint(*residual.model, joint);
+    return read_model_with_given(read_all(path), path == "-" ? "standard input" : path);
+}
+
+std::vector<double> predicted_torque(const ResidualOptions& residual, const ModelWithGiven& model,
+                                     const ReadOptions& reading, const GivenLog& log) {
+    GivenOptions options;
+    if (residual.simulated) options.simulated = with_joint(*residual.simulated, log.log.trace.joint);
+    std::vector<GivenTerm> terms;
+    if (options.any() || model.any_given()) {
+        GivenTerms given = GivenSource(options).read(model, reading, log, nullptr);
+        if (given.fitted_arm)
+            raise<UsageError>("--residual {}: the model does not state arm.links; diagnose -o writes them",
+                              *residual.model);
+        settle_simulation(given.log, log.log.trace);
+        terms = std::move(given.log);
+    }
+    Motion motion = motion_along(log.log.trace.view(), default_smoothing);
+    motion.known_nm = known_torque_nm(terms, log.log.trace.size());
+    return predict_nm(model.model, motion);
+}
+
+}  // namespace
+
+void attach_residual(Options& options, ResidualOptions& residual) {
+    options.text("--residual", residual.model, "FILE",
+                 "look into measured less predicted torque: of this model.json, along the log");
+    options.text("--simulated", residual.simulated, "SPEC",
+                 "the same of your own simulation: tau_model (a column) or log,file=sim.csv,column=torque; "
+                 "its scale is fitted unless scale=1 keeps it");
+}
+
+void take_residual(const ResidualOptions& residual, ReadOptions reading, std::size_t logs,
+                   const GivenLog& log, const CommonOptions& common, Provenance& provenance) {
+    if (!residual.any()) return;
+    if (logs > 1 && residual.simulated && residual.simulated->starts_with("log,"))
+        raise<UsageError>("--simulated log,...: it is the simulation of one log, and there are {}", logs);
+    if (!log.log.trace.joint.empty()) reading.joint = log.log.trace.joint;
+    const ModelWithGiven model = residual_model(residual, log.log.trace.joint);
+    if (residual.model && *residual.model != "-")
+        provenance.inputs.push_back(input_record(with_joint(*residual.model, log.log.trace.joint)));
+    const std::vector<double> predicted = predicted_torque(residual, model, reading, log);
+    std::vector<double>& torque_nm = log.log.trace.torque_nm;
+    const double before_nm = rms(torque_nm);
+    for (std::size_t k = 0; k < torque_nm.size(); ++k) torque_nm[k] -= predicted[k];
+    say(common, fmt::format("{}: {:.4g} Nm rms of torque, {:.4g} less what is predicted", log.path, before_nm,
+                            rms(torque_nm)));
+}
+
+void take_joint_of(const ResidualOptions& residual, std::optional<std::string>& joint) {
+    if (!residual.model || joint || *residual.model == "-" || names_joint(*residual.model)) return;
+    take_joint_of(read_model_with_given(read_all(*residual.model), *residual.model), joint);
 }
 
 }  // namespace ripplenotch

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/arm/given_arm.hpp"
+#include "cli/arm/arm_option.hpp"
 #include "cli/options/options.hpp"
 #include "cli/options/simulated_option.hpp"
 #include "ripplenotch/arm/arm_fit.hpp"
@@ -29,10 +29,7 @@ struct GivenOptions {
 
     [[nodiscard]] bool any() const { return simulated || arm; }
 };
-inline constexpr std::string_view simulated_option_help =
-    "torque of your own simulation, as a known part of the model: a column of the log, tau_model, or "
-    "of another file, log,file=sim.csv,column=torque; scale=1 states that its size is right, delay=2ms how "
-    "much later it is";
+
 void attach_given(Options& options, GivenOptions& given);
 
 /// A log of one joint as a command reads it.
@@ -87,14 +84,39 @@ class GivenSource {
     std::map<std::size_t, std::shared_ptr<GivenArm>> arms_;  ///< by the most rows held
 };
 
-/// The sum of terms with their values as given, a number a row: torque at the joint, before any sensor. Empty
-/// without terms.
-[[nodiscard]] std::vector<double> known_torque_nm(const std::vector<GivenTerm>& terms, std::size_t rows);
-
 /// The improved model with the values of what is given.
 [[nodiscard]] ModelWithGiven improved_model(const GivenTerms& given, const Diagnosis& diagnosis);
 
 /// The joint whose log a model needs, where it says so and the user does not.
 void take_joint_of(const ModelWithGiven& model, std::optional<std::string>& joint);
+
+// What is given of a log's torque where nothing is left to be fitted: for commands that predict a torque.
+
+/// The sum of what the model and the options state; rows of the log that it does not span are taken out.
+/// Nothing given: empty. Throws UsageError for a value that is still to be fitted, and what GivenSource
+/// throws.
+[[nodiscard]] std::vector<double> stated_torque_along(const GivenOptions& options,
+                                                      const ModelWithGiven& model, const ReadOptions& reading,
+                                                      const GivenLog& log);
+
+// --residual and --simulated of commands that look for ripple: in measured less predicted torque, where what
+// the model knows is gone.
+
+struct ResidualOptions {
+    std::optional<std::string> model;  ///< --residual: a model.json; {joint} stands for a joint's name
+    std::optional<std::string> simulated;
+
+    [[nodiscard]] bool any() const { return model || simulated; }
+};
+void attach_residual(Options& options, ResidualOptions& residual);
+
+/// Takes what model and simulation predict out of the torque of the log at `path`, which was read by
+/// `reading` for one joint. `logs`: how many logs there are, of which a simulation in a file of its own fits
+/// one only. Throws UsageError, DataError, FileError.
+void take_residual(const ResidualOptions& residual, ReadOptions reading, std::size_t logs,
+                   const GivenLog& log, const CommonOptions& common, Provenance& provenance);
+
+/// The joint that the model of --residual is for, where the user names none.
+void take_joint_of(const ResidualOptions& residual, std::optional<std::string>& joint);
 
 }  // namespace ripplenotch

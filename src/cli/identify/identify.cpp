@@ -14,7 +14,7 @@
 #include "cli/command.hpp"
 #include "cli/gear/chosen_method.hpp"
 #include "cli/gear/gear_choice.hpp"
-#include "cli/given/residual.hpp"
+#include "cli/given/given_terms.hpp"
 #include "cli/options/plot_request.hpp"
 #include "cli/readings/readings.hpp"
 #include "cli/talk.hpp"

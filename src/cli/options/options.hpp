@@ -14,6 +14,9 @@
 #include "ripplenotch/core/files.hpp"
 #include "ripplenotch/core/quantity.hpp"
 #include "ripplenotch/document/provenance.hpp"
+#include "ripplenotch/evaluate/comparison.hpp"
+#include "ripplenotch/evaluate/contender.hpp"
+#include "ripplenotch/evaluate/ledger.hpp"
 #include "ripplenotch/log/layout.hpp"
 
 namespace ripplenotch {
@@ -118,5 +121,27 @@ void say_warnings(const CommonOptions& common, std::span<const LogWarning> warni
 void say(const CommonOptions& common, std::string_view sentence);  ///< only with -v
 /// The option line that would force the reading of a log, with -v; its warnings always unless quiet.
 void say_layout(const CommonOptions& common, const Layout& layout);
+
+// Limits that a user sets on what a method may cost and must do; a violation is exit code 1.
+
+struct Gates {
+    std::optional<Seconds> max_delay;
+    std::optional<double> min_attenuation_db;
+};
+void attach_gates(Options& options, Gates& gates);
+
+/// One sentence for each band that can come into force at |v| from slowest to fastest and delays by more than
+/// the limit; for a method without bands one about the worst speed.
+[[nodiscard]] std::vector<std::string> delay_violations(const Gates& gates, const Contender& contender,
+                                                        Hertz sample_rate, DegPerSec slowest,
+                                                        DegPerSec fastest);
+
+/// One sentence for each order that is attenuated less than the limit, or was not measured.
+[[nodiscard]] std::vector<std::string> attenuation_violations(const Gates& gates, const std::string& method,
+                                                              std::span<const OrderAttenuation> orders);
+
+/// Both, of a filtered log: delays at the speeds that it moved at, attenuation as it was measured there.
+[[nodiscard]] std::vector<std::string> filter_violations(const Gates& gates, const Contender& contender,
+                                                         const FilterMetrics& metrics);
 
 }  // namespace ripplenotch

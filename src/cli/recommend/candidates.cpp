@@ -13,8 +13,8 @@
 #include <string>
 
 #include "cli/gear/chosen_method.hpp"
+#include "cli/options/lists.hpp"
 #include "cli/options/options.hpp"
-#include "cli/options/shell_word.hpp"
 #include "cli/readings/side_column.hpp"
 #include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/core/number.hpp"

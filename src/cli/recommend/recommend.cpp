@@ -14,9 +14,8 @@
 #include <string>
 
 #include "cli/command.hpp"
-#include "cli/options/gates.hpp"
-#include "cli/options/name_list.hpp"
-#include "cli/options/shell_word.hpp"
+#include "cli/options/lists.hpp"
+#include "cli/options/options.hpp"
 #include "cli/readings/readings.hpp"
 #include "cli/readings/side_column.hpp"
 #include "cli/recommend/candidates.hpp"

@@ -16,8 +16,8 @@
 
 #include "cli/command.hpp"
 #include "cli/gear/gear_choice.hpp"
-#include "cli/given/stated_along.hpp"
-#include "cli/options/name_list.hpp"
+#include "cli/given/given_terms.hpp"
+#include "cli/options/lists.hpp"
 #include "cli/options/options.hpp"
 #include "cli/talk.hpp"
 #include "core/rows/row_facts.hpp"

@@ -2,11 +2,34 @@
 #pragma once
 // What a diagnosis does about the angle of a log without position.
 
-#include "diagnose/angle/walk.hpp"
+#include "diagnose/case/case.hpp"
 #include "diagnose/search/model_bench.hpp"
 #include "ripplenotch/diagnose/diagnosis.hpp"
+#include "ripplenotch/model/model.hpp"
 
 namespace ripplenotch {
+
+// The angle of a log that has no position: the integral of a noisy speed walks away, and the ripple, which is
+// locked to the motor, tells how far.
+
+/// Where a walk is to be told.
+enum class WalkOf {
+    log,        ///< of the log that the model was fitted to: where it begins is in the phases of the model
+    other_log,  ///< of another one, which the model is held against with all its values
+};
+
+/// All steps, with the same model.
+void take_out_walk(Case& looked_at, const Model& open, const Model& stated, WalkOf of,
+                   const RecordingRules& rules);
+
+/// Puts another log of the same joint, which began at an angle that nobody knows, where the model predicts
+/// its torque best: within a turn of the motor by the ripple, and at one of its turns by what goes with the
+/// output's angle, where the model has that. Then its walk is taken out.
+void put_in_place(Case& other, const Model& stated, const RecordingRules& rules);
+
+/// Whether the joint turns so far in both directions that what goes with the output's angle can be told from
+/// what goes with direction, speed or time, though nobody knows where it began.
+[[nodiscard]] bool tells_position(const Motion& motion, const RecordingRules& rules);
 
 /// Takes the walk out that the model as given tells, its open values fitted.
 void straighten(Case& whole, const Model& model, const DiagnosisRules& rules);

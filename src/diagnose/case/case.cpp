@@ -6,13 +6,17 @@
 #include <iterator>
 #include <numbers>
 #include <numeric>
+#include <string>
 
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/median.hpp"
 #include "ripplenotch/core/portable_math.hpp"
+#include "ripplenotch/model/fit.hpp"
+#include "ripplenotch/model/model.hpp"
 #include "ripplenotch/model/motion.hpp"
 
 namespace ripplenotch {
+
 namespace {
 
 template <class Value>
@@ -234,6 +238,235 @@ std::vector<Nuisance> motion_errors(const Case& looked_at, const Model& model, c
     for (Nuisance& column : uncertain_torques(looked_at, model)) errors.push_back(std::move(column));
     for (Nuisance& walk : walk_errors(looked_at, model, rules)) errors.push_back(std::move(walk));
     return errors;
+}
+
+namespace {
+
+// Step of a log of whole steps that was rounded once more, by its distances of neighbouring values: these are
+// longer or shorter by what it was rounded to, and no value is further than that from its place. 0 when not
+// so.
+double rounded_step(const std::vector<double>& distances, double usual) {
+    double shortest = usual, longest = usual, range = 0.0, steps = 0.0;
+    for (const double distance : distances) {
+        if (distance < 1.5 * usual) {  // one step, not two
+            shortest = std::min(shortest, distance);
+            longest = std::max(longest, distance);
+        }
+        range += distance;
+        steps += std::round(distance / usual);
+    }
+    const double rounded_to = longest - shortest, step = range / steps;
+    double value = 0.0, place = 0.0;
+    bool in_place = rounded_to < 0.5 * usual;  // coarser, it would leave no steps to be seen; by hand
+    for (const double distance : distances) {
+        value += distance;
+        place += std::round(distance / step) * step;
+        in_place = in_place && std::abs(value - place) <= rounded_to + 1e-9 * range;
+    }
+    return in_place ? step : 0.0;
+}
+
+// Step of a log that holds few distinct values at equal distances; 0 when it is as good as continuous.
+double step_of(const std::vector<double>& torque_nm, double noise_nm, const FaultRules& rules) {
+    std::vector<double> values = torque_nm;
+    std::sort(values.begin(), values.end());
+    std::vector<double> distances;
+    const double range = values.back() - values.front();
+    for (std::size_t k = 1; k < values.size(); ++k) {
+        const double distance = values[k] - values[k - 1];
+        if (distance > 1e-9 * range) distances.push_back(distance);
+    }
+    if (distances.empty() ||
+        static_cast<double>(distances.size()) > rules.most_distinct_part * static_cast<double>(values.size()))
+        return 0.0;
+    // The smallest that is common: rarer levels leave multiples of it, rounding leaves crumbs.
+    const double step = median_of(distances);
+    std::size_t fitting = 0;
+    for (const double distance : distances) {
+        const double steps = distance / step;
+        if (std::abs(steps - std::round(steps)) < rules.off_step_part * std::max(steps, 1.0) && steps > 0.5)
+            ++fitting;
+    }
+    if (fitting >= distances.size() * rules.fitting_percent / 100) return step;
+    // Finer than the noise nothing tells such steps from values that happen to lie so.
+    const double rounded = rounded_step(distances, step);
+    return rounded >= rules.step_of_noise * noise_nm ? rounded : 0.0;
+}
+
+double noise_of(const std::vector<double>& torque_nm) {
+    // Second differences take motion and slow torque away; 6 is the sum of the squares of 1, -2, 1.
+    std::vector<double> off;
+    for (std::size_t k = 1; k + 1 < torque_nm.size(); ++k)
+        off.push_back(std::abs(torque_nm[k - 1] - 2.0 * torque_nm[k] + torque_nm[k + 1]));
+    return 1.4826 * median_of(off) / std::sqrt(6.0);
+}
+
+// Effects that can be seen in a log, in the order in which they look at it.
+std::vector<const Effect*> detectable() {
+    std::vector<const Effect*> effects;
+    for (const Effect* effect : catalogue()) {
+        if (effect->detect != nullptr) effects.push_back(effect);
+    }
+    std::stable_sort(effects.begin(), effects.end(),
+                     [](const Effect* a, const Effect* b) { return a->detect_turn < b->detect_turn; });
+    return effects;
+}
+
+Fault fault_of(const Effect& effect, const DetectedFault& found, const Motion& motion) {
+    Fault fault{{&effect, {}}, found.spoiled.size(), {}, found.words};
+    for (std::size_t p = 0; p < effect.parameters.size(); ++p) {
+        const Parameter& parameter = effect.parameters[p];
+        fault.term.values.emplace_back(std::clamp(found.values.at(p), parameter.lower, parameter.upper));
+    }
+    // Samples next to each other are one stretch, however their times are rounded.
+    const double gap_s = 1.5 / motion.sample_rate.value();
+    for (const std::size_t k : found.spoiled) {
+        if (!fault.time_s.empty() && motion.time_s[k] - fault.time_s.back().to <= gap_s) {
+            fault.time_s.back().to = motion.time_s[k];
+        } else {
+            fault.time_s.push_back({motion.time_s[k], motion.time_s[k]});
+        }
+    }
+    return fault;
+}
+
+}  // namespace
+
+std::vector<Fault> find_faults(Case& looked_at, const FaultRules& rules) {
+    const double noise_nm = noise_of(looked_at.torque_nm);
+    const LoggedTorque log{looked_at.motion,
+                           looked_at.torque_nm,
+                           looked_at.use,
+                           looked_at.moving_deg_s,
+                           step_of(looked_at.torque_nm, noise_nm, rules),
+                           noise_nm};
+    std::vector<Fault> faults;
+    for (const Effect* effect : detectable()) {
+        const auto found = effect->detect(log, rules);
+        if (!found) continue;
+        faults.push_back(fault_of(*effect, *found, looked_at.motion));
+        for (const std::size_t k : found->spoiled) looked_at.use[k] = looked_at.valid[k] = 0;
+        looked_at.step_nm = std::max(looked_at.step_nm, found->bends_nm);
+    }
+    return faults;
+}
+
+namespace {
+
+using Bins = std::vector<double>;
+
+// Mean square of the torque in each bin of a quantity; nothing is known of bins with few samples.
+Bins power_by(const std::vector<double>& quantity, const std::vector<double>& torque_nm, double low,
+              double high, const PlaceRules& rules) {
+    Bins power(rules.bins, 0.0), count(rules.bins, 0.0);
+    const auto bins = static_cast<double>(rules.bins);
+    for (std::size_t k = 0; k < quantity.size(); ++k) {
+        const auto b =
+            std::min(static_cast<std::size_t>((quantity[k] - low) / (high - low) * bins), rules.bins - 1);
+        power[b] += torque_nm[k] * torque_nm[k];
+        count[b] += 1.0;
+    }
+    for (std::size_t b = 0; b < rules.bins; ++b)
+        power[b] = count[b] > rules.fewest_in_bin ? power[b] / count[b] : 0.0;
+    return power;
+}
+
+// Where along a quantity the rms of the torque is at least half of its largest; empty when that is nowhere in
+// particular, or the quantity hardly changes.
+std::vector<Span> spans_along(const std::vector<double>& quantity, const std::vector<double>& torque_nm,
+                              double least_range, const PlaceRules& rules) {
+    const auto [low, high] = std::minmax_element(quantity.begin(), quantity.end());
+    std::vector<Span> spans;
+    if (!(*high - *low > least_range)) return spans;
+    const Bins power = power_by(quantity, torque_nm, *low, *high, rules);
+    const double most = *std::max_element(power.begin(), power.end());
+    const double bins = static_cast<double>(rules.bins), width = (*high - *low) / bins;
+    std::size_t taken = 0;
+    for (std::size_t b = 0; b < rules.bins; ++b) {
+        if (power[b] < rules.large_power * most || most == 0.0) continue;
+        ++taken;
+        const double from = *low + static_cast<double>(b) * width;
+        if (b > 0 && power[b - 1] >= rules.large_power * most)
+            spans.back().to = from + width;
+        else
+            spans.push_back({from, from + width});
+    }
+    if (static_cast<double>(taken) > rules.most_bins * bins) spans.clear();
+    return spans;
+}
+
+Direction direction_of(const Case& c, const std::vector<double>& torque_nm, const PlaceRules& rules) {
+    const std::vector<double>& velocity_deg_s = c.motion.velocity_deg_s;
+    double moving[2] = {0.0, 0.0}, count[2] = {0.0, 0.0}, rest = 0.0, rests = 0.0;
+    for (std::size_t k = 0; k < velocity_deg_s.size(); ++k) {
+        const double v = velocity_deg_s[k], power = torque_nm[k] * torque_nm[k];
+        if (std::abs(v) < c.moving_deg_s) {
+            rest += power;
+            rests += 1.0;
+        } else {
+            moving[v > 0.0] += power;
+            count[v > 0.0] += 1.0;
+        }
+    }
+    const double up = count[1] > 0.0 ? moving[1] / count[1] : 0.0,
+                 down = count[0] > 0.0 ? moving[0] / count[0] : 0.0;
+    const double still = rests > 0.0 ? rest / rests : 0.0;
+    if (still >= rules.large_power * std::max(up, down)) return Direction::at_rest_too;
+    if (up > rules.one_way_power * down) return Direction::positive;
+    return down > rules.one_way_power * up ? Direction::negative : Direction::both;
+}
+
+}  // namespace
+
+Place place_of(const Case& c, const std::vector<double>& torque_nm, const Term& term,
+               const PlaceRules& rules) {
+    Place place;
+    place.time_s = spans_along(c.motion.time_s, torque_nm, 0.0, rules);
+    place.speed_deg_s =
+        spans_along(c.motion.velocity_deg_s, torque_nm, rules.least_speeds * c.moving_deg_s, rules);
+    place.position_deg = spans_along(c.motion.position_deg, torque_nm, rules.least_travel_deg, rules);
+    place.direction = direction_of(c, torque_nm, rules);
+    for (std::size_t p = 0; p < term.values.size(); ++p) {
+        if (!term.values[p]) continue;
+        if (term.effect->ripple_order == p && *term.values[p] > 0.0) place.order.push_back(*term.values[p]);
+        if (term.effect->parameters[p].name == "frequency_hz") place.hz.push_back(*term.values[p]);
+    }
+    return place;
+}
+
+namespace {
+
+Model joint_with(const Effect& effect, bool with) {
+    Model model{GearRatio(100.0), {}};
+    model.terms.push_back(parse_term("ripple,order=1,amplitude_nm=1,phase_deg=0"));
+    if (!with) return model;
+    model.terms.push_back({&effect, {}});
+    for (const Parameter& parameter : effect.parameters) {
+        const bool nothing_yet = parameter.linear && parameter.start == parameter.neutral;
+        model.terms.back().values.emplace_back(nothing_yet ? parameter.neutral + 1.0 : parameter.start);
+    }
+    return model;
+}
+
+}  // namespace
+
+bool needs_position(const Effect& effect) {
+    // Another ratio or a bias shows in how the phase goes on, not in where it begins.
+    if (effect.side == Side::converter || effect.side == Side::motion) return false;
+    const Motion here = make_motion("poly6,from=0deg,to=200deg,duration=2s", Hertz(200.0));
+    Motion there = here;
+    const double turn_deg = 360.0 / 100.0;  // of the motor
+    for (double& position : there.position_deg) position += turn_deg;
+    const Model with = joint_with(effect, true), without = joint_with(effect, false);
+    const auto at_here = predict_nm(with, here), at_there = predict_nm(with, there);
+    const auto plain_here = predict_nm(without, here), plain_there = predict_nm(without, there);
+    double moved = 0.0, size = 0.0;
+    for (std::size_t k = 0; k < here.size(); ++k) {
+        const double one = at_here[k] - plain_here[k], other = at_there[k] - plain_there[k];
+        moved = std::max(moved, std::abs(one - other));
+        size = std::max(size, std::abs(one));
+    }
+    return moved > 1e-3 * size;
 }
 
 }  // namespace ripplenotch

@@ -9,6 +9,7 @@
 #include "core/rows/row_facts.hpp"
 #include "model/fit/weighing.hpp"
 #include "ripplenotch/core/trace.hpp"
+#include "ripplenotch/diagnose/diagnosis.hpp"
 #include "ripplenotch/diagnose/rules.hpp"
 #include "ripplenotch/model/model.hpp"
 
@@ -68,5 +69,30 @@ struct Case {
 /// The former, then the latter.
 [[nodiscard]] std::vector<Nuisance> motion_errors(const Case& looked_at, const Model& model,
                                                   const RecordingRules& rules);
+
+// Faults of the converter, seen in the logged torque itself: no model of the joint is needed for them.
+// Samples that they spoiled do not count in anything that follows.
+
+/// Marks spoiled samples in `looked_at.use`.
+[[nodiscard]] std::vector<Fault> find_faults(Case& looked_at, const FaultRules& rules);
+
+// Where in a log a torque acts.
+
+using PlaceRules = DiagnosisRules::PlaceRules;
+
+/// Where `torque_nm`, which `term` adds along the case's motion, has at least half of its largest rms;
+/// frequency and order are the term's own.
+[[nodiscard]] Place place_of(const Case& looked_at, const std::vector<double>& torque_nm, const Term& term,
+                             const PlaceRules& rules);
+
+// Effects that a log does not let be examined, because of what it does not hold.
+
+struct Effect;
+
+/// True when the effect's torque depends on where the joint is and not only on how it moves. The integral of
+/// a velocity tells how far the joint has gone and not from where: a log without position cannot decide such
+/// an effect. Ripple is not among them: its phase is that of the motor, and a whole turn of it changes
+/// nothing.
+[[nodiscard]] bool needs_position(const Effect& effect);
 
 }  // namespace ripplenotch

@@ -1,10 +1,66 @@
 // SPDX-License-Identifier: MIT
 #include "diagnose/case/known_torque.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "core/matrices/least_squares.hpp"
 #include "core/vectors/dot.hpp"
 
 namespace ripplenotch {
+
+using Eigen::Index;
+
+Ridge::Ridge(const std::vector<std::vector<double>>& columns, std::span<const double> deviation, double noise)
+    : columns_(columns), noise_(noise) {
+    // Columns that are as good as one another share what they explain in place of dividing by nothing.
+    constexpr double least_of_its_own = 1e-9;
+    Eigen::MatrixXd products(static_cast<Index>(columns.size()), static_cast<Index>(columns.size()));
+    for (std::size_t r = 0; r < columns.size(); ++r) {
+        for (std::size_t c = 0; c <= r; ++c) {
+            const double product = dot(columns[r].data(), columns[c].data(), columns[r].size());
+            products(static_cast<Index>(r), static_cast<Index>(c)) = product;
+            products(static_cast<Index>(c), static_cast<Index>(r)) = product;
+        }
+        const double prior = noise / deviation[r];
+        products(static_cast<Index>(r), static_cast<Index>(r)) += prior * prior;
+    }
+    factored_ = ScaledDefiniteFactors(std::move(products), least_of_its_own);
+}
+
+std::vector<double> Ridge::solve(std::span<const double> target) const {
+    Eigen::VectorXd products(static_cast<Index>(columns_.size()));
+    for (std::size_t r = 0; r < columns_.size(); ++r)
+        products[static_cast<Index>(r)] = dot(columns_[r].data(), target.data(), target.size());
+    const Eigen::VectorXd values = factored_.solve(products);
+    return {values.begin(), values.end()};
+}
+
+std::vector<double> Ridge::standard_errors() const {
+    const Eigen::VectorXd errors = noise_ * factored_.inverse_diagonal().cwiseSqrt();
+    return {errors.begin(), errors.end()};
+}
+
+double rms_of(const std::vector<double>& values, const std::vector<unsigned char>& use) {
+    double sum = 0.0, count = 0.0;
+    for (std::size_t k = 0; k < values.size(); ++k) {
+        if (use[k] == 0) continue;
+        sum += values[k] * values[k];
+        count += 1.0;
+    }
+    return std::sqrt(sum / std::max(count, 1.0));
+}
+
+std::vector<double> residual_nm(const Case& looked_at, const Model& stated) {
+    std::vector<double> left = predict_nm(stated, looked_at.motion);
+    for (std::size_t k = 0; k < left.size(); ++k) left[k] = looked_at.torque_nm[k] - left[k];
+    return left;
+}
+
+double left_rms(const Case& looked_at, const Model& stated) {
+    return rms_of(residual_nm(looked_at, stated), looked_at.use);
+}
+
 namespace {
 
 constexpr std::string_view simulation_name = "simulated";

@@ -2,16 +2,48 @@
 #pragma once
 // The torque that is known before a diagnosis: of the user's simulation, of an arm's rigid bodies.
 
+#include <limits>
 #include <span>
 #include <vector>
 
+#include "core/matrices/factorisations.hpp"
 #include "diagnose/case/case.hpp"
 #include "diagnose/case/noise_floor.hpp"
-#include "diagnose/case/ridge.hpp"
 #include "ripplenotch/diagnose/diagnosis.hpp"
 #include "ripplenotch/model/model.hpp"
 
 namespace ripplenotch {
+
+// Least squares in which each value is drawn towards 0 as by a measurement of its own.
+
+/// Deviation of a value of which nothing is known.
+inline constexpr double any_size = std::numeric_limits<double>::infinity();
+
+class Ridge {
+  public:
+    /// `columns` must outlive it, all of one length. `deviation`: of each value, infinity leaves it free.
+    /// `noise`: rms of what the columns do not explain, against which deviations are weighed.
+    Ridge(const std::vector<std::vector<double>>& columns, std::span<const double> deviation, double noise);
+
+    [[nodiscard]] std::vector<double> solve(std::span<const double> target) const;
+    /// Standard errors of the values, where what the columns do not explain is white and of rms `noise`.
+    [[nodiscard]] std::vector<double> standard_errors() const;
+
+  private:
+    const std::vector<std::vector<double>>& columns_;
+    double noise_;
+    ScaledDefiniteFactors factored_;
+};
+
+// Measured less predicted torque of a case.
+
+/// Of the values that `use` counts.
+[[nodiscard]] double rms_of(const std::vector<double>& values, const std::vector<unsigned char>& use);
+
+/// Measured less predicted torque, a number a sample.
+[[nodiscard]] std::vector<double> residual_nm(const Case& looked_at, const Model& stated);
+/// rms of it over the samples that count.
+[[nodiscard]] double left_rms(const Case& looked_at, const Model& stated);
 
 /// Puts the known torque, with its values as given, into the motion of a case that has every row of the log.
 /// Values that are not certain become nuisance parameters of the case, with their prior deviation. The scale

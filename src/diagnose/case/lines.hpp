@@ -2,12 +2,36 @@
 #pragma once
 // Lines of a residual: in time, where they are tones, and over the output angle, where they are orders.
 
+#include <cstddef>
+#include <span>
 #include <vector>
 
 #include "diagnose/case/case.hpp"
-#include "diagnose/case/line_spectrum.hpp"
+#include "ripplenotch/core/quantity.hpp"
+#include "ripplenotch/diagnose/diagnosis.hpp"
+#include "ripplenotch/diagnose/rules.hpp"
 
 namespace ripplenotch {
+
+// The spectrum in which lines of a residual are looked for: of samples at any places, of time or of angle.
+
+using LineRules = DiagnosisRules::LineRules;
+
+/// Values in Nm at places in s or in deg.
+struct LineSamples {
+    std::vector<double> where, value;
+};
+
+/// From the first place to the last one; never 0.
+[[nodiscard]] double range_of(const LineSamples& samples);
+
+// Where in frequency the torque of a log is, and where it is no more.
+
+/// Below 1 Hz, from 1 to 10 Hz, and above; an entry per row of the log in each list. A mean counts below
+/// 1 Hz, but for that of the torque.
+[[nodiscard]] std::vector<BandGap> band_gaps(std::span<const double> torque_nm,
+                                             std::span<const double> beside_given_nm,
+                                             std::span<const double> after_nm, Hertz sample_rate);
 
 struct ResidualLine {
     bool by_angle = false;

@@ -3,12 +3,80 @@
 // Size and colour of the noise of a log, from what a model of far too many terms leaves: taken from the
 // residual of the model in hand, the noise would grow with what the model misses.
 
+#include <concepts>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "diagnose/case/case.hpp"
-#include "diagnose/case/noise_ground.hpp"
+#include "diagnose/case/lines.hpp"
 
 namespace ripplenotch {
+
+// The many columns that leave nothing of a log but its noise, and what they leave. There are over a hundred,
+// each as long as the log, and they come in turns: products that were summed up once are kept.
+
+class NoiseColumns {
+  public:
+    /// Rows with 0 in `use` count for nothing. It must outlive this.
+    explicit NoiseColumns(std::span<const unsigned char> use) : use_(use) {}
+
+    /// A column of a number a row, scaled to an rms of 1; nothing when it is 0 everywhere, or not finite.
+    void add(std::vector<double> column);
+    /// The same of value_at(row).
+    template <class Function>
+    requires std::invocable<Function, std::size_t>
+    void add(const Function& value_at) {
+        std::vector<double> column(use_.size());
+        for (std::size_t k = 0; k < column.size(); ++k) column[k] = value_at(k);
+        add(std::move(column));
+    }
+    /// Forgets all columns but the first `count`.
+    void cut(std::size_t count);
+
+    [[nodiscard]] std::size_t count() const { return columns_.size(); }
+
+    /// The torque that no sum of the columns explains, by least squares with a touch of ridge; 0 in rows that
+    /// do not count.
+    [[nodiscard]] std::vector<double> left_of(std::span<const double> torque_nm);
+
+  private:
+    /// Rows at a time: of all columns they stay in the second cache.
+    static constexpr std::size_t block_rows = 256;
+
+    void sum_products();
+
+    std::span<const unsigned char> use_;
+    std::vector<std::vector<double>> columns_;
+    std::vector<std::vector<double>> products_;  ///< of each column with those up to it
+};
+
+// What a model of far too many terms has of a case, whatever the model in hand: ripple of orders about the
+// stated ones that swells with whatever the motion shows, and smooth shapes over position, speed and time.
+
+/// Cosine and sine at every sample, of `cycles` for one of `where`.
+struct NoiseWave {
+    NoiseWave(std::span<const double> where, double cycles);
+    std::vector<double> cosine, sine;
+};
+
+void add_wave(NoiseColumns& columns, const NoiseWave& wave);
+
+/// The columns of one case, and their products, between one look at its noise and the next: most of what a
+/// look costs.
+class NoiseGround {
+  public:
+    /// The columns, and nothing behind them. The case must outlive them, and stay as it is.
+    [[nodiscard]] NoiseColumns& columns(const Case& looked_at, const StatedRipple& ripple,
+                                        const DiagnosisRules::NoiseRules& rules);
+
+  private:
+    StatedRipple ripple_;
+    std::optional<NoiseColumns> columns_;
+    std::size_t count_ = 0;
+};
 
 struct NoiseFloor {
     double rms_nm = 0.0;                      ///< of the noise

@@ -4,13 +4,109 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
+#include <optional>
+#include <vector>
 
-#include "diagnose/case/place.hpp"
+#include "diagnose/case/case.hpp"
+#include "diagnose/judging/doubt.hpp"
 #include "diagnose/search/bent_shape.hpp"
-#include "diagnose/search/hearing.hpp"
+#include "diagnose/search/model_bench.hpp"
 #include "diagnose/search/search.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
+
+namespace {
+
+// Samples that are left out because they stand at the limit are those that noise has brought there; those
+// that noise has kept below would stay, and the torque would come out too small. What counts is where the
+// torque is expected to be.
+void leave_out_limited(Case& looked_at, const Model& stated, const std::vector<Fault>& faults,
+                       double noise_nm, const DiagnosisRules::ValueRules& rules) {
+    for (const Fault& fault : faults) {
+        const auto place = fault.term.effect->range_limit;
+        if (!place) continue;
+        const double most_nm = *fault.term.values[*place] - rules.limit_deviations * noise_nm;
+        const auto expected_nm = predict_nm(stated, looked_at.motion);
+        std::vector<unsigned char> inside = looked_at.use;
+        for (std::size_t k = 0; k < looked_at.size(); ++k) {
+            if (std::abs(expected_nm[k]) > most_nm) inside[k] = 0;
+        }
+        const auto used = [](const std::vector<unsigned char>& use) {
+            return static_cast<std::size_t>(std::count(use.begin(), use.end(), 1));
+        };
+        if (used(inside) * rules.least_inside >= used(looked_at.use)) looked_at.use = inside;
+    }
+}
+
+// The first of the findings whose size the settled values do not tell after all: it was judged beside terms
+// that have come to other values since, or are gone.
+std::optional<std::size_t> untold(const Candidate& told, const ToldOf& of, const DiagnosisRules& rules) {
+    std::size_t term = of.own_terms;
+    for (Finding& finding : of.findings) {
+        if (is_doubtful(finding)) continue;
+        if (is_trusted(finding) && doubt_size(finding, told, term, rules)) return term;
+        ++term;
+    }
+    return std::nullopt;
+}
+
+}  // namespace
+
+Candidate final_values(Case looked_at, const NoiseFloor& noise, const Candidate& chosen, const ToldOf& of,
+                       Work& work, const DiagnosisRules& rules) {
+    leave_out_limited(looked_at, chosen.stated, of.faults, noise.rms_nm, rules.values);
+    ModelBench bench(looked_at, noise, work, rules);
+    bench.settle_on(chosen.stated);
+    Candidate told = bench.settled(chosen);
+    while (const auto term = untold(told, of, rules)) told = bench.settled(without_term(bench, told, *term));
+    return told;
+}
+
+namespace {
+
+// Square that a wave of `half_periods` over the log holds of a torque, a number per row.
+double held_nm2(const ModelBench& bench, const std::vector<double>& torque_nm, std::size_t half_periods) {
+    const auto& time_s = bench.looked_at().motion.time_s;
+    const double begin_s = time_s.front(), log_s = time_s.back() - begin_s;
+    double product = 0.0, square = 0.0;
+    for (std::size_t r = 0; r < torque_nm.size(); ++r) {
+        const double angle_rad = std::numbers::pi * static_cast<double>(half_periods) *
+                                 (time_s[bench.rows()[r]] - begin_s) / log_s;
+        const double wave = portable::cos(angle_rad);
+        product += wave * torque_nm[r];
+        square += wave * wave;
+    }
+    return product * product / std::max(square, 1e-300);
+}
+
+bool is_slow(const ModelBench& bench, const Model& stated, std::size_t term) {
+    const auto added = bench.torque_of(stated, term);
+    std::vector<double> torque_nm;
+    double all_nm2 = 0.0, slow_nm2 = 0.0;
+    for (const std::size_t k : bench.rows()) {
+        torque_nm.push_back(added[k]);
+        all_nm2 += added[k] * added[k];
+    }
+    const auto& rules = bench.rules().wandering;
+    for (std::size_t wave = 0; wave < rules.slow_waves; ++wave) slow_nm2 += held_nm2(bench, torque_nm, wave);
+    return slow_nm2 > rules.slow_part * all_nm2;
+}
+
+}  // namespace
+
+std::optional<double> above_wandering(const ModelBench& bench, const Model& stated, std::size_t term,
+                                      double raw_gain_nm2) {
+    if (!is_slow(bench, stated, term)) return std::nullopt;
+    const auto left_nm = bench.cleared_residual(stated);
+    const auto& rules = bench.rules().wandering;
+    double mean_nm2 = 0.0;
+    for (std::size_t wave = 0; wave < rules.waves; ++wave)
+        mean_nm2 += held_nm2(bench, left_nm, rules.slow_waves + wave) / static_cast<double>(rules.waves);
+    return raw_gain_nm2 / std::max(mean_nm2, 1e-300);
+}
+
 namespace {
 
 // Part of the gain that is left when the stretch of the log that gives most of it is put aside.
@@ -166,10 +262,6 @@ Finding judged_finding(const ModelBench& bench, const Candidate& model, const Ca
     finding.where = place_of(bench.looked_at(), torque_nm, finding.term, bench.rules().place);
     return finding;
 }
-
-}  // namespace
-
-namespace {
 
 // By itself, and against its rivals.
 Finding tested_finding(const ModelBench& bench, const Candidate& model, std::size_t term,

@@ -8,9 +8,8 @@
 #include <optional>
 
 #include "diagnose/case/known_torque.hpp"
-#include "diagnose/case/residual.hpp"
 #include "diagnose/judging/judge.hpp"
-#include "diagnose/search/hearing.hpp"
+#include "diagnose/search/model_bench.hpp"
 #include "diagnose/search/search.hpp"
 #include "ripplenotch/model/prediction.hpp"
 

@@ -1,18 +1,333 @@
 // SPDX-License-Identifier: MIT
-#include "ripplenotch/diagnose/plan.hpp"
+#include "diagnose/plan/plan.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+#include <string>
+#include <string_view>
+#include <vector>
 
-#include "diagnose/plan/fourier_motion.hpp"
-#include "diagnose/plan/questions.hpp"
+#include "core/rows/row_facts.hpp"
+#include "core/vectors/dot.hpp"
+#include "diagnose/case/case.hpp"
+#include "diagnose/judging/doubt.hpp"
+#include "diagnose/search/search_starts.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/portable_math.hpp"
+#include "ripplenotch/diagnose/diagnosis.hpp"
+#include "ripplenotch/diagnose/plan.hpp"
+#include "ripplenotch/model/fit.hpp"
+#include "ripplenotch/model/model.hpp"
 #include "ripplenotch/model/motion.hpp"
+#include "ripplenotch/model/prediction.hpp"
 
 namespace ripplenotch {
+
+namespace {
+
+// How far the torque of an effect is, along a motion, from all that other effects could make of it.
+
+/// What is to be told from something else.
+struct AskedTerm {
+    Term term;                          ///< with its values
+    Model rest;                         ///< the model without it, every value stated
+    std::vector<const Effect*> rivals;  ///< each may stand in its place
+    double scale = 1.0;                 ///< of its torque: what cancels is no larger than what is there
+    bool open = true;                   ///< whether the log left it open
+    double needed = 0.0;                ///< gain
+    double gain_before = 0.0;           ///< along the log
+};
+
+struct Separation {
+    double squares = 0.0;    ///< of the torque that only the term brings, Nm^2
+    std::string_view rival;  ///< that leaves the least of it; empty: none is asked about
+};
+
+using TermColumn = std::vector<double>;
+
+double square(const TermColumn& column) { return dot(column.data(), column.data(), column.size()); }
+
+// Columns made orthogonal to one another, one after the other (Gram and Schmidt, twice for each).
+class Basis {
+  public:
+    // What is left of the column beside those that are in.
+    [[nodiscard]] TermColumn left(TermColumn column) const {
+        for (int turn = 0; turn < 2; ++turn)
+            for (const TermColumn& one : ortho_)
+                add_scaled(-dot(one.data(), column.data(), column.size()), one.data(), column.data(),
+                           column.size());
+        return column;
+    }
+    void add(TermColumn column) {
+        constexpr double next_to_nothing = 1e-14;  // of its square: it is in already
+        const double before = square(column);
+        column = left(std::move(column));
+        const double after = square(column);
+        if (!(after > next_to_nothing * before)) return;
+        const double scale = 1.0 / std::sqrt(after);
+        for (double& value : column) value *= scale;
+        ortho_.push_back(std::move(column));
+    }
+
+  private:
+    std::vector<TermColumn> ortho_;
+};
+
+// How the torque changes with each value of the model that a fit would look for.
+void add_slope_columns(const Prediction& prediction, Basis& basis) {
+    const Model& model = prediction.model();
+    for (std::size_t t = 0; t < model.terms.size(); ++t) {
+        for (std::size_t p = 0; p < model.terms[t].values.size(); ++p) {
+            const Parameter& parameter = model.terms[t].effect->parameters[p];
+            if (parameter.left_out != LeftOut::fitted || !model.terms[t].values[p]) continue;
+            Term changed = model.terms[t];
+            const double value = *changed.values[p];
+            const double step = 1e-3 * std::max(std::abs(value), std::abs(parameter.start));
+            changed.values[p] = value + step <= parameter.upper ? value + step : value - step;
+            if (step > 0.0 && allows(parameter, *changed.values[p]))
+                basis.add(prediction.changed(t, changed));
+        }
+    }
+}
+
+Basis basis_beside(const AskedTerm& asked, const Prediction& prediction, std::size_t samples) {
+    Basis basis;
+    if (asked.term.effect->name != "offset") basis.add(TermColumn(samples, 1.0));
+    add_slope_columns(prediction, basis);
+    return basis;
+}
+
+// Torques of the effect, of a size of 1, at one place of its shape: two where it has a phase.
+struct TriedPlace {
+    std::vector<Term> terms;
+    std::vector<TermColumn> columns;
+};
+
+std::vector<TriedPlace> tried_places(const Effect& effect, const Prediction& prediction) {
+    constexpr std::size_t most_places = 40;
+    double cells = 1.0;
+    std::vector<Term> starts = starts_of(effect, {}, 0.0, cells);
+    if (starts.size() > most_places) starts.resize(most_places);
+    std::vector<TriedPlace> places;
+    for (Term& start : starts) {
+        for (std::size_t p = 0; p < start.values.size(); ++p)
+            if (effect.parameters[p].linear && start.values[p] == effect.parameters[p].neutral)
+                start.values[p] = effect.parameters[p].neutral + 1.0;
+        TriedPlace place;
+        place.terms.push_back(start);
+        if (effect.polar) {
+            place.terms.push_back(start);
+            place.terms.back().values[effect.polar->phase] = -90.0;
+        }
+        for (const Term& term : place.terms) place.columns.push_back(prediction.added(term));
+        places.push_back(std::move(place));
+    }
+    return places;
+}
+
+// Squares of `target` that the place leaves, all of it beside the basis.
+double left_beside(const Basis& basis, const TermColumn& target, const TriedPlace& place) {
+    Basis own;
+    for (const TermColumn& column : place.columns) own.add(basis.left(column));
+    return square(own.left(target));
+}
+
+// Every column has an entry per sample of `motion`.
+Separation separation(const AskedTerm& asked, const Motion& motion) {
+    const Prediction prediction(asked.rest, motion);
+    const Basis basis = basis_beside(asked, prediction, motion.size());
+    TermColumn torque = prediction.added(asked.term);
+    for (double& value : torque) value *= asked.scale;
+    torque = basis.left(std::move(torque));
+    Separation least{square(torque), {}};
+    for (const Effect* const rival : asked.rivals) {
+        for (const TriedPlace& place : tried_places(*rival, prediction)) {
+            const double left = left_beside(basis, torque, place);
+            if (left < least.squares || least.rival.empty())
+                least = {std::min(left, least.squares), rival->name};
+        }
+    }
+    return least;
+}
+
+// The rival with the values with which it is nearest to the term along `motion`, beside the rest; false
+// where no place of it takes up anything.
+bool nearest_rival(const AskedTerm& asked, const Effect& rival, const Motion& motion, Term& found) {
+    const Prediction prediction(asked.rest, motion);
+    const Basis basis = basis_beside(asked, prediction, motion.size());
+    const TermColumn torque = basis.left(prediction.added(asked.term));
+    double least = square(torque);
+    bool any = false;
+    for (const TriedPlace& place : tried_places(rival, prediction)) {
+        const double left = left_beside(basis, torque, place);
+        const TermColumn one = basis.left(place.columns.front());
+        if (!(left < least) || !(square(one) > 0.0)) continue;
+        least = left;
+        any = true;
+        found = place.terms.front();
+        // Its size, as if it had the first phase: how far it is from the term hangs little on the phase.
+        const double size = std::sqrt(square(torque) / square(one));
+        for (std::size_t p = 0; p < found.values.size(); ++p)
+            if (rival.parameters[p].linear && allows(rival.parameters[p], size)) found.values[p] = size;
+    }
+    return any;
+}
+
+// What a diagnosis left open, as terms to be told from rivals.
+
+void add_rival(std::vector<const Effect*>& rivals, const Effect& own, std::string_view name) {
+    for (const Effect* const effect : catalogue()) {
+        if (effect->name != name || effect == &own || effect->side == Side::converter) continue;
+        if (std::find(rivals.begin(), rivals.end(), effect) == rivals.end()) rivals.push_back(effect);
+    }
+}
+
+// Those that the log tells, and those that the catalogue knows.
+std::vector<const Effect*> rivals_of(const Diagnosis& diagnosis, const Finding& finding) {
+    const Effect& own = *finding.term.effect;
+    std::vector<const Effect*> rivals;
+    for (const RivalFinding& rival : finding.alternatives) add_rival(rivals, own, rival.effect);
+    for (const Tie& tie : diagnosis.ambiguous)
+        if (std::find(tie.effects.begin(), tie.effects.end(), own.name) != tie.effects.end())
+            for (const std::string& name : tie.effects) add_rival(rivals, own, name);
+    if (is_doubtful(finding))
+        for (const LookAlike& alike : own.look_alikes) add_rival(rivals, own, alike.name);
+    return rivals;
+}
+
+// The improved model without the finding, which is in it unless it is in doubt.
+Model model_beside(const Diagnosis& diagnosis, const Finding& finding) {
+    Model rest = diagnosis.model;
+    if (is_doubtful(finding)) return rest;
+    const auto& effect = *finding.term.effect;
+    for (std::size_t t = diagnosis.baseline.terms.size(); t < rest.terms.size(); ++t) {
+        const Term& term = rest.terms[t];
+        bool same = term.effect == &effect;
+        for (std::size_t p = 0; same && p < term.values.size(); ++p)
+            same =
+                effect.parameters[p].left_out != LeftOut::refused || term.values[p] == finding.term.values[p];
+        if (!same) continue;
+        rest.terms.erase(rest.terms.begin() + static_cast<std::ptrdiff_t>(t));
+        break;
+    }
+    return rest;
+}
+
+bool is_of_the_joint(const Effect& effect) { return effect.side != Side::converter && !effect.chance; }
+
+// Sides of ties and findings in doubt first, then findings that have to be found again. None where nothing
+// is open. `along`: the motion of the log; `variance_nm2`: of the noise, for as many rows as `along` has.
+std::vector<AskedTerm> asked_terms(const Diagnosis& diagnosis, const Motion& along, double variance_nm2,
+                                   double enough) {
+    std::vector<AskedTerm> open, found;
+    for (const Finding& finding : diagnosis.rounds) {
+        const bool asked = is_doubtful(finding) || finding.status == FindingStatus::ambiguous;
+        const bool known = finding.status == FindingStatus::confirmed;
+        if ((!asked && !known) || !is_of_the_joint(*finding.term.effect)) continue;
+        AskedTerm term{finding.term, model_beside(diagnosis, finding), {}};
+        term.open = asked;
+        if (asked) term.rivals = rivals_of(diagnosis, finding);
+        const double own_nm = rms(Prediction(term.rest, along).added(term.term));
+        if (!(own_nm > 0.0)) continue;
+        if (diagnosis.gap.before_nm > 0.0) term.scale = std::min(1.0, diagnosis.gap.before_nm / own_nm);
+        (asked ? open : found).push_back(std::move(term));
+    }
+    if (open.empty()) return {};
+    // The other side of a tie, as large as it would have to be.
+    for (std::size_t i = 0, sides = open.size(); i < sides; ++i) {
+        for (const Tie& tie : diagnosis.ambiguous) {
+            if (tie.effects.empty() || tie.effects.front() != open[i].term.effect->name) continue;
+            for (std::size_t k = 1; k < tie.effects.size(); ++k) {
+                const Effect& rival = find_effect(tie.effects[k]);
+                AskedTerm other{{}, open[i].rest, {open[i].term.effect}};
+                if (is_of_the_joint(rival) && nearest_rival(open[i], rival, along, other.term))
+                    open.push_back(std::move(other));
+            }
+        }
+    }
+    open.insert(open.end(), found.begin(), found.end());
+    for (AskedTerm& term : open) {
+        term.gain_before = separation(term, along).squares / variance_nm2;
+        // What the log told well has to be told half as well, no better than what is open.
+        term.needed = term.open ? enough : std::min(enough, 0.5 * term.gain_before);
+    }
+    std::erase_if(open, [](const AskedTerm& term) { return !(term.needed > 0.0); });
+    return open;
+}
+
+/// Half-waves of a planned motion.
+constexpr std::size_t planned_waves = 10;
+
+constexpr double planned_rest_s = 0.5;  ///< before and after
+
+// The acceleration at both ends is 0 where the sums of k s_k over odd and over even k are.
+void begin_gently(std::vector<double>& speeds) {
+    for (const std::size_t first : {std::size_t{0}, std::size_t{1}}) {
+        double sum = 0.0, weights = 0.0;
+        for (std::size_t k = first; k < speeds.size(); k += 2) {
+            const double waves = static_cast<double>(k + 1);
+            sum += waves * speeds[k];
+            weights += waves * waves;
+        }
+        for (std::size_t k = first; k < speeds.size(); k += 2)
+            speeds[k] -= sum * static_cast<double>(k + 1) / weights;
+    }
+}
+
+std::string fourier_words(const std::vector<double>& speeds, double duration_s) {
+    std::string words = "fourier,speeds=";
+    for (std::size_t k = 0; k < speeds.size(); ++k)
+        words += fmt::format("{}{}deg/s", k == 0 ? "" : ":", shortest(speeds[k]));
+    return words + fmt::format(",duration={}s", shortest(duration_s));
+}
+
+double largest_size(const std::vector<double>& values) {
+    double most = 0.0;
+    for (const double value : values) most = std::max(most, std::abs(value));
+    return most;
+}
+
+}  // namespace
+
+FourierMotion drawn(Noise& noise) {
+    FourierMotion motion;
+    for (std::size_t k = 0; k < planned_waves; ++k) motion.speeds_deg_s.push_back(noise.normal());
+    motion.place = noise.uniform();
+    return motion;
+}
+
+FourierMotion moved(const FourierMotion& motion, double step, Noise& noise) {
+    FourierMotion other = motion;
+    const double size = largest_size(motion.speeds_deg_s);
+    for (double& speed : other.speeds_deg_s) speed += step * size * noise.normal();
+    other.place = std::clamp(motion.place + step * noise.normal(), 0.0, 1.0);
+    return other;
+}
+
+std::vector<std::string> within(const FourierMotion& motion, const MotionLimits& limits, Seconds duration) {
+    constexpr double within_limits = 0.999, sampled_hz = 200.0;
+    const double moves_s = duration.value() - 2.0 * planned_rest_s;
+    std::vector<double> speeds = motion.speeds_deg_s;
+    begin_gently(speeds);
+    const Motion raw = make_motion(fourier_words(speeds, moves_s), Hertz(sampled_hz));
+    const auto [low, high] = std::minmax_element(raw.position_deg.begin(), raw.position_deg.end());
+    const double room_deg = limits.highest_deg - limits.lowest_deg;
+    const double scale =
+        within_limits * std::min({limits.speed_deg_s / largest_size(raw.velocity_deg_s),
+                                  limits.acceleration_deg_s2 / largest_size(raw.acceleration_deg_s2),
+                                  room_deg / (*high - *low)});
+    for (double& speed : speeds) speed = to_digits(scale * speed, 6);
+    const double free_deg = room_deg - scale * (*high - *low);
+    const double from_deg = to_digits(limits.lowest_deg + motion.place * free_deg - scale * *low, 6);
+    return {fmt::format("rest,duration={}s,from={}deg", shortest(planned_rest_s), shortest(from_deg)),
+            fourier_words(speeds, moves_s), fmt::format("rest,duration={}s", shortest(planned_rest_s))};
+}
+
 namespace {
 
 // How closely is looked, and nothing that is decided by.

@@ -2,6 +2,8 @@
 #pragma once
 // A case with its noise, on which models are fitted and compared.
 
+#include <cstddef>
+#include <deque>
 #include <memory>
 #include <optional>
 #include <span>
@@ -9,13 +11,163 @@
 #include <vector>
 
 #include "diagnose/case/case.hpp"
+#include "diagnose/case/lines.hpp"
 #include "diagnose/case/noise_floor.hpp"
-#include "diagnose/search/kept_screenings.hpp"
-#include "diagnose/search/work.hpp"
 #include "model/catalogue.hpp"
+#include "ripplenotch/diagnose/diagnosis.hpp"
 #include "ripplenotch/model/fit.hpp"
+#include "ripplenotch/model/model.hpp"
 
 namespace ripplenotch {
+
+// What a search may cost, counted and not timed, so that the same log ends at the same place everywhere.
+
+/// How often effects were run along a motion; the unit is unit_samples.
+class Work {
+  public:
+    explicit Work(double most) : most_(most) {}
+
+    /// Samples that one evaluation runs along.
+    static constexpr double unit_samples = 40'000.0;
+
+    void add(std::size_t applied, std::size_t samples) {
+        spent_ += static_cast<double>(applied) * static_cast<double>(samples) / unit_samples;
+    }
+    [[nodiscard]] double spent() const { return spent_; }
+    /// Whether a search has to end here; remembered.
+    [[nodiscard]] bool is_over() { return ended_ = ended_ || spent_ > most_; }
+    [[nodiscard]] bool ended() const { return ended_; }
+
+  private:
+    double most_, spent_ = 0.0;
+    bool ended_ = false;
+};
+
+// What columns of samples explain of another one: bases at right angles, and the square of a projection.
+
+/// One number a sample.
+using Column = std::vector<double>;
+
+/// Sum of products of two columns of the same length.
+[[nodiscard]] double product(const Column& a, const Column& b);
+
+/// Columns of length 1 at right angles that span what `columns` span, the first column first; what is a
+/// combination of the columns before it, to a part in ten million, is left out.
+[[nodiscard]] std::vector<Column> orthonormal(std::span<const Column> columns);
+
+/// Of a column, what lies outside the basis, whose columns are orthonormal().
+[[nodiscard]] Column outside_of(std::span<const Column> basis, Column column);
+
+/// Square of what the basis and the columns together explain of `left`, in its unit squared: as by
+/// orthonormal() of all of them, but from their products alone, which takes a third of the time. A column is
+/// left out where it is a combination of the others to a part in a hundred thousand: products know no better.
+[[nodiscard]] double explained(std::span<const Column> basis, std::span<const Column> columns,
+                               const Column& left);
+
+// What the rules said of one finding or candidate.
+
+/// Notes each rule that is asked, in the order in which they are.
+class Hearing {
+  public:
+    /// Both must outlive it.
+    Hearing(const DiagnosisRules& rules, std::vector<Decision>& decisions)
+        : rules_(rules), decisions_(decisions) {}
+
+    /// Notes that `rule` was asked about `number`; returns `against`, whether it spoke against the finding.
+    bool asked(std::string_view rule, double number, bool against) {
+        const DiagnosisRule& found = find_diagnosis_rule(rule);
+        decisions_.push_back({found.name, number, found.get(rules_), std::string(found.unit), against});
+        return against;
+    }
+
+    /// The price of a name follows from what was tried and is no rule of its own; see Evidence::price.
+    bool asked_price(double gain, double price, bool against) {
+        decisions_.push_back({"price", gain, price, "gain", against});
+        return against;
+    }
+
+  private:
+    const DiagnosisRules& rules_;
+    std::vector<Decision>& decisions_;
+};
+
+// What was found beside a model along one case, so that it is not looked for again beside a model that leaves
+// the same torque: a search comes back to the model that it began with, fitted from elsewhere or against
+// another noise.
+
+/// A model by what a screening sees of it. What is kept of it lives no longer than what it points to.
+struct SeenModel {
+    const Model& open;                       ///< values to be fitted are empty
+    const std::vector<double>& left_nm;      ///< measured less predicted, a number a sample
+    std::span<const Effect* const> effects;  ///< that are tried
+};
+
+template <class Found>
+class KeptBeside {
+  public:
+    /// What was found beside a model of the same terms whose torque differs by no more than `most_nm2`,
+    /// summed over the samples that `use` counts; null where there is none.
+    [[nodiscard]] const Found* find(const SeenModel& model, std::span<const unsigned char> use,
+                                    double most_nm2) const {
+        for (const Entry& entry : entries_) {
+            if (entry.open != model.open || !std::ranges::equal(entry.effects, model.effects)) continue;
+            double squares = 0.0;
+            for (std::size_t k = 0; k < entry.left_nm.size(); ++k) {
+                const double difference = use[k] != 0 ? entry.left_nm[k] - model.left_nm[k] : 0.0;
+                squares += difference * difference;
+            }
+            if (squares <= most_nm2) return &entry.found;
+        }
+        return nullptr;
+    }
+
+    /// The oldest gives way.
+    const Found& keep(const SeenModel& model, Found found) {
+        if (entries_.size() == most_kept) entries_.pop_front();
+        entries_.push_back(
+            {model.open, model.left_nm, {model.effects.begin(), model.effects.end()}, std::move(found)});
+        return entries_.back().found;
+    }
+
+  private:
+    // A model of a few names is compared with those without one of them.
+    static constexpr std::size_t most_kept = 8;
+
+    struct Entry {
+        Model open;
+        std::vector<double> left_nm;
+        std::vector<const Effect*> effects;
+        Found found;
+    };
+    std::deque<Entry> entries_;
+};
+
+struct Trial {
+    Term open;          ///< values to be fitted are empty
+    Term start;         ///< with the place to begin at
+    double gain = 0.0;  ///< of the whole log, foreseen, in units of the noise's variance
+    double price = 0.0;
+    [[nodiscard]] double score() const { return gain - price; }
+};
+
+/// The best trial of each effect, the best first, and the unit of their gains.
+struct Screened {
+    std::vector<Trial> trials;
+    double unit_nm2 = 1.0;
+    std::vector<double> color = {};  ///< of the noise that they were weighed by
+};
+
+/// The best gear ratios where the torque is late by what makes the most of them, and without.
+struct LateRatio {
+    double delay_s = 0.0;
+    RatioCandidates ratios;
+    double strongest_alone_nm2 = 0.0;
+};
+
+struct KeptScreenings {
+    KeptBeside<Screened> screened;
+    KeptBeside<LateRatio> late_ratios;
+};
 
 /// Share of the noise floor below which a torque does not matter. Steps coarser than the noise bend whatever
 /// is in the torque into shapes of their own, which are no effects.

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <optional>
 
-#include "diagnose/search/projection.hpp"
+#include "diagnose/search/model_bench.hpp"
 #include "diagnose/search/search_starts.hpp"
 #include "model/catalogue.hpp"
 #include "model/fit/weighing.hpp"

@@ -7,8 +7,8 @@
 #include <optional>
 
 #include "diagnose/search/bent_shape.hpp"
-#include "diagnose/search/hearing.hpp"
-#include "diagnose/search/late_ratio.hpp"
+#include "diagnose/search/model_bench.hpp"
+#include "diagnose/search/search_starts.hpp"
 
 namespace ripplenotch {
 namespace {

@@ -4,11 +4,240 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
+#include <span>
+#include <string_view>
 #include <utility>
+#include <vector>
 
-#include "diagnose/search/late_ratio.hpp"
+#include "core/matrices/factorisations.hpp"
+#include "diagnose/case/lines.hpp"
+#include "diagnose/search/model_bench.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
+
+namespace {
+
+constexpr Eigen::Index changing_columns = 3, all_columns = 4;  // inertia and gravity, beside them an offset
+using ProductSums = Eigen::Matrix<double, all_columns + 1, all_columns + 1>;
+
+// Sums of products of the columns and the residual up to each sample, the first none.
+class RunningSums {
+  public:
+    RunningSums(const Case& looked_at, const std::vector<double>& residual_nm, std::size_t most_samples) {
+        const Motion& motion = looked_at.motion;
+        std::vector<std::size_t> rows;
+        for (std::size_t k = 0; k < looked_at.size(); ++k) {
+            if (looked_at.use[k] != 0) rows.push_back(k);
+        }
+        const std::size_t stride = rows.size() / most_samples + 1;
+        std::size_t kept = 0;
+        for (std::size_t r = 0; r < rows.size(); r += stride) rows[kept++] = rows[r];
+        rows.resize(kept);
+        double square = 0.0;
+        for (const std::size_t k : rows)
+            square += motion.acceleration_deg_s2[k] * motion.acceleration_deg_s2[k];
+        const double usual = std::sqrt(square / std::max(static_cast<double>(kept), 1.0));
+        const double scale = usual > 0.0 ? 1.0 / usual : 0.0;
+        ProductSums sum = ProductSums::Zero();
+        std::vector<double> angle_deg, cosine(kept), sine(kept);
+        for (const std::size_t k : rows) angle_deg.push_back(motion.position_deg[k]);
+        portable::cos_degrees(angle_deg, cosine);
+        portable::sin_degrees(angle_deg, sine);
+        for (std::size_t r = 0; r < kept; ++r) {
+            times_s_.push_back(motion.time_s[rows[r]] - motion.time_s.front());
+            before_.push_back(sum);
+            Eigen::Matrix<double, all_columns + 1, 1> row;
+            row << scale * motion.acceleration_deg_s2[rows[r]], cosine[r], sine[r], 1.0, residual_nm[rows[r]];
+            sum += row * row.transpose();
+        }
+        all_ = sum;
+        if (kept > 0) factors_.compute(damped(all_.topLeftCorner<all_columns, all_columns>()));
+    }
+
+    [[nodiscard]] std::size_t size() const { return times_s_.size(); }
+    [[nodiscard]] double time_s(std::size_t place) const { return times_s_[place]; }
+
+    /// Sum of squares above the noise, less what a constant inertia, gravity and offset explain.
+    [[nodiscard]] double gap(double noise_nm) const {
+        const Eigen::VectorXd along = all_.topRightCorner<all_columns, 1>();
+        return all_(all_columns, all_columns) - along.dot(factors_.solve(along)) -
+               noise_nm * noise_nm * static_cast<double>(times_s_.size());
+    }
+
+    /// Fall of the sum of squares by a change at this place.
+    [[nodiscard]] double gain(std::size_t place) const {
+        const ProductSums after = all_ - before_[place];
+        const Eigen::MatrixXd common = after.topLeftCorner<all_columns, changing_columns>();
+        const Eigen::MatrixXd projected = factors_.solve(common);
+        const Eigen::MatrixXd outside =
+            after.topLeftCorner<changing_columns, changing_columns>() - common.transpose() * projected;
+        const Eigen::VectorXd along = after.topRightCorner<changing_columns, 1>() -
+                                      projected.transpose() * all_.topRightCorner<all_columns, 1>();
+        return along.dot(SymmetricFactors(damped(outside)).solve(along));
+    }
+
+  private:
+    // Columns that are as good as combinations of others explain nothing.
+    [[nodiscard]] Eigen::MatrixXd damped(Eigen::MatrixXd matrix) const {
+        constexpr double part = 1e-6;
+        for (Eigen::Index c = 0; c < matrix.rows(); ++c)
+            matrix(c, c) += part * (all_(c, c) + static_cast<double>(times_s_.size()));
+        return matrix;
+    }
+
+    std::vector<double> times_s_;
+    std::vector<ProductSums> before_;
+    ProductSums all_ = ProductSums::Zero();
+    SymmetricFactors factors_;
+};
+
+}  // namespace
+
+ChangeTimes change_times(const Case& looked_at, const std::vector<double>& residual_nm, double noise_nm,
+                         const DiagnosisRules& rules) {
+    const std::size_t compared_times = rules.screening.compared_times;
+    const RunningSums sums(looked_at, residual_nm, rules.screening.change_samples);
+    const std::size_t spacing = sums.size() / (compared_times + 1);
+    if (spacing == 0) return {};
+    const auto apart_from_ends =
+        static_cast<std::size_t>(rules.screening.change_within * static_cast<double>(sums.size()));
+    std::vector<double> gains(compared_times, 0.0);
+    for (std::size_t i = 0; i < compared_times; ++i) {
+        const std::size_t place = (i + 1) * spacing;
+        if (place >= apart_from_ends && place + apart_from_ends <= sums.size()) gains[i] = sums.gain(place);
+    }
+    const double least = std::max(rules.screening.least_change * sums.gap(noise_nm), 0.0);
+    ChangeTimes found{{}, static_cast<double>(compared_times)};
+    const std::size_t apart = compared_times / 16;
+    while (found.times_s.size() < rules.screening.most_change_times) {
+        const auto best = static_cast<std::size_t>(std::ranges::max_element(gains) - gains.begin());
+        if (!(gains[best] > least)) break;
+        std::size_t place = best * spacing;
+        const std::size_t end = std::min((best + 2) * spacing, sums.size());
+        double most = 0.0;
+        const std::size_t step = std::max<std::size_t>(spacing / 16, 1);
+        for (std::size_t near = place; near < end; near += step) {
+            if (const double gain = sums.gain(near); gain > most) {
+                most = gain;
+                place = near;
+            }
+        }
+        found.times_s.push_back(sums.time_s(place));
+        const std::size_t first = best > apart ? best - apart : 0,
+                          last = std::min(best + apart, compared_times);
+        std::fill(gains.begin() + static_cast<std::ptrdiff_t>(first),
+                  gains.begin() + static_cast<std::ptrdiff_t>(last), 0.0);
+    }
+    return found;
+}
+
+namespace {
+
+const Effect* among(std::span<const Effect* const> effects, std::string_view name) {
+    const auto found =
+        std::ranges::find_if(effects, [&](const Effect* effect) { return effect->name == name; });
+    return found == effects.end() ? nullptr : *found;
+}
+
+LateRatio best_late_ratio(const ModelBench& bench, const Effect& delay, const StatedRipple& ripple,
+                          RatioRange range, const std::vector<double>& torque_nm) {
+    const auto ratios_at = [&](double delay_s) {
+        return LateRatio{delay_s, likely_ratios(seen_late(bench.looked_at(), Seconds(delay_s)), torque_nm,
+                                                ripple.orders, range, bench.rules())};
+    };
+    LateRatio best = ratios_at(0.0);
+    const double alone_nm2 = best.ratios.strongest_nm2;
+    for (const double delay_s : delay.parameters[0].tried) {
+        LateRatio late = ratios_at(delay_s);
+        if (late.ratios.strongest_nm2 > best.ratios.strongest_nm2) best = std::move(late);
+    }
+    best.strongest_alone_nm2 = alone_nm2;
+    return best;
+}
+
+// Delays of the model's terms, in all.
+Seconds lateness_of(const Model& stated) {
+    double late_s = 0.0;
+    for (const Term& term : stated.terms) {
+        if (term.effect->name == "delay") late_s += term.values[0].value_or(0.0);
+    }
+    return Seconds(late_s);
+}
+
+}  // namespace
+
+Case seen_late(const Case& looked_at, Seconds late) {
+    Case seen = looked_at;
+    if (late.value() == 0.0 || seen.size() < 2) return seen;
+    const auto& time_s = looked_at.motion.time_s;
+    const auto& position_deg = looked_at.motion.position_deg;
+    // Rows that were lost or left out make a step of several periods.
+    const double longest_s = 1.5 / looked_at.motion.sample_rate.value();
+    std::size_t before = 0;
+    for (std::size_t k = 0; k < seen.size(); ++k) {
+        const double wanted_s = time_s[k] - late.value();
+        while (before + 2 < seen.size() && time_s[before + 1] <= wanted_s) ++before;
+        const double step_s = time_s[before + 1] - time_s[before], into_s = wanted_s - time_s[before];
+        if (into_s < 0.0 || into_s > step_s || step_s > longest_s) {
+            seen.use[k] = 0;
+            continue;
+        }
+        seen.motion.position_deg[k] =
+            position_deg[before] + (position_deg[before + 1] - position_deg[before]) * into_s / step_s;
+    }
+    return seen;
+}
+
+std::optional<Candidate> with_late_ratio(const ModelBench& bench, const Candidate& now, std::size_t own_terms,
+                                         std::span<const Effect* const> effects) {
+    const Effect* const delay = among(effects, "delay");
+    const Effect* const gear_ratio = among(effects, "gear-ratio");
+    if (delay == nullptr || gear_ratio == nullptr) return std::nullopt;
+    const auto is_one = [&](const Term& term) { return term.effect == delay || term.effect == gear_ratio; };
+    Model open = now.open, guess = now.stated;
+    std::vector<double> prices = now.prices;
+    // One of the two that was found alone may have the wrong value, for want of the other.
+    std::size_t there = 0;
+    for (std::size_t term = guess.terms.size(); term-- > 0;) {
+        if (!is_one(guess.terms[term])) continue;
+        if (term < own_terms || ++there == 2) return std::nullopt;
+        const auto at = static_cast<std::ptrdiff_t>(term);
+        open.terms.erase(open.terms.begin() + at);
+        guess.terms.erase(guess.terms.begin() + at);
+        prices.erase(prices.begin() + at);
+    }
+    const StatedRipple ripple = stated_ripple(guess);
+    Model without_ripple = guess;
+    std::erase_if(without_ripple.terms,
+                  [](const Term& term) { return term.effect->ripple_order.has_value(); });
+    const std::vector<double> torque_nm = bench.raw_residual(without_ripple);
+    const SeenModel seen{open, torque_nm, {}};
+    KeptBeside<LateRatio>& kept = bench.kept()->late_ratios;
+    const LateRatio* before = kept.find(seen, bench.looked_at().use, bench.same_model_nm2());
+    const LateRatio& best =
+        before != nullptr
+            ? *before
+            : kept.keep(seen,
+                        best_late_ratio(bench, *delay, ripple,
+                                        ratios_beside(now, ripple.ratio.value(), bench.rules()), torque_nm));
+    if (best.ratios.ratios.empty() ||
+        !(best.ratios.strongest_nm2 > bench.rules().screening.late_ratio * best.strongest_alone_nm2))
+        return std::nullopt;
+    const double cells = best.ratios.compared * static_cast<double>(delay->parameters[0].tried.size());
+    const double price =
+        portable::log(bench.samples()) + portable::log(cells) +
+        2.0 * portable::log(static_cast<double>(effects.size()) / bench.rules().screening.false_alarm);
+    const double error = value_for_ratio(*gear_ratio, 0, ripple.ratio, best.ratios.ratios.front());
+    for (const auto& [effect, value] : {std::pair(delay, best.delay_s), std::pair(gear_ratio, error)}) {
+        open.terms.push_back({effect, {std::nullopt}});
+        guess.terms.push_back({effect, {value}});
+        prices.push_back(price);
+    }
+    return bench.fitted(open, guess, std::move(prices), 12, bench.rules().search.finalist_settled);
+}
+
 namespace {
 
 std::vector<double> tried(const Effect& effect, std::size_t p, const Hints& hints, double samples,
@@ -55,10 +284,6 @@ double both_ways_deg(const Case& looked_at) {
                           std::ranges::count_if(passed, [](const auto& cell) { return cell.second == 3U; }));
 }
 
-}  // namespace
-
-namespace {
-
 // A torque that has but a size, or a size and the width of its step.
 bool has_one_form(const Effect& effect) {
     for (std::size_t p = 0; p < effect.parameters.size(); ++p) {
@@ -100,6 +325,9 @@ bool is_there_already(const Term& tried, const Model& open) {
     });
 }
 
+namespace {
+
+// What the parameter has to be for the effect to make `stated` the ratio `wanted`.
 double value_for_ratio(const Effect& effect, std::size_t parameter, GearRatio stated, double wanted) {
     // The ratio is affine in the parameter.
     std::vector<double> values;
@@ -112,6 +340,8 @@ double value_for_ratio(const Effect& effect, std::size_t parameter, GearRatio st
     const double slope = at_next.value() - at_neutral.value();
     return effect.parameters[parameter].neutral + (wanted - at_neutral.value()) / slope;
 }
+
+}  // namespace
 
 RatioRange ratios_beside(const Candidate& model, double about, const DiagnosisRules& rules) {
     const RatioRange all{rules.screening.lowest_ratio * about, rules.screening.highest_ratio * about};

@@ -4,13 +4,28 @@
 // residual itself shows.
 
 #include <optional>
+#include <span>
 #include <vector>
 
+#include "diagnose/case/case.hpp"
 #include "diagnose/case/lines.hpp"
-#include "diagnose/search/change_times.hpp"
 #include "diagnose/search/model_bench.hpp"
+#include "ripplenotch/diagnose/rules.hpp"
 
 namespace ripplenotch {
+
+// When inertia and gravity change within a log: where the search for a payload that is picked up or put down
+// begins.
+
+struct ChangeTimes {
+    std::vector<double> times_s;  ///< from the first sample, the likeliest first; none in a short log
+    double compared = 1.0;        ///< number of times that were compared
+};
+
+/// The times at which a change of inertia and gravity reduces the sum of squares of the residual most, each
+/// by least squares beside a constant inertia, gravity and offset.
+[[nodiscard]] ChangeTimes change_times(const Case& looked_at, const std::vector<double>& residual_nm,
+                                       double noise_nm, const DiagnosisRules& rules);
 
 /// What the whole residual shows: lines finer than a thinned log resolves.
 struct Hints {
@@ -22,10 +37,6 @@ struct Hints {
     double least_order =
         0.0;  ///< of what goes with position and direction: fewer cycles per turn are not passed
 };
-
-/// What the parameter has to be for the effect to make `stated` the ratio `wanted`.
-[[nodiscard]] double value_for_ratio(const Effect& effect, std::size_t parameter, GearRatio stated,
-                                     double wanted);
 
 /// Gear ratios that are compared beside a model whose ratio is `about`. An order that the search chose from
 /// its list states nothing: a ratio that brings it nearer to another one of the list is that order of the
@@ -44,5 +55,20 @@ struct Hints {
 /// one form has one size: what a second one would correct is another effect's. `open`: values to be fitted
 /// are empty.
 [[nodiscard]] bool is_there_already(const Term& tried, const Model& open);
+
+// A gear ratio that is wrong and a torque that is late hide each other: without the delay no ratio puts the
+// ripple on a line, and without the ratio no delay does. They are looked for together.
+
+/// The case as a torque that is `late` sees it: each sample with the position of that much earlier. Samples
+/// whose earlier position is not in the same stretch do not count.
+[[nodiscard]] Case seen_late(const Case& looked_at, Seconds late);
+
+/// The model with a delay and a gear ratio that together make the ripple's lines stand out by
+/// rules.screening.late_ratio of what the best ratio makes of them alone; fitted. One of the two that the
+/// search has added gives way to the pair. None where the first `own_terms` terms hold one, where the model
+/// has both, where they are not among `effects`, or where no delay makes that much.
+[[nodiscard]] std::optional<Candidate> with_late_ratio(const ModelBench& bench, const Candidate& now,
+                                                       std::size_t own_terms,
+                                                       std::span<const Effect* const> effects);
 
 }  // namespace ripplenotch

@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Motions of the Fourier family within limits, by numbers that are drawn.
-
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "ripplenotch/diagnose/diagnosis.hpp"
 #include "ripplenotch/diagnose/plan.hpp"
 #include "ripplenotch/model/fit.hpp"
+#include "ripplenotch/model/model.hpp"
 
 namespace ripplenotch {
 
-/// Half-waves of a planned motion.
-inline constexpr std::size_t planned_waves = 10;
-inline constexpr double planned_rest_s = 0.5;  ///< before and after
+// Motions of the Fourier family within limits, by numbers that are drawn.
 
 struct FourierMotion {
     std::vector<double> speeds_deg_s;
@@ -20,6 +19,7 @@ struct FourierMotion {
 };
 
 [[nodiscard]] FourierMotion drawn(Noise& noise);
+
 /// Moved a little: by `step` of its own size.
 [[nodiscard]] FourierMotion moved(const FourierMotion& motion, double step, Noise& noise);
 

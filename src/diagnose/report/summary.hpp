@@ -2,12 +2,28 @@
 #pragma once
 // What a diagnosis comes to: names, gaps, verdict.
 
+#include <span>
+#include <string>
+#include <string_view>
 #include <vector>
 
-#include "diagnose/case/residual.hpp"
+#include "diagnose/case/case.hpp"
+#include "diagnose/case/known_torque.hpp"
+#include "ripplenotch/core/trace.hpp"
 #include "ripplenotch/diagnose/diagnosis.hpp"
 
 namespace ripplenotch {
+
+// Rows of the log that do not count, and effects that act mainly there: such an effect is not found, however
+// large it is.
+
+/// Adds the rows that the case lacks beside those that are listed, where there are any.
+void add_unused_rows(std::vector<UnusedRows>& listed, const Case& whole, std::string_view reason);
+
+/// Of these effects those that have half of their largest torque or more mainly in rows that do not count,
+/// each by itself with the sizes at which a search begins.
+[[nodiscard]] std::vector<EffectOfUnusedRows> mainly_unused(std::span<const Effect* const> effects,
+                                                            const Case& whole, const Model& model);
 
 /// Fills in `named` and `ambiguous` from the rounds.
 void name_findings(Diagnosis& diagnosis, const DiagnosisRules& rules);

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// A series over a triangular window, at any time.
-
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
+#include "ripplenotch/diagnose/setup.hpp"
+
 namespace ripplenotch {
+
+// A series over a triangular window, at any time.
 
 /// The series is linear between its samples; what follows is exact for that, whatever the rate.
 class SmoothedSeries {
@@ -34,7 +37,13 @@ class SmoothedSeries {
     double width_s_, mean_ = 0.0;
 };
 
-/// The usual step of a series of times: the median.
-[[nodiscard]] double usual_step_s(std::span<const double> time_s);
+// Least squares of a series by another one that is shifted in time, with nuisance columns.
+
+/// Largest lag of a search along these times of a log.
+[[nodiscard]] double search_range_s(std::span<const double> time_s, const AlignmentOptions& options);
+
+/// Times half a window apart at which all these series are covered.
+[[nodiscard]] std::vector<double> window_times(const std::vector<const SmoothedSeries*>& series,
+                                               double smoothing_s);
 
 }  // namespace ripplenotch

@@ -1,17 +1,114 @@
 // SPDX-License-Identifier: MIT
-#include "diagnose/setup/shift_fit.hpp"
+#include "diagnose/setup/lag.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
 
-#include "diagnose/setup/blocks.hpp"
+#include "diagnose/setup/setup.hpp"
+#include "ripplenotch/core/median.hpp"
 #include "ripplenotch/core/portable_math.hpp"
+#include "ripplenotch/diagnose/setup.hpp"
 
 namespace ripplenotch {
+
 namespace {
+
+// The usual step of a series of times: the median.
+double usual_step_s(std::span<const double> time_s) {
+    std::vector<double> steps;
+    for (std::size_t k = 1; k < time_s.size(); ++k) steps.push_back(time_s[k] - time_s[k - 1]);
+    return median_in(steps);
+}
+
+}  // namespace
+
+SmoothedSeries::SmoothedSeries(std::span<const double> time_s, std::span<const double> value,
+                               double half_width_s)
+    : time_s_(time_s), value_(value.begin(), value.end()), width_s_(half_width_s) {
+    // About its mean: the second integral grows with the square of time.
+    mean_ = std::accumulate(value_.begin(), value_.end(), 0.0) / static_cast<double>(value_.size());
+    for (double& each : value_) each -= mean_;
+    once_.assign(value_.size(), 0.0);
+    twice_.assign(value_.size(), 0.0);
+    const double longest_s = std::max(width_s_, 3.0 * usual_step_s(time_s_));
+    for (std::size_t k = 1; k < value_.size(); ++k) {
+        const double step_s = time_s_[k] - time_s_[k - 1];
+        if (step_s > longest_s) gaps_s_.emplace_back(time_s_[k - 1], time_s_[k]);
+        once_[k] = once_[k - 1] + 0.5 * step_s * (value_[k - 1] + value_[k]);
+        twice_[k] =
+            twice_[k - 1] + step_s * (once_[k - 1] + step_s * (value_[k - 1] / 3.0 + value_[k] / 6.0));
+    }
+}
+
+bool SmoothedSeries::covers(double at_s) const {
+    if (at_s - width_s_ < time_s_.front() || at_s + width_s_ > time_s_.back()) return false;
+    const auto next = std::upper_bound(gaps_s_.begin(), gaps_s_.end(), at_s - width_s_,
+                                       [](double t, const auto& gap) { return t < gap.second; });
+    return next == gaps_s_.end() || next->first >= at_s + width_s_;
+}
+
+double SmoothedSeries::integral(Integral kind, double at_s) const {
+    const auto next = std::upper_bound(time_s_.begin(), time_s_.end(), at_s) - time_s_.begin();
+    const auto k =
+        std::min(static_cast<std::size_t>(std::max<std::ptrdiff_t>(next - 1, 0)), value_.size() - 2);
+    const double t = at_s - time_s_[k];
+    const double slope = (value_[k + 1] - value_[k]) / (time_s_[k + 1] - time_s_[k]);
+    switch (kind) {
+        case Integral::none:
+            return value_[k] + t * slope;
+        case Integral::once:
+            return once_[k] + t * (value_[k] + 0.5 * t * slope);
+        default:
+            return twice_[k] + t * (once_[k] + t * (0.5 * value_[k] + t * slope / 6.0));
+    }
+}
+
+double SmoothedSeries::second_difference(Integral kind, double at_s) const {
+    return (integral(kind, at_s + width_s_) - 2.0 * integral(kind, at_s) + integral(kind, at_s - width_s_)) /
+           (width_s_ * width_s_);
+}
+
+double SmoothedSeries::mean(double at_s) const { return mean_ + second_difference(Integral::twice, at_s); }
+
+double SmoothedSeries::slope(double at_s) const { return second_difference(Integral::once, at_s); }
+
+double SmoothedSeries::curvature(double at_s) const { return second_difference(Integral::none, at_s); }
+
+namespace {
+
+/// A smoothed series, or its slope in time.
+struct SmoothedSignal {
+    const SmoothedSeries& series;
+    bool is_slope = false;
+
+    [[nodiscard]] double value(double at_s) const {
+        return is_slope ? series.slope(at_s) : series.mean(at_s);
+    }
+    [[nodiscard]] double derivative(double at_s) const {
+        return is_slope ? series.curvature(at_s) : series.slope(at_s);
+    }
+};
+
+struct ShiftProblem {
+    std::vector<double> at_s;                    ///< ascending; of the log
+    std::vector<double> target;                  ///< of the log, at these times
+    std::vector<std::vector<double>> nuisances;  ///< at these times
+    SmoothedSignal simulated;
+    double range_s = 1.0, smoothing_s = 0.05;
+    double misfit_share = 0.0;  ///< of SimulationLag::misfit_s that the interval holds besides
+};
+
+struct ShiftFit {
+    SimulationLag lag;
+    double held_out_squares = 0.0;  ///< of blocks that the fit was made without
+};
 
 using ShiftColumns = std::vector<std::vector<double>>;
 
@@ -319,17 +416,25 @@ std::vector<double> window_times(const std::vector<const SmoothedSeries*>& serie
     return times_s;
 }
 
+namespace {
+
+// Why a lag with such an interval is not identifiable.
 std::string too_wide(const SimulationLag& lag) {
     return fmt::format(
         "the 95 % interval of the delay, {:.3g} to {:.3g} s, is wider than the window of {:.2g} s",
         lag.delay_95_s.low, lag.delay_95_s.high, 2.0 * lag.smoothing_s);
 }
 
+}  // namespace
+
 double search_range_s(std::span<const double> time_s, const AlignmentOptions& options) {
     if (options.range) return options.range->value();
     return std::min(1.0, 0.1 * (time_s.back() - time_s.front()));
 }
 
+namespace {
+
+// The lag and what else `SimulationLag` holds, but for the agreement of motions.
 ShiftFit fit_shift(const ShiftProblem& problem, const AlignmentOptions& options) {
     ShiftFit result;
     SimulationLag& lag = result.lag;
@@ -371,6 +476,177 @@ ShiftFit fit_shift(const ShiftProblem& problem, const AlignmentOptions& options)
         lag.reason = "no delay within the range of the search fits better than its limits";
     lag.identifiable = lag.reason.empty();
     return result;
+}
+
+bool is_constant(std::span<const double> values) {
+    const auto [low, high] = std::minmax_element(values.begin(), values.end());
+    return !(*high > *low);
+}
+
+// Two fits whose scales differ by more are fits of different things: beside a weight and an inertia of the
+// joint, what is left of a simulation that holds nothing else may have any scale.
+bool has_like_scale(const SimulationLag& a, const SimulationLag& b) {
+    return a.scale * b.scale > 0.0 && std::abs(portable::log(a.scale / b.scale)) <= portable::log(1.5);
+}
+
+// The first fit that is identifiable, unless one with more nuisance parameters halves the squares of blocks
+// held out at about its scale. The interval reaches to the delays of the others that leave about as little
+// and disagree.
+SimulationLag chosen_lag(const std::vector<ShiftFit>& fits) {
+    const ShiftFit* chosen = &fits.front();
+    for (const ShiftFit& fit : fits) {
+        if (!fit.lag.identifiable) continue;
+        const bool halves = fit.held_out_squares < 0.5 * chosen->held_out_squares;
+        if (!chosen->lag.identifiable || (halves && has_like_scale(fit.lag, chosen->lag))) chosen = &fit;
+    }
+    SimulationLag lag = chosen->lag;
+    for (const ShiftFit& fit : fits) {
+        const Interval& other = fit.lag.delay_95_s;
+        const bool agrees = other.low <= lag.delay_s && lag.delay_s <= other.high;
+        if (!fit.lag.identifiable || agrees || fit.held_out_squares > 2.0 * chosen->held_out_squares)
+            continue;
+        if (!has_like_scale(fit.lag, chosen->lag)) continue;
+        lag.delay_95_s.low = std::min(lag.delay_95_s.low, fit.lag.delay_s);
+        lag.delay_95_s.high = std::max(lag.delay_95_s.high, fit.lag.delay_s);
+    }
+    if (lag.identifiable && lag.delay_95_s.high - lag.delay_95_s.low > 2.0 * lag.smoothing_s) {
+        lag.identifiable = false;
+        lag.reason = too_wide(lag);
+    }
+    return lag;
+}
+
+}  // namespace
+
+SimulationLag lag_by_torque(const TraceView& log, const SimulatedMotion& simulation,
+                            std::optional<GearRatio> gear_ratio, const AlignmentOptions& options) {
+    SimulationLag none;
+    if (log.size() < 8 || simulation.torque_nm.size() < 8) {
+        none.reason = "log or simulation has too few torques";
+        return none;
+    }
+    if (is_constant(log.torque_nm) || is_constant(simulation.torque_nm)) {
+        none.reason = "the torque of log or simulation is constant";
+        return none;
+    }
+    const double smoothing_s = std::max(
+        {options.smoothing.value(), 2.0 * usual_step_s(log.time_s), 2.0 * usual_step_s(simulation.time_s)});
+    const SmoothedSeries left(log.time_s, log.torque_nm, smoothing_s),
+        right(simulation.time_s, simulation.torque_nm, smoothing_s);
+    ShiftProblem problem{
+        {}, {}, {}, {right, false}, search_range_s(log.time_s, options), smoothing_s, options.misfit_share};
+    problem.at_s = window_times({&left}, smoothing_s);
+    for (const double at_s : problem.at_s) problem.target.push_back(left.mean(at_s));
+    const NuisanceColumns columns(log, gear_ratio, options, {problem.at_s, smoothing_s});
+    const bool has_weight = columns.has_position(), has_load = columns.has_velocity();
+    std::vector<ShiftFit> fits;
+    const auto try_with = [&](NuisanceChoice choice) {
+        choice.friction = choice.ripple = true;
+        problem.nuisances = columns.of(choice);
+        fits.push_back(fit_shift(problem, options));
+    };
+    try_with({});
+    if (has_load) try_with({.inertia = true});
+    if (has_weight) try_with({.inertia = true, .gravity = true});
+    if (has_load) try_with({.inertia = true, .load = true});
+    if (has_load && has_weight) try_with({.inertia = true, .gravity = true, .load = true});
+    return chosen_lag(fits);
+}
+
+namespace {
+
+double travel_of(std::span<const double> values) {
+    const auto [low, high] = std::minmax_element(values.begin(), values.end());
+    return *high - *low;
+}
+
+// One motion: the series that its velocity is taken from.
+struct MotionSeries {
+    std::span<const double> value;
+    bool is_position = false;
+};
+
+// The same series of both, if there is one: a velocity of the log may have passed a filter that its position
+// has not.
+std::pair<MotionSeries, MotionSeries> chosen_series(const TraceView& log, const SimulatedMotion& simulation) {
+    const bool both_velocities = !log.velocity_deg_s.empty() && !simulation.velocity_deg_s.empty();
+    const bool log_position = log.has_position() && (!simulation.position_deg.empty() || !both_velocities);
+    const bool simulated_position =
+        !simulation.position_deg.empty() && (log.has_position() || !both_velocities);
+    return {log_position ? MotionSeries{log.position_deg, true} : MotionSeries{log.velocity_deg_s, false},
+            simulated_position ? MotionSeries{simulation.position_deg, true}
+                               : MotionSeries{simulation.velocity_deg_s, false}};
+}
+
+SeriesAgreement agreement_of(const SmoothedSeries& log, const SmoothedSeries& simulation,
+                             const SimulationLag& lag) {
+    SeriesAgreement agreement;
+    std::vector<double> left, right;
+    for (const double at_s : window_times({&log}, lag.smoothing_s)) {
+        const double other_s = at_s - lag.delay_s - lag.clock_error.value_or(0.0) * (at_s - lag.middle_s);
+        if (!simulation.covers(other_s)) continue;
+        left.push_back(log.mean(at_s));
+        right.push_back(simulation.mean(other_s));
+    }
+    if (left.empty()) return agreement;
+    const auto count = static_cast<double>(left.size());
+    double mean_left = 0.0, mean_right = 0.0, squares_left = 0.0, squares_right = 0.0, products = 0.0,
+           differences = 0.0;
+    for (std::size_t k = 0; k < left.size(); ++k) {
+        mean_left += left[k] / count;
+        mean_right += right[k] / count;
+        differences += (left[k] - right[k]) * (left[k] - right[k]) / count;
+    }
+    for (std::size_t k = 0; k < left.size(); ++k) {
+        squares_left += (left[k] - mean_left) * (left[k] - mean_left);
+        squares_right += (right[k] - mean_right) * (right[k] - mean_right);
+        products += (left[k] - mean_left) * (right[k] - mean_right);
+    }
+    const double both = std::sqrt(squares_left * squares_right);
+    agreement.correlation = both > 0.0 ? products / both : 0.0;
+    agreement.scale = squares_right > 0.0 ? products / squares_right : 0.0;
+    agreement.offset = mean_left - agreement.scale * mean_right;
+    agreement.rms_difference = std::sqrt(differences);
+    agreement.travel = travel_of(left);
+    return agreement;
+}
+
+}  // namespace
+
+SimulationLag lag_by_motion(const TraceView& log, const SimulatedMotion& simulation,
+                            const AlignmentOptions& options) {
+    SimulationLag none;
+    if (!simulation.has_motion() || (!log.has_position() && log.velocity_deg_s.empty())) {
+        none.reason = "log or simulation has neither position nor velocity";
+        return none;
+    }
+    if (std::min(log.time_s.size(), simulation.time_s.size()) < 8) {
+        none.reason = "log or simulation has too few samples";
+        return none;
+    }
+    const auto [measured, simulated] = chosen_series(log, simulation);
+    if (!(travel_of(measured.value) > 0.0) || !(travel_of(simulated.value) > 0.0)) {
+        none.reason = "the joint does not move in the log or in the simulation";
+        return none;
+    }
+    const double smoothing_s = std::max(
+        {options.smoothing.value(), 2.0 * usual_step_s(log.time_s), 2.0 * usual_step_s(simulation.time_s)});
+    const SmoothedSeries left(log.time_s, measured.value, smoothing_s),
+        right(simulation.time_s, simulated.value, smoothing_s);
+    ShiftProblem problem{{}, {}, {}, {right, simulated.is_position}, 0.0, smoothing_s};
+    problem.range_s = search_range_s(log.time_s, options);
+    problem.at_s = window_times({&left}, smoothing_s);
+    const SmoothedSignal velocity{left, measured.is_position};
+    for (const double at_s : problem.at_s) problem.target.push_back(velocity.value(at_s));
+    problem.nuisances = {std::vector<double>(problem.at_s.size(), 1.0)};
+    SimulationLag lag = fit_shift(problem, options).lag;
+    if (log.has_position() && !simulation.position_deg.empty())
+        lag.position = agreement_of({log.time_s, log.position_deg, smoothing_s},
+                                    {simulation.time_s, simulation.position_deg, smoothing_s}, lag);
+    if (!log.velocity_deg_s.empty() && !simulation.velocity_deg_s.empty())
+        lag.velocity = agreement_of({log.time_s, log.velocity_deg_s, smoothing_s},
+                                    {simulation.time_s, simulation.velocity_deg_s, smoothing_s}, lag);
+    return lag;
 }
 
 }  // namespace ripplenotch
