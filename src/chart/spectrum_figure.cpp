@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "ripplenotch/chart/spectrum_figure.hpp"
-#include "ripplenotch/core/median.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/figure/min_max.hpp"
 

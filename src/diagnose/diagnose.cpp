@@ -14,7 +14,6 @@
 #include "diagnose/examined.hpp"
 #include "diagnose/judging/doubt.hpp"
 #include "diagnose/judging/judge.hpp"
-#include "diagnose/judging/reproduction.hpp"
 #include "diagnose/judging/residual_regions.hpp"
 #include "diagnose/report/summary.hpp"
 #include "diagnose/search/search.hpp"

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "ripplenotch/analysis/ripple_estimate.hpp"
-#include "ripplenotch/core/median.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/evaluate/comparison.hpp"

@@ -4,7 +4,7 @@
 
 #include "analysis/kernels/spreading_kernel.hpp"
 #include "analysis/traces.hpp"
-#include "ripplenotch/analysis/fourier.hpp"
+#include "ripplenotch/analysis/spectrum.hpp"
 #include "support/catch.hpp"
 
 using namespace ripplenotch;

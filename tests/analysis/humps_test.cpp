@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "ripplenotch/analysis/humps.hpp"
+#include "ripplenotch/analysis/steady.hpp"
 
 #include <array>
 #include <numbers>

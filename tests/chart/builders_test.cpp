@@ -9,7 +9,6 @@
 #include "ripplenotch/analysis/sweeps.hpp"
 #include "ripplenotch/chart/comparison_figure.hpp"
 #include "ripplenotch/chart/spectrum_figure.hpp"
-#include "ripplenotch/chart/table_figure.hpp"
 #include "ripplenotch/chart/track_figure.hpp"
 #include "ripplenotch/design/notch.hpp"
 #include "ripplenotch/evaluate/contender.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "ripplenotch/chart/diagnosis_figure.hpp"
+#include "ripplenotch/chart/trend_figure.hpp"
 
 #include <cmath>
 #include <tuple>

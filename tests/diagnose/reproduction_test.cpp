@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A finding that another log contradicts is withdrawn; one that it bears out stays.
-#include "diagnose/judging/reproduction.hpp"
+#include "diagnose/judging/judge.hpp"
 
 #include <fmt/format.h>
 

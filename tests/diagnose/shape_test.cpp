@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A shape that is as good as at a bound stands in for something else.
 #include "bench_fixture.hpp"
-#include "diagnose/search/bent_shape.hpp"
+#include "diagnose/search/search_starts.hpp"
 #include "support/catch.hpp"
 
 using namespace ripplenotch;

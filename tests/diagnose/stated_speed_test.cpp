@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Ripple that is next to nothing at rest has the amplitude of a speed at which the log tells it.
-#include "diagnose/search/bent_shape.hpp"
+#include "diagnose/search/search_starts.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -7,7 +7,7 @@
 
 #include "evaluate/contenders.hpp"
 #include "ripplenotch/evaluate/contender.hpp"
-#include "ripplenotch/evaluate/match_low_pass.hpp"
+#include "ripplenotch/evaluate/recommendation.hpp"
 #include "support/catch.hpp"
 
 using namespace ripplenotch;

@@ -7,7 +7,7 @@
 #include <memory>
 
 #include "fuzz/fuzz.hpp"
-#include "ripplenotch/core/reading.hpp"
+#include "ripplenotch/core/trace.hpp"
 
 namespace ripplenotch::fuzz {
 namespace {

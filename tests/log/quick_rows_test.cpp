@@ -8,7 +8,7 @@
 #include <random>
 
 #include "ripplenotch/core/number.hpp"
-#include "ripplenotch/core/reading.hpp"
+#include "ripplenotch/core/trace.hpp"
 #include "support/catch.hpp"
 #include "support/vectors.hpp"
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include "page/result_tables.hpp"
-
 #include "page/result_section.hpp"
+
 #include "ripplenotch/page/page.hpp"
 #include "support/catch.hpp"
 

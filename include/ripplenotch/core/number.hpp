@@ -4,14 +4,32 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace ripplenotch {
+
+// The median, in one place: the upper of the middle two.
+
+/// Puts the values in another order. 0 when there are none.
+[[nodiscard]] inline double median_in(std::span<double> values) {
+    if (values.empty()) return 0.0;
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+/// Standard deviations in the median of what normal values are off by.
+inline constexpr double deviations_of_median = 1.4826;
+
+[[nodiscard]] inline double median_of(std::vector<double> values) { return median_in(values); }
 
 /// A percentage as people print it, two significant digits and no exponent: "0.16", "4.2", "38", "100", and
 /// "0" for none, never "-0.0" or "1e+02". Without the sign.

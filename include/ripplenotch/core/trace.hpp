@@ -3,6 +3,7 @@
 // One joint's log in memory, in the units of the tool.
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 #include <string>
 #include <vector>
@@ -10,6 +11,14 @@
 #include "ripplenotch/core/quantity.hpp"
 
 namespace ripplenotch {
+
+// What a number from outside may be, so that no square, sum or product of such numbers overflows.
+
+/// In any unit that the tool knows; the time of year 2026 in nanoseconds is 1.8e18.
+constexpr double largest_reading = 1e30;
+
+/// False for nan and infinities too.
+[[nodiscard]] inline bool is_reading(double value) { return std::abs(value) <= largest_reading; }
 
 /// A view of n samples of one joint. Spans have n entries each; `position_deg` is empty when the log has none
 /// that is this joint's. Time is increasing; it need not be uniform, `sample_rate` is the measured mean rate

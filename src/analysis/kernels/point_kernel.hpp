@@ -4,7 +4,7 @@
 
 #include <span>
 
-#include "ripplenotch/analysis/fourier.hpp"
+#include "ripplenotch/analysis/spectrum.hpp"
 
 namespace ripplenotch {
 

@@ -8,8 +8,8 @@
 #include <array>
 #include <cmath>
 
+#include "analysis/lines/disagreement.hpp"
 #include "analysis/lines/ratio_hypothesis.hpp"
-#include "analysis/lines/tones_and_hums.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {

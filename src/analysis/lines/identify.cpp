@@ -16,7 +16,6 @@
 #include <vector>
 
 #include "analysis/lines/disagreement.hpp"
-#include "analysis/lines/tones_and_hums.hpp"
 #include "analysis/shared_limits.hpp"
 #include "core/matrices/least_squares.hpp"
 #include "ripplenotch/analysis/identification.hpp"

@@ -6,9 +6,9 @@
 #include <complex>
 #include <limits>
 
-#include "analysis/lines/tones_and_hums.hpp"
+#include "analysis/lines/disagreement.hpp"
 #include "core/process/two_cores.hpp"
-#include "ripplenotch/analysis/fourier.hpp"
+#include "ripplenotch/analysis/spectrum.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {

@@ -18,7 +18,7 @@
 #include "analysis/spectrum/stack.hpp"
 #include "core/functions/many_numbers.hpp"
 #include "core/vectors/dot.hpp"
-#include "ripplenotch/analysis/fourier.hpp"
+#include "ripplenotch/analysis/spectrum.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {

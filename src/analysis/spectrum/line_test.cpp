@@ -8,7 +8,7 @@
 #include "analysis/shared_limits.hpp"
 #include "analysis/spectrum/spectrum.hpp"
 #include "core/functions/many_numbers.hpp"
-#include "ripplenotch/core/median.hpp"
+#include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {

@@ -9,9 +9,9 @@
 
 #include "analysis/spectrum/order_map.hpp"
 #include "analysis/spectrum/stack.hpp"
-#include "ripplenotch/analysis/humps.hpp"
 #include "ripplenotch/analysis/line_test.hpp"
 #include "ripplenotch/analysis/spectrum.hpp"
+#include "ripplenotch/analysis/steady.hpp"
 
 namespace ripplenotch {
 

@@ -11,9 +11,9 @@
 #include "analysis/spectrum/fourier.hpp"
 #include "core/functions/many_numbers.hpp"
 #include "core/process/two_cores.hpp"
-#include "ripplenotch/analysis/fourier.hpp"
-#include "ripplenotch/analysis/humps.hpp"
+#include "ripplenotch/analysis/spectrum.hpp"
 #include "ripplenotch/analysis/stack.hpp"
+#include "ripplenotch/analysis/steady.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "ripplenotch/analysis/fourier.hpp"
+#include "ripplenotch/analysis/spectrum.hpp"
 #include "ripplenotch/core/quantity.hpp"
 
 namespace ripplenotch {

@@ -18,7 +18,6 @@
 #include "ripplenotch/analysis/line_test.hpp"
 #include "ripplenotch/analysis/ripple_estimate.hpp"
 #include "ripplenotch/core/error.hpp"
-#include "ripplenotch/core/median.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/core/trace.hpp"

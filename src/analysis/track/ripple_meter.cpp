@@ -5,7 +5,6 @@
 #include "analysis/track/ripple_estimate.hpp"
 #include "ripplenotch/analysis/ripple_estimate.hpp"
 #include "ripplenotch/core/error.hpp"
-#include "ripplenotch/core/median.hpp"
 #include "ripplenotch/core/number.hpp"
 
 namespace ripplenotch {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/gear/chosen_method.hpp"
+#include "cli/gear/gear_choice.hpp"
 #include "cli/options/options.hpp"
 #include "ripplenotch/document/provenance.hpp"
 #include "ripplenotch/evaluate/comparison.hpp"

@@ -12,10 +12,9 @@
 #include "cli/command.hpp"
 #include "cli/diagnose/diagnosis_text.hpp"
 #include "cli/diagnose/joint_diagnosis.hpp"
-#include "cli/diagnose/planned_motion.hpp"
-#include "cli/gear/chosen_method.hpp"
+#include "cli/gear/gear_choice.hpp"
 #include "cli/talk.hpp"
-#include "ripplenotch/chart/diagnosis_figure.hpp"
+#include "ripplenotch/chart/trend_figure.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/document/diagnosis_json.hpp"
 

@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "cli/gear/gear_choice.hpp"
@@ -69,5 +70,26 @@ struct JointDiagnosis {
 /// The joints of the log that can be diagnosed, in its order: with torque, and with an arm of --arm those of
 /// its chain; the others are told.
 [[nodiscard]] std::vector<std::string> joints_of(const DiagnoseRequest& request, GivenSource& given);
+
+// --plan FILE --limits ...: the motion that would decide what a log left open, as a file of positions.
+
+// -o improved.xml: the improved model in the words of MuJoCo, as far as it has words for it.
+
+/// Names that end in .xml or .mjcf.
+[[nodiscard]] bool names_mjcf(std::string_view path);
+
+/// Writes it to `path`: a joint of its own or, with --arm mjcf,file=..., that file with the joint's friction
+/// and motors in it. Throws what write_into_mjcf and write_text throw.
+[[nodiscard]] MjcfAccount write_improved_mjcf(const DiagnoseRequest& request, const JointDiagnosis& one,
+                                              const std::string& path);
+
+/// What was held and what was not, a line each.
+[[nodiscard]] std::string mjcf_text(const MjcfAccount& account);
+
+/// Plans for one joint and writes its rows of time, position and velocity, where something is open.
+[[nodiscard]] PlannedMotion plan_for(const DiagnoseRequest& request, const JointDiagnosis& one);
+
+/// What it would tell, a line each.
+[[nodiscard]] std::string plan_text(const PlannedMotion& planned);
 
 }  // namespace ripplenotch

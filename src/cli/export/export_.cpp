@@ -18,7 +18,6 @@
 #include <string>
 
 #include "cli/command.hpp"
-#include "cli/gear/chosen_method.hpp"
 #include "cli/gear/gear_choice.hpp"
 #include "cli/options/lists.hpp"
 #include "cli/options/options.hpp"

@@ -18,7 +18,6 @@
 #include "cli/gear/gear_choice.hpp"
 #include "cli/options/options.hpp"
 #include "cli/readings/readings.hpp"
-#include "cli/readings/side_column.hpp"
 #include "cli/talk.hpp"
 #include "core/process/two_cores.hpp"
 #include "ripplenotch/core/error.hpp"

@@ -6,7 +6,6 @@
 #include <complex>
 
 #include "cli/filter/filter.hpp"
-#include "cli/gear/chosen_method.hpp"
 #include "cli/gear/gear_choice.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/document/comparison_json.hpp"

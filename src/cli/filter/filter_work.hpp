@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/gear/chosen_method.hpp"
+#include "cli/gear/gear_choice.hpp"
 #include "cli/options/options.hpp"
 #include "cli/options/plot_request.hpp"
 #include "ripplenotch/core/files.hpp"

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "cli/arm/arm_option.hpp"
-#include "cli/gear/chosen_method.hpp"
+#include "cli/gear/gear_choice.hpp"
 #include "cli/options/options.hpp"
 #include "cli/options/simulated_option.hpp"
 #include "core/matrices/least_squares.hpp"

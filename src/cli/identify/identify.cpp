@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "cli/command.hpp"
-#include "cli/gear/chosen_method.hpp"
 #include "cli/gear/gear_choice.hpp"
 #include "cli/given/given_terms.hpp"
 #include "cli/options/plot_request.hpp"

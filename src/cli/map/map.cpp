@@ -11,11 +11,9 @@
 #include <vector>
 
 #include "cli/command.hpp"
-#include "cli/gear/chosen_method.hpp"
 #include "cli/gear/gear_choice.hpp"
 #include "cli/options/plot_request.hpp"
 #include "cli/readings/readings.hpp"
-#include "cli/readings/side_column.hpp"
 #include "cli/talk.hpp"
 #include "core/matrices/least_squares.hpp"
 #include "ripplenotch/chart/track_figure.hpp"

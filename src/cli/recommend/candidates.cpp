@@ -12,10 +12,10 @@
 #include <set>
 #include <string>
 
-#include "cli/gear/chosen_method.hpp"
+#include "cli/gear/gear_choice.hpp"
 #include "cli/options/lists.hpp"
 #include "cli/options/options.hpp"
-#include "cli/readings/side_column.hpp"
+#include "cli/readings/readings.hpp"
 #include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/document/map_json.hpp"

@@ -17,7 +17,6 @@
 #include "cli/options/lists.hpp"
 #include "cli/options/options.hpp"
 #include "cli/readings/readings.hpp"
-#include "cli/readings/side_column.hpp"
 #include "cli/recommend/candidates.hpp"
 #include "cli/talk.hpp"
 #include "ripplenotch/core/error.hpp"

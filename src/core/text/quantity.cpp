@@ -11,7 +11,7 @@
 
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
-#include "ripplenotch/core/reading.hpp"
+#include "ripplenotch/core/trace.hpp"
 
 namespace ripplenotch {
 namespace {

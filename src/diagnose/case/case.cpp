@@ -9,7 +9,7 @@
 #include <string>
 
 #include "ripplenotch/core/error.hpp"
-#include "ripplenotch/core/median.hpp"
+#include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/model/fit.hpp"
 #include "ripplenotch/model/model.hpp"

@@ -14,8 +14,8 @@
 
 #include "diagnose/judging/judge.hpp"
 #include "diagnose/judging/residual_regions.hpp"
-#include "diagnose/search/bent_shape.hpp"
 #include "diagnose/search/model_bench.hpp"
+#include "diagnose/search/search_starts.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {

@@ -61,4 +61,15 @@ struct ToldOf {
 /// The advice of the catalogue for telling two effects apart; a general one when it has none.
 [[nodiscard]] std::string what_would_tell(const Effect& one, const Effect& other);
 
+// Findings held against a log that nothing was fitted to.
+
+/// `model` without those findings that predict `other` worse than it is predicted without them, the worst
+/// first, and without the newest until the whole predicts it no worse than `given`, the model without any
+/// of them; their status says so. `findings`: one a term from `own_terms` on of `all`, the model with the
+/// doubtful ones; `model` holds those of them that are not doubtful. Each finding gets the residual of
+/// `other` without and with it.
+[[nodiscard]] Candidate reproduced(const ModelBench& bench, const Candidate& all, const Candidate& model,
+                                   const Model& given, const Case& other, std::size_t own_terms,
+                                   std::vector<Finding>& findings);
+
 }  // namespace ripplenotch

@@ -9,7 +9,7 @@
 #include "core/rows/row_facts.hpp"
 #include "core/vectors/dot.hpp"
 #include "diagnose/case/known_torque.hpp"
-#include "diagnose/search/bent_shape.hpp"
+#include "diagnose/search/search_starts.hpp"
 #include "ripplenotch/model/prediction.hpp"
 
 namespace ripplenotch {

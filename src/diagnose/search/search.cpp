@@ -6,7 +6,6 @@
 #include <iterator>
 #include <optional>
 
-#include "diagnose/search/bent_shape.hpp"
 #include "diagnose/search/model_bench.hpp"
 #include "diagnose/search/search_starts.hpp"
 

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "diagnose/setup/setup.hpp"
-#include "ripplenotch/core/median.hpp"
+#include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/diagnose/setup.hpp"
 

@@ -5,7 +5,7 @@
 #include "document/fields/fields.hpp"
 #include "document/fields/result_fields.hpp"
 #include "document/json/json.hpp"
-#include "ripplenotch/core/median.hpp"
+#include "ripplenotch/core/number.hpp"
 #include "ripplenotch/document/spectrum_json.hpp"
 
 namespace ripplenotch {

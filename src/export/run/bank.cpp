@@ -8,11 +8,156 @@
 #include <limits>
 #include <numbers>
 
+#include "core/matrices/factorisations.hpp"
+#include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/design/candidate_table.hpp"
+#include "ripplenotch/design/notch.hpp"
 #include "ripplenotch/export/filter_set.hpp"
+#include "ripplenotch/export/verify.hpp"
 
 namespace ripplenotch {
+
+namespace {
+
+constexpr double settled_to = 1e-10;  // of the first step; a hundredth of the deepest measured notch
+constexpr std::size_t longest_run = 4'000'000;  // samples; slower sections are judged by their coefficients
+constexpr std::size_t shortest_window = 4096;   // by hand
+constexpr double periods_in_window = 8.0;       // by hand
+
+double as_db(double gain) { return 20.0 * portable::log10(gain); }
+
+double depth_of(double gain) {
+    return gain > 0.0 ? std::min(-as_db(gain), deepest_measured_db) : deepest_measured_db;
+}
+
+// tan^2(pi f / fs) of the pair of roots of c0 z^2 + c1 z + c2; not positive when they have left the circle's
+// neighbourhood and no frequency belongs to them.
+double warped_square(double c0, double c1, double c2) { return (c0 + c1 + c2) / (c0 - c1 + c2); }
+
+struct RunFigures {
+    double mean_nm, gain;
+};
+
+// Load and ripple together, as in use: a float32 sum that keeps the load has fewer digits left for the
+// ripple. Mean and amplitude are the least-squares fit over whole samples, so no period has to fit.
+std::optional<RunFigures> run_one_section(const LoadedSection& section, Hertz frequency, Hertz sample_rate) {
+    const Biquad cascade[] = {section.biquad};
+    if (!(pole_radius(section.biquad) < 1.0)) return std::nullopt;
+    std::size_t settling = 0;
+    try {
+        settling = samples_to_settle(cascade, settled_to);
+    } catch (const UsageError&) {
+        return std::nullopt;
+    }
+    const auto periods = static_cast<std::size_t>(std::ceil(periods_in_window * (sample_rate / frequency)));
+    const std::size_t window = std::max(shortest_window, periods);
+    if (settling + window > longest_run) return std::nullopt;
+    std::vector<double> in(settling + window), out(in.size());
+    const double step = 2.0 * std::numbers::pi * (frequency / sample_rate);
+    for (std::size_t k = 0; k < in.size(); ++k)
+        in[k] = verify_load_nm + portable::sin(step * static_cast<double>(k));
+    run_section(section, in, out);
+    Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d right = Eigen::Vector3d::Zero();
+    for (std::size_t k = settling; k < in.size(); ++k) {
+        const double angle = step * static_cast<double>(k);
+        const Eigen::Vector3d row(1.0, portable::cos(angle), portable::sin(angle));
+        normal += row * row.transpose();
+        right += row * (out[k] - verify_load_nm);
+    }
+    const Eigen::VectorXd fit = SymmetricFactors(normal).solve(Eigen::VectorXd(right));
+    return RunFigures{fit[0], portable::hypot(fit[1], fit[2])};
+}
+
+std::string label(const SectionCheck& check) {
+    const std::string where = check.band > 0 ? fmt::format("band {}, ", check.band) : "";
+    return fmt::format("{}section {} ({:.6g} Hz)", where, check.section, check.center.value());
+}
+
+}  // namespace
+
+SectionCheck check_response(const Biquad& f, const ExportSection& designed, Hertz sample_rate) {
+    SectionCheck check;
+    check.order = designed.order;
+    check.center = designed.center;
+    check.is_notch = designed.notch.has_value();
+    const double poles = warped_square(1.0, f.a1, f.a2);
+    const double roots = check.is_notch ? warped_square(f.b0, f.b1, f.b2) : poles;
+    if (roots > 0.0 && std::isfinite(roots)) {
+        const Hertz center = sample_rate * (portable::atan(std::sqrt(roots)) / std::numbers::pi);
+        check.shift_percent = 100.0 * (center / designed.center - 1.0);
+    }
+    check.q = poles > 0.0 ? std::sqrt(poles) * (1.0 - f.a1 + f.a2) / (2.0 * (1.0 - f.a2)) : 0.0;
+    check.response_depth_db = depth_of(std::abs(response(f, designed.center, SampledAt(sample_rate))));
+    check.pole_radius = pole_radius(f);
+    return check;
+}
+
+std::vector<SectionCheck> verify_export(const FilterSet& filters, const LoadedFilters& loaded,
+                                        const std::string& source) {
+    if (loaded.bands.size() > filters.bands.size() || loaded.bands.empty()) {
+        raise<DataError>("{}: read {} bands, expected {}", source, loaded.bands.size(), filters.bands.size());
+    }
+    std::vector<SectionCheck> checks;
+    for (std::size_t b = 0; b < loaded.bands.size(); ++b) {
+        const ExportBand& band = filters.bands[b];
+        if (loaded.bands[b].size() != band.sections.size()) {
+            raise<DataError>("{}: read {} sections in band {}, expected {}", source, loaded.bands[b].size(),
+                             band.number, band.sections.size());
+        }
+        for (std::size_t i = 0; i < band.sections.size(); ++i) {
+            const LoadedSection& section = loaded.bands[b][i];
+            SectionCheck check = check_response(section.biquad, band.sections[i], filters.sample_rate);
+            check.band = band.number;
+            check.from = band.from;
+            check.to = band.to;
+            check.section = static_cast<int>(i) + 1;
+            if (const auto figures = run_one_section(section, check.center, filters.sample_rate)) {
+                if (check.is_notch) check.depth_db = depth_of(figures->gain);
+                check.mean_error_nm = figures->mean_nm;
+                check.dc_error_db = as_db(std::abs(1.0 + figures->mean_nm / verify_load_nm));
+            }
+            checks.push_back(check);
+        }
+    }
+    return checks;
+}
+
+std::vector<std::string> export_violations(const std::vector<SectionCheck>& checks,
+                                           const ExportLimits& limits) {
+    std::vector<std::string> found;
+    for (const SectionCheck& check : checks) {
+        const auto past = [&](std::string_view what, double value, std::string_view unit, double limit) {
+            found.push_back(fmt::format("{}: {} {:.4g}{}, limit {}{}", label(check), what, value, unit,
+                                        shortest(limit), unit));
+        };
+        if (!(check.pole_radius < 1.0)) {
+            found.push_back(fmt::format("{}: unstable, pole radius {:.9f}", label(check), check.pole_radius));
+            continue;
+        }
+        if (limits.shift_percent && !check.shift_percent) {
+            found.push_back(fmt::format("{}: no centre is left, its zeros are real", label(check)));
+        } else if (limits.shift_percent && std::abs(*check.shift_percent) > *limits.shift_percent) {
+            past("centre shifted by", *check.shift_percent, " %", *limits.shift_percent);
+        }
+        const double depth = check.depth_db.value_or(check.response_depth_db);
+        if (limits.depth_db && check.is_notch && depth < *limits.depth_db) {
+            past("depth", depth, " dB", *limits.depth_db);
+        }
+        if (limits.dc_error_db && !check.dc_error_db) {
+            found.push_back(
+                fmt::format("{}: too slow to be run, so its gain at 0 Hz is not known", label(check)));
+        } else if (limits.dc_error_db && std::abs(*check.dc_error_db) > *limits.dc_error_db) {
+            past("gain at 0 Hz off by", *check.dc_error_db, " dB", *limits.dc_error_db);
+        }
+        if (limits.pole_radius && check.pole_radius > *limits.pole_radius) {
+            past("pole radius", check.pole_radius, "", *limits.pole_radius);
+        }
+    }
+    return found;
+}
 
 namespace {
 

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "core/matrices/factorisations.hpp"
-#include "ripplenotch/core/median.hpp"
+#include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {

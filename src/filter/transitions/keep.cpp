@@ -5,7 +5,7 @@
 // times larger.
 
 #include "filter/kernels/bank_sections.hpp"
-#include "filter/run/one_cascade.hpp"
+#include "filter/run/engine.hpp"
 
 namespace ripplenotch {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "filter/kernels/in_series.hpp"
-#include "filter/run/one_cascade.hpp"
+#include "filter/run/engine.hpp"
 #include "ripplenotch/core/biquad.hpp"
 
 namespace ripplenotch {

@@ -3,7 +3,7 @@
 // firmware does this; every change lets the ripple of that moment through and then decays.
 
 #include "filter/kernels/bank_sections.hpp"
-#include "filter/run/one_cascade.hpp"
+#include "filter/run/engine.hpp"
 
 namespace ripplenotch {
 namespace {

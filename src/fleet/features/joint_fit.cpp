@@ -8,7 +8,6 @@
 
 #include "core/rows/row_facts.hpp"
 #include "ripplenotch/core/error.hpp"
-#include "ripplenotch/core/median.hpp"
 #include "ripplenotch/core/number.hpp"
 
 namespace ripplenotch {

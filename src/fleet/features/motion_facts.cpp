@@ -10,7 +10,7 @@
 #include "core/rows/row_facts.hpp"
 #include "core/vectors/dot.hpp"
 #include "model/motion/local_motion.hpp"
-#include "ripplenotch/core/median.hpp"
+#include "ripplenotch/core/number.hpp"
 #include "ripplenotch/model/motion.hpp"
 
 namespace ripplenotch {

@@ -13,7 +13,7 @@
 
 #include "core/matrices/least_squares.hpp"
 #include "fleet/trend/joint_history.hpp"
-#include "ripplenotch/core/median.hpp"
+#include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {

@@ -12,7 +12,7 @@
 
 #include "core/matrices/least_squares.hpp"
 #include "ripplenotch/core/error.hpp"
-#include "ripplenotch/core/median.hpp"
+#include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/fleet/features.hpp"
 

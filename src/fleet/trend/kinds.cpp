@@ -7,7 +7,7 @@
 #include <string>
 #include <tuple>
 
-#include "ripplenotch/core/median.hpp"
+#include "ripplenotch/core/number.hpp"
 #include "ripplenotch/fleet/features.hpp"
 
 namespace ripplenotch {

@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "log/clock/clock_check.hpp"
-#include "ripplenotch/core/median.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/log/recording.hpp"
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ripplenotch/core/median.hpp"
+#include "ripplenotch/core/number.hpp"
 
 namespace ripplenotch {
 namespace {

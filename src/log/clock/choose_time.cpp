@@ -18,7 +18,6 @@
 #include "log/columns/column_name.hpp"
 #include "log/columns/decide_layout.hpp"
 #include "ripplenotch/core/error.hpp"
-#include "ripplenotch/core/median.hpp"
 #include "ripplenotch/core/number.hpp"
 
 namespace ripplenotch {

@@ -6,7 +6,6 @@
 #include "core/rows/row_facts.hpp"
 #include "log/clock/clock_check.hpp"
 #include "ripplenotch/core/error.hpp"
-#include "ripplenotch/core/median.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/log/clock.hpp"
 

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "core/vectors/lanes.hpp"
-#include "ripplenotch/core/median.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/log/clock.hpp"

@@ -11,7 +11,6 @@
 #include "log/account/account.hpp"
 #include "log/columns/motion_reading.hpp"
 #include "ripplenotch/core/error.hpp"
-#include "ripplenotch/core/median.hpp"
 #include "ripplenotch/core/number.hpp"
 
 namespace ripplenotch {

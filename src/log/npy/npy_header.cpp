@@ -14,7 +14,7 @@
 
 #include "log/clock/stamp.hpp"
 #include "ripplenotch/core/error.hpp"
-#include "ripplenotch/core/reading.hpp"
+#include "ripplenotch/core/trace.hpp"
 
 namespace ripplenotch {
 

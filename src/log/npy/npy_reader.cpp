@@ -18,7 +18,7 @@
 #include "log/records/joined_records.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
-#include "ripplenotch/core/reading.hpp"
+#include "ripplenotch/core/trace.hpp"
 
 namespace ripplenotch {
 

@@ -15,7 +15,7 @@
 #include "log/text/row_edges.hpp"
 #include "log/text/text_cells.hpp"
 #include "ripplenotch/core/number.hpp"
-#include "ripplenotch/core/reading.hpp"
+#include "ripplenotch/core/trace.hpp"
 
 namespace ripplenotch {
 

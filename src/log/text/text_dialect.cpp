@@ -13,7 +13,7 @@
 #include "log/text/text_header.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
-#include "ripplenotch/core/reading.hpp"
+#include "ripplenotch/core/trace.hpp"
 
 namespace ripplenotch {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "model/effects.hpp"
-#include "ripplenotch/core/median.hpp"
+#include "ripplenotch/core/number.hpp"
 #include "ripplenotch/model/fit.hpp"
 
 namespace ripplenotch {

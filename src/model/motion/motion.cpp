@@ -11,7 +11,6 @@
 
 #include "model/motions.hpp"
 #include "ripplenotch/core/error.hpp"
-#include "ripplenotch/core/median.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/core/spec.hpp"
