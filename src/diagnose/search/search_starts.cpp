@@ -389,6 +389,20 @@ Case seen_late(const Case& looked_at, Seconds late) {
     return seen;
 }
 
+// What the parameter has to be for the effect to make `stated` the ratio `wanted`.
+double value_for_ratio(const Effect& effect, std::size_t parameter, GearRatio stated, double wanted) {
+    // The ratio is affine in the parameter.
+    std::vector<double> values;
+    for (const Parameter& other : effect.parameters) values.push_back(other.neutral);
+    Motion scratch;
+    GearRatio at_neutral = stated, at_next = stated;
+    effect.change_motion(values, scratch, at_neutral);
+    values[parameter] += 1.0;
+    effect.change_motion(values, scratch, at_next);
+    const double slope = at_next.value() - at_neutral.value();
+    return effect.parameters[parameter].neutral + (wanted - at_neutral.value()) / slope;
+}
+
 std::optional<Candidate> with_late_ratio(const ModelBench& bench, const Candidate& now, std::size_t own_terms,
                                          std::span<const Effect* const> effects) {
     const Effect* const delay = among(effects, "delay");
@@ -524,23 +538,7 @@ bool is_there_already(const Term& tried, const Model& open) {
     });
 }
 
-namespace {
-
-// What the parameter has to be for the effect to make `stated` the ratio `wanted`.
-double value_for_ratio(const Effect& effect, std::size_t parameter, GearRatio stated, double wanted) {
-    // The ratio is affine in the parameter.
-    std::vector<double> values;
-    for (const Parameter& other : effect.parameters) values.push_back(other.neutral);
-    Motion scratch;
-    GearRatio at_neutral = stated, at_next = stated;
-    effect.change_motion(values, scratch, at_neutral);
-    values[parameter] += 1.0;
-    effect.change_motion(values, scratch, at_next);
-    const double slope = at_next.value() - at_neutral.value();
-    return effect.parameters[parameter].neutral + (wanted - at_neutral.value()) / slope;
-}
-
-}  // namespace
+namespace {}  // namespace
 
 RatioRange ratios_beside(const Candidate& model, double about, const DiagnosisRules& rules) {
     const RatioRange all{rules.screening.lowest_ratio * about, rules.screening.highest_ratio * about};

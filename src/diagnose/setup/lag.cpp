@@ -358,6 +358,13 @@ bool clearly_worse(const std::vector<double>& squares, const std::vector<double>
 
 Interval interval_about(double value, double half_width) { return {value - half_width, value + half_width}; }
 
+// Why a lag with such an interval is not identifiable.
+std::string too_wide(const SimulationLag& lag) {
+    return fmt::format(
+        "the 95 % interval of the delay, {:.3g} to {:.3g} s, is wider than the window of {:.2g} s",
+        lag.delay_95_s.low, lag.delay_95_s.high, 2.0 * lag.smoothing_s);
+}
+
 std::string reason_against(const SimulationLag& lag, const ShiftProblem& problem,
                            const AlignmentOptions& options) {
     const double least = lag.correlation > 0.0 ? options.least_explained : options.least_reversed;
@@ -416,16 +423,7 @@ std::vector<double> window_times(const std::vector<const SmoothedSeries*>& serie
     return times_s;
 }
 
-namespace {
-
-// Why a lag with such an interval is not identifiable.
-std::string too_wide(const SimulationLag& lag) {
-    return fmt::format(
-        "the 95 % interval of the delay, {:.3g} to {:.3g} s, is wider than the window of {:.2g} s",
-        lag.delay_95_s.low, lag.delay_95_s.high, 2.0 * lag.smoothing_s);
-}
-
-}  // namespace
+namespace {}  // namespace
 
 double search_range_s(std::span<const double> time_s, const AlignmentOptions& options) {
     if (options.range) return options.range->value();
