@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// What several searches of this room decide by.
+// Decision thresholds that several searches of this module share.
 
 #include <algorithm>
 #include <cmath>
@@ -11,15 +11,15 @@
 
 namespace ripplenotch {
 
-/// Of likelihood (odds of 150 to 1), by which one account of a line has to be better than another.
-inline constexpr double decisive_nats = 5.0;  // by hand
-/// Of a gain: the noise below a line is not known better.
-inline constexpr double floor_doubt = 0.15;  // by hand
+/// Difference in log-likelihood (odds of 150 to 1) by which one explanation of a line has to exceed another.
+inline constexpr double decisive_nats = 5.0;  // chosen, not derived
+/// Uncertainty of an improvement as a share: the noise below a line is not known better.
+inline constexpr double floor_doubt = 0.15;  // chosen, not derived
 /// Maxima are looked for among correlated bins: about this many independent tries per cell. With it, white
 /// noise raises a false alarm somewhat less often than allowed.
 inline constexpr double tries_per_cell = 1.6;
-/// Of the polynomial that takes the slow course off a window: a cubic, since a quadratic leaks
-/// into order 2 where a joint turns round.
+/// Number of terms of the polynomial trend that is removed from a window: a cubic, since a quadratic leaks
+/// into order 2 where a joint reverses.
 inline constexpr std::ptrdiff_t window_trend_terms = 4;
 
 /// Smaller lines are not reported: a share of the torque's range, and in any case what rounding makes of a

@@ -15,7 +15,8 @@ namespace ripplenotch {
 /// One order that a seen line could be in truth.
 struct Fold {
     double order_output = 0.0;
-    double gain = 0.0;  ///< what it explains of the samples, in nats, comparable with the seen order's own
+    /// Improvement in log-likelihood (natural units), comparable with that of the order seen.
+    double gain = 0.0;
 };
 
 /// An order as it is seen, and the highest that it may be in truth; both per output turn.

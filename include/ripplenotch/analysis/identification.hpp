@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// What identify finds out about a joint: ripple lines, the gear ratio, and a sentence that says it. "Nothing
-// found" and "cannot tell" are values of these types, not errors.
+// Results of identify for a joint: ripple lines, the gear ratio, and a sentence that states it. "Nothing
+// found" and "cannot be determined" are values of these types, not errors.
 
 #include <cstddef>
 #include <optional>
@@ -17,9 +17,9 @@
 
 namespace ripplenotch {
 
-// What an identification comes to, as values; the words are made of them in one place, verdict_sentence.
+// The outcome of an identification, as values; its text is composed in one function, verdict_sentence.
 //
-// Another reason for doubt is a name in DoubtReason and a Doubt from whoever knows of it: in
+// Another reason against a result is a name in DoubtReason and a Doubt from the code that detects it: in
 // IdentifyOptions::doubts when it is known before the lines are looked for, with cast_doubt() when it follows
 // from what was found. A finding under a doubt is no verdict: the sentence begins with "Cannot tell:" and the
 // doubts, in the order in which they came, and the identification is not conclusive.
@@ -30,13 +30,13 @@ enum class RippleFinding {
     orders,      ///< ripple that turns with the joint; its gear ratio stays open
     one_speed,   ///< lines, all at one speed, where an order and a fixed tone look alike
     nothing,     ///< surely no ripple above SearchedOrders::detectable_nm in that range
-    too_little,  ///< the joint is at rest, or moves too little to say anything
+    too_little,  ///< the joint is at standstill, or moves too little to determine anything
 };
 [[nodiscard]] std::string_view finding_name(RippleFinding finding);
 /// Empty where nothing has this name.
 [[nodiscard]] std::optional<RippleFinding> finding_of(std::string_view name);
 
-/// Why the lines are not believed whatever they show.
+/// Why the lines are not accepted, whatever they show.
 enum class DoubtReason {
     clock,  ///< position, velocity and time contradict each other
     unit,   ///< the unit of the motion is not stated, and another suits the lines as well
@@ -78,7 +78,8 @@ struct Line {
     std::vector<double> could_be;  ///< other output orders that explain the line about as well, by folding
     std::optional<double> hz;      ///< for kind tone, and the seen frequency of a single-speed line
     double amplitude_nm = 0.0;     ///< zero to peak, mean over the stretches that show it
-    double phase_deg = 0.0;  ///< of cos(order * motor angle + phase), angle from position where there is one
+    /// Phase in cos(order * motor angle + phase), angle from position where there is one.
+    double phase_deg = 0.0;
     bool phase_known = false;
     double snr = 0.0;  ///< amplitude over the local noise amplitude
     double speed_from_deg_s = 0.0, speed_to_deg_s = 0.0;
@@ -86,7 +87,7 @@ struct Line {
     std::string note;  ///< e.g. "mains", "seen at one speed only"
 };
 
-/// Where a line was seen: at one frequency or over a range of speeds. Empty when nothing says where.
+/// Where a line was seen: at one frequency or over a range of speeds. Empty when that is not known.
 struct SeenFrequencies {
     double lowest_hz = 0.0, highest_hz = 0.0;
 };
@@ -109,7 +110,7 @@ struct GearRatioFit {
     std::optional<double> second_comb;
     bool coarse = false;  ///< ci95 holds ratios one apart, as those of both splines are; not in joint.json
     std::vector<RatioCandidate> candidates;  ///< likeliest first
-    /// One entry per line used: its mean speed, its frequency there and what the fit leaves, in hertz.
+    /// One entry per line used: its mean speed, its frequency there and the residual of the fit, in hertz.
     struct Residual {
         double speed_deg_s = 0.0, hz = 0.0, order = 0.0, residual_hz = 0.0, weight = 1.0;
     };
@@ -126,14 +127,14 @@ struct ToneFamily {
     std::vector<int> multiples;  ///< ascending
 };
 
-/// A band of frequencies with more torque in it than the strongest ripple line has, beside the lines.
+/// A band of frequencies outside the lines with more torque in it than the strongest ripple line has.
 struct Hum {
     double from_hz = 0.0, to_hz = 0.0;
     double peak_hz = 0.0;
     double rms_nm = 0.0;  ///< in the band, noise taken off, largest of the stretches or rms over sweeps
 };
 
-/// What recordings of one joint say of one thing when they disagree beyond their errors.
+/// The estimates of one quantity from recordings of one joint that disagree beyond their errors.
 struct Disagreement {
     enum class About { ratio, amplitude, phase };
     struct Value {
@@ -141,7 +142,7 @@ struct Disagreement {
         double value = 0.0, error = 0.0;  ///< a ratio, Nm, or deg
     };
     About about = About::ratio;
-    std::optional<double> order, order_output;  ///< of the line, for amplitudes and phases
+    std::optional<double> order, order_output;  ///< order of the line, for amplitudes and phases
     std::vector<Value> values;                  ///< by recording
     double chance = 1.0;                        ///< that recordings which agree differ as much
 };
@@ -167,7 +168,8 @@ struct Identification {
     std::string evidence;     ///< "order spectrum"; empty without motion
     std::vector<Line> lines;  ///< strongest first
     GearRatioFit gear_ratio;
-    /// Of a log without position, where ripple in changing motion tells it; the orders are without it.
+    /// The velocity error of a log without position, if ripple in changing motion determines it; the orders
+    /// are corrected for it.
     std::optional<VelocityError> velocity_error;
     std::vector<ToneFamily> families;
     std::vector<Hum> hums;  ///< most torque first
@@ -178,7 +180,7 @@ struct Identification {
     Grounds grounds;                 ///< not in joint.json
     std::string verdict;             ///< verdict_sentence of all this: one sentence with numbers
     std::vector<std::string> notes;  ///< what was looked at and why it was not enough, one sentence each
-    bool conclusive = false;         ///< lines found and a ratio, or surely nothing, and no doubt
+    bool conclusive = false;  ///< lines found and a ratio, or certainly nothing, and no reason against it
 };
 
 /// Cycles per motor turn of a line that follows the motor; empty for others. A line that was seen at one
@@ -189,11 +191,11 @@ struct Identification {
 /// supports a ratio.
 [[nodiscard]] std::optional<GearAccount> found_gear(const Identification& found);
 
-/// The verdict in words, doubts first.
+/// The verdict as text, reasons against it first.
 [[nodiscard]] std::string verdict_sentence(const Identification& found);
 
-/// Takes back what `found` says of orders and the gear ratio, and says why: every line that would turn with
-/// the joint is of kind unknown then, with its frequencies. The ratios that it would fit stay listed.
+/// Retracts the orders and the gear ratio in `found` and records why: every line that would turn with the
+/// joint becomes of kind unknown, with its frequencies. The ratios that it would fit stay listed.
 void cast_doubt(Identification& found, Doubt doubt);
 
 struct IdentifyOptions {
@@ -203,7 +205,7 @@ struct IdentifyOptions {
     std::vector<Doubt> doubts;       ///< what is known against these logs before they are looked at
 };
 
-inline constexpr std::size_t fewest_identify_samples = 64;  ///< by hand: as for a spectrum
+inline constexpr std::size_t fewest_identify_samples = 64;  ///< chosen, not derived: as for a spectrum
 
 /// Lines and gear ratio of one joint from one or many of its logs. Throws DataError only for logs that are
 /// unusable as such (fewer than 64 samples).
@@ -225,16 +227,16 @@ struct OrderLine {
 
 struct GearRatioResult {
     GearRatioFit fit;
-    /// Of each line, per turn of the motor, under fit.value: n on the first comb, n (Kg +/- 1) / Kg on the
-    /// second; empty where it lies off both.
+    /// The order of each line, per turn of the motor, under fit.value: n on the first comb, n (Kg +/- 1) / Kg
+    /// on the second; empty where it lies off both.
     std::vector<std::optional<double>> order_of_line;
     std::vector<std::string> notes;
 };
 
-/// What is known beside the lines.
+/// What is known in addition to the lines.
 struct RatioQuestion {
     std::optional<GearRatio> hint{};
-    std::span<const int> hinted_orders{};  ///< n at which the strongest line is believed to stand
+    std::span<const int> hinted_orders{};  ///< n at which the strongest line is assumed to lie
 };
 
 /// Ratios are compared by their posterior probability. A line lies on a tooth of a comb within its error, or

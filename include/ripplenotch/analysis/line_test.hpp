@@ -57,7 +57,7 @@ struct SignificantPeak {
                                                            std::span<const double> floor, double false_alarm);
 
 /// Powers from which on a maximum at a bin is no noise, and from which on it is a line. They differ near the
-/// low end, where what the motion leaves is no noise either. Infinite where nothing is tested.
+/// low end, where the residual of the motion is no noise either. Infinite where nothing is tested.
 struct LineThreshold {
     double noise = 0.0, line = 0.0;
 };

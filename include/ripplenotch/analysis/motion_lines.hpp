@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // Lines of a log in any motion: what repeats with the output angle (orders), what repeats with time (tones),
-// and what this motion cannot tell apart.
+// and what this motion cannot distinguish.
 
 #include <complex>
 #include <optional>
@@ -21,11 +21,13 @@ struct MotionLine {
     double amplitude_nm = 0.0;                      ///< zero to peak, rms over sweeps, noise taken off
     double floor_nm = 0.0;                          ///< what noise alone shows, rms over sweeps
     double snr = 0.0;                               ///< amplitude_nm / floor_nm
-    double false_alarm = 1.0;                  ///< chance that noise shows such a line anywhere on this axis
-    double gain_angle = 0.0, gain_time = 0.0;  ///< what a line in angle, or in time, explains, in nats
+    double false_alarm = 1.0;  ///< chance that noise shows such a line anywhere on this axis
+    /// Improvement in log-likelihood by a line in angle, or in time (natural units).
+    double gain_angle = 0.0, gain_time = 0.0;
     std::vector<Fold> folds;  ///< orders beyond half the sample rate whose image this may be, best first
     double order_seen = 0.0;  ///< the best that output orders below half the sample rate offer
-    std::optional<double> phase_deg;  ///< of cos(order * output angle + phase), when the sweeps agree on it
+    /// Phase in cos(order * output angle + phase), when the sweeps agree on it.
+    std::optional<double> phase_deg;
     std::vector<AmplitudeAtSpeed> by_speed;  ///< per sweep
 };
 
@@ -33,9 +35,9 @@ struct MotionLinesOptions {
     SweepRule sweeps;
     StackRule stack;
     double false_alarm = 0.01;     ///< chance that noise gives any line at all, orders and tones together
-    double least_share = 1e-4;     ///< of the torque's range: smaller lines are not reported
+    double least_share = 1e-4;     ///< share of the torque's range: smaller lines are not reported
     double lowest_tone_hz = 10.0;  ///< slower tones are those of the motion itself
-    std::size_t most_lines = 12;   ///< by hand: each costs a further look at all sweeps
+    std::size_t most_lines = 12;   ///< chosen, not derived: each costs a further pass over all sweeps
 };
 
 struct MotionLines {
@@ -49,17 +51,18 @@ struct MotionLines {
     double highest_spectrum_order = 0.0;     ///< lines above the searched orders are found up to here
     double slowest_deg_s = 0.0, fastest_deg_s = 0.0;  ///< mean |speed| of the sweeps
     bool absolute_angle = false;
-    /// Of logs without position whose lines tell it; their angle and their lines are without it.
+    /// The velocity error of logs without position, if their lines determine it; their angle and lines are
+    /// corrected for it.
     std::optional<VelocityError> velocity_error;
     /// Relative error that all orders have in common, because the angle is a sum of velocities.
     double order_share_error = 0.0;
 };
 
-/// Takes the clearest line of both axes that does not rest on a single sweep, gives it to the axis that
-/// explains more of it, subtracts it sweep by sweep, and looks again, until noise could have made what is
-/// left. So a tone does not leave orders behind where the speed lingers, nor an order tones. Where the angle
-/// is a sum of velocities, orders found tell what offset and what delay the velocity has, and are looked for
-/// again without them.
+/// Takes the clearest line of both axes that does not depend on a single sweep, assigns it to the axis that
+/// explains more of it, subtracts it sweep by sweep, and searches again, until noise could account for the
+/// residual. So a tone leaves no orders where the speed lingers, nor an order tones. Where the angle is a sum
+/// of velocities, the orders found determine the offset and the delay of the velocity, and the search is
+/// repeated with both corrected.
 [[nodiscard]] MotionLines find_motion_lines(std::span<const TraceView> logs,
                                             const MotionLinesOptions& options);
 

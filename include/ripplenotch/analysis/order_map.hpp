@@ -19,7 +19,7 @@ struct MapOptions {
     /// longest run, but at least 16 turns or 0.25 s (or a quarter of the run), and at most 64 turns or 2 s.
     std::optional<double> resolution = {};
     std::optional<double> highest =
-        {};                     ///< of the axis; left out: what half the sample rate is at the highest speed
+        {};  ///< upper end of the axis; left out: half the sample rate at the highest speed
     DegPerSec speed_step{0.0};  ///< width of a speed's range; 0 chooses, as for tracks
 };
 
@@ -31,17 +31,18 @@ struct SpeedMap {
     std::vector<double> axis;  ///< orders or hertz, evenly spaced from 0
     std::vector<std::vector<double>>
         amplitude_nm;         ///< a line shows its amplitude, zero to peak; rms over windows
-    double spacing = 0.0;     ///< of the axis: a third of the resolution
+    double spacing = 0.0;     ///< spacing of the axis: a third of the resolution
     double resolution = 0.0;  ///< as obtained: 1.5 / length of the windows used
     double speed_step_deg_s = 0.0;
     std::size_t runs_too_short = 0;  ///< runs of motion shorter than a window
 };
 
 /// Windows of equal length in turns of `shaft_turns` (or in time), half overlapping, within runs of one
-/// direction; Hann window in angle, each sample weighted by the angle it stands for, no interpolation; a
-/// cubic taken out. A window belongs to its mean speed. When no run is as long as the resolution asked for
-/// needs, the longest run is one window and the resolution says so. `shaft_turns` and `speed_deg_s` have one
-/// value a sample. Throws DataError for a log without motion. O(n + windows * bins log bins).
+/// direction; Hann window in angle, each sample weighted by the angle it represents, no interpolation; a
+/// cubic trend removed. A window belongs to its mean speed. When no run is as long as the requested
+/// resolution needs, the longest run is one window and `resolution` reports it. `shaft_turns` and
+/// `speed_deg_s` have one value a sample. Throws DataError for a log without motion. O(n + windows * bins log
+/// bins).
 [[nodiscard]] SpeedMap speed_map(const TraceView& log, std::span<const double> shaft_turns,
                                  std::span<const double> speed_deg_s, const MapOptions& options);
 

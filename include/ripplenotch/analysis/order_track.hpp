@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // Amplitude and phase of each line against time: least squares on the angle over sliding windows, all lines
-// of all shafts at once, so that close and crossing ones are told apart.
+// of all shafts at once, so that close and crossing ones are separated.
 
 #include <cstddef>
 #include <span>
@@ -22,7 +22,7 @@ struct TrackedLine {
 struct TrackedSignal {
     Hertz sample_rate;
     std::span<const double> time_s, torque_nm;
-    std::span<const double> speed_deg_s;      ///< signed, smooth; tells runs apart and is reported
+    std::span<const double> speed_deg_s;      ///< signed, smooth; separates runs and is reported
     std::span<const double> reference_turns;  ///< the shaft whose turns windows are measured in
     std::vector<TrackedLine> lines;
     std::span<const std::size_t> run_starts = {};  ///< as in TraceView
@@ -32,8 +32,8 @@ struct TrackedSignal {
 /// One line along the rows of its OrderTracks; nan where it was not measured.
 struct LineTrack {
     std::vector<double> amplitude_nm;       ///< zero to peak
-    std::vector<double> standard_error_nm;  ///< of the amplitude, from the residual
-    std::vector<double> phase_deg;          ///< of cos(2 pi order turns + phase), -180 to 180
+    std::vector<double> standard_error_nm;  ///< standard error of the amplitude, from the residual
+    std::vector<double> phase_deg;          ///< phase in cos(2 pi order turns + phase), -180 to 180
     std::vector<double> hz;                 ///< frequency there
 };
 
@@ -53,8 +53,8 @@ struct WindowRule {
     int envelope_degree = 2;  ///< amplitude within a window: 0 constant, 1 or 2 polynomial in time
 };
 
-/// The turns that tell lines of these orders apart: eight periods of the lowest, and two of the smallest
-/// difference.
+/// The window in turns that separates lines of these orders: eight periods of the lowest, and two of the
+/// smallest difference.
 [[nodiscard]] double separating_window_turns(std::span<const double> orders);
 
 /// In each window x = trend + sum over lines of a cos(2 pi order turns) + b sin(...) is fitted, a and b being
@@ -74,8 +74,9 @@ struct SpeedTrack {
         std::vector<double> amplitude_nm;  ///< zero to peak, mean of the rows
         /// Standard deviation of the rows' amplitudes; with one row, its own standard error.
         std::vector<double> spread_nm;
-        std::vector<double> phase_deg;  ///< of the mean of all rows, each an arrow of its amplitude and phase
-        std::vector<double> hz;         ///< mean
+        /// Phase of the mean of all rows, each a phasor of its amplitude and phase.
+        std::vector<double> phase_deg;
+        std::vector<double> hz;  ///< mean
     };
     std::vector<Line> lines;  ///< nan where no row of that speed has the line
     double step_deg_s = 0.0;  ///< width of a speed's range, as used

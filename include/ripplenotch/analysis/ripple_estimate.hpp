@@ -25,11 +25,12 @@ inline constexpr double ripple_resolution_orders = 1.5 / 8.0;
 
 /// The ripple at one order.
 struct RippleEstimate {
-    double order = 0.0;               ///< cycles per motor turn
-    double amplitude_nm = 0.0;        ///< zero to peak, rms over the segments, noise power subtracted
-    double standard_error_nm = 0.0;   ///< from the noise beside the order and the scatter over the segments
-    std::optional<double> phase_deg;  ///< of cos(order * motor angle + phase); empty without an absolute
-                                      ///< angle, and where the segments do not agree on it
+    double order = 0.0;              ///< cycles per motor turn
+    double amplitude_nm = 0.0;       ///< zero to peak, rms over the segments, noise power subtracted
+    double standard_error_nm = 0.0;  ///< from the noise near the order and the scatter over the segments
+    /// Phase in cos(order * motor angle + phase); empty without an absolute angle, and where the segments do
+    /// not agree on it.
+    std::optional<double> phase_deg;
     double phase_standard_error_deg = 0.0;
     double detectable_nm = 0.0;  ///< a ripple of this amplitude would be present in 99 of 100 such logs
     double false_alarm = 1.0;    ///< probability that noise alone shows as much at any of the orders
@@ -65,7 +66,7 @@ struct OrderLevel {
     double mean_hz = 0.0;              ///< mean of n Kg |v| / 360 over the windows
     std::vector<double> amplitude_nm;  ///< per signal, zero to peak, rms over windows; nan without any
     std::optional<double>
-        expected_gain;        ///< what the filter of LineGains leaves of the line, rms over windows
+        expected_gain;  ///< remaining share of the line behind the filter of LineGains, rms over windows
     std::size_t windows = 0;  ///< that hold the order
 };
 

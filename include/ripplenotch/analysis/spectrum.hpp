@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Amplitude of torque against frequency: the paper's windowed DFT, in newton-metres, with its lines and its
-// doubt.
+// Amplitude of torque against frequency: the paper's windowed DFT, in newton-metres, with its lines and their
+// false-alarm probability.
 
 #include <complex>
 #include <cstddef>
@@ -47,7 +47,7 @@ class RealTransform {
 /// `where` (unit: 1/unit of spacing). Equal to the direct sum within 1e-9 of sum |value|. O(n + count log
 /// count). Method: spreading with the kernel exp(beta (sqrt(1 - x^2) - 1)), transform, division by the
 /// kernel's own transform (Barnett, Magland, af Klinteberg, SIAM J. Sci. Comput. 41, 2019). No interpolation
-/// of the samples takes place.
+/// takes place on the samples.
 [[nodiscard]] std::vector<std::complex<double>> nonuniform_fourier(std::span<const double> where,
                                                                    std::span<const double> value,
                                                                    double spacing, std::size_t count);
@@ -72,26 +72,27 @@ struct SpectralPeak {
     double hz = 0.0;
     double hz_stderr = 0.0;  ///< Cramer-Rao bound at this floor, times 1.53 for the Hann window
     double amplitude_nm = 0.0;
-    double phase_deg = 0.0;    ///< of cos(2 pi f t + phase), t as in the log
+    double phase_deg = 0.0;    ///< phase in cos(2 pi f t + phase), t as in the log
     double floor_nm = 0.0;     ///< amplitude that noise alone shows here, rms
     double snr = 0.0;          ///< amplitude_nm / floor_nm
     double false_alarm = 1.0;  ///< chance that noise shows such a line anywhere in this spectrum
 };
 
-/// A band that stands out of the noise beside it and is wider than a line: a resonance, or what moves along
-/// with the speed.
+/// A band that rises above the neighbouring noise and is wider than a line: a resonance, or what changes
+/// frequency with the speed.
 struct SpectralHump {
     double from_hz = 0.0, to_hz = 0.0;  ///< at least twice the noise's power, 15 dB below its highest
-    double peak_hz = 0.0;               ///< of its highest bin
+    double peak_hz = 0.0;               ///< frequency of its highest bin
     double peak_nm = 0.0;               ///< amplitude there
-    double rms_nm = 0.0;                ///< of the torque in the band, noise taken off
-    double floor_nm = 0.0;              ///< amplitude that noise alone shows beside it, rms
+    double rms_nm = 0.0;                ///< rms torque in the band, noise subtracted
+    double floor_nm = 0.0;              ///< amplitude of the neighbouring noise alone, rms
     double false_alarm = 1.0;           ///< chance that noise shows such a hump anywhere in this spectrum
 };
 
 struct SpectrumOptions {
     std::optional<Seconds> segment;  ///< Welch: length of the pieces, half overlapping; left out: one piece
-    double false_alarm = 0.01;       ///< of `peaks`, for the whole spectrum, and of `humps` likewise
+    /// False-alarm probability of `peaks` over the whole spectrum, and of `humps` likewise.
+    double false_alarm = 0.01;
 };
 
 /// Bins run from 0 Hz to half the sample rate, all vectors have the same length.
@@ -108,7 +109,7 @@ struct Spectrum {
     Seconds piece_duration;
 };
 
-inline constexpr std::size_t fewest_spectrum_samples = 64;  ///< by hand
+inline constexpr std::size_t fewest_spectrum_samples = 64;  ///< chosen, not derived
 /// Samples that a piece has, of so many.
 [[nodiscard]] std::size_t piece_length(std::size_t samples, Hertz rate, const SpectrumOptions& options);
 /// Throws DataError for fewer.
@@ -134,8 +135,8 @@ class SpectrumStream {
     /// First pass: consecutive samples, seconds and Nm, any number at a time. Holds two pieces at most,
     /// besides what was handed over last.
     void add(std::span<const double> time_s, std::span<const double> torque_nm);
-    /// The rate is this one. False when the samples might have told otherwise with it: then they have to be
-    /// added again, to a new stream.
+    /// Sets the sample rate. False when the result of the samples might have been different with it: they
+    /// have to be added again, to a new stream.
     [[nodiscard]] bool settle(Hertz rate);
     /// Between the passes. False when there is no line, and so no need of a second pass.
     bool find_lines(double false_alarm);

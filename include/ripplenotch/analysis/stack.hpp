@@ -40,7 +40,7 @@ struct Stack {
     void mark_removed(double place);
     struct HumpRule {
         double false_alarm = 0.0;
-        double lowest = 0.0;  ///< from where on humps are told, in orders or hertz
+        double lowest = 0.0;  ///< lower limit for humps, in orders or hertz
     };
     /// significant_humps, likewise; most energy first. None where there are few cells.
     [[nodiscard]] std::vector<SpectralHump> humps(const HumpRule& rule) const;
@@ -51,7 +51,7 @@ struct StackRule {
     /// Per output turn. The lowest is an error once a turn; the highest is order 8 of a ratio of 320, the
     /// highest in catalogues.
     double lowest_order = 1.0, highest_order = 2560.0;
-    double lowest_hz = 0.5;  ///< by hand
+    double lowest_hz = 0.5;  ///< chosen, not derived
     /// A line has so many cycles in a sweep: its main lobe (two cycles to both sides) is then clear of the
     /// trend, which follows up to trend_cycles.
     double fewest_cycles = 4.0;

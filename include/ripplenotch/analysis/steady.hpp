@@ -14,32 +14,31 @@
 namespace ripplenotch {
 
 // Is a band of a power spectrum a hump, wider than a line and above the noise to both its sides, or could
-// noise have made it? Beside line_test.hpp, which asks the same of single peaks.
+// noise account for it? line_test.hpp is the same test for single peaks.
 
-/// Bins [first, end) that carry more than the noise beside them.
+/// Bins [first, end) that carry more than the neighbouring noise.
 struct SignificantHump {
     std::size_t first = 0, end = 0;
-    double floor = 0.0;        ///< mean noise power beside it: the largest of left, right and around
+    double floor = 0.0;  ///< mean power of the neighbouring noise: the largest of left, right and around
     double false_alarm = 1.0;  ///< chance that noise gives such a hump anywhere in the spectrum
 };
 
-/// Humps whose false_alarm is at most the one asked for, in bin order, not overlapping. A band from 2.5 cells
+/// Humps whose false_alarm is at most the one requested, in bin order, not overlapping. A band from 2.5 cells
 /// up to a fifth of the spectrum is compared with the noise below it, above it and around it, whichever is
 /// largest: noise that falls or rises along the bins, of whatever colour, is higher on one side and so makes
-/// no hump. The ratio follows an F distribution; where neighbouring cells are alike, as in noise that comes
-/// in bursts, as many fewer of them count. What has less than twice the amplitude of
-/// the noise beside it is none, since a person would overlook it. Take lines out of the power first: they
-/// would be humps. O(n log n).
+/// no hump. The ratio follows an F distribution; where neighbouring cells are correlated, as in noise that
+/// comes in bursts, the degrees of freedom are reduced accordingly. A band of less than twice the amplitude
+/// of the neighbouring noise is none, since a person would overlook it. Remove lines from the power first:
+/// they would be humps. O(n log n).
 [[nodiscard]] std::vector<SignificantHump> significant_humps(const PowerSpectrum& spectrum,
                                                              double false_alarm);
 
 struct SteadyRule {
     double band_percent = 5.0;  ///< speed stays within this share of its middle value to both sides ...
     double band_deg_s = 0.0;    ///< ... or within this, whichever is wider
-    double rest_percent = 1.0;  ///< of the log's highest speed: slower is standstill, whatever the band
-    Seconds at_least{1.0};      ///< by hand
-    Seconds smoothing{
-        0.1};  ///< velocity is averaged over this time before it is judged, against sensor noise
+    double rest_percent = 1.0;  ///< share of the log's highest speed: slower is standstill, whatever the band
+    Seconds at_least{1.0};      ///< chosen, not derived
+    Seconds smoothing{0.1};     ///< velocity is averaged over this time before the test, against sensor noise
 };
 
 struct Stretch {
@@ -54,17 +53,17 @@ struct Stretch {
     /// white noise of the velocity is taken off. 0 where hardly anything is turned.
     double turning_deg_s = 0.0, turning_spread_deg_s = 0.0;
     static constexpr double largest_spread =
-        0.1;  ///< of the mean, beyond which a line of an order is smeared
+        0.1;  ///< share of the mean, beyond which a line of an order is smeared
     /// True where the speed changes so much that what turns with the joint is no line over frequency.
     [[nodiscard]] bool smears_orders() const { return turning_spread_deg_s > largest_spread * turning_deg_s; }
 };
 
-/// Speeds up to this are standstill: SteadyRule::rest_percent of the log's highest smoothed speed, or what
-/// the noise of the velocity leaves of a standstill after smoothing; all speeds in a log that moves nowhere.
+/// Speeds up to this are standstill: SteadyRule::rest_percent of the log's highest smoothed speed, or the
+/// noise of the velocity at standstill that remains after smoothing; all speeds in a log without motion.
 [[nodiscard]] double standstill_deg_s(const TraceView& trace, std::span<const double> smoothed_speed,
                                       const SteadyRule& rule);
 
-/// The longest stretch, then the longest beside it, and so on; not overlapping, in time order. O(n log n).
+/// The longest stretch, then the longest that does not overlap it, and so on; in time order. O(n log n).
 [[nodiscard]] std::vector<Stretch> steady_stretches(const TraceView& trace, const SteadyRule& rule);
 
 /// One stretch made of all samples, whatever the speed does.
@@ -80,7 +79,7 @@ class StretchMeter {
     [[nodiscard]] Stretch stretch(Hertz rate, const SteadyRule& rule = {}) const;
 
   private:
-    static constexpr std::size_t blocks = 10;  ///< by hand: means, of which the spread is told
+    static constexpr std::size_t blocks = 10;  ///< chosen, not derived: block means, for the spread
     /// Sums for a line through weighed places in seconds and degrees.
     class Slope {
       public:
@@ -105,12 +104,13 @@ class StretchMeter {
     bool has_position_ = false;
     std::size_t rows_ = 0, block_ = 0;
     double first_s_ = 0.0, last_s_ = 0.0;
-    double block_weight_ = 0.0, block_sum_ = 0.0;  ///< of the block in hand
+    double block_weight_ = 0.0, block_sum_ = 0.0;  ///< sums of the current block
     double weight_ = 0.0, squared_weight_ = 0.0, sum_ = 0.0, square_ = 0.0;
     Slope slope_;
-    double speeds_ = 0.0, squares_ = 0.0, cubes_ = 0.0;  ///< of the speed's size
-    double velocity_deg_s_ = 0.0, change_deg_s_ = 0.0;   ///< of the last row, and from the one before it
-    double bends_deg_s_ = 0.0;                           ///< sum of the sizes of changes of that change
+    double speeds_ = 0.0, squares_ = 0.0, cubes_ = 0.0;  ///< sums of powers of |speed|
+    /// Velocity of the last row, and its change from the row before.
+    double velocity_deg_s_ = 0.0, change_deg_s_ = 0.0;
+    double bends_deg_s_ = 0.0;  ///< sum of the sizes of changes of that change
 };
 
 /// Mean of `values` over `width` samples around each (odd width; shorter at the ends). O(n).

@@ -31,7 +31,7 @@ struct SampleRun {
 };
 
 struct RunRule {
-    double slowest_share = 0.02;    ///< of the log's highest speed; slower motion belongs to no run
+    double slowest_share = 0.02;    ///< share of the log's highest speed; slower motion belongs to no run
     double standstill_deg_s = 0.0;  ///< nor does this
 };
 
@@ -51,10 +51,11 @@ struct SweepRule {
     /// Longer sweeps are cut into half-overlapping pieces of this length: the four cycles that a line once a
     /// turn needs. The families of both splines, one order apart, are two lines then.
     double longest_turns = 4.0;
-    double longest_s = 20.0;          ///< ... and of at most this duration
-    double shortest_turns = 0.02;     ///< by hand
-    std::size_t fewest_samples = 24;  ///< by hand: a line of four cycles and four cells beside it
-    double slowest_share = 0.02;      ///< of the log's highest speed; slower motion belongs to no sweep
+    double longest_s = 20.0;       ///< ... and of at most this duration
+    double shortest_turns = 0.02;  ///< chosen, not derived
+    /// Chosen, not derived: a line of four cycles and four neighbouring cells.
+    std::size_t fewest_samples = 24;
+    double slowest_share = 0.02;  ///< share of the log's highest speed; slower motion belongs to no sweep
     /// The smooth part of the torque that is taken out of a sweep: a line, and cosines up to so many cycles
     /// in the sweep.
     double trend_cycles = 2.5;
@@ -76,7 +77,7 @@ struct Sweep {
     /// Hann window in angle times the angle that the sample stands for; at standstill in time.
     std::vector<double> weight;
     std::vector<double> share_turns;  ///< angle that a sample stands for; at standstill seconds
-    std::size_t trend_terms = 0;      ///< of the smooth part taken out
+    std::size_t trend_terms = 0;      ///< number of terms in the smooth part removed
     /// Cosine and sine part of each line that was removed from torque_nm, in the order of the lines.
     std::vector<std::complex<double>> removed_nm;
     double weight_sum = 0.0, weight_square_sum = 0.0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Order tracks with their names and kind of amplitude, as columns of numbers and in words.
+// Order tracks with their names and kind of amplitude, as columns of numbers and as text.
 
 #include <optional>
 #include <string>
@@ -44,7 +44,7 @@ struct TrackReport {
     std::optional<Hertz> bandwidth, bandwidth_obtained;  ///< vold-kalman
     std::optional<int> poles;                            ///< vold-kalman
     std::vector<TrackLabel> labels;
-    /// Of each label over the whole log, whatever the method; empty for tones.
+    /// The ripple of each label over the whole log, whatever the method; empty for tones.
     std::vector<std::optional<RippleEstimate>> ripple;
     OrderTracks tracks;
     std::optional<SpeedTrack> by_speed;  ///< when the rows go by speed

@@ -6,8 +6,8 @@
 
 namespace ripplenotch {
 
-/// The logged velocity is so much too high, and so late (a filter's lag is a delay, too). With standard
-/// errors. Steady speeds show the offset alone.
+/// Gain error and delay of the logged velocity (the lag of a filter counts as delay), with standard errors.
+/// Steady speeds determine the offset alone.
 struct VelocityError {
     DegPerSec offset, offset_error;
     Seconds delay, delay_error;

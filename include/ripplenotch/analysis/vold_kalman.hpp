@@ -13,7 +13,7 @@ namespace ripplenotch {
 [[nodiscard]] double vold_kalman_weight(double bandwidth_share, int poles);
 
 struct VoldKalmanRule {
-    Hertz bandwidth{1.0};  ///< of each envelope, -3 dB, both sides together
+    Hertz bandwidth{1.0};  ///< two-sided -3 dB bandwidth of each envelope
     int poles = 2;         ///< 1 to 4: how steeply the filter falls beyond
     bool trend = true;     ///< a smooth torque of four times the bandwidth is estimated along with the lines
     /// Samples per point of the envelopes; 0 chooses 40 points in 1/bandwidth, between which they are

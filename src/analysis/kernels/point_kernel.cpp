@@ -21,7 +21,7 @@ struct Phasors {
     std::array<double, at_once> real, imaginary;
 };
 
-/// Of 0, 1, 2, ... steps.
+/// Phasors at 0, 1, 2, ... times the angle.
 Phasors turns_of(double angle) {
     Phasors turns{};
     for (std::size_t k = 0; k < at_once; ++k) {

@@ -13,7 +13,7 @@ struct SpreadingKernel {
     static constexpr std::size_t width = 10;
     static constexpr double beta = 2.30 * static_cast<double>(width);
     static constexpr std::size_t padded = 12;  ///< the points of the kernel, filled up to whole vectors
-    static constexpr std::size_t terms = 16;   ///< of a polynomial
+    static constexpr std::size_t terms = 16;   ///< terms of a polynomial
     using Row = std::array<double, padded>;
 
     /// Works the polynomials out; once a program.

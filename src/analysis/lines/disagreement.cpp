@@ -21,9 +21,9 @@ namespace ripplenotch {
 
 namespace {
 
-constexpr std::size_t most_samples = 20000;  // by hand: bounds the time
-constexpr std::size_t most_folds = 40;       // by hand: bounds the time
-constexpr double most_grid = 300.0;          // by hand: bounds the time
+constexpr std::size_t most_samples = 20000;  // chosen, not derived: bounds the time
+constexpr std::size_t most_folds = 40;       // chosen, not derived: bounds the time
+constexpr double most_grid = 300.0;          // chosen, not derived: bounds the time
 
 double rate_in_orders(Hertz rate, DegPerSec speed) {
     return 360.0 * rate.value() / std::max(std::abs(speed.value()), 1e-9);
@@ -97,7 +97,7 @@ std::vector<Fold> folds_of(std::span<const Sweep> sweeps, const Stack& angle, co
     for (double k = 1.0; k * quick - seen <= highest && folds.size() < most_folds; k += 1.0) {
         for (const double side : {-1.0, 1.0}) {
             const double from = k * quick + side * seen - reach, to = k * slow + side * seen + reach;
-            // An image that falls on the seen order itself says nothing.
+            // An image that falls on the seen order itself carries no information.
             const bool on_itself = from < seen + 4.0 * angle.resolution && to > seen - 4.0 * angle.resolution;
             if (from < highest && !on_itself) folds.push_back(best_between(witnesses, from, to, step));
         }
@@ -118,9 +118,9 @@ double excess_scatter(double squares, double freedom) {
 
 namespace {
 
-constexpr int highest_multiple = 12;          // by hand
+constexpr int highest_multiple = 12;          // chosen, not derived
 constexpr std::size_t fewest_multiples = 3;   // two frequencies are multiples of something always
-constexpr double lowest_hz = 1.0;             // by hand: below is motion
+constexpr double lowest_hz = 1.0;             // chosen, not derived: below is motion
 constexpr double same_family_share = 0.0025;  // by which tones of one source may miss their multiples
 
 /// A fixed tone and the standard error of its frequency.
@@ -226,9 +226,9 @@ void name_mains(std::span<Reported> reported) {
 
 namespace {
 
-constexpr std::size_t most_hums = 3;  // by hand: a list that a person reads
+constexpr std::size_t most_hums = 3;  // chosen, not derived: a list that a person reads
 
-/// Of humps that overlap, the one with most torque.
+/// Keeps the hump with the most torque among those that overlap.
 void add(const SpectralHump& hump, std::vector<Hum>& hums) {
     const Hum hum{hump.from_hz, hump.to_hz, hump.peak_hz, hump.rms_nm};
     const auto same = std::find_if(hums.begin(), hums.end(), [&](const Hum& known) {
@@ -261,15 +261,16 @@ std::vector<Hum> hums_beside(const MotionLines& motion, const std::vector<Line>&
 
 namespace {
 
-constexpr double least_spread = 0.1;       // of amplitudes, of their mean
-constexpr double usual_scatter = 0.03;     // of amplitudes, from run to run of a joint that has not changed
-constexpr double like_speed_share = 0.05;  // by hand
-constexpr double like_order_share = 0.01, like_ratio_share = 0.1;  // by hand
+constexpr double least_spread = 0.1;  // scatter of amplitudes as a share of their mean
+// Scatter of amplitudes from run to run of a joint that has not changed.
+constexpr double usual_scatter = 0.03;
+constexpr double like_speed_share = 0.05;                          // chosen, not derived
+constexpr double like_order_share = 0.01, like_ratio_share = 0.1;  // chosen, not derived
 constexpr double least_chance = 0.001;         // recordings that agree differ by as much less often than this
 constexpr std::size_t fewest_for_scatter = 3;  // recordings: fewer have no median
-constexpr double least_apart_deg = 20.0;       // by hand: of phases
-constexpr double usual_turn_deg = 0.05;        // of the joint: by the load's torsion, from run to run
-constexpr double coherent = 0.7;               // of the sum of a line's lengths, its sum
+constexpr double least_apart_deg = 20.0;       // chosen, not derived: difference of phases
+constexpr double usual_turn_deg = 0.05;        // rotation of the joint by the load's torsion, from run to run
+constexpr double coherent = 0.7;               // |sum| over sum of magnitudes of a line's phasors
 constexpr double least_above_noise = 4.0;      // in amplitude
 
 using Value = Disagreement::Value;
@@ -317,7 +318,7 @@ std::optional<Value> amplitude_at(std::size_t recording, const Line& line, doubl
     double sum = 0.0, noise = 0.0, count = 0.0, square = 0.0;
     for (const AmplitudeAtSpeed& at : line.by_speed) {
         if (!like_speed(at.speed_deg_s, speed_deg_s)) continue;
-        // The noise beside a line turns its amplitude by half its power.
+        // The noise near a line changes its phase by half the noise power.
         const double error = at.amplitude_nm / std::max(at.snr, 1.0) / std::sqrt(2.0);
         sum += at.amplitude_nm;
         square += at.amplitude_nm * at.amplitude_nm;
@@ -362,7 +363,7 @@ std::optional<Disagreement> about_amplitude(const Line& line, std::span<const Id
                         chance};
 }
 
-/// Of ratios that are near the common one: half of it is another reading of the same lines.
+/// Compares ratios near the common one only: half of it is another interpretation of the same lines.
 std::optional<Disagreement> about_ratio(const Identification& together,
                                         std::span<const Identification> each) {
     std::vector<Value> values;
@@ -383,7 +384,7 @@ std::optional<Disagreement> about_ratio(const Identification& together,
 struct Phasor {
     double speed_deg_s = 0.0, middle_turns = 0.0;
     std::complex<double> value;
-    double noise_power = 0.0;  ///< of |value|^2, from the cells near the line
+    double noise_power = 0.0;  ///< noise power in |value|^2, from the cells near the line
 };
 
 /// The line in one recording near a speed.
@@ -402,7 +403,7 @@ double turned_to_half(double deg) { return deg - 360.0 * std::round(deg / 360.0)
 
 double degrees_of(std::complex<double> value) { return portable::arg(value) * degrees_per_radian; }
 
-/// Variance of the mean of phases that differ from it by these, where there are enough to tell.
+/// Variance of the mean of phases that differ from it by these, where there are enough to determine it.
 double scatter_of(std::span<const double> off_deg) {
     if (off_deg.size() < fewest_for_scatter) return 0.0;
     double square = 0.0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Internal to the analysis room: do recordings of one joint tell the same?
+// Internal to the analysis module: consistency of the recordings of one joint.
 
 #include <span>
 #include <vector>
@@ -10,10 +10,9 @@
 
 namespace ripplenotch {
 
-// Internal to the analysis room: what stands in the torque beside the ripple, and does not turn with the
-// joint.
+// Internal to the analysis module: torque besides the ripple that does not turn with the joint.
 
-// Internal to the analysis room: whether estimates disagree by more than their errors say.
+// Internal to the analysis module: whether estimates differ by more than their standard errors explain.
 
 /// By what factor errors are too small, when estimates of one value scatter about their weighted mean with
 /// `squares` = sum (estimate - mean)^2 / variance on `freedom` degrees of freedom: sqrt(squares / freedom)
@@ -34,12 +33,12 @@ void name_mains(std::span<Reported> reported);
 /// joint. At most three, most torque first.
 [[nodiscard]] std::vector<Hum> hums_beside(const MotionLines& motion, const std::vector<Line>& lines);
 
-/// What each recording says by itself, held against the lines and the ratio of all of them. Amplitudes are
-/// compared at like speeds only, for ripple depends on speed; they disagree when chance makes as much of
-/// their errors less than once in a thousand cases and the largest is a tenth above the smallest or more.
-/// Ratios disagree by the same chance; phases, of recordings with a position, where they are 20 deg apart as
-/// well, at like speeds in the same direction: a gear under load may turn the ripple by 0.05 deg of the
-/// joint. Empty for fewer than two recordings; `each` and `logs` are of the same ones.
+/// Each recording's own result, compared with the lines and the ratio of all of them. Amplitudes are compared
+/// at similar speeds only, for ripple depends on speed; they disagree when chance makes as much of their
+/// errors less than once in a thousand cases and the largest is a tenth above the smallest or more. Ratios
+/// disagree by the same chance; phases, of recordings with a position, where they are 20 deg apart as well,
+/// at similar speeds in the same direction: a gear under load may turn the ripple by 0.05 deg of the joint.
+/// Empty for fewer than two recordings; `each` and `logs` are of the same recordings.
 [[nodiscard]] std::vector<Disagreement> disagreements(const Identification& together,
                                                       std::span<const Identification> each,
                                                       std::span<const TraceView> logs);

@@ -15,11 +15,11 @@
 namespace ripplenotch {
 namespace {
 
-constexpr double least_score = 0.8;           // for a ratio to be reported: a judgement
+constexpr double least_score = 0.8;           // for a ratio to be reported: chosen, not derived
 constexpr double least_listed_score = 0.005;  // for a candidate to be listed
-constexpr std::size_t most_candidates = 8;    // by hand: a list that a person reads
+constexpr std::size_t most_candidates = 8;    // chosen, not derived: a list that a person reads
 
-/// What one line says about the ratio; weight 0 where it lies off the combs.
+/// The ratio implied by one line; weight 0 where it lies off the combs.
 struct Estimate {
     double ratio = 0.0, variance = 1.0, weight = 0.0;
 };
@@ -46,7 +46,7 @@ double order_of_motor(const CombPosition& at, double ratio) {
     return at.of_both() || at.shift == 0.0 ? at.n : at.n * (1.0 + at.shift / ratio);
 }
 
-/// Value, standard error and interval; returns what each line says, with its weight.
+/// Value, standard error and interval; returns the estimate of each line, with its weight.
 std::vector<Estimate> fit(std::span<const OrderLine> lines, const RatioHypothesis& best,
                           GearRatioFit& result) {
     std::vector<Estimate> estimates = estimates_of(lines, best);
@@ -81,7 +81,7 @@ std::vector<Estimate> fit(std::span<const OrderLine> lines, const RatioHypothesi
     return estimates;
 }
 
-/// The same two combs with the other spline as output: the text says so, and it is no error of the value.
+/// The same two combs with the other spline as output: the text reports it, and it is no error of the value.
 bool mirrors(const RatioHypothesis& one, const RatioHypothesis& other) {
     return one.second_comb != 0 && one.second_comb == -other.second_comb &&
            std::abs(one.ratio + one.second_comb - other.ratio) < 0.5;
@@ -121,7 +121,7 @@ void widen_interval(std::span<const OrderLine> lines, const RatioHypothesis& bes
     for (const RatioHypothesis& form : best.forms) add(form);
 }
 
-/// What the fit leaves of each line, at its mean speed.
+/// The residual of the fit for each line, at its mean speed.
 void add_residuals(std::span<const OrderLine> lines, const RatioHypothesis& best,
                    const std::vector<Estimate>& estimates, GearRatioFit& result) {
     for (std::size_t i = 0; i < lines.size(); ++i) {
@@ -151,7 +151,7 @@ void check_hint(const std::vector<RatioHypothesis>& all, std::span<const OrderLi
 /// by little, the scale of the velocity or position is the likelier cause.
 std::optional<RatioHypothesis> wrong_scale(const RatioHypothesis& best, const GearRatioFit& fit,
                                            GearRatio hint, std::vector<std::string>& notes) {
-    constexpr double least_error = 0.0005, log_wrong_scale = -0.5;  // by hand
+    constexpr double least_error = 0.0005, log_wrong_scale = -0.5;  // chosen, not derived
     const double share = *fit.value / hint.value() - 1.0;
     const double uncertainty = 0.5 * (fit.ci95_high - fit.ci95_low) / hint.value();
     if (std::abs(share) < std::max(least_error, 1.5 * uncertainty) || std::abs(share) > hint_tolerance)

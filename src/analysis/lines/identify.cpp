@@ -99,8 +99,9 @@ std::optional<double> motor_order(const Line& line) {
 }
 
 std::vector<double> undecided_ratios(const GearRatioFit& fit) {
-    constexpr double probable = 0.2, beside_it = 0.1;  // by hand: the first of all, the others of the first
-    constexpr double same_ratio = 0.5e-4;              // the five digits that are printed
+    // Chosen, not derived: score of the first, and of others relative to it.
+    constexpr double probable = 0.2, beside_it = 0.1;
+    constexpr double same_ratio = 0.5e-4;  // the five digits that are printed
     std::vector<double> ratios;
     if (fit.value || fit.candidates.empty() || fit.candidates.front().score < probable) return ratios;
     for (const RatioCandidate& one : fit.candidates) {
@@ -231,7 +232,7 @@ void cast_doubt(Identification& found, Doubt doubt) {
 
 namespace {
 
-/// Says which orders above those searched would explain the line about as well, seen folded.
+/// Reports which orders above those searched would explain the line about as well, seen folded.
 void list_folds(const MotionLine& found, double highest_searched, double rate_hz, Line& line) {
     std::vector<Fold> folds = found.folds;
     std::erase_if(folds, [&](const Fold& fold) { return fold.order_output <= highest_searched; });
@@ -243,13 +244,13 @@ void list_folds(const MotionLine& found, double highest_searched, double rate_hz
     }
     if (line.could_be.empty()) return;
     std::sort(line.could_be.begin(), line.could_be.end());
-    constexpr std::size_t most = 5;  // by hand: a note that a person reads
+    constexpr std::size_t most = 5;  // chosen, not derived: a note that a person reads
     const std::span listed(line.could_be.data(), std::min(most, line.could_be.size()));
     line.note += fmt::format("{}or folded at {:.4g} Hz from order {:.4g}", line.note.empty() ? "" : "; ",
                              rate_hz, fmt::join(listed, ", "));
 }
 
-// Line number `source` of a motion; folds are told with the rate of the samples.
+// Line number `source` of a motion; folds are reported with the rate of the samples.
 Reported from_motion(const MotionLines& motion, std::size_t source, double rate_hz) {
     const MotionLine& found = motion.lines[source];
     Reported reported;
@@ -287,9 +288,11 @@ Reported from_motion(const MotionLines& motion, std::size_t source, double rate_
     return reported;
 }
 
-/// What a joint carries repeats once a turn, with and without a gear: such a line says nothing of the ratio.
+/// Effects of the joint's load repeat once a turn, with and without a gear: such a line carries no
+/// information on the ratio.
 bool is_once_a_turn(const OrderLine& line) {
-    constexpr double tolerance = 0.02;  // by hand: of the joint's turn, beside the line's own error
+    // Chosen, not derived: share of the joint's turn, in addition to the line's own error.
+    constexpr double tolerance = 0.02;
     return std::abs(line.order_output - 1.0) < std::max(tolerance, 3.0 * line.error);
 }
 
@@ -324,7 +327,7 @@ Hertz mean_sample_rate(std::span<const TraceView> logs) {
     return Hertz(seconds > 0.0 ? samples / seconds : 0.0);
 }
 
-/// What the logs say together, without asking whether each says so.
+/// The result of all logs together, without testing whether each agrees.
 Identification identify_together(std::span<const TraceView> logs, const IdentifyOptions& options) {
     Identification result;
     result.sample_rate = mean_sample_rate(logs);

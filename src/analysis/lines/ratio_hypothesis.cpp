@@ -18,8 +18,8 @@ namespace ripplenotch {
 namespace {
 
 /// Component sets with the flexspline as output (Harmonic Drive SE, series CSG, CSF, SHG, HFUC: catalogue
-/// pages "ratio"), and by how much likelier each is than a ratio of no catalogue. By hand: most arms that
-/// publish theirs have 100, with the circular spline as output 101; then 120 and 160; 30 is rare.
+/// pages "ratio"), and by how much likelier each is than a ratio of no catalogue. Chosen, not derived: most
+/// arms that publish theirs have 100, with the circular spline as output 101; then 120 and 160; 30 is rare.
 struct SoldRatio {
     double ratio, factor;
 };
@@ -27,7 +27,7 @@ constexpr std::array sold{SoldRatio{30.0, 2.0},   SoldRatio{50.0, 5.0},  SoldRat
                           SoldRatio{100.0, 11.0}, SoldRatio{120.0, 6.0}, SoldRatio{160.0, 5.0}};
 /// With the circular spline as output each has one more, and fewer joints are built so.
 constexpr double other_output = 0.5;
-constexpr double listed_tolerance = 0.001;  // by hand: scales of logs are not known better
+constexpr double listed_tolerance = 0.001;  // chosen, not derived: scales of logs are not known better
 
 /// The likeliest entry within this error or the scale's.
 std::optional<SoldRatio> catalogue_entry(double ratio, double error) {
@@ -42,25 +42,25 @@ std::optional<SoldRatio> catalogue_entry(double ratio, double error) {
     return best;
 }
 
-constexpr double lowest_ratio = 0.99, highest_ratio = 321.0;  // of joints and their gears
-constexpr double outside_factor = 0.007;                      // by hand: hardly any joint has another
+constexpr double lowest_ratio = 0.99, highest_ratio = 321.0;  // range of joints and their gears
+constexpr double outside_factor = 0.007;  // chosen, not derived: hardly any joint has another
 /// Wave generators are built from this ratio on (the smallest sold is 30); below it there is one comb.
 constexpr double least_two_combs = 29.0;
 /// Below this a gear has few teeth, and its ratio is mostly whole.
 constexpr double few_teeth = 25.0, broken_factor = 0.1;
 constexpr double hint_factor = 3000.0;  // an expected ratio outweighs nearly all that lines show
 
-constexpr int highest_n = 32, highest_of_shaft = 64;  // by hand: lines seldom reach so far
+constexpr int highest_n = 32, highest_of_shaft = 64;  // chosen, not derived: lines seldom reach so far
 constexpr std::size_t most_proposing = 8;             // lines, the most clearly seen, that propose ratios
-constexpr double same_ratio_share = 0.008;            // by hand
+constexpr double same_ratio_share = 0.008;            // chosen, not derived
 
-/// Probability of each n. The wave generator is an ellipse, so that what the gear does repeats twice a turn
-/// of the motor: n = 2 leads, and its multiples follow; n = 1 comes from eccentric parts (Tuttle and Seering,
+/// Probability of each n. The wave generator is an ellipse, so that the gear's effects repeat twice a turn of
+/// the motor: n = 2 leads, and its multiples follow; n = 1 comes from eccentric parts (Tuttle and Seering,
 /// IEEE Trans. Robotics and Automation 12, 1996). Most joints show 1 and 2 and little else, some many orders,
-/// and some, nearly half of those with lines of both splines, even orders alone, few or many. A judgement: no
-/// statistics of joints are published; 8 is among the even orders of most of ten real joints. Lines at one
-/// and two times a ratio are orders 2 and 4 of its half a quarter of the time, so that they alone settle no
-/// ratio unless a catalogue has one of the two.
+/// and some, nearly half of those with lines of both splines, even orders alone, few or many. Chosen, not
+/// derived: no statistics of joints are published; 8 is among the even orders of most of ten real joints.
+/// Lines at one and two times a ratio are orders 2 and 4 of its half a quarter of the time, so that they
+/// alone determine no ratio unless a catalogue has one of the two.
 struct OrderPrior {
     std::array<double, highest_n + 1> share{};
     double one_comb = 0.0, two_combs = 0.0;  ///< how many joints are so
@@ -88,10 +88,11 @@ const std::array<OrderPrior, 4>& order_priors() {
     return priors;
 }
 
-/// That lines of the other spline are there: at Kg + 1 where the flexspline is the output, else at Kg - 1.
+/// Probabilities that lines of the other spline are present: at Kg + 1 where the flexspline is the output,
+/// else at Kg - 1.
 constexpr double plus_share = 0.6, minus_share = 0.2, one_comb_share = 0.2;
-/// Of a line under two combs: on either of them, or made up by both. Ten real joints show lines of
-/// both as close together as sweeps cannot separate; they lie about the middle with this deviation.
+/// Probabilities that a line under two combs is on either of them, or the sum of both. Ten real joints show
+/// lines of both as close together as sweeps cannot separate; they lie about the middle with this deviation.
 constexpr double on_one = 0.2, of_both = 0.6, both_deviation = 0.6;
 
 constexpr double log_range = 7.0;  // orders from 1 to about 1000, a line by chance anywhere in the logarithm
@@ -115,8 +116,8 @@ double normal(double off, double deviation) {
 
 /// A line by chance, or of the output side: once or a few times a turn of the joint, from what it carries.
 double chance_density(const OrderLine& line) {
-    constexpr double output_side = 0.2;   // by hand
-    constexpr int highest_of_output = 4;  // by hand
+    constexpr double output_side = 0.2;   // chosen, not derived
+    constexpr int highest_of_output = 4;  // chosen, not derived
     double density = (1.0 - output_side) / (log_range * line.order_output);
     for (int k = 1; k <= highest_of_output; ++k)
         density += output_side / highest_of_output * t3(line.order_output - k, line_error(line));
@@ -184,7 +185,7 @@ Match match(const OrderLine& line, const Positions& others, double ratio, int se
 Match match_of_shaft(const OrderLine& line, double turn) {
     Match found;
     const int n = static_cast<int>(std::lround(line.order_output / turn));
-    constexpr double harmonic_sum = 4.744;  // of 1/n up to highest_of_shaft
+    constexpr double harmonic_sum = 4.744;  // sum of 1/n up to highest_of_shaft
     if (n < 1 || n > highest_of_shaft) return found;
     found.density = found.best = t3(line.order_output - n * turn, line_error(line)) / (n * harmonic_sum);
     found.position = {n, 0.0, 0.0};
@@ -220,7 +221,7 @@ std::pair<double, double> fitted_ratio(std::span<const OrderLine> lines, const R
 }
 
 double log_prior(double ratio, double error, int second_comb, const OrderPrior& prior, bool one_line) {
-    constexpr double log_ratios = 5.77, least_share = 1e-3;  // the logarithm of 320; by hand
+    constexpr double log_ratios = 5.77, least_share = 1e-3;  // the logarithm of 320; chosen, not derived
     double factor = 2.5 * std::max(error / ratio, least_share) / log_ratios;
     if (ratio < lowest_ratio || ratio > highest_ratio) factor *= outside_factor;
     if (ratio < few_teeth && std::abs(ratio - std::round(ratio)) > 3.0 * error + 0.002 * ratio)
@@ -366,11 +367,11 @@ constexpr std::array unit_mistakes{UnitMistake{degrees_per_radian, "the speed is
                                    UnitMistake{1.0 / 360.0, "the speed is in deg/s, not turns/s"},
                                    UnitMistake{1000.0, "the speed is off by 1000"},
                                    UnitMistake{1e-3, "the speed is off by 1000"}};
-constexpr double mistaken = 0.01;  // by hand: of each
+constexpr double mistaken = 0.01;  // chosen, not derived: probability of each
 
-/// A ratio as gears have it is no reason to doubt the unit.
+/// A ratio as gears have it is no reason to reject the unit.
 bool credible(double ratio) {
-    constexpr double whole = 0.005;  // by hand
+    constexpr double whole = 0.005;  // chosen, not derived
     return (ratio >= few_teeth && ratio <= highest_ratio) ||
            (ratio >= lowest_ratio && ratio < few_teeth &&
             std::abs(ratio - std::round(ratio)) < whole * ratio);
@@ -467,7 +468,7 @@ std::vector<RatioHypothesis> ratio_hypotheses(std::span<const OrderLine> lines,
                                               const RatioQuestion& question) {
     std::vector<RatioHypothesis> all;
     add_gears(lines, question, all);
-    constexpr double of_shaft = 0.05;  // by hand: as probable as all gears of few teeth
+    constexpr double of_shaft = 0.05;  // chosen, not derived: as probable as all gears of few teeth
     RatioHypothesis none;
     none.ratio = none.value = 1.0;
     none.reason = "whole orders of the shaft that was measured: no gear";
@@ -477,7 +478,7 @@ std::vector<RatioHypothesis> ratio_hypotheses(std::span<const OrderLine> lines,
 }
 
 double log_evidence_of_chance(std::span<const OrderLine> lines) {
-    constexpr double prior = 0.3;  // by hand: that no line is of a gear or a shaft
+    constexpr double prior = 0.3;  // chosen, not derived: probability that no line is of a gear or a shaft
     double sum = portable::log(prior);
     for (const OrderLine& line : lines) sum += portable::log(chance_density(line));
     return sum;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Internal to the analysis room: gear ratios that could explain a list of lines, compared by their evidence.
+// Internal to the analysis module: gear ratios that could explain a list of lines, compared by their
+// evidence.
 
 #include <cmath>
 #include <optional>
@@ -24,15 +25,16 @@ struct CombPosition {
 /// One explanation of the lines.
 struct RatioHypothesis {
     double ratio = 0.0;       ///< as the log is read
-    double value = 0.0;       ///< of the gear: differs from ratio where a unit is mistaken
+    double value = 0.0;       ///< ratio of the gear: differs from `ratio` where a unit is mistaken
     double error = 0.0;       ///< standard error of the ratio
     int second_comb = 0;      ///< lines also at n (ratio + 1) or n (ratio - 1); 0: none
-    bool as_read = true;      ///< false: only if the log is not what it says it is
+    bool as_read = true;      ///< false: only if the log differs from its own description
     bool other_unit = false;  ///< a unit is mistaken
     bool hinted = false;
     bool listed = false;  ///< a catalogue has it
     double log_evidence = 0.0;
-    std::vector<std::optional<CombPosition>> position;  ///< of each line; empty where it lies off the combs
+    /// Position of each line; empty where it lies off the combs.
+    std::vector<std::optional<CombPosition>> position;
     std::string reason;
     /// Other forms of it, of nearly the same value: one comb or two, lines on the one or on the other. Each
     /// with its own evidence, that of this form being `own_evidence`; log_evidence is of all together.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The one place where a verdict becomes words.
+// The only place where a verdict becomes text.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -33,7 +33,7 @@ std::string basis(const Grounds& grounds) {
 }
 
 std::string order_or_tone(const Grounds& grounds) {
-    constexpr double one_speed = 0.05;  // by hand: of the fastest
+    constexpr double one_speed = 0.05;  // chosen, not derived: share of the fastest
     const bool one = grounds.fastest_deg_s - grounds.slowest_deg_s < one_speed * grounds.fastest_deg_s;
     return fmt::format("; {} an order or a tone; record another speed to decide",
                        one ? "only one speed, so a line is" : "at these speeds a line may be");
@@ -44,7 +44,7 @@ bool seen_at_rest(const Line& line) {
                        [](const AmplitudeAtSpeed& at) { return at.speed_deg_s == 0.0; });
 }
 
-/// What the stretches at rest say.
+/// The result of the stretches at standstill.
 std::string at_rest(const Identification& found) {
     if (found.grounds.rests == 0) return "";
     std::vector<std::string> seen;
@@ -244,7 +244,8 @@ std::string nothing(const Identification& found) {
     std::vector<std::string> bounds;
     for (const SearchedOrders::Bound& bound : searched.bounds)
         bounds.push_back(fmt::format("{:.2g} Nm from {:.3g}", bound.detectable_nm, bound.from_order));
-    constexpr std::size_t most = 3;  // by hand: the whole range, and the two that say most
+    // Chosen, not derived: the whole range, and the two most informative ones.
+    constexpr std::size_t most = 3;
     if (bounds.size() > most) bounds.erase(bounds.begin() + 1, bounds.end() - (most - 1));
     return fmt::format(
         "No ripple: no line above {} to {:.4g} cycles per output turn, in {} ({:.2g} % false "
@@ -273,7 +274,7 @@ std::string doubted(const Identification& found) {
     std::vector<std::string> because, seen;
     for (const Doubt& doubt : found.doubts) because.push_back(doubt.because);
     std::string text = fmt::format("Cannot tell: {}.", fmt::join(because, "; "));
-    constexpr std::size_t most = 6;  // by hand: a sentence that a person reads
+    constexpr std::size_t most = 6;  // chosen, not derived: a sentence that a person reads
     for (const Line& line : found.lines) {
         if (seen.size() < most)
             seen.push_back(fmt::format("{} ({:.2g} Nm)", frequencies(line), line.amplitude_nm));

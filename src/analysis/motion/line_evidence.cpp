@@ -23,17 +23,18 @@ double noise_at(const Stack& stack, std::size_t sweep, double place) {
 
 /// True when to look at one place in all sweeps is worth a second thread.
 bool are_long(std::span<const Sweep> sweeps) {
-    constexpr std::size_t long_samples = 20'000;  // by hand: a third of a millisecond at one place
+    // Chosen, not derived: a third of a millisecond at one position.
+    constexpr std::size_t long_samples = 20'000;
     std::size_t samples = 0;
     for (const Sweep& sweep : sweeps) samples += sweep.value.size();
     return samples > long_samples;
 }
 
-constexpr double recurrence_chance = 0.01;  // by hand: as the false alarms allowed by default
-constexpr double most_of_log = 0.6;         // by hand: no second piece to ask
+constexpr double recurrence_chance = 0.01;  // chosen, not derived: as the false alarms allowed by default
+constexpr double most_of_log = 0.6;         // chosen, not derived: no second piece to test
 
-/// Of each sweep whose noise there is known its sum at a place; on two cores where they are long.
-/// `value_of` a sweep stands for its torque under the weights.
+/// The sum at a position for each sweep whose noise there is known; on two cores where the sweeps are long.
+/// `value_of` a sweep replaces its torque under the weights.
 template <class ValueOf>
 std::vector<FourierPoint> points_of(std::span<const Sweep> sweeps, const Stack& stack, double place,
                                     double noise_place, const ValueOf& value_of) {
@@ -54,7 +55,8 @@ constexpr auto own_value = [](const Sweep& sweep) { return std::span(sweep.value
 struct SweepPart {
     std::size_t sweep = 0, first = 0, count = 0;
     double weight = 0.0;
-    double share = 1.0;  ///< of the whole sweep's power over noise, that a steady line has in it
+    /// Share of a steady line's power over noise in the whole sweep that falls into this part.
+    double share = 1.0;
 };
 
 /// The sweeps whose noise at a place is known; where one is most of the log, its halves instead of it.
@@ -117,13 +119,13 @@ double gain_in(std::span<const Sweep> sweeps, const Stack& stack, double place, 
     return most > 0.0 ? gain / most : 0.0;
 }
 
-constexpr double clear_ratio = 6.0;      // of power over noise; below, a peak's own place is not near normal
-constexpr std::size_t few_sweeps = 4;    // by hand: fewer are cut in parts, for a scatter
+constexpr double clear_ratio = 6.0;      // power over noise; below, a peak's own position is not near normal
+constexpr std::size_t few_sweeps = 4;    // chosen, not derived: fewer are cut in parts, for a scatter
 constexpr std::size_t parts_of_few = 3;  // the fewest with a scatter
-constexpr std::size_t fewest_samples_for_error = 24;  // by hand
+constexpr std::size_t fewest_samples_for_error = 24;  // chosen, not derived
 
-/// What one piece of motion says about a line near a place: slope and curvature of half its power over noise,
-/// and the variance that noise gives the slope.
+/// The information of one piece of motion on a line near a position: slope and curvature of half its power
+/// over noise, and the variance of the slope under noise.
 struct Opinion {
     double slope = 0.0, curve = 0.0, slope_variance = 0.0;
     double ratio = 0.0;  ///< power over noise
@@ -172,7 +174,7 @@ void add_parts(const Sweep& sweep, Axis axis, double noise, double place, std::v
     }
 }
 
-/// By what factor the opinions lie further apart than their own variances say.
+/// By what factor the estimates scatter more than their own variances explain.
 double disagreement(std::span<const Opinion> opinions) {
     double top = 0.0, bottom = 0.0, count = 0.0;
     for (const Opinion& one : opinions) {
@@ -266,7 +268,7 @@ GainDifference gain_difference(std::span<const Sweep> sweeps, const PlacedLine& 
     for (std::size_t i = 0; i < sweeps.size(); ++i) {
         for (const Stack* stack : {&one.stack, &other.stack})
             if (i < stack->sweep_weights.size()) heaviest = std::max(heaviest, stack->sweep_weights[i]);
-        constexpr double same = 0.01;  // by hand: of the larger
+        constexpr double same = 0.01;  // chosen, not derived: share of the larger
         const double larger = std::max(first[i], second[i]);
         if (std::abs(first[i] - second[i]) <= same * larger) continue;
         squares += larger * larger;
@@ -315,7 +317,7 @@ double recurring_ratio(std::span<const Sweep> sweeps, const Stack& stack, double
 }
 
 bool shown_throughout(std::span<const Sweep> sweeps, const Stack& stack, double place) {
-    constexpr double least_power = 0.1, least_weight = 0.8;  // by hand
+    constexpr double least_power = 0.1, least_weight = 0.8;  // chosen, not derived
     double gain = 0.0, weights = 0.0, shown = 0.0;
     std::vector<std::pair<double, double>> each;
     for (std::size_t i = 0; i < sweeps.size(); ++i) {
@@ -379,7 +381,7 @@ bool at_two_speeds(std::span<const Sweep> sweeps, const Stack& time, double hz) 
                 part->speed_weight += sweep.weight[k];
             }
             const double share = squares / sweep.weight_square_sum;
-            constexpr double least_share = 0.05;  // by hand: less is a corner of the sweep
+            constexpr double least_share = 0.05;  // chosen, not derived: less is a corner of the sweep
             if (share < least_share) continue;
             part->add(std::norm(fourier_point(places(sweep, Axis::time), value, hz).value) / (noise * share),
                       share * time.sweep_weights[i]);
@@ -441,7 +443,7 @@ void measure(std::span<const Sweep> sweeps, const Stack& stack, double place, Mo
         line.order_output = place;
         line.order_stderr = error;
         constexpr double agreement =
-            0.7;  // of random phases, two sweeps reach this by chance less than half the time
+            0.7;  // for random phases, two sweeps reach this by chance less than half the time
         if (lengths > 0.0 && std::abs(together) > agreement * lengths) {
             line.phase_deg = portable::arg(together) * degrees_per_radian;
         }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Internal to the analysis room: what the sweeps say about one line at a place on an axis.
+// Internal to the analysis module: the evidence of the sweeps for one line at a position on an axis.
 
 #include <cstddef>
 #include <optional>
@@ -19,8 +19,8 @@ double gain_at(const Stack& stack, std::size_t bin);
 /// Power over noise at a place, weighted mean over the sweeps, as Stack::ratio has it at its bins.
 double mean_ratio(std::span<const Sweep> sweeps, const Stack& stack, double place);
 
-/// What a line explains beyond noise, in nats: weighted sum over sweeps of power over noise, less one each.
-/// Sweeps weigh by what they know, the best of them 1.
+/// Improvement in log-likelihood by a line (natural units): weighted sum over sweeps of power over noise,
+/// less one each. Sweeps are weighted by their information, the best of them 1.
 double gain_of(std::span<const Sweep> sweeps, const Stack& stack, double place);
 
 /// A line on the axis of a stack; empty where none is there.
@@ -28,9 +28,9 @@ struct PlacedLine {
     const Stack& stack;
     std::optional<double> place;
 };
-/// What one line explains more than another, and how uncertain that is because the noise floor of each sweep
-/// is known from few cells, at each place independently. Sweeps in which both explain the same, as where they
-/// are one and the same frequency, say nothing.
+/// Difference of the improvements in log-likelihood by two lines, and its standard error, since the noise
+/// floor of each sweep is estimated from few cells, at each position independently. Sweeps in which both
+/// explain the same, as where they are one and the same frequency, do not contribute.
 struct GainDifference {
     double value = 0.0, error = 0.0;
 };
@@ -52,13 +52,13 @@ bool shown_throughout(std::span<const Sweep> sweeps, const Stack& stack, double 
 
 /// True when a frequency is seen at standstill, or in the slower half of the motion as well as in the faster
 /// one, where those differ by more than the line is wide: at one speed an order looks the same as a tone, as
-/// what is left of an order does at the speed that the motion lingers at.
+/// does the residual of an order at the speed that the motion lingers at.
 bool at_two_speeds(std::span<const Sweep> sweeps, const Stack& time, double hz);
 
 /// Place of the maximum of the summed power near a bin, all sweeps together, by Newton steps.
 double refined(std::span<const Sweep> sweeps, const Stack& stack, std::size_t bin);
 
-/// Fills in what the sweeps say about a line at `place`.
+/// Fills in the results of the sweeps for a line at `place`.
 void measure(std::span<const Sweep> sweeps, const Stack& stack, double place, MotionLine& line);
 
 }  // namespace ripplenotch

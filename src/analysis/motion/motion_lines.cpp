@@ -29,7 +29,7 @@ constexpr double clear_cycles = 10.0;
 /// polynomials) and cosine and sine of lines, at some of its samples; a row of `length` numbers each.
 class Rows {
   public:
-    static constexpr std::size_t length = 256;  // by hand
+    static constexpr std::size_t length = 256;  // chosen, not derived
 
     Rows(const Sweep& sweep, std::span<const KnownLine> lines)
         : sweep_(sweep), lines_(lines), values_(count() * length) {
@@ -93,7 +93,7 @@ class Rows {
 };
 
 /// Weighted sums of products of the smooth part's terms. Those of two cosines are half the sums of the cosine
-/// of their sum and of their difference, so neighbours tell all others.
+/// of their sum and of their difference, so neighbours determine all others.
 class SmoothProducts {
   public:
     explicit SmoothProducts(std::size_t terms)
@@ -124,7 +124,7 @@ class SmoothProducts {
             return normal(static_cast<Eigen::Index>(std::max(a, b)),
                           static_cast<Eigen::Index>(std::min(a, b)));
         };
-        // Of cosine j of pi u, from that of its two halves by each other.
+        // The sum for cosine j of pi u, from the products of the cosines of its two halves.
         const auto sum_of = [&](std::size_t j) { return 2.0 * neighbours_[j] - neighbours_[j % 2]; };
         for (std::size_t m = 0; m < cosines_; ++m) {
             for (std::size_t l = 0; l <= m; ++l)
@@ -280,7 +280,8 @@ bool apart(std::span<const Sweep> sweeps, const KnownLine& one, const KnownLine&
 
 namespace {
 
-constexpr double kept_share = 0.8;  // by hand: of a gain, left once the other line is out
+// Chosen, not derived: share of an improvement that remains once the other line is removed.
+constexpr double kept_share = 0.8;
 constexpr double line_cells = 2.0;  // half width of a line's main lobe, in resolutions
 
 /// The sweeps on both axes, without the lines that were removed from them.
@@ -365,7 +366,7 @@ double half_rate_of_most(std::span<const Sweep> sweeps, const Stack& stack) {
 std::optional<SearchedOrders> searched_orders(std::span<const Sweep> sweeps, const Stack& stack,
                                               double false_alarm, std::span<const double> taken,
                                               std::span<const SearchedOrders::Bound> unreported) {
-    constexpr double step = 1.1;  // by hand: the floor varies slowly along the orders
+    constexpr double step = 1.1;  // chosen, not derived: the floor varies slowly along the orders
     const PowerSpectrum spectrum = stack.tested();
     const std::vector<double> floor = noise_floor(spectrum);
     const double chance = false_alarm / stack.tries_factor, highest = half_rate_of_most(sweeps, stack);
@@ -397,7 +398,7 @@ std::optional<SearchedOrders> searched_orders(std::span<const Sweep> sweeps, con
         for (auto& bound : searched.bounds)
             if (bound.from_order <= order) bound.detectable_nm = std::max(bound.detectable_nm, amplitude_nm);
     }
-    // Of the bounds from each order on those that say less than half of the one before.
+    // Keeps each bound that is less than half of the one before.
     std::vector<SearchedOrders::Bound> steps;
     for (const auto& bound : searched.bounds) {
         if (steps.empty() || bound.detectable_nm < 0.5 * steps.back().detectable_nm) steps.push_back(bound);
@@ -465,7 +466,8 @@ struct CandidateLine {
 
 /// Lines hide each other: each adds to the noise that is measured near the others. So whatever is prominent
 /// is removed, the clearest first, and then each candidate is tested against the noise that remains when all
-/// of them are removed. Those that fail are put back, which raises the noise for the others; what remains in
+/// of them are removed. Candidates that fail are put back, which raises the noise for the others; what
+/// remains in
 /// the end is significant each by itself.
 class LineSearch {
   public:
@@ -511,7 +513,7 @@ class LineSearch {
         }
         return lines;
     }
-    /// Of the lines that lines() gave.
+    /// The orders among the lines that lines() returned.
     [[nodiscard]] std::span<const double> orders() const { return orders_; }
     /// What lines() left out, by order: nothing smaller is claimed to be absent there.
     [[nodiscard]] std::span<const SearchedOrders::Bound> unreported() const { return unreported_; }
@@ -553,7 +555,7 @@ class LineSearch {
         const Stack& stack = as_order ? angle : time;
         auto& taken = as_order ? taken_orders_ : taken_hz_;
         line.known = {stack.axis, as_order ? line.rivals.order : line.rivals.hz};
-        // What a line leaves near itself, because its amplitude changes within a sweep, is no line.
+        // The residual of a line near itself, because its amplitude changes within a sweep, is no line.
         const bool rest_of_known = near_any(taken, line.known.place, line_cells * stack.resolution);
         const std::size_t seen_bin = line.by_angle ? order->peak.bin : tone->peak.bin;
         (line.by_angle ? taken_orders_ : taken_hz_)
@@ -602,8 +604,8 @@ class LineSearch {
         return rivals;
     }
 
-    /// Of the candidates that are not significant the weakest is put back, and those with it that it does not
-    /// stand for: of two that stand for each other neither seems to be needed. False when all are
+    /// Puts back the weakest of the candidates that are not significant, and those with it that are not
+    /// collinear with it: of two collinear candidates neither seems to be needed. False when all are
     /// significant.
     bool put_back_insignificant() {
         std::vector<std::pair<double, std::size_t>> failed;
@@ -693,7 +695,7 @@ class LineSearch {
 
 struct MotionSearch {
     MotionLines found;
-    Stack angle;                ///< of what the lines left
+    Stack angle;                ///< stack of the residual without the lines
     std::vector<Sweep> sweeps;  ///< where the angle is not absolute: no line that was found removed
 };
 
@@ -734,7 +736,8 @@ MotionSearch search_sweeps(Sweeps cut, std::span<const TraceView> logs, const Mo
     return search;
 }
 
-// By hand: of a cycle of the highest order. A line moved by less loses less than a hundredth of its height.
+// Chosen, not derived: share of a cycle of the highest order. A line moved by less loses less than a
+// hundredth of its height.
 constexpr double unseen_cycles = 0.02;
 
 /// The orders among the lines, the one that explains most first.

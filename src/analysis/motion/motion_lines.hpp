@@ -8,8 +8,8 @@
 
 namespace ripplenotch {
 
-// Internal to the analysis room: what is known of a sweep's torque, its smooth part and lines, taken out of
-// it.
+// Internal to the analysis module: known components of a sweep's torque, its smooth part and lines, removed
+// from it.
 
 struct KnownLine {
     Axis axis = Axis::angle;

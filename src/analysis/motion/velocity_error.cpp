@@ -117,7 +117,7 @@ std::vector<SampleRun> pieces_of(const SampleRun& run, const TraceView& log, std
     return pieces;
 }
 
-/// Weight by speed, in steps of speed that are narrow beside its range.
+/// Weight by speed, in steps of speed that are narrow compared with its range.
 class SpeedShares {
   public:
     SpeedShares(std::span<const double> speed, std::span<const double> weight)
@@ -243,7 +243,8 @@ void put_right(const TraceView& log, const VelocityError& error, std::vector<dou
 /// What lies between the runs of a log, in pieces of at most rule.longest_s, where the joint stands still.
 std::vector<SampleRun> rests_of(const TraceView& log, std::span<const double> speed, double standstill_deg_s,
                                 const SweepRule& rule) {
-    constexpr double shortest_s = 0.5;  // by hand: five cycles of the slowest tone that is reported
+    // Chosen, not derived: five cycles of the slowest tone that is reported.
+    constexpr double shortest_s = 0.5;
     const auto longest = static_cast<std::size_t>(rule.longest_s * log.sample_rate.value());
     std::vector<SampleRun> rests;
     for (const SampleRun& run : whole_runs(log.size(), log.run_starts)) {
@@ -348,7 +349,8 @@ struct DemodulatedSweep {
     std::vector<std::complex<double>> value;
     std::vector<double> weight, weight_square, seconds;
     std::array<std::vector<double>, 3> column;
-    double variance_per_s = 0.0;  ///< of the angle, in turns^2: what noise of the velocity adds up to
+    /// Variance of the angle, in turns^2, from the integrated noise of the velocity.
+    double variance_per_s = 0.0;
     double weights = 0.0, weight_squares = 0.0;
 };
 
@@ -369,8 +371,8 @@ class RipplePower {
     struct At {
         double value = 0.0;
         Eigen::VectorXd slope;
-        Eigen::MatrixXd curve;     ///< of the power itself, and
-        Eigen::MatrixXd expected;  ///< what it is where the cells are in phase: never indefinite
+        Eigen::MatrixXd curve;     ///< second derivative of the power, and
+        Eigen::MatrixXd expected;  ///< its expectation where the cells are in phase: never indefinite
     };
 
     [[nodiscard]] Eigen::Index unknowns() const { return static_cast<Eigen::Index>(orders_) + 2; }
@@ -556,10 +558,11 @@ RipplePower::SlopeVariance RipplePower::slope_variance(const VectorXd& unknown) 
 }
 
 /// Where a velocity in coarse steps turns, it stays at one value while the joint is up to a step away: a
-/// parabola that reaches a share h of the step, anything from 0 to 1, is off by 2 h / 3 - 1 / 2 in the mean.
+/// parabola that reaches a share h of the step, anything from 0 to 1, has a mean error of 2 h / 3 - 1 / 2.
 constexpr double square_off = 1.0 / 27.0 + 1.0 / 36.0;
-constexpr std::size_t fewest_alike = 3;  // by hand: noise alone makes two alike now and then
-constexpr double same_step = 1e-3;       // by hand: of a step; values have been rounded in other units
+constexpr std::size_t fewest_alike = 3;  // chosen, not derived: noise alone makes two alike now and then
+// Chosen, not derived: share of a step; values have been rounded in other units.
+constexpr double same_step = 1e-3;
 
 /// Variance that turning points of a velocity in steps add to its sum in each second, in deg^2/s. Between
 /// them the steps average out.
@@ -585,10 +588,11 @@ double of_steps(std::span<const double> velocity_deg_s, Hertz rate) {
 /// squares of 1, 3, 3, 1 are 20 together), by their median, so that a few jerks do not count; and what a
 /// velocity in coarse steps is off by where it turns. 0 for a log of fewer than a hundred means.
 double velocity_noise(const TraceView& log) {
-    // By hand: long enough to hold the noise that a filter lets pass, short enough for motion of some hertz.
+    // Chosen, not derived: long enough for the noise that a filter passes, short enough for motion of some
+    // hertz.
     constexpr double mean_over_s = 0.025;
-    constexpr std::size_t fewest_means = 100;  // by hand: their median is within a tenth
-    constexpr double normal_median = 0.6745;   // of the magnitude of a normal variable, in deviations
+    constexpr std::size_t fewest_means = 100;  // chosen, not derived: their median is within a tenth
+    constexpr double normal_median = 0.6745;  // median magnitude of a normal variable, in standard deviations
     const auto samples =
         static_cast<std::size_t>(std::max(1.0, std::round(mean_over_s * log.sample_rate.value())));
     std::vector<double> means;
@@ -606,10 +610,11 @@ double velocity_noise(const TraceView& log) {
            of_steps(log.velocity_deg_s, log.sample_rate);
 }
 
-constexpr std::size_t most_orders = 4;   // by hand: the clearest say nearly all
-constexpr double offset_share = 0.01;    // by hand, of the fastest speed: a poor tachometer's
-constexpr double likely_delay_s = 0.02;  // by hand: a velocity filter of 8 Hz is as late
-constexpr int most_climbing_steps = 40;  // by hand; four to eight are usual
+constexpr std::size_t most_orders = 4;  // chosen, not derived: the clearest carry nearly all information
+// Chosen, not derived: share of the fastest speed, as of a poor tachometer.
+constexpr double offset_share = 0.01;
+constexpr double likely_delay_s = 0.02;  // chosen, not derived: the delay of a velocity filter of 8 Hz
+constexpr int most_climbing_steps = 40;  // chosen, not derived; four to eight are usual
 
 /// The maximum next to a start, by scored steps that are shortened until the power rises (Levenberg).
 VectorXd climbed(const RipplePower& power, VectorXd unknown) {
@@ -692,12 +697,13 @@ std::optional<VelocityFit> fit_velocity_error(std::span<const TraceView> logs, s
     VelocityFit fit;
     fit.error = {DegPerSec(best[power.offset()]), DegPerSec(deviation(covariance, power.offset())),
                  Seconds(best[power.delay()]), Seconds(deviation(covariance, power.delay()))};
-    // At steady speeds the lines say nothing of a delay: what was supposed beforehand is no finding.
-    constexpr double told_share = 0.7;  // by hand: of the error beforehand
+    // At steady speeds the lines carry no information on a delay: the prior value is no finding.
+    constexpr double told_share = 0.7;  // chosen, not derived: share of the prior error
     fit.error.delay_told = fit.error.delay_error.value() < told_share * likely_delay_s;
     fit.order_shares.assign(best.begin(), best.begin() + static_cast<Eigen::Index>(orders.size()));
     fit.most_cycles = power.most_cycles(best);
-    // Of the clearest order, what noise of the torque would not leave if the other unknowns were known.
+    // The variance of the clearest order beyond what noise of the torque would leave if the other unknowns
+    // were known.
     const double alone = slopes.own(0, 0) / (stiffness(0, 0) * stiffness(0, 0));
     fit.order_share_error = std::sqrt(common(0, 0) + std::max(0.0, own(0, 0) - alone));
     return fit;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Internal to the analysis room: what the velocity of a log without position does to its angle, told by the
-// ripple itself.
+// Internal to the analysis module: the effect of the velocity error on the angle of a log without position,
+// determined from the ripple itself.
 
 #include <optional>
 #include <span>
@@ -19,7 +19,8 @@ struct VelocityFit {
     /// within their errors, and from the velocity's noise, which its sum adds up.
     double order_share_error = 0.0;
     std::vector<double> order_shares;  ///< by how much of itself each order of the fit lies higher
-    double most_cycles = 0.0;  ///< of the highest order, that offset and delay move a sample within its sweep
+    /// Largest shift of a sample within its sweep by offset and delay, in cycles of the highest order.
+    double most_cycles = 0.0;
 };
 
 /// One offset and one delay of the velocity of all logs that have no position. An angle that is a sum of

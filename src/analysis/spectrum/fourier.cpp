@@ -26,7 +26,7 @@ namespace ripplenotch {
 namespace {
 
 constexpr double kernel_half =
-    0.5 * static_cast<double>(SpreadingKernel::width);  // of its width, in grid steps
+    0.5 * static_cast<double>(SpreadingKernel::width);  // half of its width, in grid steps
 
 /// Transform of the kernel at 0, 1, 2, ... steps of phase (radians per half width), by the trapezoid rule in
 /// x = sin t, where the integrand and all its derivatives are negligible at both ends.
@@ -64,7 +64,7 @@ class KernelTransform {
     }
 
   private:
-    static constexpr std::size_t nodes = 40;  // by hand
+    static constexpr std::size_t nodes = 40;  // chosen, not derived
     using Row = std::array<double, nodes>;
     double step_;
     std::size_t count_ = 0;
@@ -109,7 +109,8 @@ std::vector<std::complex<double>> nonuniform_fourier(std::span<const double> whe
                                                      std::span<const double> value, double spacing,
                                                      std::size_t count) {
     if (count == 0) return {};
-    constexpr std::size_t longest_kept = std::size_t{1} << 18, most_kept = 8;  // by hand: bounds the memory
+    // Chosen, not derived: bounds the memory.
+    constexpr std::size_t longest_kept = std::size_t{1} << 18, most_kept = 8;
     const std::size_t least = std::max<std::size_t>(4 * count, 4 * SpreadingKernel::width);
     if (least > longest_kept) return Grid(fast_length(least)).sums(where, value, spacing, count);
     thread_local std::map<std::size_t, Grid> kept;
@@ -123,7 +124,7 @@ namespace {
 template <class T>
 using FftwArray = std::unique_ptr<T, decltype(&fftw_free)>;
 
-// FFTW gives no memory without a word.
+// Reports a failed allocation of FFTW, which returns a null pointer.
 template <class T>
 FftwArray<T> checked(T* allocated) {
     if (allocated == nullptr) throw std::bad_alloc();
@@ -224,7 +225,7 @@ std::span<const std::complex<double>> RealTransform::run() {
     Arrays& arrays = *arrays_;
     if (arrays.plan == nullptr) arrays.plan = plan_for(arrays.length);
     fftw_execute_dft_r2c(arrays.plan, arrays.in.get(), arrays.out.get());
-    // A std::complex<double> is laid out as two doubles, the real part first; so says the standard.
+    // A std::complex<double> is laid out as two doubles, the real part first (C++ standard).
     return {reinterpret_cast<const std::complex<double>*>(arrays.out.get()), arrays.length / 2 + 1};
 }
 

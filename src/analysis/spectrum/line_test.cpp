@@ -15,13 +15,13 @@ namespace ripplenotch {
 namespace {
 
 constexpr double lobe_cells = 4.0 / 3.0;    // half of a Hann line's main lobe: two cycles
-constexpr double fewest_below_cells = 2.0;  // by hand
+constexpr double fewest_below_cells = 2.0;  // chosen, not derived
 constexpr double guard_cells = 3.0;         // the main lobe of a Hann line and its first side lobe
-constexpr double near_cells = 12.0;         // by hand: from a line, for a floor that slopes
-constexpr double far_cells = 40.0;          // by hand: for a median that is known better
+constexpr double near_cells = 12.0;  // chosen, not derived: distance from a line, for a floor that slopes
+constexpr double far_cells = 40.0;   // chosen, not derived: for a median that is known better
 constexpr double inner_from_cells = 2.0;  // noise through a lightly damped resonance is only a few cells wide
-constexpr double inner_to_cells = 5.0;    // by hand
-constexpr double fewest_cells = 4.0;      // by hand
+constexpr double inner_to_cells = 5.0;    // chosen, not derived
+constexpr double fewest_cells = 4.0;      // chosen, not derived
 
 /// Continued fraction of the incomplete beta function, by the modified method of Lentz.
 double beta_fraction(double x, double a, double b) {
@@ -54,10 +54,10 @@ double incomplete_beta(double x, double a, double b) {
     return 1.0 - front * beta_fraction(1.0 - x, b, a) / b;
 }
 
-/// Independent averages behind a floor that stands above the noise around it. Noise is averaged over sweeps,
-/// but what the motion itself leaves (the torque of an acceleration, a resonance that rings) is the same in
-/// all of them. With the noise 1 and the floor 1 + m, the variance of a mean of `averages` sweeps is
-/// 1 / averages + m^2.
+/// Independent averages behind a floor that rises above the noise around it. Noise is averaged over sweeps,
+/// but the residual of the motion itself (the torque of an acceleration, the transient response of a
+/// resonance) is the same in all of them. With the noise 1 and the floor 1 + m, the variance of a mean of
+/// `averages` sweeps is 1 / averages + m^2.
 double averages_of(double averages, double floor_over_noise) {
     const double common = std::max(0.0, floor_over_noise - 1.0);
     return (1.0 + common) * (1.0 + common) / (1.0 / averages + common * common);
@@ -73,7 +73,7 @@ struct Floors {
     std::vector<Floor> every, either;
 };
 
-constexpr double normal_quartile = 0.6745;  // of the normal distribution, upper
+constexpr double normal_quartile = 0.6745;  // upper quartile of the normal distribution
 
 /// A quantile of a mean of `averages` exponentials over its expectation; `normal` is that of the normal
 /// distribution. The cube root is nearly normal (Wilson and Hilferty 1931).
@@ -84,7 +84,7 @@ double quantile_over_mean(double averages, double normal) {
 }
 
 /// Independent averages behind values of noise over their floor, by their scatter below the median, where
-/// lines are not seen. What a motion leaves in each of its repetitions scatters as a single one does. The
+/// lines are not seen. The residual of a motion in each of its repetitions scatters as a single one does. The
 /// cube root of a mean of n exponentials has the mean 1 - s^2 and the deviation s, s^2 = 1 / (9 n).
 double averages_by_scatter(std::vector<double> values) {
     const auto at = [&](double share) {
@@ -102,7 +102,7 @@ double averages_by_scatter(std::vector<double> values) {
 }
 
 constexpr double uncensored_share =
-    0.75;  // of the values around a bin: lines in the others do not raise the floor
+    0.75;  // share of the values around a bin: lines in the others do not raise the floor
 
 /// Expectation of floor_from() for values of mean 1, each the mean of `averages` exponentials.
 double censored_expectation(double averages) {
@@ -134,10 +134,10 @@ std::size_t bins_of(const PowerSpectrum& s, double cells) {
 
 /// The floors about a bin: around it on both sides, near and far, and below it, since spectra of motion fall
 /// steeply from their low end. Both sides shrink alike near an end of the spectrum: one flank of a steep
-/// floor would stand for too little or too much. Near the low end there is no room below. Either what lies
-/// just outside of the main lobe there (few cells) has to do, or what lies nearest above, raised by the
-/// fourth power of the frequency: noise falls no steeper than behind a resonance, so that it is no more than
-/// that here. Empty where too few cells lie around the bin.
+/// floor would bias the estimate. Near the low end no cells lie below. Either what lies just outside of the
+/// main lobe there (few cells) has to do, or what lies nearest above, raised by the fourth power of the
+/// frequency: noise falls no steeper than behind a resonance, so that it is no more than that here. Empty
+/// where too few cells lie around the bin.
 Floors floors_about(const PowerSpectrum& s, std::span<const double> running, std::size_t bin) {
     const double averages = s.averages_at(bin);
     const std::size_t below = bin - s.first, above = s.power.size() - 1 - bin;
@@ -189,8 +189,8 @@ Floors floors_about(const PowerSpectrum& s, std::span<const double> running, std
         if (!values.empty()) floors.every.push_back(floor());
         return floors;
     }
-    // What the motion leaves is the same in all repetitions: one average, over a floor that is known as well
-    // as the noise is.
+    // The residual of the motion is the same in all repetitions: one average, over a floor that is known as
+    // well as the noise is.
     const auto add_limit = [&] {
         if (values.empty()) return;
         Floor limit = floor_from(values, averages, s.bins_per_cell);

@@ -21,8 +21,8 @@ namespace ripplenotch {
 
 namespace {
 
-constexpr double reach_bins = 0.5;     // of the moments
-constexpr int most_rounds = 8;         // by hand
+constexpr double reach_bins = 0.5;     // reach of the moments
+constexpr int most_rounds = 8;         // chosen, not derived
 constexpr double settled_bins = 1e-9;  // bins
 
 /// sum over k of value[k] place[k]^d exp(i angle) for d = 0 .. 7, by the angles' cosines and sines.
@@ -119,9 +119,9 @@ double LineMeter::phase_rad() const {
 
 namespace {
 
-constexpr double bins_per_resolution = 3.0;           // by hand
-constexpr std::size_t fewest_samples_of_window = 32;  // by hand
-constexpr double window_share = 1.0 / 16.0;           ///< of the longest run
+constexpr double bins_per_resolution = 3.0;           // chosen, not derived
+constexpr std::size_t fewest_samples_of_window = 32;  // chosen, not derived
+constexpr double window_share = 1.0 / 16.0;           ///< share of the longest run
 
 double default_length(Axis axis, double longest) {
     const double least = axis == Axis::angle ? 16.0 : 0.25, most = axis == Axis::angle ? 64.0 : 2.0;

@@ -26,7 +26,7 @@ class LineMeter {
     [[nodiscard]] double hz() const;            ///< mean of the pieces' maxima, weighted by their power
     [[nodiscard]] double amplitude_nm() const;  ///< zero to peak, rms over pieces
     [[nodiscard]] double phase_rad()
-        const;  ///< of cos(2 pi hz t + phase) in the strongest piece, t as in the log
+        const;  ///< phase in cos(2 pi hz t + phase) in the strongest piece, t as in the log
 
   private:
     struct Maximum {

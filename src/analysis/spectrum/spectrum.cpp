@@ -19,7 +19,7 @@ namespace {
 constexpr double hann_error_factor =
     1.5307;                           // standard error of a Hann-windowed frequency over the Cramer-Rao bound
 constexpr double skirt_margin = 2.0;  // a side lobe may be this much higher than the window's own
-constexpr std::size_t trend_bins = 3;  // main lobe of what the straight line leaves at zero
+constexpr std::size_t trend_bins = 3;  // main lobe at zero of the residual of the straight line
 
 /// Offset in bins of a Hann peak from the logs of three powers around it; within 0.02 bin, the rest is for
 /// Newton.
@@ -72,7 +72,7 @@ std::size_t Welch::add(std::span<const double> time_s, std::span<const double> t
 PowerSpectrum Welch::tested() const {
     // Half-overlapping Hann pieces: neighbours share a sixth of their power in correlation, (1 + 2/36)^-1.
     const double averages = std::max(1.0, static_cast<double>(pieces_) / (pieces_ > 1 ? 1.0556 : 1.0));
-    // A single spectrum of red noise has maxima near its low end that few cells beside them do not explain.
+    // A single spectrum of red noise has maxima near its low end that few neighbouring cells do not explain.
     constexpr double unsearched_cells = 5.0;
     const std::size_t first = std::min(trend_bins, power_.size());
     return {power_, averages, hann_cell,
@@ -138,7 +138,7 @@ std::vector<SpectralHump> Welch::humps() const {
             square += (rest[k] - found.floor) / (2.0 * hann_cell);
             if (rest[k] > rest[highest]) highest = k;
         }
-        // What widens a line, because its frequency or amplitude moves, is no hump beside it.
+        // A line that is wide because its frequency or amplitude changes is no hump of its own.
         const bool of_a_line = std::any_of(found_.begin(), found_.end(), [&](const SignificantPeak& line) {
             return line.bin + 1 >= found.first && line.bin <= found.end && power_[line.bin] > 2.0 * square;
         });
@@ -209,7 +209,7 @@ Spectrum Welch::spectrum() const {
 
 struct SpectrumStream::Work {
     Welch welch;
-    std::vector<double> time_s = {}, torque_nm = {};  // of pieces that are not whole yet
+    std::vector<double> time_s = {}, torque_nm = {};  // incomplete pieces
 
     using Pass = std::size_t (Welch::*)(std::span<const double>, std::span<const double>);
     void feed(Pass pass, std::span<const double> more_s, std::span<const double> more_nm) {

@@ -26,7 +26,7 @@ class Welch {
     /// First pass: consecutive samples, seconds and Nm. Returns how many are done with: the others are to
     /// come again, in front of those that follow them.
     std::size_t add(std::span<const double> time_s, std::span<const double> torque_nm);
-    /// As if the rate had been another one from the beginning; empty where that cannot be said.
+    /// The result with another rate from the beginning on; empty where it cannot be determined.
     [[nodiscard]] std::optional<Welch> at(Hertz rate) const;
     /// Between the passes. False when there is no line, and so no need of a second pass.
     bool find_lines(double false_alarm);
@@ -47,7 +47,7 @@ class Welch {
     PieceMaker maker_;
     std::size_t pieces_ = 0;
     std::vector<double> power_;  // squared amplitude of a line, sum over pieces; the mean from find_lines on
-    double gain_ = 0.0;          // of density times rate over squared amplitude, likewise
+    double gain_ = 0.0;          // ratio of density times rate to squared amplitude, likewise
     std::vector<double> floor_;  // mean noise power
     std::vector<SignificantPeak> found_;
     std::vector<SignificantHump> humps_;
@@ -71,7 +71,7 @@ class RunningMedian {
     void come(std::size_t first, std::size_t end);
     /// Finds the bucket of this rank; false where it is one of those for what lies far from the median.
     bool settle(std::size_t rank);
-    /// Of the bucket of the median, the one of this rank.
+    /// The value of this rank in the bucket of the median.
     [[nodiscard]] double inside(std::size_t rank);
     [[nodiscard]] std::uint8_t bucket_of(double value) const;
 
@@ -80,7 +80,7 @@ class RunningMedian {
     // The values about the median lie in narrow buckets, all others in the first and the last. In each bucket
     // is less than in the next; of the window is known how many each has.
     static constexpr std::size_t bucket_count = 256;
-    std::vector<std::uint8_t> bucket_;  ///< of each sample of the window
+    std::vector<std::uint8_t> bucket_;  ///< bucket of each sample of the window
     std::array<std::uint32_t, bucket_count> counts_{};
     double low_ = 0.0, buckets_a_unit_ = 0.0;
     std::size_t middle_ = 0, below_ = 0;  ///< a bucket, and how many lie in those before it

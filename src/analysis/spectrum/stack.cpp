@@ -31,7 +31,7 @@ using Sums = std::array<double, side_by_side>;
 
 double total(const Sums& sums) { return std::accumulate(sums.begin(), sums.end(), 0.0); }
 
-/// Of which the cosine is the window's; at a place and for a length in the same unit.
+/// Angle whose cosine the window contains; position and length in the same unit.
 double hann_angle(double place, double length) { return 2.0 * std::numbers::pi * place / length; }
 
 double hann(double place, double length) { return 0.5 + 0.5 * portable::cos(hann_angle(place, length)); }
@@ -197,14 +197,15 @@ void PieceMaker::add_power(double scale, std::span<double> power) {
 
 namespace {
 
-constexpr std::size_t most_parts = 4;  // by hand: each holds five sums a bin
+constexpr std::size_t most_parts = 4;  // chosen, not derived: each holds five sums a bin
 constexpr double overlap_correlation =
     1.06;  // half-overlapping Hann pieces count a little less than independent ones
 
-constexpr double smeared_cells = 20.0;      // by hand
-constexpr double folds_searched = 2.5;      // by hand: of the sample rate at the highest speed
+constexpr double smeared_cells = 20.0;  // chosen, not derived
+// Chosen, not derived: multiple of the sample rate at the highest speed.
+constexpr double folds_searched = 2.5;
 constexpr double used_cycles = 3.0;         // in a sweep: half a cycle beyond what the trend follows
-constexpr double fewest_sweep_cells = 6.0;  // of a sweep's spectrum: a line's main lobe and four more
+constexpr double fewest_sweep_cells = 6.0;  // cells in a sweep's spectrum: a line's main lobe and four more
 
 struct Reach {
     std::size_t first = 0, end = 0;  // bins
@@ -261,7 +262,7 @@ class Stacking {
     Stacking(std::span<const Sweep> sweeps, Axis axis, const StackRule& rule);
 
     [[nodiscard]] std::size_t parts() const { return parts_.size(); }
-    /// Of each part once, in any order.
+    /// To be called for each part once, in any order.
     void run(std::size_t part);
     /// When all parts ran; the last call.
     [[nodiscard]] Stack stack();
@@ -350,8 +351,8 @@ void Stacking::add(std::size_t number, Part& part) {
     std::vector<double> floor = noise_floor({power, 1.0, cell, reach.first, {}});
     const auto clear = static_cast<std::size_t>(clear_of_motion(sweep) / stack_.spacing) + 1;
     if (stack_.axis == Axis::angle && reach.end > clear) {
-        // What the trend leaves of the motion folds to around the sample rate, smeared over the cells that
-        // the sweep's own speeds span there: unseen where it is weak.
+        // The residual of the motion after the trend folds to around the sample rate, smeared over the cells
+        // that the sweep's own speeds span there: unseen where it is weak.
         const std::size_t slow = std::min(reach.end, reach.first + static_cast<std::size_t>(2.0 * cell));
         const double motion =
             *std::max_element(power.begin(), power.begin() + static_cast<std::ptrdiff_t>(slow));
@@ -428,7 +429,8 @@ PowerSpectrum Stack::tested() const {
 }
 
 void Stack::mark_removed(double place) {
-    constexpr double half_width_cycles = 1.5;  // of a Hann line, beyond which hardly any noise is removed
+    // Half width of a Hann line, beyond which hardly any noise is removed.
+    constexpr double half_width_cycles = 1.5;
     const double reach = half_width_cycles / hann_cell * resolution;
     removed.resize(ratio.size(), 0);
     const auto last = static_cast<std::size_t>((place + reach) / spacing);

@@ -13,15 +13,15 @@ namespace ripplenotch {
 // Pieces of a log for spectra: a straight line taken out, a Hann window, the transform. One after another in
 // the same memory.
 
-/// What one look at a part of an evenly sampled piece tells, its two columns side by side: reading them is
-/// what it costs.
+/// The result of one pass over a part of an evenly sampled piece, its two columns interleaved: reading them
+/// dominates the cost.
 struct EvenPart {
     double worst = 0.0;  ///< largest distance of a time from its place, in the unit of time
     double sum = 0.0;
     double tilt = 0.0;  ///< sum of the values times their distance from the part's middle, in samples
     std::size_t count = 0;
 };
-/// Of the samples from `from` on; the even grid begins with time[0] and has steps of `step`.
+/// The sums over the samples from `from` on; the even grid begins with time[0] and has steps of `step`.
 [[nodiscard]] EvenPart look_at_even(std::span<const double> time, std::span<const double> values, double step,
                                     std::size_t from = 0);
 /// Two parts, one behind the other, as one.

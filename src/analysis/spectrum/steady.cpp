@@ -20,7 +20,7 @@ namespace ripplenotch {
 namespace {
 
 constexpr double narrowest_cells = 2.5;  // narrower ones are lines, or noise
-constexpr double least_ratio = 4.0;      // of power: twice the noise's amplitude, what a person sees
+constexpr double least_ratio = 4.0;      // power ratio: twice the noise's amplitude, what a person sees
 // A hump reaches as far as its power is this much above the noise, and this share of its highest: 15 dB down.
 constexpr double edge_ratio = 2.0, edge_share = 0.03;
 // In blocks, of which a window has four.
@@ -28,12 +28,13 @@ constexpr std::size_t window_blocks = 4, guard_blocks = 2, side_blocks = 24, few
                       around_blocks = 64;
 // Windows overlap, and those of neighbouring widths are alike: about this many independent tries per block.
 constexpr double tries_per_window = 0.5;
-constexpr double narrow_cells = 20.0, sieve_ratio = 2.0;  // by hand: only what is looked at more closely
-constexpr std::size_t most_lags = 64;                     // by hand: bounds the time
-constexpr double clipped_ratio = 4.0;                     // so that humps themselves do not make cells alike
+// Chosen, not derived: only preselects candidates for the test.
+constexpr double narrow_cells = 20.0, sieve_ratio = 2.0;
+constexpr std::size_t most_lags = 64;  // chosen, not derived: bounds the time
+constexpr double clipped_ratio = 4.0;  // so that humps themselves do not make cells alike
 
-/// How far the cells are as independent, and as well averaged, as they are said to be: cells so many apart
-/// may be alike, and one loud piece of many makes their mean no better than itself.
+/// How far the cells are as independent, and as well averaged, as the spectrum states: cells at some distance
+/// may be correlated, and one loud piece of many makes their mean no better than itself.
 class Alikeness {
   public:
     explicit Alikeness(const PowerSpectrum& spectrum) {
@@ -68,7 +69,7 @@ class Alikeness {
     }
     /// The running noise floor, which only humps half as wide as its window raise.
     [[nodiscard]] const std::vector<double>& floor() const { return floor_; }
-    /// Of the averages that the spectrum says it has.
+    /// The effective number of averages, as a share of the number that the spectrum states.
     [[nodiscard]] double averages_share() const { return averages_share_; }
     /// That count as one in a mean over `width` cells.
     [[nodiscard]] double cells_for_one(double width) const {
@@ -105,7 +106,7 @@ struct Blocks {
 
 struct HumpCandidate {
     SignificantHump hump;
-    double gain = 0.0;  // nats
+    double gain = 0.0;  // improvement in log-likelihood, natural units
 };
 
 /// The spectrum seen at one width.
@@ -127,8 +128,8 @@ class Level {
         for (std::size_t at = margin; at + window_blocks + margin <= blocks_.mean.size(); ++at) {
             double power = 0.0;
             for (std::size_t i = 0; i < window_blocks; ++i) power += blocks_.mean[at + i] / window_blocks;
-            // A cheap sieve with a wide margin: medians beside every window would cost more than the
-            // spectrum.
+            // An inexpensive preselection with a wide margin: medians around every window would cost more
+            // than the spectrum.
             const std::size_t bin = blocks_.first + at * blocks_.bins;
             if (!running_floor_.empty() && power < sieve_ratio * running_floor_[bin]) continue;
             judge(at, power, tries, false_alarm, into);
@@ -193,7 +194,8 @@ class Level {
         if (chance > false_alarm) return;
         into.push_back({grown(at, floor, chance), averages * (ratio - 1.0 - portable::log(ratio))});
     }
-    /// The window's highest block and its neighbours to both sides, as far as they stand out.
+    /// The window's highest block and its neighbours to both sides, as far as they rise above the noise
+    /// floor.
     SignificantHump grown(std::size_t at, double floor, double chance) const {
         const auto& mean = blocks_.mean;
         const auto highest = std::max_element(mean.begin() + static_cast<std::ptrdiff_t>(at),
@@ -208,7 +210,7 @@ class Level {
     PowerSpectrum spectrum_;
     Blocks blocks_;
     double window_cells_ = 0.0, counted_ = 1.0, averages_share_ = 1.0;
-    std::span<const double> running_floor_;  // of narrow windows
+    std::span<const double> running_floor_;  // noise floor of narrow windows
     std::vector<double> scratch_;
 };
 
@@ -275,7 +277,7 @@ class Extremes {
 };
 
 struct Band {
-    double share = 0.0, width_deg_s = 0.0;  // of the middle speed, or absolute
+    double share = 0.0, width_deg_s = 0.0;  // share of the middle speed, or absolute
     double standstill_deg_s = 0.0;
     [[nodiscard]] bool holds(double lowest, double highest) const {
         if (std::max(std::abs(lowest), std::abs(highest)) <= standstill_deg_s) return true;
@@ -328,7 +330,7 @@ std::vector<Window> maximal_windows(const TraceView& trace, std::span<const doub
     return windows;
 }
 
-/// The longest window, then the longest of what the first leaves of the others, and so on; in time order.
+/// The longest window, then the longest of those that do not overlap it, and so on; in time order.
 std::vector<Window> longest_apart(const std::vector<Window>& windows, const TraceView& trace,
                                   const SteadyRule& rule) {
     std::priority_queue<Window> queue(std::less<Window>{}, windows);
@@ -445,7 +447,8 @@ std::vector<Stretch> steady_stretches(const TraceView& trace, const SteadyRule& 
 // A place u in a stretch, from 0 to 1, counts u^2 (1 - u)^2 for the slope of the position and u^3 (1 - u)^3
 // for the mean velocity: alike, since the slope of an angle weighs the velocity by the integral of its own
 // weights. These are near the Hann window's, so that the speed is that of the frequency which a spectrum
-// tells: evenly weighed, the ends of a stretch, where the joint still gains speed, made it up to 1.6e-4 low.
+// has: with equal weights, the ends of a stretch, where the joint still gains speed, made it up to 1.6e-4
+// low.
 void StretchMeter::add(const TraceView& rows) {
     if (rows.size() == 0) return;
     if (rows_ == 0) first_s_ = rows.time_s.front();
@@ -506,7 +509,7 @@ void StretchMeter::speed_from_position(Stretch& stretch) const {
     if (!(slope_.tt() > 0.0)) return;
     const double slope = slope_.tp() / slope_.tt();
     stretch.speed = DegPerSec(slope);
-    // What is left about a straight line is slow (control, encoder): ten independent pieces, not count_.
+    // The residual about a straight line is slow (control, encoder): ten independent pieces, not count_.
     const double left = std::max(0.0, slope_.pp() - slope * slope_.tp()) / slope_.weight();
     const double pieces = static_cast<double>(count_) / 10.0;
     stretch.speed_error_deg_s = std::sqrt(left * pieces * slope_.square_t()) / slope_.tt();

@@ -177,9 +177,10 @@ std::string track_verdict(const TrackReport& report) {
 
 namespace {
 
-constexpr double trend_terms_per_turn = 12.0;   // by hand: of the joint, whose torque follows its angle
-constexpr double periods_per_trend_term = 2.0;  // of the slowest line: no term comes near it
-constexpr double fewest_cosines = 3.0, fewest_polynomials = 2.0;  // of which the latter make a cubic
+// Chosen, not derived: terms per turn of the joint, whose torque follows its angle.
+constexpr double trend_terms_per_turn = 12.0;
+constexpr double periods_per_trend_term = 2.0;  // periods of the slowest line: no term comes near it
+constexpr double fewest_cosines = 3.0, fewest_polynomials = 2.0;  // the polynomials make a cubic
 
 double cycles_of(const TrackedLine& line) {
     return line.order * std::abs(line.turns.back() - line.turns.front());
@@ -359,7 +360,7 @@ double WindowFit::power_beside(const Torque& torque, const TrackedLine& line, do
 
 namespace {
 
-/// Smallest pivot of the normal equations with unit columns. Below, a line is what the others already say, to
+/// Smallest pivot of the normal equations with unit columns. Below, a line is collinear with the others, to
 /// within rounding times the torque's range.
 constexpr double least_pivot = 1e-9;
 
@@ -408,9 +409,9 @@ void add_amplitudes(const WindowFit& fit, const WindowFit::Torque& torque, doubl
     }
 }
 
-constexpr double ranges_wanted = 24.0;  // by hand: rows that a person reads
+constexpr double ranges_wanted = 24.0;  // chosen, not derived: rows that a person reads
 constexpr double finest_share =
-    0.01;  ///< of the highest speed: a steady log is not cut up by its speed noise
+    0.01;  ///< share of the highest speed: a steady log is not cut up by its speed noise
 
 void gather_line(const LineTrack& track, const std::vector<std::size_t>& rows, SpeedTrack::Line& line) {
     double sum = 0.0, square = 0.0, hz = 0.0, error = not_a_number;
@@ -442,7 +443,8 @@ constexpr double longest_step = 3.0;
 }  // namespace
 
 double separating_window_turns(std::span<const double> orders) {
-    constexpr double periods = 8.0, beats = 2.0;  // by hand: of the lowest line, and of the slowest beat
+    // Chosen, not derived: periods of the lowest line, and of the slowest beat.
+    constexpr double periods = 8.0, beats = 2.0;
     std::vector<double> sorted(orders.begin(), orders.end());
     std::sort(sorted.begin(), sorted.end());
     if (sorted.empty() || !(sorted.front() > 0.0)) raise<UsageError>("orders must be above 0");

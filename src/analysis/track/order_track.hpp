@@ -11,8 +11,8 @@
 
 namespace ripplenotch {
 
-// Internal to the analysis room: windows of a run of motion, and the least squares of a trend and lines in
-// one of them, which every measure of ripple stands on.
+// Internal to the analysis module: windows of a run of motion, and the least squares of a trend and lines in
+// one of them, the basis of every ripple estimate.
 
 /// Windows of one length, evenly spread from the start to the end of a run in `place` (turns or time, one
 /// value a sample, in one direction), at most `hop` of the length apart. A run between the shortest and one
@@ -35,7 +35,8 @@ class WindowFit {
     [[nodiscard]] bool has_enough_samples() const { return place_.size() >= 2 * unknowns(); }
     /// Once, before what follows. Cost O(n unknowns^2).
     void factorise();
-    /// Of the normal equations with unit columns: near 0 where a line is a sum of other terms.
+    /// The smallest pivot of the normal equations with unit columns: near 0 where a line is a sum of other
+    /// terms.
     [[nodiscard]] double least_pivot() const { return factors_.least_pivot(); }
     /// Factor of the variance of a line's amplitude due to the other terms, with a constant envelope.
     [[nodiscard]] double inflation(std::size_t line) const;
@@ -76,7 +77,8 @@ class WindowFit {
     double weight_ = 0.0;
     std::vector<std::vector<double>> columns_;  ///< times the root weights
     Eigen::VectorXd scale_;
-    Eigen::MatrixXd inverse_;  ///< of the normal equations with unit columns: columns of the lines' constants
+    /// Inverse of the normal equations with unit columns: columns of the lines' constants.
+    Eigen::MatrixXd inverse_;
     SymmetricFactors factors_;
 };
 

@@ -26,17 +26,18 @@ namespace ripplenotch {
 
 namespace {
 
-/// Of the noise in neighbouring Hann windows that overlap by half (Welch 1967).
+/// Correlation of the noise in neighbouring Hann windows that overlap by half (Welch 1967).
 constexpr double window_correlation = 1.0 / 6.0;
 
 constexpr double fewest_periods = 4.0;  // per segment: fewer are not distinguished from the trend
-// Of the motor: a resolution at which the families of both splines, Kg and Kg + 1 times per output turn, are
-// one line.
+// Turns of the motor: a resolution at which the families of both splines, Kg and Kg + 1 times per output
+// turn, are one line.
 constexpr double window_turns = 8.0;
-// By hand: bounds cost and memory. Where there are more, every second segment is dropped, and of those that
-// follow as many are left out.
+// Chosen, not derived: bounds cost and memory. Where there are more, every second segment is dropped, and as
+// many of those that follow.
 constexpr std::size_t most_ripple_samples = 300'000;
-constexpr double largest_inflation = 10.0;   // of the variance by neighbouring orders and the trend, by hand
+// Variance inflation by neighbouring orders and the trend; chosen, not derived.
+constexpr double largest_inflation = 10.0;
 constexpr std::size_t parts_of_window = 16;  ///< in each of which the gain of a filter counts as constant
 // A bin 1.5 resolutions away has 3 % of a Hann line's power.
 constexpr double nearest_probe = 1.5;
@@ -58,7 +59,7 @@ double peak_to_peak(const std::vector<double>& values) {
 struct RippleSegments::Part {
     const TraceView& rows;
     std::vector<std::span<const double>> torques;
-    std::vector<double> turns, speed_deg_s;  ///< of the motor; of the joint
+    std::vector<double> turns, speed_deg_s;  ///< turns of the motor; speed of the joint
     bool absolute_angle = false;
 
     /// Motion in one direction, slower than a speed.
@@ -240,14 +241,14 @@ std::vector<double> RippleSegments::expected_gains(const Part& part, const Sampl
 
 namespace {
 
-constexpr double least_range_share = 1e-4;        // as MotionLinesOptions::least_share
-constexpr double agreeing_share = 0.5;            // of the power that segments have in common, for a phase
+constexpr double least_range_share = 1e-4;  // as MotionLinesOptions::least_share
+constexpr double agreeing_share = 0.5;      // share of the power that segments have in common, for a phase
 constexpr double normal_99 = 2.3263478740408408;  // one-sided quantile of 0.99
-constexpr double independent_spacing = 1.5;       // of bins under a Hann window
+constexpr double independent_spacing = 1.5;       // in bins under a Hann window
 // Averages that know a mean as well as one value of a median of them does, as in exceedance().
 constexpr double median_knowledge_of_mean = 0.48;
 
-/// Mean power beside an order, as large as the fit of the order sees it, and of how many independent bins.
+/// Mean power near an order, scaled as the fit of the order receives it, and from how many independent bins.
 struct NoisePower {
     double power = 0.0, bins = 0.0;
     /// Between both sides along the slope of the spectrum, where that is more.
@@ -353,8 +354,8 @@ RippleEstimate estimate_of(double value, const OrderSegments& order, std::size_t
                                                                 .cells = median_efficiency * noise.bins}))
                             : (power > 0.0 ? 0.0 : 1.0);
     // Power of line and noise is about normal, of variance (2 A^2 N + N^2) / averages, and so is the
-    // logarithm of the noise, known from the bins to one side, here and in the log it is said of: the A^2 at
-    // which the lower percentile of the power is the threshold solves a quadratic.
+    // logarithm of the noise, estimated from the bins to one side, in this log and in the one that the limit
+    // applies to: the A^2 at which the lower percentile of the power is the threshold solves a quadratic.
     const double level = threshold(averages, noise.bins, ripple_false_alarm / tries);
     const double above = level - noise.power / std::max(noise.along_slope, 1e-300);
     const double known = 0.5 * median_knowledge_of_mean * noise.bins * averages;

@@ -13,7 +13,7 @@
 
 namespace ripplenotch {
 
-// Internal to the analysis room: the ripple of a known gear in segments of motion, which estimate_ripple()
+// Internal to the analysis module: the ripple of a known gear in segments of motion, which estimate_ripple()
 // and RippleMeter sum up.
 
 /// Bins on each side of an order at which its noise is measured.
@@ -30,8 +30,8 @@ struct SegmentPlace {
 struct SegmentAmplitude {
     SegmentPlace place;
     std::vector<std::complex<double>> value;  ///< per signal: a - ib of a cos + b sin
-    double inflation = 1.0;      ///< of the variance, since neighbours and trend are fitted along
-    double expected_gain = 0.0;  ///< of LineGains; 0 without
+    double inflation = 1.0;      ///< variance inflation, since neighbours and trend are fitted along
+    double expected_gain = 0.0;  ///< gain from LineGains; 0 without
     /// Power near the order, first signal; nan where it was not measured.
     std::array<double, 2 * probes_a_side> noise{};
 };
@@ -45,8 +45,9 @@ struct OrderSegments {
 /// What one segment has of one torque signal, whatever the order.
 struct SegmentResidual {
     double weight = 0.0;
-    double square_nm2 = 0.0;                                     ///< torque minus trend, weighted mean
-    double peak_to_peak_nm = 0.0, ripple_peak_to_peak_nm = 0.0;  ///< of that and of the lines, middle half
+    double square_nm2 = 0.0;  ///< torque minus trend, weighted mean
+    /// Peak to peak of that and of the lines, middle half.
+    double peak_to_peak_nm = 0.0, ripple_peak_to_peak_nm = 0.0;
 };
 
 class RippleSegments {

@@ -10,7 +10,7 @@
 namespace ripplenotch {
 namespace {
 
-constexpr std::size_t most_rows_held = 65536;  // by hand: a minute of motion and more
+constexpr std::size_t most_rows_held = 65536;  // chosen, not derived: a minute of motion and more
 
 double root_mean_square(std::span<const SegmentResidual> segments) {
     double sum = 0.0, weight = 0.0;

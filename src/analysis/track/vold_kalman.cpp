@@ -59,7 +59,8 @@ using Sparse = Eigen::SparseMatrix<double>;
 using Factors = Eigen::SimplicialLDLT<Sparse, Eigen::Lower, Eigen::NaturalOrdering<int>>;
 
 constexpr std::size_t section_points = 8000;  ///< without overlap
-/// Pull towards 0 against a sample's own weight: decides only what no sample says, as where the joint rests.
+/// Regularization towards 0 relative to a sample's own weight: decides only where samples carry no
+/// information, as at standstill.
 constexpr double ridge = 1e-9;
 
 /// Differences of order 1 to 4 as they act on neighbouring points.
@@ -175,7 +176,7 @@ void fill_row(const TrackedSignal& signal, std::size_t sample, bool trend, Eigen
     if (trend) row[row.size() - 1] = 1.0;
 }
 
-/// The equations of one line that is alone: each sample of its shaft's turning counts half, in the mean.
+/// The equations of one line that is alone: each sample of its shaft's turning counts half on average.
 Section lone_line(std::size_t points, double samples_per_point) {
     Section section(points, 1);
     const Eigen::VectorXd row = Eigen::VectorXd::Constant(1, std::sqrt(0.5));
@@ -269,7 +270,7 @@ Envelopes solve_envelopes(const TrackedSignal& signal, const SampleRun& run, con
     return envelopes;
 }
 
-// Of a run of `duration_s`.
+// Response of the envelope in a run of `duration_s`.
 EnvelopeResponse envelope_response(EnvelopeSettings settings, double duration_s, Hertz asked_bandwidth) {
     // Twice the overlap: from there on a longer run changes nothing in its middle.
     const double wanted = std::ceil(duration_s / settings.step_s) + 1.0;
@@ -305,14 +306,15 @@ EnvelopeResponse envelope_response(EnvelopeSettings settings, double duration_s,
 }
 
 constexpr double points_per_width = 40.0;  ///< points of the envelope in 1/bandwidth
-constexpr double rows_per_width = 8.0;     // by hand
+constexpr double rows_per_width = 8.0;     // chosen, not derived
 constexpr double shortest_run = 1.5;       ///< in 1/bandwidth
-constexpr double widest_share = 0.25;      ///< of the sample rate
+constexpr double widest_share = 0.25;      ///< share of the sample rate
 constexpr double worst_condition = 1e13;   // rounding shows in the third digit (docs/theory.md)
 constexpr double trend_widths = 4.0;       ///< the trend's bandwidth over a line's
 constexpr double close_share = 0.5;        ///< lines closer than this share of the bandwidth ...
 constexpr std::size_t near_widths = 8;     ///< ... for most of so many times 1/bandwidth are one
-constexpr double fewest_cycles = 1.0;  ///< of a line within 1/bandwidth, or it is one with its mirror image
+/// Cycles of a line within 1/bandwidth, or it cannot be separated from its mirror image.
+constexpr double fewest_cycles = 1.0;
 
 void check_rule(const TrackedSignal& signal, const VoldKalmanRule& rule) {
     if (signal.lines.empty()) raise<UsageError>("there is no order to track");
@@ -341,8 +343,8 @@ std::vector<bool> stands(const std::vector<double>& cycles, std::size_t width, d
     return still;
 }
 
-/// True at the points around which two lines stay together. They may cross: what each is before and after
-/// tells them apart while they do.
+/// True at the points around which two lines stay together. They may cross: their values before and after
+/// separate them in between.
 std::vector<bool> stay_together(const std::vector<double>& apart_cycles, std::size_t width) {
     const std::size_t n = apart_cycles.size(), reach = std::max<std::size_t>(1, width / 16);
     std::vector<std::size_t> near(n + 1, 0);  // how many points before this one are near
@@ -409,7 +411,7 @@ class RunTracker {
           grid_(make_grid(time_s_, settings.step_s)),
           envelopes_(solve_envelopes(signal, run, grid_, settings)) {}
 
-    /// Sum of squares of what is left.
+    /// Returns the sum of squares of the residual.
     double write_samples(VoldKalmanTracks& result) const {
         double squares = 0.0;
         for (std::size_t k = 0; k < run_.size(); ++k) {
