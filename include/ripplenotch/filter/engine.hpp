@@ -21,7 +21,7 @@
 
 namespace ripplenotch {
 
-// The supervisor of the switching filter: from the joint speed to the candidate that should be in force (Kim,
+// The supervisor of the switching filter: from the joint speed to the candidate that should be active (Kim,
 // Kim, Song 2011, fig. 3 and 4), with the rules for speeds that no band covers.
 
 struct SupervisorSettings {
@@ -38,7 +38,7 @@ class Supervisor {
 
     /// The first sample of a run: takes the region of its speed, with no regard to the past.
     void start(double velocity_deg_s) noexcept;
-    /// How many of these samples (after the one that was started or switched to) keep the candidate in force
+    /// How many of these samples (after the one that was started or switched to) keep the active candidate
     /// and the region; speeds.size() when all do. They are then accounted for.
     [[nodiscard]] std::size_t stay(std::span<const double> velocity_deg_s) noexcept;
     /// The sample at which stay() stopped: enters its region. True when the candidate changed.
@@ -94,14 +94,14 @@ struct StreamReport {
     std::size_t held_bad_values = 0;    ///< cells replaced because the caller asked for it
     std::vector<TimedSwitch> switches;  ///< as listed by the filter
     std::size_t switch_count = 0;
-    double slowest_deg_s = 0.0, fastest_deg_s = 0.0;  ///< of |v|; both 0 without a row
+    double slowest_deg_s = 0.0, fastest_deg_s = 0.0;  ///< range of |v|; both 0 without a row
 };
 
-/// A column beside the motion, along the rows of the same log.
+/// A column other than the motion, along the rows of the same log.
 class RowValues {
   public:
     virtual ~RowValues() = default;
-    /// Of the next `count` rows; valid until the next call. Throws what reading throws.
+    /// The values of the next `count` rows; valid until the next call. Throws what reading throws.
     virtual std::span<const double> next(std::size_t count) = 0;
 };
 
@@ -116,9 +116,9 @@ struct JointRun {
 /// One log on its way through a filter, or through one filter for each joint that is read.
 class LogStream {
   public:
-    /// Reads the first clock_rows rows (fewer when they are wide) and judges the log by them. A gap is a step
-    /// of more than `gap_steps` median steps. Throws DataError when there is no time and no stated rate,
-    /// fewer than two rows, or time that does not advance.
+    /// Reads the first clock_rows rows (fewer when they are wide) and determines the clock of the log from
+    /// them. A gap is a step of more than `gap_steps` median steps. Throws DataError when there is no time
+    /// and no stated rate, fewer than two rows, or time that does not advance.
     LogStream(std::unique_ptr<LogReader> reader, double gap_steps);
     ~LogStream();
     LogStream(LogStream&&) noexcept;

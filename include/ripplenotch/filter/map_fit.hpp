@@ -16,17 +16,17 @@
 
 namespace ripplenotch {
 
-/// Of one order that was asked for, whether or not it came into the map. All of it is of blocks of the logs
-/// that the map was not fitted to.
+/// Cross-validated results of one requested order, whether or not it is in the map. All values are from
+/// blocks of the logs that the map was not fitted to.
 struct MapOrderScore {
     double order = 0.0;
     bool in_map = false;
     double ripple_nm = 0.0;        ///< rms over windows of the amplitude (zero to peak), noise included
-    double noise_nm = 0.0;         ///< the same of what stands half an order beside it, where no ripple is
-    double left_nm = 0.0;          ///< the same of what is left beside the map
-    double predicted_share = 0.0;  ///< of the ripple's energy, that is beyond the noise; 0 to 1
+    double noise_nm = 0.0;         ///< the same half an order to its sides, where no ripple is
+    double left_nm = 0.0;          ///< the same of the residual after subtraction of the map
+    double predicted_share = 0.0;  ///< share of the ripple's energy above the noise; 0 to 1
     double false_alarm = 1.0;      ///< probability that chance is as regular
-    /// Of an order that is not in the map: the amplitude that would have been found in 20 of 20 such logs.
+    /// For an order that is not in the map: the amplitude that would have been found in 20 of 20 such logs.
     double detectable_nm = 0.0;
 };
 
@@ -46,26 +46,26 @@ struct MapFit {
     RippleMap map;  ///< empty unless `mapped`
     /// By order of the map, then by column: standard errors of cosine (real) and sine part (imaginary), Nm.
     std::vector<std::vector<std::complex<double>>> errors;
-    std::vector<MapOrderScore> scores;  ///< of every order asked for
+    std::vector<MapOrderScore> scores;  ///< scores of every order requested
     std::vector<MapAgreement> agreement;
     MapFinding finding = MapFinding::too_little;
     std::size_t windows = 0, blocks = 0;
-    bool anchored = true;            ///< the angle is that of a position; else it counts from the first row
-    bool conclusive = false;         ///< mapped or nothing, anchored, and the logs agree
-    std::string doubt;               ///< said before the verdict by whoever read the logs; empty: none
+    bool anchored = true;     ///< the angle is that of a position; else it counts from the first row
+    bool conclusive = false;  ///< mapped or nothing, anchored, and the logs agree
+    std::string doubt;        ///< stated before the verdict, from the code that read the logs; empty: none
     std::vector<std::string> notes;  ///< one sentence each
 };
 
 /// Windows of fewer motor turns, or fewer windows, are not enough to leave some out.
 inline constexpr std::size_t fewest_map_windows = 12;
 
-/// Fits each order in windows of 2.5 motor turns beside a cubic (docs/methods/subtract.md), then the windows'
-/// amplitudes by ridge regression on the columns of a form. An order comes into the map where a rotation test
-/// finds it, at 1 % for all orders together; the form is the smallest one that cross-validation does not tell
-/// from the best.
+/// Fits each order in windows of 2.5 motor turns along with a cubic trend (docs/methods/subtract.md), then
+/// the windows' amplitudes by ridge regression on the columns of a form. An order is included in the map
+/// where a rotation test finds it, at 1 % for all orders together; the form is the smallest one that
+/// cross-validation does not distinguish from the best.
 /// Angles count from `zero_deg`. Logs without a position have none to count from: throws DataError for
 /// several of them. Throws UsageError for no log. `temperatures_degc`: the joint's temperature at each row of
-/// each log, which enters where it pays; or nothing.
+/// each log, which is included where it improves the map; or nothing.
 [[nodiscard]] MapFit fit_ripple_map(std::span<const TraceView> logs, const GearAccount& gear,
                                     double zero_deg = 0.0,
                                     std::span<const std::vector<double>> temperatures_degc = {});

@@ -21,7 +21,8 @@ namespace ripplenotch {
 /// Consecutive samples of one joint; spans of equal length, position and temperature may be empty.
 struct Samples {
     std::span<const double> velocity_deg_s, torque_nm, position_deg;
-    std::span<const double> temperature_degc = {};  ///< of the joint, for methods whose map depends on it
+    /// Temperature of the joint, for methods whose map depends on it.
+    std::span<const double> temperature_degc = {};
 };
 
 /// One change of filter while running.
@@ -45,9 +46,9 @@ class CausalFilter {
     virtual ~CausalFilter() = default;
     /// Filters `in` into `out` (same length; may not overlap). Any split into blocks gives the same bytes.
     virtual void process(const Samples& in, std::span<double> out) = 0;
-    /// Before the first sample: takes a faster way to the same filter, where there is one and its outputs
-    /// stay within 1e-12 of the largest |torque| of those without this call. Says in words which way was
-    /// taken, where there was a choice.
+    /// To be called before the first sample: takes a faster way to the same filter, where there is one and
+    /// its outputs stay within 1e-12 of the largest |torque| of those without this call. Returns a text on
+    /// the way taken, where there was a choice.
     virtual std::string hurry() { return {}; }
     /// Forgets the past: the next sample starts settled (after a gap in time).
     virtual void restart() = 0;
@@ -93,7 +94,7 @@ struct Method {
     /// `table` is null unless needs_table. Throws UsageError on what cannot be designed at this sample rate.
     std::unique_ptr<CausalFilter> (*start)(const Settings& settings, Hertz sample_rate,
                                            const CandidateTable* table) = nullptr;
-    /// The linear filter in force at a constant speed; empty function for methods that have none.
+    /// The active linear filter at a constant speed; empty function for methods that have none.
     FrozenFilter (*frozen)(const Settings& settings, Hertz sample_rate, const CandidateTable* table,
                            DegPerSec speed) = nullptr;
     bool frozen_is_dear = false;  ///< frozen() takes too long to be asked for every window of a log

@@ -318,7 +318,7 @@ std::optional<Value> amplitude_at(std::size_t recording, const Line& line, doubl
     double sum = 0.0, noise = 0.0, count = 0.0, square = 0.0;
     for (const AmplitudeAtSpeed& at : line.by_speed) {
         if (!like_speed(at.speed_deg_s, speed_deg_s)) continue;
-        // The noise near a line changes its phase by half the noise power.
+        // Half of the noise power near a line is in quadrature and changes its phase.
         const double error = at.amplitude_nm / std::max(at.snr, 1.0) / std::sqrt(2.0);
         sum += at.amplitude_nm;
         square += at.amplitude_nm * at.amplitude_nm;

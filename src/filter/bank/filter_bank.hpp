@@ -53,8 +53,8 @@ class GainSchedule {
     std::vector<double> gains_;  ///< states_ entries a speed, slowest first
 };
 
-/// What GainSchedule::at gives, where one speed is all that is asked: of the hundred or so that a schedule
-/// holds, only the two beside it are worked out.
+/// The result of GainSchedule::at where only one speed is needed: of the hundred or so gains that a schedule
+/// holds, only the two at neighbouring speeds are computed.
 [[nodiscard]] std::vector<double> scheduled_gain(const RippleModel& model, double step_turns);
 
 /// Lanes do the same additions and multiplications as one candidate alone would, so results do not depend on
@@ -77,7 +77,7 @@ class FilterBank {
     [[nodiscard]] static constexpr std::size_t capacity() { return most_samples; }
 
   private:
-    static constexpr std::size_t lanes = 4, most_samples = 128;  ///< by hand
+    static constexpr std::size_t lanes = 4, most_samples = 128;  ///< chosen, not derived
     /// Not a multiple of 4096 bytes: groups would be in one another's way in the first cache, a sixth of the
     /// speed.
     static constexpr std::size_t stride = most_samples + 2;

@@ -79,7 +79,8 @@ RIPPLENOTCH_INLINED void multiply(Lanes& sum, const double* columns, std::size_t
     sum = (first * memory[0] + second * memory[1]) + (third * memory[2] + fourth * memory[3]);
 }
 
-/// Finite and far from infinity: times this is still a number. No filter in use amplifies by what is left.
+/// Finite and far from infinity: times this is still a number. No filter in use amplifies by the remaining
+/// factor.
 constexpr double headroom = 1e140;
 
 template <class Lanes>
@@ -250,9 +251,9 @@ namespace {
 /// A log is longer than the trial, and may be worse.
 constexpr double trial_reserve = 4.0;
 
-constexpr double largest_radius = 0.999;          // by hand
+constexpr double largest_radius = 0.999;          // chosen, not derived
 constexpr double time_constants = 40.0;           // until nothing is left of what was before
-constexpr int steps = 24, turns = 4, noises = 4;  // by hand: what is tried
+constexpr int steps = 24, turns = 4, noises = 4;  // chosen, not derived: extent of the trial
 
 // Not std::uniform_real_distribution, which may differ between libraries: a filter must be chosen alike
 // everywhere.

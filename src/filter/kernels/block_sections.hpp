@@ -42,8 +42,8 @@ struct BlockPass {
 
 /// out = origin + F(in - origin) for whole groups of BlockForm::samples, through all passes, of which there
 /// is one at least; sizes are equal, and the spans may not overlap. False, with the memories as before and
-/// nothing of use in `out`, where an input or a memory is so large, or no number, that an input could be
-/// heard in an output before it (zero times infinity is no zero), unless it is to run `whatever` they are.
+/// nothing of use in `out`, where an input or a memory is so large, or no number, that an input could affect
+/// an output before it (zero times infinity is no zero), unless `whatever` demands a run in any case.
 [[nodiscard]] bool run_groups(std::span<BlockPass> passes, std::span<const double> in, double origin,
                               std::span<double> out, bool whatever = false);
 
@@ -66,7 +66,7 @@ class BlockCascade {
 
     std::vector<BlockPass> passes_;
     std::vector<BlockForm::Memory> before_;  ///< memories to go back to
-    std::array<double, group> inputs_{};     ///< of the group that is not complete
+    std::array<double, group> inputs_{};     ///< inputs of the incomplete group
     std::size_t known_ = 0;                  ///< how many of them
     double origin_ = 0.0;
 };

@@ -24,7 +24,7 @@ namespace ripplenotch {
 
 namespace {
 
-constexpr std::size_t most_blocks = 16;  // by hand: parts that are left out in turn
+constexpr std::size_t most_blocks = 16;  // chosen, not derived: parts that are left out in turn
 constexpr std::size_t least_block = 3;   ///< windows, of which the middle one shares none of its samples
 
 // Amplitudes and mean of what `torque_nm` holds along the log.
@@ -122,8 +122,8 @@ namespace {
 
 using Eigen::ArrayXd, Eigen::MatrixXcd, Eigen::MatrixXd;
 
-// The probability that a map has an order although no order is there, and that it has another order beside
-// one.
+// False-alarm probabilities: that a map has an order although no order is present, and that it has another
+// order in addition to a true one.
 constexpr double map_false_alarm = 0.01, other_order_false_alarm = 0.05;
 // Speeds of a map that depends on it. Cross-validation on six joints of a robot: 4, 6 and 8 are alike.
 constexpr std::size_t most_speeds = 5;
@@ -144,8 +144,8 @@ constexpr double least_errors_better = 2.0;
 // spectrum that falls with the third power of the frequency is 11 times smaller.
 constexpr double certain_over_noise = 4.0, certain_over_noise_above = 11.0, one_sided_below = 1.1;
 
-// Columns that say nothing are shrunk, so that a few forms are enough: each of speed, direction, second comb
-// and temperature is in or not. The one with the fewest columns first.
+// Columns without information are shrunk, so that a few forms are enough: each of speed, direction, second
+// comb and temperature is in or not. The one with the fewest columns first.
 std::vector<MapForm> candidate_forms(const MapData& data, bool tied) {
     const MapRange &speeds = data.frame.speeds_deg_s, &degc = data.frame.temperatures_degc;
     std::vector<std::vector<double>> knots = {{speeds.middle()}};
@@ -215,10 +215,10 @@ bool stands_above_neighbours(const MapData& data, const MapForm& form, std::size
     return true;
 }
 
-/// Rotation test of one order. What is not locked to the motor has in each block of a log a phase of its own:
-/// logs whose blocks are turned at random are draws of the null hypothesis, whatever its noise is. Beyond any
-/// of them counts even with four blocks, since four random phases are hardly alike. The statistic is the
-/// reduction of left-out squares, in deviations of its draws, largest of all forms.
+/// Rotation test of one order. Torque that is not locked to the motor has in each block of a log a phase of
+/// its own: logs whose blocks are turned at random are draws of the null hypothesis, whatever its noise is. A
+/// statistic above all draws is significant even with four blocks, since four random phases are hardly alike.
+/// The statistic is the reduction of left-out squares, in deviations of its draws, largest of all forms.
 struct RotationTest {
     std::vector<MapForm> forms;
     double level;       ///< false-alarm probability at which an order alone makes a map
@@ -231,7 +231,7 @@ struct RotationTest {
         phasors.col(0).setOnes();
     }
     /// The false-alarm probability: the share of draws that are as large, the log itself counted. 1 where the
-    /// noise beside the order alone may be as large (chi-square of two degrees of freedom at `level`), or
+    /// noise near the order alone may be as large (chi-square of two degrees of freedom at `level`), or
     /// where the order is no line among its neighbours.
     [[nodiscard]] double false_alarm(const MapData& data, std::size_t order,
                                      std::span<const MapForm> of_forms) const {
@@ -258,7 +258,7 @@ struct RotationTest {
 };
 
 // The amplitude of an order, Nm, that is found in 20 of 20 logs like this one that hold it: alike at every
-// speed, at a random phase, beside the log's own amplitudes with the phases of its blocks drawn at random.
+// speed, at a random phase, added to the log's own amplitudes with the phases of its blocks drawn at random.
 // Infinity where there is none.
 double detectable_amplitude(const MapData& data, const MapRegression& own, const RotationTest& test,
                             std::size_t order) {
@@ -287,7 +287,7 @@ double detectable_amplitude(const MapData& data, const MapRegression& own, const
 
 // The first form whose squares are those of the best but for what noise alone reduces them by: a form that
 // shrinks where the log determines little costs little, so that a standard error over a few blocks, which
-// differ by their ripple, would be too much. `left_out` has no say; the number of blocks for none.
+// differ by their ripple, would be too much. Block `left_out` does not count; the number of blocks for none.
 std::size_t smallest_good(const std::vector<MatrixXd>& residuals, Eigen::Index left_out) {
     std::vector<double> sums;
     for (const MatrixXd& one : residuals) {
@@ -379,11 +379,12 @@ void choose_map(const MapData& data, MapFit& fit) {
     fit.finding = mapped ? MapFinding::mapped : unclear ? MapFinding::unclear : MapFinding::nothing;
 }
 
-constexpr double errors_apart = 3.0;       // by hand: three standard errors
-constexpr double share_apart = 0.15;       ///< less is no reason to doubt a map
+constexpr double errors_apart = 3.0;       // chosen, not derived: three standard errors
+constexpr double share_apart = 0.15;       ///< a smaller difference is no reason against a map
 constexpr double ripple_over_noise = 2.0;  ///< squares of an order that an oscillator may follow
 
-// The factor by which the ripple of one log is what a map of the others says, and its error by blocks.
+// The factor between the ripple of one log and its prediction by a map of the others, and its error by
+// blocks.
 MapAgreement agreement_of(const MapRegression& fit, const std::vector<bool>& of_log, std::size_t log,
                           double order) {
     const Eigen::VectorXcd others = fit.values(of_log);
@@ -452,7 +453,7 @@ double decibels_down(double from_nm, double to_nm) {
     return to_nm > 0.0 && from_nm > 0.0 ? 20.0 * portable::log10(from_nm / to_nm) : 0.0;
 }
 
-// What `words` has of each, but for those of which it has nothing.
+// The non-empty texts that `words` returns, separated by commas.
 template <typename Each, typename Words>
 std::string listed(const std::vector<Each>& all, const Words& words) {
     std::string text;

@@ -9,11 +9,12 @@
 namespace ripplenotch {
 namespace {
 
-constexpr double independent_share = 2.0 / 3.0;  ///< of half-overlapping windows, the middle counting most
-constexpr double any_share = 3.0;                ///< of the amplitude, that none has
-constexpr double warm_share = 0.5;           ///< of the amplitude, that half the range of temperatures makes
-constexpr double least_energy_share = 0.05;  ///< of the noise: a ripple that cannot be seen is not 0
-constexpr double least_noise_share = 1e-8;   ///< of the energy: a simulation without noise has rounding
+/// Effective share of half-overlapping windows, the middle counting most.
+constexpr double independent_share = 2.0 / 3.0;
+constexpr double any_share = 3.0;   ///< multiple of the amplitude that no coefficient reaches
+constexpr double warm_share = 0.5;  ///< share of the amplitude that half the range of temperatures changes
+constexpr double least_energy_share = 0.05;  ///< share of the noise: a ripple that cannot be seen is not 0
+constexpr double least_noise_share = 1e-8;   ///< share of the energy: a simulation without noise has rounding
 
 }  // namespace
 
@@ -61,7 +62,7 @@ MapRegression::MapRegression(const MapData& data, const MapForm& form, std::size
 Eigen::MatrixXd MapRegression::penalty(const RippleMap& frame) const {
     const MapForm& form = frame.form;
     const auto columns = static_cast<Eigen::Index>(form.columns());
-    // Of each part.
+    // Energy of the cosine part, and of the sine part.
     const double energy = 0.5 * std::max(energy_ - noise_, least_energy_share * noise_);
     if (!(energy > 0.0)) return Eigen::MatrixXd::Identity(columns, columns);
     Eigen::MatrixXd p = Eigen::MatrixXd::Zero(columns, columns);

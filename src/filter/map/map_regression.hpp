@@ -14,7 +14,7 @@ namespace ripplenotch {
 
 /// Sums of squares over the scored windows, in units of the noise variance.
 struct MapSquares {
-    double total = 0.0;    ///< of the amplitudes
+    double total = 0.0;    ///< sum of squares of the amplitudes
     double noise = 0.0;    ///< expected of noise alone
     double weights = 0.0;  ///< a sum of 1 is 1 / weights Nm^2, as a mean over the windows
 };
@@ -31,7 +31,7 @@ class MapRegression {
     /// Standard errors of both parts: the larger of what noise makes and of what the spread of blocks shows.
     [[nodiscard]] std::vector<std::complex<double>> errors() const;
     [[nodiscard]] MapSquares squares(std::size_t block) const { return blocks_[block].squares; }
-    /// Of what `values` predict in a block: its weighted product with the amplitudes, and with itself.
+    /// Products with the prediction of `values` in a block: weighted with the amplitudes, and with itself.
     [[nodiscard]] std::pair<std::complex<double>, double> products(std::size_t block,
                                                                    const Eigen::VectorXcd& values) const;
     /// Residual squares of block `column` when it and block `row` are left out of the fit. The diagonal is

@@ -13,7 +13,7 @@
 namespace ripplenotch {
 namespace {
 
-constexpr double sought_turns = 1.0;  ///< of the motor
+constexpr double sought_turns = 1.0;  ///< turns of the motor
 constexpr int places_tried = 720;     ///< tried in a turn, before the best is refined
 // The speeds of a map are means over its windows, where the joint moved evenly: peaks of the same motion are
 // a quarter above them on a robot.

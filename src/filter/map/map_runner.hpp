@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// A map along a log, sample by sample: by itself, and beneath a Kalman filter that follows what the ripple is
-// beside the map. Where the motor's angle is not known, the map is laid over what the filter found in the
-// first turn.
+// A map along a log, sample by sample: alone, or combined with a Kalman filter that follows the difference
+// between the ripple and the map. Where the motor's angle is not known, the map is aligned with the ripple
+// that the filter found in the first turn.
 
 #include <complex>
 #include <cstddef>
@@ -29,11 +29,11 @@ class MapRunner {
     void warm(double degc) noexcept;
     /// Goes to a joint's speed, motor angle and torque.
     void at(double speed_deg_s, double motor_turns, double torque_nm) noexcept;
-    /// Of an order there: cosine and sine part, Nm.
+    /// The amplitude of an order there: cosine and sine part, Nm.
     [[nodiscard]] std::complex<double> amplitude(std::size_t order) const noexcept {
         return amplitudes_[order];
     }
-    /// What the map says of the torque there. Orders near half the sample rate are let go.
+    /// The ripple predicted by the map there. Orders near half the sample rate are ignored.
     [[nodiscard]] double ripple(double motor_turns, double step_turns) const noexcept;
     [[nodiscard]] const RippleMap& map() const noexcept { return stated_.map; }
 
@@ -47,15 +47,17 @@ class MapMean {
   public:
     /// `noise_nm` is the unit of the filter.
     MapMean(StatedMap stated, double noise_nm);
-    /// Before ripple() of a row that tells the joint's temperature.
+    /// To be called before ripple() of a row that contains the joint's temperature.
     void warm(double degc) noexcept { runner_.warm(degc); }
 
-    /// Before the first sample of a run. One that seeks says 0 until the motor has turned once.
+    /// To be called before the first sample of a run. A map that seeks returns 0 until the motor has turned
+    /// once.
     void restart(bool seek) noexcept;
-    /// What the map says at this sample, Nm; to be taken off before the filter sees it.
+    /// The ripple predicted by the map at this sample, Nm; to be subtracted before the filter receives the
+    /// sample.
     [[nodiscard]] double ripple(double speed_deg_s, double torque_nm, const MotorAngle& angle) noexcept;
-    /// After the filter has seen a sample: once the motor has turned, finds where the map's angle is 0 and
-    /// hands the filter what is beside the map from there on.
+    /// To be called after the filter has seen a sample: once the motor has turned, finds where the map's
+    /// angle is 0 and lets the filter follow the residual of the map from there on.
     void seek(RippleKalman& filter, const MotorAngle& angle) noexcept;
     [[nodiscard]] bool seeks() const noexcept { return seeks_; }
 
@@ -78,7 +80,7 @@ class MapMean {
 /// move, for how far beyond its logs a map is used.
 class MapReach {
   public:
-    /// Watches nothing where `settings` has no `fastest`, or say beyond=hold.
+    /// Watches nothing where `settings` has no `fastest`, or beyond=hold.
     MapReach(std::string_view method, const Settings& settings, double sample_rate_hz);
 
     void restart() noexcept { turned_ = samples_ = 0.0; }

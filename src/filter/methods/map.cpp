@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The ripple that a map says, subtracted at the measured angle: no delay, no memory.
+// The ripple of a map, subtracted at the measured angle: no delay, no memory.
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -29,7 +29,7 @@ class MapFilter final : public CausalFilter {
             reach_.next(angle_.step_turns());
             if (!in.temperature_degc.empty()) runner_.warm(in.temperature_degc[k]);
             runner_.at(in.velocity_deg_s[k], angle_.turns(), in.torque_nm[k]);
-            // Without either, nobody knows where the motor stands.
+            // Without either, the motor's angle is unknown.
             const bool tied = has_start_ || !in.position_deg.empty();
             const double ripple = tied ? runner_.ripple(angle_.turns(), angle_.step_turns()) : 0.0;
             out[k] = in.torque_nm[k] - ripple;
@@ -73,7 +73,7 @@ const Method filter_methods::map = {
     .keys = keys,
     .start = start,
     .frozen = frozen,
-    .frozen_is_dear = true,  // and says nothing of the ripple, which is no matter of a linear filter
+    .frozen_is_dear = true,  // and independent of the ripple, which does not change a linear filter
 };
 
 }  // namespace ripplenotch

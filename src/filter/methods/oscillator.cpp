@@ -24,7 +24,7 @@
 namespace ripplenotch {
 namespace {
 
-constexpr double slowest_corrected_turns = 1e-5;  ///< of the motor in a sample
+constexpr double slowest_corrected_turns = 1e-5;  ///< turns of the motor in a sample
 // Measured: docs/methods/oscillator.md.
 constexpr double usual_memory_turns = 0.5, memory_turns_beside_map = 0.15;
 constexpr double standing_deg_s = 1.0;  ///< a log that begins slower than this begins at standstill
@@ -44,7 +44,7 @@ struct Plan {
     double noise_nm = 0.0;
     std::optional<StatedMap> map;  ///< mean of the amplitudes
     bool zero_unknown = false;
-    std::optional<MapReach> reach;  ///< of the map
+    std::optional<MapReach> reach;  ///< speed range of the map
 };
 
 void plan_priors(Plan& p, const Settings& settings) {
@@ -71,7 +71,7 @@ void plan_priors(Plan& p, const Settings& settings) {
     }
 }
 
-// What is followed is then what is beside the map; the map's own angle needs no correction.
+// With a map, the filter follows the residual of the map; the map's own angle needs no correction.
 void plan_map(Plan& p, const Settings& settings) {
     p.map = map_of("oscillator", settings, p.ripple);
     if (!p.map) return;
@@ -173,8 +173,8 @@ class OscillatorFilter final : public CausalFilter {
         }
     }
 
-    // An angle that runs at a wrong rate turns the phase: what the ripple itself says of the rate is added to
-    // it, slowly against the time that the amplitudes take.
+    // An angle with a wrong rate turns the phase: the rate estimated from the ripple itself is added to it,
+    // slowly compared with the time constant of the amplitudes.
     void run(double measured) {
         const double moved = angle_.step_turns(), step = moved * (1.0 + slip_);
         slipped_turns_ += moved * slip_;

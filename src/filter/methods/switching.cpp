@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The paper's method: a table of candidate filters and a supervisor that puts the one for the present speed
-// in force (Kim, Kim, Song 2011, fig. 3 and 4, table 1).
+// The paper's method: a table of candidate filters and a supervisor that activates the one for the present
+// speed (Kim, Kim, Song 2011, fig. 3 and 4, table 1).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -137,7 +137,7 @@ class SwitchingFilter final : public CausalFilter {
     /// through and the other way round.
     static constexpr std::size_t most_at_once = 512;
 
-    // Samples of one region: the candidate in force, mixed with the raw torque where the rule fades.
+    // Samples of one region: the active candidate, mixed with the raw torque where the rule fades.
     std::size_t run(const Samples& in, std::span<double> out, std::size_t at, std::size_t count) {
         if (count == 0) return 0;
         transition_->run(in.torque_nm.subspan(at, count), out.subspan(at, count));

@@ -90,7 +90,7 @@ struct Plan {
     double depth_gain = 0.0;  ///< at the centre, with full share
     double min_hz = 0.0, fade_hz = 0.0;
     bool parks = false;
-    double speed_pole = 0.0;  ///< of the low-pass on the speed, 0 for none
+    double speed_pole = 0.0;  ///< pole of the low-pass on the speed, 0 for none
     double slew = 1.0;
 
     /// Where the notch of a line at `hz` is put.
@@ -100,7 +100,7 @@ struct Plan {
     [[nodiscard]] double q_at(double center_hz) const noexcept {
         return q_each * std::max(1.0, narrow_hz / center_hz);
     }
-    /// What is left of the line at the centre, for a line at `hz`.
+    /// The remaining share of the line at the centre, for a line at `hz`.
     [[nodiscard]] double left_at_center(std::size_t line, double hz) const noexcept {
         double share = weights[line] * share_below_rate(hz / sample_rate_hz);
         double gain = depth_gain;

@@ -18,9 +18,9 @@ namespace ripplenotch {
 namespace {
 
 constexpr Eigen::Index trend_terms = 4;
-constexpr double reversal_turns = 0.25;    // by hand: of the motor
+constexpr double reversal_turns = 0.25;    // chosen, not derived: turns of the motor
 constexpr double samples_a_period = 3.0;   // as in ripple_meter.cpp
-constexpr double beyond_a_gap = 1e9;       // by hand: farther than any window
+constexpr double beyond_a_gap = 1e9;       // chosen, not derived: farther than any window
 constexpr double trend_terms_reach = 1.5;  ///< cycles a window that a cubic may follow
 
 }  // namespace
@@ -163,8 +163,8 @@ void RippleWindows::close() {
 
 namespace {
 
-// A simpler course stays unless another leaves this much less: one per cent of the ripple's power, 20 dB
-// below it, or a twentieth.
+// A simpler course is kept unless the residual of another is smaller by this: one per cent of the ripple's
+// power, 20 dB below it, or a twentieth.
 constexpr double worth_it = 1.05, not_worth_it = 0.01;
 constexpr std::array courses = {Course::nothing, Course::constant, Course::by_direction, Course::by_speed,
                                 Course::local};
@@ -182,8 +182,8 @@ struct Sum {
 
 // Speeds in quarter octaves, two directions; what a window takes from another falls with their distance.
 constexpr int bins = 160;
-constexpr int most_bins_apart = 6;                        // by hand
-constexpr double bins_an_octave = 4.0, reach_bins = 1.5;  // by hand
+constexpr int most_bins_apart = 6;                        // chosen, not derived
+constexpr double bins_an_octave = 4.0, reach_bins = 1.5;  // chosen, not derived
 
 int speed_bin(double speed_turns_s) {
     const double octave = portable::log2(std::max(std::abs(speed_turns_s), 1e-6)) + 20.0;
@@ -323,9 +323,9 @@ std::string_view course_name(Course course) {
     return "";
 }
 
-// What a held-out window shows is the ripple and what else there is at that frequency. A course that knew the
-// ripple exactly would leave that background; how much it leaves beyond it is its own error. A window's own
-// amplitude errs by the background.
+// A held-out window shows the ripple and any other torque at that frequency. The residual of a course that
+// knew the ripple exactly would be that background; the excess over it is the course's own error. A window's
+// own amplitude errs by the background.
 CourseScore choose_course(std::vector<RippleWindow>& windows, std::size_t order) {
     const OrderCourse data(windows, order);
     double power = 0.0, background = 0.0;

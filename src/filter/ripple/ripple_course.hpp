@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// How a ripple's amplitude runs along a log: decided by what windows that were held out say.
+// The course of a ripple's amplitude along a log, selected by cross-validation over windows.
 
 #include <complex>
 #include <cstddef>
@@ -12,7 +12,7 @@
 
 namespace ripplenotch {
 
-// Ripple of each order in every few motor turns of a log, by least squares beside a smooth torque.
+// Ripple of each order in every few motor turns of a log, by least squares along with a smooth torque.
 
 /// Where a sample stands: motor angle, and how far the motor has turned since the log began, back and forth
 /// added up. A gap in time puts the two sides far apart.
@@ -35,7 +35,7 @@ struct RippleWindow {
     double middle = 0.0;         ///< MotorPath::travelled
     double length = 0.0;         ///< in motor turns
     double speed_turns_s = 0.0;  ///< signed mean speed of the motor
-    double variance = 0.0;       ///< of each part of each amplitude, by the fit's own residual
+    double variance = 0.0;       ///< variance of each part of each amplitude, by the fit's own residual
     std::vector<std::complex<double>> amplitudes;
     /// Per order: mean square of what the same fit finds half an order to its sides, where no ripple is.
     std::vector<double> background;
@@ -68,7 +68,7 @@ class RippleWindows {
     std::vector<double> orders_;
     double rate_hz_;
     RippleWindowRule rule_;
-    std::vector<double> turns_, torque_nm_;  ///< of the window under way; turns from its first row
+    std::vector<double> turns_, torque_nm_;  ///< samples of the current window; turns from its first row
     double first_turns_ = 0.0, first_travelled_ = 0.0, furthest_ = 0.0;
     std::vector<RippleWindow> windows_;
 };
@@ -82,11 +82,11 @@ struct CourseScore {
     double error = 1.0;  ///< power that the course is wrong by, over that of the ripple
 };
 
-/// Tries every course on one order. Each window is foretold from the others, and what is left of its
-/// amplitude beyond the background, weighted by how well it is known, is the course's error; that of `local`,
-/// which takes the window's own amplitude, is the background. The least wins; a simpler one does unless it is
-/// worse by 5 % and by 1 % of the ripple's power. Afterwards `amplitudes[order]` of every window holds what
-/// the winner takes it to be.
+/// Tries every course on one order. Each window is predicted from the others, and the residual of its
+/// amplitude beyond the background, weighted by its precision, is the course's error; that of `local`, which
+/// takes the window's own amplitude, is the background. The least wins; a simpler one does unless it is worse
+/// by 5 % and by 1 % of the ripple's power. Afterwards `amplitudes[order]` of every window holds the estimate
+/// of the selected course.
 [[nodiscard]] CourseScore choose_course(std::vector<RippleWindow>& windows, std::size_t order);
 
 }  // namespace ripplenotch

@@ -15,10 +15,10 @@ namespace ripplenotch {
 struct RippleModel {
     std::vector<double> orders;
     double step_s = 0.0;
-    double bandwidth_rad_s = 0.0;  ///< of the torque: where its spectrum sinks below the noise
-    double memory_turns = 0.0;     ///< of the motor, over which an amplitude may change
+    double bandwidth_rad_s = 0.0;  ///< bandwidth of the torque: where its spectrum sinks below the noise
+    double memory_turns = 0.0;     ///< turns of the motor over which an amplitude may change
     double jump = 0.0;          ///< surprise, in its own deviations, beyond which the torque jumped; 0: never
-    double return_turns = 0.0;  ///< of the motor, over which amplitudes are forgotten towards 0; 0: never
+    double return_turns = 0.0;  ///< turns of the motor over which amplitudes decay towards 0; 0: never
 
     [[nodiscard]] std::size_t states() const { return 2 + 2 * orders.size(); }
     /// What the torque's second derivative adds in one step: variances of torque and rate, and their
@@ -38,16 +38,16 @@ struct RippleModel {
 
 /// What is known of an order at the start.
 struct AmplitudePrior {
-    double cosine = 0.0, sine = 0.0;  ///< of ripple = cosine cos(n theta) + sine sin(n theta)
-    double deviation = 0.0;           ///< of each
+    double cosine = 0.0, sine = 0.0;  ///< amplitudes in ripple = cosine cos(n theta) + sine sin(n theta)
+    double deviation = 0.0;           ///< standard deviation of each
 };
 
 class GainSchedule;
 
-/// The filter. With its exact gain, worked out at every sample: m = 2 + 2 orders, about 1.5 m^2 + 6 m
-/// multiplications and additions a sample beside a cosine and a sine per order. With a schedule of settled
-/// gains, which must outlive it: about 6 m, and a logarithm; nothing is then known of how well the state is
-/// known.
+/// The filter. With its exact gain, computed at every sample: m = 2 + 2 orders, about 1.5 m^2 + 6 m
+/// multiplications and additions a sample, and a cosine and a sine per order. With a schedule of settled
+/// gains, which must outlive it: about 6 m, and a logarithm; the covariance of the state is then not
+/// available.
 class RippleKalman {
   public:
     RippleKalman(RippleModel model, std::vector<AmplitudePrior> priors,
@@ -61,7 +61,7 @@ class RippleKalman {
     double next(double measured, double motor_turns, double step_turns);
 
     [[nodiscard]] double torque() const noexcept { return x_[0]; }
-    /// Of an order: cosine and sine amplitude, and the variance of both together.
+    /// The amplitude of an order: cosine and sine part, and the variance of both together.
     [[nodiscard]] AmplitudePrior amplitude(std::size_t order) const noexcept;
     /// From now on the amplitudes are what they are beyond these, and the caller subtracts them.
     void count_from(std::size_t order, double cosine, double sine) noexcept;
@@ -84,7 +84,7 @@ class RippleKalman {
     RippleModel::TorqueNoise torque_noise_;
     std::vector<double> x_, p_, h_, ph_;  ///< p_ is m by m, row by row; ph_ the gain times `scale`
     double surprise_ = 0.0;          ///< what the last sample was off, times what ph_ has to be scaled by
-    double settled_variance_ = 0.0;  ///< of the last measurement, by the schedule
+    double settled_variance_ = 0.0;  ///< variance of the last measurement, by the schedule
 };
 
 /// The model at one constant speed in the frame that turns with the motor: torque, rate, then for each order
@@ -96,7 +96,7 @@ struct RippleRotation {
 [[nodiscard]] RippleRotation ripple_rotation(const RippleModel& model, double step_turns);
 
 /// Gain at one constant speed once settled, in the frame that turns with the motor of ripple_rotation. Empty
-/// where ripple and torque cannot be told apart (at standstill).
+/// where ripple and torque cannot be distinguished (at standstill).
 [[nodiscard]] std::vector<double> settled_gain(const RippleModel& model, double step_turns);
 
 // The settled Kalman filter at one speed, written as second-order sections, so that delay and attenuation can
@@ -104,7 +104,7 @@ struct RippleRotation {
 
 /// From the measured torque to the torque estimate, or to the measured torque less the ripple estimate. Gain
 /// 1 at 0 Hz. `gain` is in the frame of ripple_rotation; empty at standstill, where ripple and torque cannot
-/// be told apart and the amplitudes stand still.
+/// be distinguished and the amplitudes do not change.
 [[nodiscard]] Cascade settled_cascade(const RippleModel& model, double step_turns, std::vector<double> gain,
                                       bool minus_ripple);
 

@@ -11,8 +11,8 @@ namespace ripplenotch {
 
 namespace {
 
-constexpr double slow_turns = 0.002;      ///< of the motor in a sample
-constexpr double judged_samples = 100.0;  ///< over which trembling is judged
+constexpr double slow_turns = 0.002;      ///< turns of the motor in a sample
+constexpr double judged_samples = 100.0;  ///< averaging length for the test of position noise
 constexpr double fewest_judged = 6.0;     ///< before which the velocity is taken while slow
 constexpr double still_turns = 1e-5;      ///< trembling that is none
 constexpr double pull_turns = 2e-5;       ///< with which a trembling position at rest still pulls
@@ -48,8 +48,8 @@ void MotorAngle::next(double velocity_deg_s, const double* position_deg, double 
 }
 
 // Variance of the position about where the motor is, in motor turns squared. White noise of a position shows
-// in what it does beside the velocity as a covariance of minus its variance from sample to sample; noise of
-// the velocity does not. A position in steps of q stands and jumps, q v in the mean square at the speed v.
+// in its difference from the velocity as a covariance of minus its variance from sample to sample; noise of
+// the velocity does not. A position in steps of q stands and jumps, with mean square q v at the speed v.
 double MotorAngle::trembling() const noexcept {
     const double steps = slow_speed_ > 0.0 ? excess_ / slow_speed_ : 0.0;
     const double of_steps = excess_ > 0.0 ? std::min(steps * steps / 12.0, 10.0 * excess_) : 0.0;
@@ -75,7 +75,7 @@ double MotorAngle::follow(double by_velocity_deg, double by_position_deg) noexce
     if (turned < slow_turns && judged_ < fewest_judged) {
         moved = by_velocity_deg;
     } else if (trembles > still_turns * still_turns) {
-        // The velocity is trusted to half of what it says: clocks jitter by as much.
+        // The velocity is trusted to half of its value: clocks jitter by as much.
         const double sure = 0.25 * turned * turned + pull_turns * pull_turns;
         moved = by_velocity_deg + sure / (sure + trembles) * (ahead_deg_ - by_velocity_deg);
     }

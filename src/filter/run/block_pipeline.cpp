@@ -36,8 +36,8 @@ class Door {
     std::size_t next_ = 0;
 };
 
-/// What the workers share. Each takes a block and does all its steps; only at the doors does it wait for
-/// others, so no more blocks are on their way than there are workers.
+/// State shared by the workers. Each takes a block and does all its steps; only at the entry to a step does
+/// it wait for others, so no more blocks are in progress than there are workers.
 class Convoy {
   public:
     explicit Convoy(const BlockSteps& steps) : steps_(steps) {}

@@ -18,7 +18,7 @@ namespace ripplenotch {
 struct BlockItem {
     RowBlock block;
     std::vector<std::vector<double>> torque_nm;  ///< filtered, by joint
-    std::string room;                            ///< of the writer
+    std::string room;                            ///< buffer of the writer
     std::string_view bytes;                      ///< to be written
     bool accepted = false;                       ///< came parsed and accepted
     std::exception_ptr error;

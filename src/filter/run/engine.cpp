@@ -22,7 +22,7 @@ namespace ripplenotch {
 
 namespace {
 
-// Internal to the filter room: blocks of rows, one after another, through the filters of their joints.
+// Internal to the filter module: blocks of rows, one after another, through the filters of their joints.
 
 /// The state of one pass over a log.
 class StreamPass {

@@ -15,7 +15,7 @@
 
 namespace ripplenotch {
 
-// What happens to the filters' memories when the supervisor puts another candidate in force.
+// What happens to the filters' memories when the supervisor activates another candidate.
 
 /// Output at the sample of a change, and what it would have been without the change.
 struct Change {
@@ -41,7 +41,7 @@ struct Candidates {
     explicit Candidates(std::span<const Band> bands);
 
     std::vector<Cascade> cascades;
-    std::size_t sections = 0;  ///< of each cascade
+    std::size_t sections = 0;  ///< sections of each cascade
     std::vector<int> same_as;  ///< lowest candidate with equal coefficients
 
     [[nodiscard]] bool same(int a, int b) const noexcept;
@@ -95,7 +95,7 @@ class OneCascade : public Transition {
     virtual void run_through(std::span<const Section> sections, std::span<State> states,
                              std::span<const double> torque_nm, double origin_nm, std::span<double> out) = 0;
     [[nodiscard]] virtual double one_step(const Section& section, State& state, double signal) const = 0;
-    /// While no filter is in force there is no past worth keeping: its outputs were never made.
+    /// While no filter is active there is no state to keep: its outputs were never computed.
     [[nodiscard]] virtual bool begins_again(int before, int /*now*/) const { return before == no_candidate; }
 
   private:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // As parallel, but the output moves from the old candidate to the new one linearly over a stated time. A
-// change during a blend starts a new blend from whatever mixture is in force.
+// change during a blend starts a new blend from the current mixture.
 
 #include <algorithm>
 #include <utility>
@@ -37,7 +37,7 @@ class Crossfade final : public Transition {
 
     Change change(int candidate, double torque_nm) override {
         bank_.run({&torque_nm, 1});
-        // The mixture in force, as of the sample before, becomes the start of the new blend.
+        // The current mixture, as of the sample before, becomes the start of the new blend.
         std::vector<Share> mixed;
         double rest = 1.0;
         for (const Share& share : leaving_) {
@@ -66,7 +66,7 @@ class Crossfade final : public Transition {
         return static_cast<double>(step_) / static_cast<double>(blend_samples_);
     }
 
-    // Differences from the candidate in force are added, so that equal candidates give exactly its output.
+    // Differences from the active candidate are added, so that equal candidates give exactly its output.
     double mixture(std::size_t sample, double torque_nm) {
         const auto output = [&](int candidate) {
             return candidate == no_candidate ? torque_nm : bank_.output(candidate, sample);

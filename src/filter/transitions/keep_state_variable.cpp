@@ -34,7 +34,7 @@ Section section_of(const Biquad& f) {
 double advance(const Section& f, BandPassState& s, double x) noexcept {
     const double low_now = s.s2, band_now = s.s1;
     static_cast<void>(step(f.tuning, s, x));
-    // step() leaves 2 v - s in each integrator.
+    // step() sets each integrator to 2 v - s.
     const double v1 = 0.5 * (s.s1 + band_now), v2 = 0.5 * (s.s2 + low_now);
     return f.high * x + f.band * v1 + f.low * v2;
 }

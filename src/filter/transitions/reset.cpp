@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// One cascade that starts again at every change, as if the present torque had been there for ever. Simple
+// One cascade that is re-initialized at every change in the steady state of the present torque. Simple
 // firmware does this; every change lets the ripple of that moment through and then decays.
 
 #include "filter/kernels/bank_sections.hpp"
