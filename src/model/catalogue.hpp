@@ -34,13 +34,13 @@ class Carriers {
     std::size_t next_ = 0;
 };
 
-// What a speed with noise says about the direction of motion, its starts and its stops, sample by sample. Two
+// Detectors of the direction of motion, its starts and its stops from a noisy speed, sample by sample. Two
 // thresholds each, so that noise about one of them does not count as motion.
 
 /// The direction in which the joint last clearly moved: -1, 1, or 0 before it first did.
 class HeldDirection {
   public:
-    static constexpr double clear_deg_s = 0.5;  // by hand
+    static constexpr double clear_deg_s = 0.5;  // chosen, not derived
     int update(double velocity_deg_s) {
         if (std::abs(velocity_deg_s) > clear_deg_s) held_ = velocity_deg_s > 0.0 ? 1 : -1;
         return held_;
@@ -53,7 +53,7 @@ class HeldDirection {
 /// Starts and stops. A log may begin in motion; that is no start.
 class Movement {
   public:
-    // By hand: apart, so that noise does not start it again.
+    // Chosen, not derived: apart, so that noise does not start it again.
     static constexpr double start_deg_s = 1.0, stop_deg_s = 0.5;
     /// At a start the direction, 1 or -1; at a stop the direction before it, negated; else 0.
     double kick(double velocity_deg_s) {

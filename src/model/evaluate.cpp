@@ -82,7 +82,7 @@ void add_joint_torque(const Model& model, const Situation& situation, std::span<
 }
 
 // A model along a motion: motion effects first, then ripple gains, then the sum of torques, then the chain of
-// sensor and converter. docs/decisions/0005-sides.md says why in this order.
+// sensor and converter. docs/decisions/0005-sides.md gives the reasons for this order.
 
 std::vector<double> evaluate(const Model& model, const Motion& logged, std::span<const double> noise_nm,
                              Chance chance) {

@@ -39,16 +39,16 @@ void refuse_missing_values(const Model& model);
 /// Torque of what bears load; nothing when no effect asks for it.
 [[nodiscard]] std::vector<double> load_nm(const Model& model, const Situation& situation);
 
-/// Of a ripple term of the order given; empty when nothing changes the model's ripple.
+/// The gain of a ripple term of the given order; empty when nothing changes the model's ripple.
 [[nodiscard]] Gain gain_of(const Model& model, const Situation& situation, double order);
 
-/// Of this term; empty when it is no ripple.
+/// The gain of this term; empty when it is no ripple.
 [[nodiscard]] Gain gain_for(const Model& model, const Term& term, const Situation& situation);
 
 /// Adds the torque of one joint effect.
 void add_torque(const Term& term, const Situation& situation, const Gain& gain, std::span<double> torque_nm);
 
-// Cosines of an angle at every sample, in rooms that stay in the first cache.
+// Cosines of an angle at every sample, in blocks that stay in the first-level cache.
 
 /// use(k, cosine of angle_deg(k)) for each sample k.
 template <class AngleDeg, class Use>

@@ -30,16 +30,16 @@ struct Prediction::State {
     std::optional<Motion> changed;
     GearRatio ratio;
     std::vector<double> load, joint_nm, torque_nm;
-    std::map<std::size_t, std::vector<double>> own_nm;  ///< of terms that were asked for
+    std::map<std::size_t, std::vector<double>> own_nm;  ///< torque of each term that was requested
     std::map<double, Gain> gains;
     std::map<std::size_t, Phasor> phasors;
-    std::map<double, Gain> rest;  ///< of the gains, without the change at rest_place
+    std::map<double, Gain> rest;  ///< the gains without the change at rest_place
     std::size_t rest_place = 0;
     bool load_is_used = false, sum_is_linear = true;
     Carriers* carriers;
-    std::vector<double> plain_nm;  ///< of the joint terms that are no ripple, once they were asked for
+    std::vector<double> plain_nm;  ///< torque of the joint terms that are no ripple, once requested
     bool is_ripple_anew = false;   ///< all but its ripple was taken over
-    std::size_t changes = 0;       ///< of the ripple
+    std::size_t changes = 0;       ///< number of terms that change the ripple
     std::size_t applied = 0;
 
     State(Model given, const Motion& motion, Carriers* kept)
@@ -141,7 +141,7 @@ struct Prediction::State {
         add_torque(term, around, with_gain, torque);
     }
 
-    // Of a joint term of this model, as it is.
+    // The torque of a joint term of this model, as it is.
     const std::vector<double>& own(std::size_t place) {
         auto [entry, is_new] = own_nm.try_emplace(place);
         if (!is_new) return entry->second;

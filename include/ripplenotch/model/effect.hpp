@@ -27,22 +27,22 @@ struct Motion {
     [[nodiscard]] std::size_t size() const { return time_s.size(); }
 };
 
-/// What becomes of a parameter that a model leaves out.
+/// How a parameter is treated that a model leaves out.
 enum class LeftOut {
     fitted,   ///< it is estimated from a log; until then the model cannot be simulated
-    refused,  ///< it says which line is meant, and a fit does not search for lines: it must be stated
-    assumed,  ///< `start` is taken: a log hardly tells it
+    refused,  ///< it names the line, and a fit does not search for lines: it must be stated
+    assumed,  ///< `start` is assumed: a log hardly determines it
 };
 
-/// What a log itself says about where a search for a parameter may begin, beside Parameter::tried.
+/// Where in a log the search for a parameter may begin, in addition to Parameter::tried.
 enum class Hint {
     none,
     ripple_orders,  ///< at the orders of the model's own ripple terms
     tones,          ///< at the strongest lines of the residual against time, in hertz
     delay,          ///< where the torques of a log and of its simulation agree best
     gear_ratios,    ///< where the gear ratio would put the model's ripple on lines of the log
-    both_ways,      ///< of `tried`, cycles of which the log passes a fair part in both directions
-    change_times,   ///< when inertia and gravity change in the residual, in s from the first sample
+    both_ways,     ///< at values of `tried`, if the log passes a fair part of their cycles in both directions
+    change_times,  ///< when inertia and gravity change in the residual, in s from the first sample
 };
 
 /// One number of an effect. Aggregate, so that tables read as data.
@@ -80,9 +80,9 @@ enum class Side {
 /// What an effect's torque is mainly a function of: where it is looked for, and what can pass for it.
 enum class Domain { time, position, speed, order, frequency };
 
-/// Another cause that leaves nearly the same residual, and what tells the two apart.
+/// Another cause that leaves nearly the same residual, and how the two are distinguished.
 struct LookAlike {
-    std::string_view name;     ///< of an effect; or words, when it is not in the catalogue
+    std::string_view name;     ///< name of an effect; or a description, when it is not in the catalogue
     std::string_view when;     ///< the logs in which they look alike
     std::string_view told_by;  ///< the experiment that would decide
 };
@@ -92,7 +92,8 @@ struct Situation {
     const Motion& motion;
     GearRatio ratio;
     std::span<const double> load_nm = {};  ///< torque of the effects that bear load; for those that use it
-    std::span<const std::complex<double>> ripple_gain = {};  ///< of the term in hand; empty: 1 everywhere
+    /// Gain of the current term; empty: 1 everywhere.
+    std::span<const std::complex<double>> ripple_gain = {};
 };
 
 /// The two parameters, in polar form, whose Cartesian form (size * cos phase, size * sin phase) the torque is
@@ -109,7 +110,7 @@ struct Effect {
     std::string_view name;      ///< kebab-case, stable
     std::string_view summary;   ///< one line
     std::string_view equation;  ///< with the parameters' names, q position in deg, v speed in deg/s
-    std::string_view symptom;   ///< what a model without it leaves in the residual
+    std::string_view symptom;   ///< the residual of a model without it
     std::span<const LookAlike> look_alikes;
     std::string_view source;  ///< who described it
     Side side = Side::joint;
@@ -151,8 +152,8 @@ struct Effect {
     /// ripple terms it concerns has to be multiplied for the torque to be the same.
     double (*restate)(double from_deg_s, std::span<double> values) = nullptr;
 
-    /// converter, beside apply: whether a log shows this effect, and where. Every one has it: no fit sees
-    /// what a converter did.
+    /// converter, in addition to apply: whether a log shows this effect, and where. Every one has it: a fit
+    /// cannot determine the effects of a converter.
     std::optional<DetectedFault> (*detect)(const LoggedTorque& log, const FaultRules& rules) = nullptr;
 };
 

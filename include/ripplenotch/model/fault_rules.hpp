@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// By what limits an effect of the converter is told from a torque that looks like it.
+// Limits by which an effect of the converter is distinguished from a torque that resembles it.
 
 #include <cstddef>
 

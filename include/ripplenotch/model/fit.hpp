@@ -16,8 +16,8 @@
 
 namespace ripplenotch {
 
-// What an effect of the converter has to say about a log: whether it took part in it, and which samples it
-// spoiled. No model of the joint is needed for that.
+// Detection of a converter effect in a log: whether it is present, and which samples it invalidates. No model
+// of the joint is needed for that.
 
 /// A log as Effect::detect sees it. Spans have motion.size() entries.
 struct LoggedTorque {
@@ -30,14 +30,15 @@ struct LoggedTorque {
 };
 
 struct DetectedFault {
-    std::vector<double> values;  ///< of the effect's parameters, in their order; bounds are not looked at
+    std::vector<double> values;  ///< values of the effect's parameters, in their order; bounds are ignored
     std::vector<std::size_t> spoiled;  ///< samples that do not hold the joint's torque, rising
     std::string words;                 ///< what was seen, for people
     double bends_nm = 0.0;  ///< steps so coarse that they bend whatever is in the torque; 0: there are none
 };
 
-/// Which signal a stream of noise belongs to. Each has a stream of its own, so that adding noise to one
-/// signal leaves the noise of another as it was. The numbers are part of what a seed means: never change one.
+/// The signal to which a noise stream belongs. Each has a stream of its own, so that adding noise to one
+/// signal leaves the noise of another unchanged. The numbers are part of the definition of a seed: never
+/// change one.
 enum class NoiseChannel : std::uint64_t { torque = 1, velocity = 2, spikes = 3, dropout = 4 };
 
 /// Normally distributed numbers that are the same on every machine: mt19937_64 (specified by the standard)
@@ -79,7 +80,7 @@ class Weighing;
 struct FittedValue {
     std::size_t term = 0, parameter = 0;  ///< places in the model
     double value = 0.0;
-    std::optional<double> standard_error;  ///< empty: the log does not tell this value
+    std::optional<double> standard_error;  ///< empty: the log does not determine this value
     std::optional<Interval> ci95;          ///< empty with it; may reach beyond the parameter's bounds
     bool at_bound = false;                 ///< the best value within the bounds is a bound
 };
@@ -87,7 +88,7 @@ struct FittedValue {
 struct Fit {
     Model model;                      ///< with every value that can be fitted
     std::vector<FittedValue> values;  ///< in the order of terms and parameters
-    double residual_rms_nm = 0.0;     ///< of the samples used, after whitening
+    double residual_rms_nm = 0.0;     ///< rms residual of the samples used, after whitening
     std::size_t samples = 0;          ///< used
     int iterations = 0;
     std::size_t applied = 0;  ///< how often an effect was run along the motion: what the fit has cost
@@ -102,7 +103,7 @@ struct FitOptions {
     /// Samples to leave out, 0 for those; torque_nm.size() entries or none. The p samples after each of them
     /// are left out as well.
     std::span<const unsigned char> use = {};
-    int most_iterations = 50;  ///< by hand
+    int most_iterations = 50;  ///< chosen, not derived
     /// Improvement of the sum of squares at which the search ends, relative.
     double settled = 1e-9;
     /// Samples in a stretch of the log, for errors that look at how the residual pulls in each stretch: what
@@ -119,7 +120,7 @@ struct FitOptions {
 /// Estimates the values that `model` leaves out (LeftOut::fitted) so that the sum of squares of `torque_nm`
 /// less predict_nm is least. Values that the torque is linear in are solved for; the others are searched by
 /// Levenberg and Marquardt's method from their first guess, within their bounds, so that the nearest minimum
-/// is found and not the deepest. `torque_nm` has motion.size() entries. Values of chance effects stay
+/// is found and not the deepest. `torque_nm` has motion.size() entries. Values of random effects remain
 /// unstated. Throws UsageError: a value has to be stated (LeftOut::refused), or there are fewer samples than
 /// values.
 [[nodiscard]] Fit fit(const Model& model, const Motion& motion, std::span<const double> torque_nm,

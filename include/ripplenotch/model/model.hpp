@@ -16,20 +16,20 @@
 namespace ripplenotch {
 
 // A part of a model that the user states and that is never searched: the torque of an arm's rigid bodies, or
-// of the user's own simulation. Unlike an effect it has columns of the whole log, and values that nobody asks
-// for one by one.
+// the torque of the user's own simulation. Unlike an effect it has columns over the whole log, and values
+// that are not queried one by one.
 
 /// Deviation of a value that is stated: so small that nothing moves it.
 inline constexpr double stated_deviation = 1e-9;
 
 /// Columns whose values are fitted together with everything else.
 struct GivenTerm {
-    std::string name;  ///< "arm", "simulated"; "nuisance": stated beside one of them, and nobody's name
+    std::string name;  ///< "arm", "simulated"; "nuisance": fitted with one of them, not reported as a finding
     /// One column a value: the torque in newton-metres that one unit of the value brings, an entry per row of
     /// the log.
     std::vector<std::vector<double>> torque_nm;
-    /// What is known of each value before the log: drawn towards `mean` as by a measurement with this
-    /// standard deviation, in the value's own unit. A deviation of infinity leaves it free.
+    /// Prior of each value: drawn towards `mean` as by a measurement with this standard deviation, in the
+    /// value's own unit. A deviation of infinity leaves it free.
     std::vector<double> mean, deviation;
 };
 
@@ -50,7 +50,7 @@ struct Term {
 /// std::bad_optional_access where neither is there.
 [[nodiscard]] std::vector<double> values_of(const Term& term);
 
-/// The side on which this term acts: its effect's, or the sensor's where Effect::whole says so.
+/// The side on which this term acts: its effect's, or the sensor's if Effect::whole applies.
 [[nodiscard]] Side side_of(const Term& term);
 
 /// Effects in the order of the document. They act side by side (see Side), not in the order of this list;

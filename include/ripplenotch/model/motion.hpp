@@ -27,12 +27,13 @@ inline constexpr Seconds default_smoothing{0.05};
 ///   component of frequency f keeps its velocity within 1 % and its acceleration within 2 % as long as
 ///   f * smoothing < 0.4; within smoothing / 2 of the ends the cubic leans to one side. Below 5 samples the
 ///   5 nearest are taken, so that a smoothing of 0 keeps as much as can be differentiated.
-/// * a logged position is fitted with the velocity, as its integral, each sample weighed by the noise that
-///   its fourth differences tell, as long as the two tell the same motion: a fifth of the differences
-///   between the two speeds may exceed 1.5 times what noise lets expect. Otherwise the velocity counts alone.
-/// * where the speed cannot be told from zero (4.5 standard deviations of its noise, two encoder steps a
-///   window, 0.5 deg/s at most) for three smoothing windows or more, the joint rests: speed and acceleration
-///   are 0 there.
+/// * a logged position is fitted with the velocity, as its integral, each sample weighted by the noise
+///   estimated from its fourth differences, as long as the two show the same motion: a fifth of the
+///   differences between the two speeds may exceed 1.5 times the value expected from noise. Otherwise the
+///   velocity is used alone.
+/// * where the speed cannot be distinguished from zero (4.5 standard deviations of its noise, two encoder
+///   steps a window, 0.5 deg/s at most) for three smoothing windows or more, the joint is at standstill:
+///   speed and acceleration are 0 there.
 /// * position is the log's, or else the integral of the logged velocity by the trapezoidal rule, from 0,
 ///   which gives a component of frequency f too small by (2 pi f / sample_rate)^2 / 12 of it.
 /// Throws DataError: fewer than 5 samples, or times that do not increase.

@@ -32,9 +32,9 @@ class Prediction {
     /// predict_nm with term `place` replaced by `term`, of the same effect, less torque_nm().
     [[nodiscard]] std::vector<double> changed(std::size_t place, const Term& term) const;
 
-    /// Of the model with the term appended, but for rounding. A term that changes ripple alone (a change of
-    /// the ripple, another gear ratio) costs the ripple anew; any other a whole prediction. The motion and
-    /// the carriers have to outlive it as well.
+    /// The prediction of the model with the term appended, except for rounding. For a term that changes
+    /// ripple alone (a change of the ripple, another gear ratio) only the ripple is recomputed; for any other
+    /// the whole prediction. The motion and the carriers have to outlive it as well.
     [[nodiscard]] Prediction with(const Term& term) const;
     /// Made by with(), and every joint term that is no ripple has the very torque that it had before.
     [[nodiscard]] bool has_only_ripple_anew() const;

@@ -27,8 +27,8 @@ struct SetupFault {
     std::string statement;  ///< a sentence without its full stop
     std::string option;     ///< that would repair it, "scale=-1"; empty where none does
     double factor = 1.0;    ///< by which the series of the simulation has to be multiplied, where that is it
-    /// Shares of the variance that simulation or arm explain of blocks that nothing was fitted to: as things
-    /// are, and with the fault repaired. Below 0 where the simulation leaves more than there was.
+    /// Shares of the variance that simulation or arm explain in held-out blocks: as things are, and with the
+    /// fault repaired. Below 0 where the residual of the simulation exceeds the torque itself.
     double explained_before = 0.0, explained_after = 0.0;
     std::size_t blocks_improved = 0, blocks = 0;
 };

@@ -101,7 +101,8 @@ class Runs {
         return rules_.held_turns * *high;
     }
 
-    // A torque that stays on a step by itself leaves it for the next one; what was held catches up at once.
+    // A torque that stays on a quantization step by itself moves to the next one; a held sample catches up at
+    // once.
     [[nodiscard]] bool jumps_at(std::size_t end) const {
         if (log_.step_nm == 0.0) return true;
         return end < log_.torque_nm.size() &&

@@ -35,7 +35,7 @@ void apply(const Situation& situation, std::span<const double> values, std::span
     // Within one direction the state depends on the angle gone since the reversal alone, so that noise on the
     // position does not ratchet it along.
     std::vector<signed char> direction(torque_nm.size());
-    std::vector<double> left(torque_nm.size());  // of what the last reversal found
+    std::vector<double> left(torque_nm.size());  // remaining share of the state at the last reversal
     HeldDirection direction_now;
     double reversal_deg = 0.0;
     for (std::size_t k = 0; k < torque_nm.size(); ++k) {

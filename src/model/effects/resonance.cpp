@@ -14,8 +14,8 @@ namespace {
 // Places at which a screening of a log begins.
 constexpr double tried_frequencies[] = {8.0,  11.0, 15.0, 19.0, 23.0, 27.0, 31.0,  36.0,  41.0,
                                         47.0, 53.0, 60.0, 68.0, 77.0, 90.0, 110.0, 150.0, 220.0};
-constexpr double tried_dampings[] = {0.06, 0.2, 0.6};  // by hand: weak, middling, strong
-// What passes: a log does not say whether its angle is the motor's.
+constexpr double tried_dampings[] = {0.06, 0.2, 0.6};  // chosen, not derived: weak, middling, strong
+// What the resonance acts on: a log does not show whether its angle is the motor's.
 constexpr double ripple_or_whole[] = {0.0, 1.0};
 
 constexpr Parameter parameters[] = {

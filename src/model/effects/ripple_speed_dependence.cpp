@@ -36,8 +36,8 @@ constexpr Parameter parameters[] = {
      .upper = 1e5,
      .left_out = LeftOut::assumed},
 };
-constexpr std::size_t from_place = 3;         // of from_deg_s in the list above
-constexpr double slowest_from_deg_s = 0.001;  // by hand: slower is rest
+constexpr std::size_t from_place = 3;         // index of from_deg_s in the list above
+constexpr double slowest_from_deg_s = 0.001;  // chosen, not derived: slower is standstill
 
 constexpr LookAlike look_alikes[] = {
     {"resonance", "its frequency is above the fastest ripple",

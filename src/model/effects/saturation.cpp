@@ -41,8 +41,9 @@ std::size_t longest_hold(std::span<const double> torque_nm, double low_nm, doubl
     return longest;
 }
 
-// Of samples at an end those that a recorder which holds others so long has not made of one. Where it holds
-// by chance, each further sample is less likely by the same factor: none is held twice as long as all others.
+// Number of samples at an end of the range, without those that the recorder only repeats (it holds up to
+// `longest` samples elsewhere). Where it holds by chance, each further sample is less likely by the same
+// factor: none is held twice as long as all others.
 std::size_t counted_once(std::span<const std::size_t> at, std::size_t longest) {
     const std::size_t held = longest > 1 ? 2 * longest : 1;
     std::size_t counted = 0;

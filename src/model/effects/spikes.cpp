@@ -51,7 +51,7 @@ class Outliers {
           typical_(typical_about(off_)) {}
 
     [[nodiscard]] bool is_spike(std::size_t k) const {
-        // Beside what is held or clipped the torque jumps by nature.
+        // Next to held or clipped samples the torque jumps by nature.
         const auto spoiled = [&](std::size_t i) { return log_.use[i] == 0; };
         if (spoiled(k - 2) || spoiled(k - 1) || spoiled(k) || spoiled(k + 1) || spoiled(k + 2)) return false;
         if (!stands_out(k)) return false;
@@ -162,7 +162,7 @@ const Effect effects::spikes{
     .domain = Domain::time,
     .parameters = parameters,
     .chance = true,
-    .detect_turn = 1,  // beside what is held or clipped the torque jumps by nature
+    .detect_turn = 1,  // next to held or clipped samples the torque jumps by nature
     .apply = apply,
     .detect = detect,
 };

@@ -10,7 +10,7 @@ namespace {
 
 // Places at which a screening of a log begins.
 constexpr double tried_frequencies[] = {1.5, 2.0, 2.7, 3.6, 4.7, 6.2, 8.0, 10.5, 14.0, 18.0, 24.0};
-constexpr double tried_decays[] = {0.08, 0.25};  // by hand
+constexpr double tried_decays[] = {0.08, 0.25};  // chosen, not derived
 
 constexpr Parameter parameters[] = {
     {.name = "amplitude_nm",

@@ -18,14 +18,15 @@ namespace ripplenotch {
 
 namespace {
 
-// What a fit tells of the errors of its coordinates.
+// Standard errors of the coordinates of a fit.
 
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using Slopes = Eigen::Map<const MatrixXd>;
 
-// A column of the scaled Jacobian with less than this of its length outside the others is not told from them.
+// A column of the scaled Jacobian with less than this of its length outside the others is collinear with
+// them.
 constexpr double not_told = 1e-7;
 
 // By how much each coordinate's error is larger than that of white noise, from the pull of the residual on it
@@ -47,7 +48,7 @@ VectorXd inflation(const Slopes& slopes, const VectorXd& residual, const VectorX
         ++stretches;
     }
     VectorXd factor = VectorXd::Ones(m);
-    // The pulls sum to nothing: fewer stretches than this tell little of their spread.
+    // The pulls sum to zero: fewer stretches than this are insufficient to estimate their spread.
     if (stretches < 3 * m) return factor;
     spread *= static_cast<double>(stretches) / static_cast<double>(stretches - m);
     const MatrixXd robust = inverse * spread * inverse;
@@ -58,13 +59,14 @@ VectorXd inflation(const Slopes& slopes, const VectorXd& residual, const VectorX
     return factor;
 }
 
-// What the slopes of length 1 tell of their coordinates, and which of these it does not tell.
+// Inverse of the normal matrix for slopes of length 1, and the coordinates that are not identifiable from
+// them.
 struct Told {
     MatrixXd inverse;
     VectorXd unknown;
 };
 
-// Small singular values belong to combinations that the log does not tell; what takes part in one is unknown.
+// Small singular values belong to combinations that are not identifiable; every coordinate in one is unknown.
 Told told_by(const MatrixXd& triangle) {
     const Index m = triangle.cols();
     const SingularDirections found = singular_directions(triangle);
@@ -81,9 +83,9 @@ Told told_by(const MatrixXd& triangle) {
     return told;
 }
 
-// Covariance of coordinates whose slopes along the fitted rows stand one after another in `slopes`, each
-// as long as `residual`; row by row, -1 where the log does not tell one of the two. `stretch`: samples in a
-// stretch of the log over which noise remembers, 0 for white noise.
+// Covariance of coordinates whose slopes along the fitted rows stand one after another in `slopes`, each as
+// long as `residual`; row by row, -1 where one of the two is not identifiable. `stretch`: samples in a
+// stretch of the log over which noise is correlated, 0 for white noise.
 std::vector<double> covariance_of(std::span<const double> slopes, std::span<const double> residual,
                                   const Weighing& weighing, std::size_t stretch) {
     const auto rows = static_cast<Index>(residual.size());
@@ -278,7 +280,7 @@ void descend(const Problem& problem, Search& search, bool only_linear, const Fit
     }
 }
 
-// Row by row; -1 for what the log does not tell.
+// Row by row; -1 where a coordinate is not identifiable.
 std::vector<double> covariance_at(const Problem& problem, const Search& search, const Weighing& weighing,
                                   const FitOptions& options) {
     const std::size_t n = problem.coordinates.list().size();

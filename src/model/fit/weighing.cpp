@@ -57,7 +57,8 @@ void Coordinates::add_term(std::size_t i) {
     const Term& term = model_.terms[i];
     const Effect& effect = *term.effect;
     const auto missing = [&](std::size_t p) { return !term.values[p]; };
-    // Load enters some effects as a product or a power, so that what bears it is not linear beside them.
+    // Load enters some effects as a product or a power, so that the torque is not linear in the terms that
+    // bear it.
     const bool load_is_used = std::any_of(model_.terms.begin(), model_.terms.end(),
                                           [](const Term& other) { return other.effect->uses_load; });
     const bool linear_term = effect.side == Side::joint && sum_is_linear_ &&

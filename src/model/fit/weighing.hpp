@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // How a torque along a motion becomes the numbers whose sum of squares is least in a fit: samples that do not
-// count are left out, coloured noise is made white, and what is fitted beside the model is taken away.
+// count are left out, coloured noise is whitened, and nuisance terms are projected out.
 
 #include <cstddef>
 #include <optional>
@@ -19,8 +19,8 @@ enum class CoordinateKind { plain, logarithm, cosine_part, sine_part };
 
 struct Coordinate {
     CoordinateKind kind;
-    std::size_t term, parameter;  ///< of a pair: the size
-    std::size_t phase;            ///< of a pair
+    std::size_t term, parameter;  ///< of a size and phase pair, the size
+    std::size_t phase;            ///< of a size and phase pair, the phase
     double start, lower, upper, step;
     bool linear;  ///< the torque is linear in all such coordinates together
 };
@@ -33,7 +33,7 @@ class Coordinates {
     [[nodiscard]] const std::vector<Coordinate>& list() const { return list_; }
     /// The model with the values of a point put in.
     [[nodiscard]] Model at(const std::vector<double>& point) const;
-    /// Values with their errors. `covariance` is row by row; a negative variance says "not told".
+    /// Values with their errors. `covariance` is row by row; a negative variance means "not identifiable".
     [[nodiscard]] std::vector<FittedValue> values(const std::vector<double>& point,
                                                   const std::vector<double>& covariance) const;
 

@@ -30,7 +30,7 @@ class LocalFit {
     LocalFit(const TraceView& log, MotionNoise noise);
 
     [[nodiscard]] LocalMotion at(std::size_t k, SampleWindow window);
-    /// rms error that the noise leaves in the velocity at sample k, deg/s.
+    /// rms error of the velocity at sample k due to noise, deg/s.
     [[nodiscard]] double velocity_error(std::size_t k, SampleWindow window);
 
     static constexpr std::size_t fewest_samples = 5;  ///< a cubic and one more
@@ -42,8 +42,8 @@ class LocalFit {
     TraceView log_;
     MotionNoise noise_;
     bool uniform_;
-    // Of times that are not uniform: what was found for the sample summed up last. Each window has times of
-    // its own there, and factors would cost more than they are used.
+    // For times that are not uniform: the result for the last sample. Each window has times of its own there,
+    // and factors would cost more than they save.
     std::size_t summed_ = 0, summed_end_ = 0;  // no window ends at 0
     LocalMotion found_{0.0, 0.0};
     // Factors of the samples of the window weighed last, of velocities and of positions, for the velocity and

@@ -18,10 +18,11 @@ namespace {
 // that moves faster than the last of these rests, however noisy the log.
 constexpr double rest_deviations = 4.5, rest_windows = 3.0, most_at_rest_deg_s = 0.5;
 
-// Position and speed tell the same motion when they differ by no more than so many times what their noise
-// lets expect; told from the size that a fifth of the differences exceed, which kinks and gaps do not change.
+// Position and speed show the same motion when they differ by no more than this multiple of the difference
+// expected from noise; estimated from the size that a fifth of the differences exceed, which kinks and gaps
+// do not change.
 constexpr double most_disagreement = 1.5, quantile = 0.8, deviations_at_quantile = 1.2816;
-// A position cannot be trusted more than this beside a speed, or rounding would count.
+// A position cannot be trusted more than this relative to a speed, or rounding would count.
 constexpr double least_noise_steps = 1e-3;
 
 void check(const TraceView& log) {
@@ -101,7 +102,7 @@ bool tell_the_same(const TraceView& log, Seconds smoothing, MotionNoise noise) {
 }
 
 // How far each signal is to be trusted. A position is of use where it has less noise than the speed's
-// integral and is the same motion: neither late nor of another side of the gear.
+// integral and shows the same motion: neither delayed nor from the other side of the gear.
 MotionNoise noise_of(const TraceView& log, Seconds smoothing) {
     const double velocity_deg_s = sample_noise(log.velocity_deg_s);
     const MotionNoise alone{velocity_deg_s > 0.0 ? velocity_deg_s : 1.0, 0.0};
@@ -113,7 +114,7 @@ MotionNoise noise_of(const TraceView& log, Seconds smoothing) {
     return tell_the_same(log, smoothing, both) ? both : alone;
 }
 
-// How much more noise there is on the velocity than its fourth differences tell: noise with a memory.
+// Ratio of the velocity's noise to the estimate from its fourth differences: coloured noise.
 double slower_noise(const TraceView& log, const Motion& motion, MotionNoise noise) {
     double squares = 0.0;
     for (std::size_t k = 0; k < log.size(); ++k) {
@@ -123,7 +124,7 @@ double slower_noise(const TraceView& log, const Motion& motion, MotionNoise nois
     return std::sqrt(squares / static_cast<double>(log.size())) / noise.velocity_deg_s;
 }
 
-// Speeds up to these cannot be told from zero. `error_deg_s`: rms of what noise leaves in each.
+// Speeds up to these cannot be distinguished from zero. `error_deg_s`: rms error of each due to noise.
 std::vector<double> still_speeds(const TraceView& log, Seconds smoothing, const Motion& motion,
                                  std::vector<double> error_deg_s, MotionNoise noise) {
     const bool both = noise.position_deg > 0.0;
@@ -137,8 +138,8 @@ std::vector<double> still_speeds(const TraceView& log, Seconds smoothing, const 
     return error_deg_s;
 }
 
-// Speeds that cannot be told from zero for long enough are a rest: there the joint has neither speed nor
-// acceleration, and noise must not look like a motion to and fro.
+// Speeds that cannot be distinguished from zero for long enough are standstill: there the joint has neither
+// speed nor acceleration, and noise must not look like a motion back and forth.
 void hold_rests(const TraceView& log, Seconds smoothing, const std::vector<double>& still_deg_s,
                 Motion& motion) {
     for (std::size_t first = 0; first < log.size();) {

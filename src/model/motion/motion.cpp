@@ -25,9 +25,9 @@ constexpr double may_be_lost = 1.5, is_gap = 6.0;
 // Fewer lost rows than this part of all are not worth another clock.
 constexpr double worth_it = 1e-3;
 
-// Of steps here and there, which gaps do not change.
+// Median of steps at intervals along the log, which gaps do not change.
 double middle_step_s(std::span<const double> time_s) {
-    constexpr std::size_t looks = 200;  // by hand: bounds the time
+    constexpr std::size_t looks = 200;  // chosen, not derived: bounds the time
     std::vector<double> steps;
     for (std::size_t k = 1; k < time_s.size(); k += std::max<std::size_t>(1, time_s.size() / looks))
         steps.push_back(time_s[k] - time_s[k - 1]);
@@ -44,8 +44,7 @@ std::size_t long_steps(std::span<const double> time_s, double middle_s) {
     return found;
 }
 
-// The clock that the stamps tell together: the mean of the steps that hold one sample; 0 where too few hold
-// more.
+// The clock common to the stamps: the mean of the steps that hold one sample; 0 where too few hold more.
 double single_step_s(std::span<const double> time_s, double middle_s) {
     if (!(static_cast<double>(long_steps(time_s, middle_s)) > worth_it * static_cast<double>(time_s.size())))
         return 0.0;
@@ -59,10 +58,10 @@ double single_step_s(std::span<const double> time_s, double middle_s) {
     return sum_s / single;
 }
 
-// How much later than the first stamp the stamps after it are in the mean, in steps from -0.5 to 0.5: the
-// first may itself be early or late by nearly half a step.
+// Mean delay of the stamps after the first stamp relative to it, in steps from -0.5 to 0.5: the first may
+// itself be early or late by nearly half a step.
 double first_lateness(std::span<const double> time_s, double step_s) {
-    constexpr std::size_t looks = 50;  // by hand: bounds the time
+    constexpr std::size_t looks = 50;  // chosen, not derived: bounds the time
     std::complex<double> sum{0.0, 0.0};
     for (std::size_t k = 0; k < std::min(looks, time_s.size()); ++k) {
         if (k > 0 && time_s[k] - time_s[k - 1] >= is_gap * step_s) break;
@@ -77,7 +76,7 @@ double nearest(double steps) {
 }
 
 std::vector<std::size_t> places_on(std::span<const double> time_s, double step_s) {
-    // Of each stamp how late it is, and how late stamps are here in the mean, in steps.
+    // Delay of each stamp, and its moving average, in steps.
     constexpr double followed = 0.02;
     double late = 0.0, mean_late = first_lateness(time_s, step_s);
     std::vector<std::size_t> places{0};
@@ -118,7 +117,7 @@ double step_over(std::span<const double> time_s, std::span<const std::size_t> pl
 std::vector<std::size_t> places_found(std::span<const double> time_s, double& step_s) {
     step_s = single_step_s(time_s, middle_step_s(time_s));
     if (step_s == 0.0) return {};
-    // Of jittered stamps the longest single steps look like lost rows, so the mean of the others is too
+    // With jittered stamps the longest single steps look like lost rows, so the mean of the others is too
     // short.
     constexpr int passes = 2;
     for (int pass = 0; pass < passes; ++pass) step_s = step_over(time_s, places_on(time_s, step_s), step_s);

@@ -8,9 +8,9 @@ namespace ripplenotch {
 // Logs that lost rows here and there: what looks at the samples before one, a delay or a lag, has to know
 // which of them is missing.
 
-/// Place of each sample on a clock without gaps, in samples from the first: whole numbers that increase.
-/// Empty where no row is missing. Single stamps may be off by nearly half a step: the clock that the stamps
-/// tell together decides. A gap of more than a few samples is none of lost rows and counts as one step, as
+/// Position of each sample on a clock without gaps, in samples from the first: whole numbers that increase.
+/// Empty where no row is missing. Single stamps may be off by nearly half a step: the clock common to all
+/// stamps decides. A gap of more than a few samples does not count as lost rows and is one step, as
 /// everywhere. `step_s` is set to the step of that clock.
 [[nodiscard]] std::vector<std::size_t> places_of_rows(std::span<const double> time_s, double& step_s);
 
@@ -19,7 +19,7 @@ namespace ripplenotch {
 [[nodiscard]] std::vector<double> with_lost_rows(std::span<const double> values,
                                                  std::span<const std::size_t> places);
 
-/// Runs act(values, sample rate in Hz) on a signal along these times as if no row were lost.
+/// Runs act(values, sample rate in Hz) on a signal along these times, with lost rows filled in.
 template <class Act>
 void on_whole_clock(std::span<const double> time_s, double mean_rate_hz, std::span<double> values,
                     const Act& act) {

@@ -24,7 +24,7 @@ constexpr Key keys[] = {
 
 MotionPiece make(const Settings& settings, const std::optional<MotionState>& before) {
     const std::vector<double> speeds = settings.list("speeds");
-    constexpr std::size_t most_waves = 100;  // by hand: bounds the time
+    constexpr std::size_t most_waves = 100;  // chosen, not derived: bounds the time
     if (speeds.size() > most_waves)
         raise<UsageError>("motion fourier: speeds has {} entries, at most {} are taken", speeds.size(),
                           most_waves);

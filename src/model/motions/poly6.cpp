@@ -30,7 +30,7 @@ constexpr Key keys[] = {
 };
 
 struct Shape {
-    double position, velocity, acceleration;  ///< of a move from 0 to 1 in unit time
+    double position, velocity, acceleration;  ///< a move from 0 to 1 in unit time
 };
 
 Shape shape(double u, double asymmetry) {

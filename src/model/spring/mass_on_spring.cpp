@@ -18,7 +18,7 @@ namespace ripplenotch {
 namespace {
 
 /// Samples of the polynomial about a step between two of them.
-constexpr int step_points = 6;  // by hand
+constexpr int step_points = 6;  // chosen, not derived
 
 using StepWeights = std::array<double, step_points>;
 
@@ -28,7 +28,7 @@ double at(std::span<const double> values, std::ptrdiff_t place) {
     return values[static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(place, 0, last))];
 }
 
-constexpr int shift_points = 16;  // by hand
+constexpr int shift_points = 16;  // chosen, not derived
 constexpr int lag_points = step_points;
 
 // Weights of the samples at -(count / 2 - 1), ..., count / 2 for the value at u in [0, 1).
@@ -56,7 +56,7 @@ std::array<double, lag_points> moments(double rate) {
             found[static_cast<std::size_t>(m)] = 1.0 - m / rate * found[static_cast<std::size_t>(m - 1)];
         return found;
     }
-    constexpr int far = 60;  // by hand: where the recurrence begins
+    constexpr int far = 60;  // chosen, not derived: where the recurrence begins
     double moment = rate / (far + 1.0);
     for (int m = far; m > 0; --m) {
         moment = (1.0 - moment) * rate / m;
@@ -157,7 +157,7 @@ namespace {
 // Between two known moves, radians. At damping 2, the most that a spring may have, the first term that is
 // left out is then 1e-15 of the move.
 constexpr double spacing = 0.005;
-constexpr double longest_known = 20.0;  // by hand: bounds the memory
+constexpr double longest_known = 20.0;  // chosen, not derived: bounds the memory
 
 }  // namespace
 
@@ -216,7 +216,7 @@ FreeMove FreeMoves::within(double radians) {
 
 namespace {
 
-// Times are told to a few bits; steps that differ by less than this part of the usual one are one step.
+// Times are accurate to a few bits; steps that differ by less than this share of the usual one are one step.
 constexpr double same_step = 1e-9;
 
 void find_steps(const Motion& motion, TurningDrive& drive) {

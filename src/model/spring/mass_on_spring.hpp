@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// A mass on a damped spring, driven by a turning phasor whose frequency changes: what it makes of the drive
-// is the steady response at the present frequency and what still rings of frequencies before. Beside it the
-// same mass driven by any signal.
+// A mass on a damped spring, driven by a turning phasor whose frequency changes: the response is the steady
+// response at the present frequency and the transients of earlier frequencies. Also the same mass driven by
+// any signal.
 
 #include <array>
 #include <complex>
@@ -42,7 +42,7 @@ struct FreeMove {
 [[nodiscard]] FreeMove free_move(double damping, double radians);
 
 /// Free moves over steps of many lengths, as an uneven clock has them: each from one that is near and known
-/// already, and the first terms of its series for what is left.
+/// already, and the first terms of its series for the difference.
 class FreeMoves {
   public:
     explicit FreeMoves(double damping);
@@ -51,7 +51,7 @@ class FreeMoves {
     [[nodiscard]] FreeMove within(double radians);
 
   private:
-    static constexpr std::size_t terms = 6;    // by spacing (free_move.cpp): what is left out is rounding
+    static constexpr std::size_t terms = 6;    // by spacing (free_move.cpp): the truncation error is rounding
     using Series = std::array<double, terms>;  ///< by power of the radians
     [[nodiscard]] FreeMove shortly(double radians) const;
 
@@ -65,7 +65,7 @@ class FreeMoves {
 struct TurningDrive {
     /// From sample to sample, the first of no meaning but that of `hz`, which is of the first sample.
     std::vector<double> hz;            ///< mean of both samples; negative where the joint turns back
-    std::vector<double> cosine, sine;  ///< of the drive's turn, reversed
+    std::vector<double> cosine, sine;  ///< phasor of the drive's turn, reversed
     std::vector<std::size_t> step;     ///< place in `steps_s`
 
     /// Every length of a step once, the usual one first: a clock writes few. A step that is no step forward
@@ -78,7 +78,7 @@ struct TurningDrive {
 [[nodiscard]] std::shared_ptr<const TurningDrive> turning_drive(const Motion& motion, double cycles_per_deg);
 
 struct Spring {
-    double frequency_hz;  ///< of the undamped mass
+    double frequency_hz;  ///< natural frequency of the undamped mass
     double damping;       ///< ratio; 1 is critical
 };
 
