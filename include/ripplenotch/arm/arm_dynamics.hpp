@@ -11,8 +11,8 @@
 
 namespace ripplenotch {
 
-/// Of each link, in this order: mass (kg); mass times place of its centre x, y, z (kg m); inertia about the
-/// origin of the link's frame xx, xy, xz, yy, yz, zz (kg m^2). All in the link's frame.
+/// The values of each link, in this order: mass (kg); mass times position of its centre x, y, z (kg m);
+/// inertia about the origin of the link's frame xx, xy, xz, yy, yz, zz (kg m^2). All in the link's frame.
 inline constexpr std::size_t values_of_a_link = 10;
 
 /// The torque of one joint that one unit of each value brings: 10 columns a link of the chain, from the base
@@ -28,12 +28,12 @@ inline constexpr std::size_t values_of_a_link = 10;
 [[nodiscard]] std::vector<double> arm_torque(const Chain& chain, std::span<const double> values,
                                              std::span<const Motion> motions, std::size_t joint);
 
-/// How many combinations of its values any motion whatever can tell: of the torque of all joints together,
-/// and of one joint alone.
+/// How many combinations of its values are identifiable by any motion: from the torques of all joints
+/// together, and from those of one joint alone.
 [[nodiscard]] std::size_t arm_values_there(const Chain& chain);
 [[nodiscard]] std::size_t arm_values_there(const Chain& chain, std::size_t joint);
 
-/// Whether an inertia that turns with the motor of this joint alone can be told from the links'.
+/// Whether an inertia that turns with the motor of this joint alone can be distinguished from the links'.
 [[nodiscard]] bool rotor_is_identifiable(const Chain& chain, std::size_t joint);
 
 }  // namespace ripplenotch

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// The values of an arm's links from a log of its joints: all joints at once, with friction beside them, drawn
-// towards 0 by as much as serves a motion that the fit has not seen.
+// The values of an arm's links from a log of its joints: all joints at once, together with friction, drawn
+// towards 0 as far as cross-validation supports it.
 
 #include <array>
 #include <cstddef>
@@ -29,11 +29,11 @@ struct ArmLog {
 /// The joint's motions, smoothed alike. Throws DataError as motion_along does.
 [[nodiscard]] std::vector<Motion> arm_motions(const ArmLog& log, Seconds smoothing);
 
-/// Friction that an arm needs beside it, or it bends to it; nobody named it. Of each joint, in newton-metres
-/// for its unit: constant; side of the motion s = tanh(v / 1.5 deg/s); v in rad/s; s exp(-(v / 8.6
-/// deg/s)^2); |s|; |v|.
+/// Friction as nuisance parameters of an arm fit, without which the arm's values would be biased; not
+/// reported as findings. The terms of each joint, in newton-metres for its unit: constant; side of the motion
+/// s = tanh(v / 1.5 deg/s); v in rad/s; s exp(-(v / 8.6 deg/s)^2); |s|; |v|.
 enum class BesideArm { offset, coulomb, viscous, stribeck, coulomb_by_side, viscous_by_side };
-inline constexpr std::size_t values_beside_arm = 6;  ///< of BesideArm
+inline constexpr std::size_t values_beside_arm = 6;  ///< number of values in BesideArm
 
 struct ArmFitOptions {
     std::vector<bool> use;             ///< rows that count, one entry each; empty: all
@@ -46,23 +46,22 @@ inline constexpr std::array arm_smoothings = {Seconds(0.05), Seconds(0.08), Seco
 
 /// What the fit found of one joint.
 struct ArmJointFit {
-    std::size_t joint = 0;  ///< of the chain
+    std::size_t joint = 0;  ///< index of the joint in the chain
     double rotor_inertia_kgm2 = 0.0;
     std::array<double, values_beside_arm> beside_nm{};  ///< as BesideArm
-    /// rms of what is left of the smoothed torque, and of the torque as logged, on fifths of the rows that
-    /// the fit was made without.
+    /// rms residual of the smoothed torque, and of the torque as logged, on held-out fifths of the rows.
     double smoothed_error_nm = 0.0, error_nm = 0.0;
-    /// What all other joints' torques and the pull say of the links, without this joint: mean, and the
-    /// inverse of the covariance row after row. Its unit of weight: a row every `weighed_rows` is a
+    /// The estimate of the links from all other joints' torques and the pull, without this joint: mean, and
+    /// the inverse of the covariance row after row. Its unit of weight: a row every `weighed_rows` is a
     /// measurement with deviation smoothed_error_nm.
     std::vector<double> mean, precision;
 };
 
 struct ArmFit {
     std::vector<double> values;       ///< ten a link; not unique: the least that give the torque
-    std::vector<double> deviation;    ///< of each value before the log: how far it may go from 0
+    std::vector<double> deviation;    ///< prior deviation of each value from 0
     double pull = 0.0;                ///< towards 0, in units of (5 kg, 0.5 kg m, 0.1 kg m^2) of a 100 Nm arm
-    Seconds smoothing;                ///< of the motion that the arm sees
+    Seconds smoothing;                ///< smoothing of the motion that the arm terms use
     double weighed_rows = 1.0;        ///< rows of the log to one row of the fit
     std::vector<ArmJointFit> joints;  ///< whose torque counted
     std::size_t values_there = 0, values_told = 0;
@@ -74,27 +73,28 @@ struct ArmFit {
 /// is not finite, or fewer than 100 rows count.
 [[nodiscard]] ArmFit fit_arm(const Chain& chain, const ArmLog& log, const ArmFitOptions& options = {});
 
-/// The torque of one joint that was fitted, along this log or another one: arm and rotor,
-/// smoothed over the same window, and what is beside it.
+/// The fitted torque of one joint, along this log or another one: arm and rotor, smoothed over the same
+/// window, and the nuisance terms.
 [[nodiscard]] std::vector<double> fitted_torque(const Chain& chain, const ArmFit& fit, const ArmLog& log,
                                                 std::size_t joint);
 
-// A fitted arm as part of a model: columns that a search leaves alone and fits with everything it tries.
+// A fitted arm as part of a model: known columns, fitted together with every candidate of a search.
 
 /// What is known of the arm before the torque of the joint in hand is looked at.
 enum class ArmKnowledge {
     /// Nothing but the pull: a value a column, its mean 0, its deviation ArmFit::deviation.
     pull,
-    /// What the other joints' torques say, too. Values that they tell together are no longer values of one
-    /// link: a column a combination, with a mean and a deviation of 1 in it.
+    /// Also the information of the other joints' torques. Values that they determine together are no longer
+    /// values of one link: a column a combination, with a mean and a deviation of 1 in it.
     other_joints,
 };
 
 /// Columns for the rows of `log`, those of links before the joint left out, and the rotor's last where it can
-/// be told from them; all smoothed over ArmFit::smoothing. Deviations are for a fit in which each row of the
-/// log is a measurement with deviation `row_noise_nm`: the knowledge weighs there what it weighs in the fit
-/// of the arm. Left out: what the arm left of this joint's torque, spread over the rows that the fit took for
-/// one. `motions`: arm_motions of the log over ArmFit::smoothing, where they are known already.
+/// be distinguished from them; all smoothed over ArmFit::smoothing. Deviations are for a fit in which each
+/// row of the log is a measurement with deviation `row_noise_nm`: the prior has there the weight that it has
+/// in the fit of the arm. `row_noise_nm` left out: the residual of this joint's torque in the arm fit, spread
+/// over the rows that the fit combined into one. `motions`: arm_motions of the log over ArmFit::smoothing,
+/// where they are known already.
 [[nodiscard]] GivenTerm arm_term(const Chain& chain, const ArmFit& fit, const ArmLog& log, std::size_t joint,
                                  ArmKnowledge knowledge = ArmKnowledge::other_joints,
                                  std::optional<double> row_noise_nm = {},
@@ -106,12 +106,12 @@ enum class ArmKnowledge {
 
 struct ArmValues {
     std::vector<double> links;        ///< values_of_a_link each, in the order of arm_columns; not unique
-    double rotor_inertia_kgm2 = 0.0;  ///< of the joint's own rotor, as the joint feels it
+    double rotor_inertia_kgm2 = 0.0;  ///< inertia of the joint's own rotor, reflected to the joint
 
     bool operator==(const ArmValues&) const = default;
 };
 
-/// What is in the torque beside the arm and nobody named: an offset, and friction as BesideArm has it.
+/// Nuisance torques of an arm: an offset, and friction as in BesideArm.
 struct ArmNuisance {
     double offset_nm = 0.0, coulomb_nm = 0.0, viscous_nm_per_deg_s = 0.0, stribeck_nm = 0.0;
 
@@ -121,10 +121,11 @@ struct ArmNuisance {
 
 struct StatedArm {
     Chain chain;
-    std::string joint;                      ///< of the chain: whose torque it is
-    std::vector<std::string> log_joints;    ///< names in a log, in the order of the chain
-    std::optional<ArmValues> values = {};   ///< left out: fitted
-    std::optional<Seconds> smoothing = {};  ///< of the motion that the arm sees; left out: chosen by a fit
+    std::string joint;                     ///< joint of the chain that the torque belongs to
+    std::vector<std::string> log_joints;   ///< names in a log, in the order of the chain
+    std::optional<ArmValues> values = {};  ///< left out: fitted
+    /// Smoothing of the motion that the arm terms use; left out: chosen by a fit.
+    std::optional<Seconds> smoothing = {};
     ArmNuisance nuisance = {};
 
     /// Which joint of the chain is which of a log.
@@ -132,7 +133,7 @@ struct StatedArm {
 };
 
 /// The links that values of arm_term's columns mean, `of_term` in their order. Combinations of values that
-/// the joint's torque does not tell are those that the fit of all joints gave.
+/// are not identifiable from the joint's torque are those of the fit of all joints.
 [[nodiscard]] ArmValues arm_values(const Chain& chain, const ArmFit& fit, std::size_t joint,
                                    std::span<const double> of_term,
                                    ArmKnowledge knowledge = ArmKnowledge::other_joints);
@@ -142,13 +143,13 @@ struct StatedArm {
 [[nodiscard]] std::vector<double> stated_torque(const Chain& chain, const ArmValues& values,
                                                 Seconds smoothing, const ArmLog& log, std::size_t joint);
 
-/// The torque that is beside it, at the speeds of the joint's own log.
+/// The nuisance torque, at the speeds of the joint's own log.
 [[nodiscard]] std::vector<double> nuisance_torque(const Chain& chain, const ArmNuisance& nuisance,
                                                   const TraceView& log, std::size_t joint);
 
 // How far each joint of an arm goes in a log, and whether it can go there.
 
-/// Less than this, and a link's inertia cannot be told from the next one's.
+/// Below this travel, a link's inertia cannot be distinguished from the next one's.
 inline constexpr double least_travel_deg = 5.0;
 
 struct JointTravel {
@@ -162,7 +163,7 @@ struct JointTravel {
 [[nodiscard]] std::vector<JointTravel> arm_travel(const Chain& chain, const ArmLog& log,
                                                   const std::vector<std::string>& log_joints);
 
-/// Why the log tells less of the arm than another one could; or nothing.
+/// Why the log determines fewer values of the arm than another one could; or nothing.
 [[nodiscard]] std::vector<std::string> arm_warnings(const ArmFit& fit,
                                                     const std::vector<JointTravel>& travel);
 

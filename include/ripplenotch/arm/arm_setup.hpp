@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Hypotheses on how an arm and a log of its joints were put together, the delay of its torques, and what
-// there is to say of an arm that a diagnosis was given.
+// Hypotheses on how an arm and a log of its joints were put together, the delay of its torques, and the
+// summary of an arm that a diagnosis uses.
 
 #include <optional>
 #include <string>
@@ -16,9 +16,9 @@ namespace ripplenotch {
 
 /// What a fault of an arm has to show.
 struct ArmSetupLimits {
-    /// Error on fifths left out, geometric mean over the joints, with a hypothesis to that without: half the
-    /// squares. Measured on arms of six joints: gravity mended leaves 0.05 of the error, no other direction
-    /// or sign of a right one less than 1.
+    /// Error on held-out fifths, geometric mean over the joints, with a hypothesis to that without: half the
+    /// squares. Measured on arms of six joints: corrected gravity reduces the error to 0.05, no other
+    /// direction or sign of a right one to less than 1.
     double most_error = 0.7;
     /// Friction that drives a joint counts where its rms is so much of the fit's error on fifths left out:
     /// below, it is what the fit could not explain.
@@ -40,7 +40,7 @@ struct ArmSetupLimits {
 // this is one number for all joints.
 
 struct JointLag {
-    std::size_t joint = 0;  ///< of the chain
+    std::size_t joint = 0;  ///< index of the joint in the chain
     double delay_s = 0.0;
     bool contradicts = false;  ///< the common delay, at 95 % over all joints (studentised deleted residual)
 };
@@ -55,9 +55,10 @@ struct ArmLag {
     [[nodiscard]] bool contradicted_by(std::size_t joint) const;
 };
 
-/// The common delay that leaves least on held-out fifths, and that of each joint; joints that contradict it
-/// do not count in it. `fit`: of this log, as fit_arm made it with these options. Nothing for fewer than two
-/// joints, or where the error of no joint has a minimum. Takes as long as three to nine fits with one window.
+/// The common delay with the smallest residual on held-out fifths, and that of each joint; joints that
+/// contradict it are excluded. `fit`: of this log, as fit_arm made it with these options. Nothing for fewer
+/// than two joints, or where the error of no joint has a minimum. Takes as long as three to nine fits with
+/// one window.
 [[nodiscard]] std::optional<ArmLag> common_lag(const Chain& chain, const ArmLog& log, const ArmFit& fit,
                                                ArmFitOptions options = {});
 
@@ -69,7 +70,7 @@ struct AdvancedLog {
     AdvancedLog(const ArmLog& of, double delay_s);
 };
 
-// What there is to say of an arm that a diagnosis was given.
+// The summary of an arm that a diagnosis uses.
 
 struct ArmAccount {
     std::string source;  ///< "ur10.urdf", "axes zyyzyz"
@@ -83,8 +84,8 @@ struct ArmAccount {
     double pull = 0.0;
     Seconds smoothing;
     double gap_before_nm = 0.0;   ///< rms of the torque about its mean
-    double gap_nm = 0.0;          ///< rms of what arm and friction beside it leave, on fifths left out
-    std::optional<ArmLag> lag;    ///< of the torques of all joints behind their motion
+    double gap_nm = 0.0;          ///< rms residual of arm and friction, on held-out fifths
+    std::optional<ArmLag> lag;    ///< lag of the torques of all joints behind their motion
     bool lag_is_applied = false;  ///< known to the model as a delay of that size
     std::vector<std::string> warnings, notes;
 };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// How the joints of an arm follow one another, from its base to its tip. No masses: those are told by a log
-// (arm_fit.hpp).
+// How the joints of an arm follow one another, from its base to its tip. No masses: those are determined from
+// a log (arm_fit.hpp).
 
 #include <array>
 #include <cstddef>
@@ -45,7 +45,7 @@ struct Chain {
     [[nodiscard]] std::optional<std::size_t> find(std::string_view name) const;
 };
 
-inline constexpr std::size_t most_chain_joints = 20;  ///< by hand
+inline constexpr std::size_t most_chain_joints = 20;  ///< chosen, not derived
 /// Lengths beyond are no arm's: a file in millimetres is read as metres.
 inline constexpr double longest_link_m = 100.0;
 

@@ -50,7 +50,7 @@ inline Frame times(const Frame& a, const Frame& b) {
 
 /// By an angle about a unit vector.
 [[nodiscard]] Rotation about(const Vector3& axis, double angle_deg);
-/// Of a quaternion w x y z of any length above 0.
+/// Rotation of a quaternion w x y z of any length above 0.
 [[nodiscard]] Rotation of_quaternion(const std::array<double, 4>& wxyz);
 
 }  // namespace ripplenotch::space

@@ -123,14 +123,14 @@ std::span<const JointState> ArmStates::at(std::size_t k) {
 
 namespace {
 
-// How much of an arm its torque can tell at all: the rank of its rows at random places (Gautier and Khalil,
-// Direct calculation of minimum set of inertial parameters, 1990, tell it by hand; Gautier, Numerical
+// The number of identifiable values of an arm: the rank of its rows at random positions (Gautier and Khalil,
+// Direct calculation of minimum set of inertial parameters, 1990, in closed form; Gautier, Numerical
 // calculation of the base inertial parameters, 1991, by QR as here).
 
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-// Of the factor's diagonal: what is below this part of the largest is rounding.
+// Diagonal entries of the factor below this share of the largest are rounding.
 constexpr double of_the_largest = 1e-9;
 
 class RandomPlaces {
@@ -147,7 +147,7 @@ class RandomPlaces {
     }
 
   private:
-    // From -1 to 1. The standard says every bit of the engine, and nothing of how its distributions use them.
+    // From -1 to 1. The standard defines every bit of the engine, but not how its distributions use them.
     double uniform() { return 0x1p-52 * static_cast<double>(bits_() >> 11) - 1.0; }
     std::mt19937_64 bits_{1};
     std::vector<JointState> states_;

@@ -29,7 +29,7 @@ class ArmRow {
         Vector3 origin_m, axis;
         bool turns;
         Rotation still, by_sine, by_versed;  ///< rotation = still + sine by_sine + (1 - cosine) by_versed
-        // At the sample in hand, in the link's own frame but for `rotation` and `place_m`, which are in that
+        // At the current sample, in the link's own frame except `rotation` and `place_m`, which are in that
         // of the link before.
         Rotation rotation = space::unturned;
         Vector3 place_m{}, speed{}, acceleration{}, lift{};

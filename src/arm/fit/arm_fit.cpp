@@ -20,7 +20,7 @@ namespace ripplenotch {
 
 namespace {
 
-// Wide enough for a log's speed to be told from zero, narrow enough for friction to turn at once.
+// Wide enough for a log's speed to be distinguished from zero, narrow enough for friction to reverse at once.
 constexpr double width_deg_s = 1.5, stribeck_deg_s = 8.6;
 
 }  // namespace
@@ -61,7 +61,7 @@ namespace {
 
 using Eigen::Index;
 
-// Rows as logged only judge a window; more of them would not judge it better.
+// Rows as logged only serve to select a window; more of them would not improve the selection.
 constexpr std::size_t most_judging_rows = 6000;
 constexpr double rows_a_window = 4.0;
 // A short log has more rows a window, so that each fifth has some.
@@ -217,9 +217,9 @@ using Eigen::VectorXd;
 constexpr std::array pulls = {1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1, 1.0, 1e1, 1e2, 1e3, 1e4};
 // A stronger pull, or a longer window, has to be better by this part.
 constexpr double clearly = 0.002;
-constexpr double first_noise = 0.03;    // of a torque, before anything has been fitted
-constexpr double full_size_nm = 100.0;  // by hand
-// Of the eigenvalues of what the log says about the links, each scaled alone.
+constexpr double first_noise = 0.03;    // noise of a torque before anything has been fitted
+constexpr double full_size_nm = 100.0;  // chosen, not derived
+// Share of the largest eigenvalue of the links' information matrix, each value scaled alone.
 constexpr double identifiable_share = 1e-6;
 
 struct Found {
@@ -292,7 +292,7 @@ Trial tried(const Chain& chain, const CheckedLog& log, Seconds smoothing, std::o
     return trial;
 }
 
-// How many combinations of the links' values the log tells.
+// How many combinations of the links' values are identifiable from the log.
 std::size_t told(const ArmRidge& ridge, const Found& found, std::size_t links) {
     MatrixXd said = MatrixXd::Zero(static_cast<Index>(links), static_cast<Index>(links));
     for (std::size_t j = 0; j < found.noise_nm.size(); ++j)
@@ -306,7 +306,7 @@ std::size_t told(const ArmRidge& ridge, const Found& found, std::size_t links) {
     return static_cast<std::size_t>((sizes.array() > identifiable_share * sizes.maxCoeff()).count());
 }
 
-// What all joints but one say of the links.
+// The information of all joints but one on the links.
 void add_others(const ArmRidge& ridge, const Found& found, std::size_t links, ArmFit& fit) {
     std::vector<ArmRidge::Word> words;
     for (std::size_t j = 0; j < fit.joints.size(); ++j) words.push_back(ridge.word_of(j, found.noise_nm[j]));

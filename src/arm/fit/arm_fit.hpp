@@ -11,10 +11,10 @@ namespace ripplenotch {
 
 // What one unit of every value brings to the torque of one joint, sample by sample: links, rotor, friction.
 
-/// The values of a joint's own: rotor, then what is beside the arm.
+/// The number of values of a joint: rotor, then the nuisance parameters.
 inline constexpr std::size_t values_of_a_joint = 1 + values_beside_arm;
 
-/// Shapes of friction beside an arm at one speed: the side of the motion, and how much of it is slow.
+/// Friction terms of an arm fit at one speed: the side of the motion, and the low-speed (Stribeck) part.
 struct FrictionBeside {
     double side, stribeck;
 };
@@ -45,7 +45,7 @@ class ArmRows {
 // A log as sums of squares, a fifth at a time: all that least squares need, whatever the pull.
 
 struct FoldSums {
-    Eigen::MatrixXd rows_by_rows;  ///< of the columns with each other
+    Eigen::MatrixXd rows_by_rows;  ///< products of the columns with each other
     Eigen::VectorXd rows_by_torque;
     double torque_by_torque = 0.0;
     double count = 0.0;
@@ -53,12 +53,12 @@ struct FoldSums {
     explicit FoldSums(std::size_t values = 0);
     void add(std::span<const double> row, double torque_nm);
     void add(const FoldSums& other);
-    void complete();  ///< the half that add(row) leaves out
+    void complete();  ///< fills in the half that add(row) leaves out
     /// Sum of squares that these values leave.
     [[nodiscard]] double left(const Eigen::VectorXd& values) const;
 };
 
-inline constexpr std::size_t arm_folds = 5;  // by hand: parts that are left out in turn
+inline constexpr std::size_t arm_folds = 5;  // chosen, not derived: parts that are left out in turn
 
 struct JointSums {
     std::size_t joint = 0;

@@ -8,8 +8,8 @@
 
 namespace ripplenotch {
 
-/// With precision = L L', z = L' x has the covariance 1. Scaled, or the smallest inertia would be lost beside
-/// the largest mass: z = L' S x, where the scaled precision is S^-1 precision S^-1.
+/// With precision = L L', z = L' x has the covariance 1. Scaled, or the smallest inertia would be lost in
+/// rounding relative to the largest mass: z = L' S x, where the scaled precision is S^-1 precision S^-1.
 class Parting {
   public:
     explicit Parting(const ArmJointFit& own) : own_(own) {

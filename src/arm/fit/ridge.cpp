@@ -112,7 +112,7 @@ ArmRidge::Word ArmRidge::word_of(std::size_t j, double noise_nm) const {
     }
     const MatrixXd between = weight * sums.rows_by_rows.topRightCorner(links, own);
     const DefiniteFactors factored(of_own);
-    // What the joint's own values take up of a link's leaves rounding that may be below 0.
+    // Projecting out the joint's own values can leave rounding below 0 for a link's values.
     MatrixXd of_links = weight * sums.rows_by_rows.topLeftCorner(links, links);
     of_links.diagonal() *= 1.0 + rounding_of_definite;
     return {of_links - between * factored.solve(MatrixXd(between.transpose())),

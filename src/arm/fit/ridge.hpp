@@ -25,13 +25,13 @@ class ArmRidge {
         [[nodiscard]] double smoothed_mean() const;  ///< geometric
         [[nodiscard]] double logged_mean() const;
     };
-    /// What each fifth leaves that the values were found without.
+    /// The residual of each fifth with the values fitted without it.
     [[nodiscard]] Errors left_out_errors(double pull, std::span<const double> noise_nm) const;
 
     /// How far a value may go from 0 at a pull of 1.
     [[nodiscard]] double reach(std::size_t value) const;
-    /// What joint `j` (in the order given) says of the links, its own values being free: the matrix and the
-    /// right side of its normal equations.
+    /// The information of joint `j` (in the order given) on the links, its own values being free: the matrix
+    /// and the right side of its normal equations.
     struct Word {
         Eigen::MatrixXd matrix;
         Eigen::VectorXd side;
@@ -45,7 +45,7 @@ class ArmRidge {
     std::vector<std::vector<FoldSums>> without_;  ///< by joint and fold left out; the last: none
 };
 
-/// What rounding leaves of a matrix whose diagonal is 1.
+/// Rounding error of a matrix whose diagonal is 1.
 inline constexpr double rounding_of_definite = 1e-12;
 
 }  // namespace ripplenotch

@@ -22,7 +22,7 @@ class Kernels {
         : time_s_(time_s), half_s_(0.5 * window.value()) {}
 
     [[nodiscard]] std::size_t first() const { return first_; }
-    /// Of the values from first() on; empty where the value stays as it is.
+    /// The kernel for the values from first() on; empty where the value stays as it is.
     std::span<const double> about(std::size_t k) {
         while (time_s_[k] - time_s_[first_] > half_s_) ++first_;
         while (end_ < time_s_.size() && time_s_[end_] - time_s_[k] <= half_s_) ++end_;
@@ -95,7 +95,8 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-constexpr double most_rotor_kgm2 = 1.0;  // by hand: more than a rotor has, seen through its gear
+// Chosen, not derived: more than a rotor has, reflected through its gear.
+constexpr double most_rotor_kgm2 = 1.0;
 
 // Columns and knowledge of values that do not belong together.
 void part(const ArmJointFit& own, std::vector<std::vector<double>>& columns, GivenTerm& term) {
@@ -160,8 +161,8 @@ GivenTerm arm_term(const Chain& chain, const ArmFit& fit, const ArmLog& log, std
 
 namespace {
 
-constexpr std::size_t fewest_rows = 100;  // by hand
-constexpr double rest_s = 1.0;            // by hand: of a rest, what is used
+constexpr std::size_t fewest_rows = 100;  // chosen, not derived
+constexpr double rest_s = 1.0;            // chosen, not derived: the part of a standstill that is used
 
 void check_sizes(const Chain& chain, const ArmLog& log, const ArmFitOptions& options) {
     if (log.joints.size() != chain.size() || log.has_torque.size() != chain.size())

@@ -30,8 +30,8 @@ struct CheckedLog {
     std::vector<bool> use;            ///< by row
 };
 
-/// Throws as fit_arm. Rows in which nothing moves for more than a second count only in that second: they say
-/// one thing over and over.
+/// Throws as fit_arm. Rows in which nothing moves for more than a second count only in that second: the
+/// others carry no further information.
 [[nodiscard]] CheckedLog check_log(const Chain& chain, const ArmLog& log, const ArmFitOptions& options);
 
 }  // namespace ripplenotch

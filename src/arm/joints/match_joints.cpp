@@ -22,7 +22,7 @@ namespace {
 
 // A position this many times beyond the limits in this part of the rows is in another unit.
 constexpr double times_beyond = 3.0, part_of_rows = 0.1;
-constexpr double few_told = 0.5;  // of the values that there are
+constexpr double few_told = 0.5;  // share of the identifiable values
 
 void check_unit(const ChainJoint& joint, const TraceView& log, const std::string& name) {
     if (!joint.limits || joint.kind == JointKind::prismatic) return;

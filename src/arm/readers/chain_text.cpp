@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Tables of Denavit and Hartenberg, words of axes, and the bytes of any description.
+// Denavit-Hartenberg tables, axis strings, and the bytes of any description.
 
 #include "arm/readers/chain_text.hpp"
 
@@ -23,7 +23,7 @@ namespace {
 
 using Way = std::vector<std::size_t>;
 
-// Walks to the base once per link, and stops at links whose way is known: linear in the size of the tree.
+// Follows each link to the base, and stops at links whose path is known: linear in the size of the tree.
 std::vector<std::size_t> depths(const std::string& source, const LinkTree& tree) {
     constexpr std::size_t unknown = 0, walking = static_cast<std::size_t>(-1);  // no depth
     std::vector<std::size_t> depth(tree.names.size(), unknown);
@@ -91,7 +91,7 @@ Way moving_ends(const LinkTree& tree) {
 
 std::vector<std::size_t> way_to_tip(const std::string& source, const LinkTree& tree,
                                     const std::optional<std::string>& tip, const char* what) {
-    (void)depths(source, tree);  // refuses circles, in which the walks below would not end
+    (void)depths(source, tree);  // refuses circles, in which the loops below would not end
     if (tip) {
         const auto found = std::find(tree.names.begin(), tree.names.end(), *tip);
         if (found != tree.names.end())
@@ -106,7 +106,7 @@ std::vector<std::size_t> way_to_tip(const std::string& source, const LinkTree& t
 
 namespace {
 
-constexpr std::size_t most_bytes = std::size_t{16} << 20;  // by hand
+constexpr std::size_t most_bytes = std::size_t{16} << 20;  // chosen, not derived
 constexpr std::array<std::string_view, 5> known = {"a_m", "alpha_deg", "d_m", "theta_deg", "joint"};
 constexpr std::size_t numeric = 4;  // d, a, alpha, theta
 

@@ -23,10 +23,10 @@ namespace {
 
 // The five ways in which MuJoCo's description writes an orientation.
 
-/// What <compiler> says for the whole document.
+/// The settings of <compiler> for the whole document.
 struct MjcfAngles {
-    double unit_deg = 1.0;         ///< of an angle in the file
-    std::string sequence = "xyz";  ///< of three Euler angles; capitals turn about axes that stay
+    double unit_deg = 1.0;         ///< unit of an angle in the file
+    std::string sequence = "xyz";  ///< sequence of three Euler angles; capitals turn about axes that stay
 };
 
 using namespace space;
@@ -103,7 +103,7 @@ Rotation mjcf_turn(const std::string& source, const XmlElement& element, const M
 
 using Attributes = std::vector<std::pair<std::string, std::string>>;
 
-// What <default> says of joints, by class; each class begins with what its parent says.
+// The settings of <default> for joints, by class; each class inherits from its parent.
 class JointDefaults {
   public:
     void read(const XmlElement& element, const Attributes& inherited) {
@@ -115,7 +115,7 @@ class JointDefaults {
             if (child.name == "default") read(child, own);
     }
 
-    // The joint with what its class says of it and it does not say itself.
+    // The joint with the settings of its class that it does not contain itself.
     [[nodiscard]] XmlElement completed(XmlElement joint, const std::string& class_around) const {
         const auto found = classes_.find(joint.attribute("class").value_or(class_around));
         if (found != classes_.end()) joint.attributes = with(found->second, joint.attributes);

@@ -9,7 +9,7 @@
 namespace ripplenotch {
 namespace {
 
-// What a joint leaves of its squares, as a parabola over the delay.
+// The residual squares of a joint, as a parabola over the delay.
 struct Parabola {
     std::size_t joint;
     double lowest_s, weight;  ///< one over the variance, by the noise alone
@@ -44,7 +44,7 @@ std::vector<Parabola> parabolas_about(const Chain& chain, const ArmLog& log, con
 }
 
 struct Mean {
-    double value = 0.0, weight = 0.0, excess = 1.0;  ///< of the variance over that by noise (Birge ratio)
+    double value = 0.0, weight = 0.0, excess = 1.0;  ///< ratio of the variance to that by noise (Birge ratio)
     std::size_t joints = 0;
 };
 

@@ -29,7 +29,7 @@ struct ScaledLog {
     }
 };
 
-// Torque and power of the friction beside the arm, along the log.
+// Torque and power of the arm fit's friction, along the log.
 struct FrictionOfJoint {
     double rms_nm = 0.0, power = 0.0;
 };
@@ -127,7 +127,7 @@ std::optional<Factors> one_more_changed(const Chain& chain, const ArmLog& log, c
     return best;
 }
 
-// Whether most joints of those whose friction is told have one that drives them.
+// Whether friction drives most of the joints whose friction is identifiable.
 bool friction_drives(const Chain& chain, const ArmLog& log, const ArmFit& fit, const ArmSetupLimits& limits) {
     int drives = 0, resists = 0;
     for (const ArmJointFit& joint : fit.joints) {
