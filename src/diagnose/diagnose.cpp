@@ -32,8 +32,8 @@ struct Searched {
     std::vector<RefusedCandidate> refused;
 };
 
-// The noise beside the last model, and that model fitted with it. What the search could not explain before is
-// in the noise that it began with.
+// The noise with the last model, and that model fitted with it. The first noise estimate contains what the
+// search could not explain at that time.
 void measure_noise(Searched& found, const Case& c, Work& work, const DiagnosisRules& rules) {
     found.noise = noise_floor(c, found.last.stated, found.last.open, rules, found.ground);
     auto kept = found.bench ? found.bench->kept() : std::make_shared<KeptScreenings>();
@@ -130,8 +130,8 @@ std::vector<Undecidable> undecidable(const ModelBench& bench, const Candidate& m
     return told;
 }
 
-// A disturbance of short duration bends everything that is fitted to it. It is told, set aside, and the rest
-// of the log is diagnosed without it.
+// A disturbance of short duration biases everything that is fitted to it. It is reported and excluded, and
+// the rest of the log is diagnosed without it.
 Searched search_rest(Case& part, const Model& model, std::span<const Effect* const> effects,
                      Diagnosis& diagnosis, std::vector<ResidualRegion>& aside, Work& work,
                      const DiagnosisRules& rules) {
@@ -155,7 +155,8 @@ Searched search_rest(Case& part, const Model& model, std::span<const Effect* con
     return found;
 }
 
-// What was found may tell more of the angle than the model as given did; then the search goes on from there.
+// The findings may determine the angle better than the model as given did; then the search continues from
+// there.
 Searched search_straight(Case& whole, Case& part, const Model& model, std::span<const Effect* const> effects,
                          Diagnosis& diagnosis, std::vector<ResidualRegion>& aside, Work& work,
                          const DiagnosisRules& rules, bool has_position) {
@@ -239,8 +240,8 @@ class DiagnosisRun {
           more_work_(rules_.search.most_evaluations) {
         take_known_torque(whole_, options.given);
         whole_.expected_delay = options.expected_delay;
-        // What the known torque brings into the model: friction that a simulation has too much of is below 0,
-        // and the zero of the sensor is fitted beside an arm's weight, which it looks like.
+        // Terms that the known torque adds to the model: excess friction in a simulation is below 0, and the
+        // zero of the sensor is fitted along with an arm's weight, which resembles it.
         model_.beside_simulation = is_given(options.given, "simulated");
         fits_offset_ = is_given(options.given, "arm") && !has_offset(model_);
         if (fits_offset_) model_.terms.push_back(parse_term("offset"));
@@ -311,13 +312,13 @@ class DiagnosisRun {
     }
 
   private:
-    // Which findings hold, and what is left then.
+    // Which findings hold, and the residual then.
     [[nodiscard]] Candidate tested(Searched& found, bool other_begins_anywhere) {
         const ModelBench& bench = *found.bench;
         std::size_t own = model_.terms.size();
         result_.unexplained = residual_regions(bench, found.last.stated);
-        // A known torque is never right everywhere, and what it leaves says nothing against a finding that
-        // stands out of it. A model of the joint alone should leave nothing.
+        // A known torque is never right everywhere, and its residual is no reason against a finding that
+        // rises above it. A model of the joint alone should leave nothing.
         const bool may_be_left = bench.noise_holds_residual() && !options_.given.empty();
         const auto unexplained = may_be_left ? std::vector<ResidualRegion>()
                                  : first_bench_ != nullptr
@@ -341,7 +342,7 @@ class DiagnosisRun {
         if (other_ && other_begins_anywhere) put_in_place(*other_, last.stated, bench.rules().recording);
         if (other_)
             last = reproduced(bench, found.last, last, result_.baseline, *other_, own, result_.rounds);
-        // What a doubtful finding would explain is not explained.
+        // The torque of an uncertain finding counts as unexplained.
         if (last.stated.terms.size() < found.last.stated.terms.size())
             result_.unexplained = residual_regions(bench, last.stated);
         return last;
@@ -367,12 +368,12 @@ class DiagnosisRun {
         }
     }
 
-    // Without the offset beside an arm where that is a finding.
+    // Without the offset of an arm fit where that is a finding.
     [[nodiscard]] Candidate as_given(const ModelBench& bench, const Candidate& first) const {
         return own_ < first.stated.terms.size() ? without_term(bench, first, own_) : first;
     }
 
-    // The offset beside an arm is a finding where it passes the same tests, and is larger than what is left.
+    // The offset of an arm fit is a finding where it passes the same tests, and is larger than the residual.
     void promote_offset(Searched& found, std::size_t& own, const std::vector<ResidualRegion>& unexplained) {
         const ModelBench& bench = *found.bench;
         Candidate model = found.last;
@@ -417,7 +418,7 @@ class DiagnosisRun {
         }
     }
 
-    // A fault of the set-up leaves torques that effects of the joint may imitate.
+    // A fault of the set-up causes torques that effects of the joint may imitate.
     void doubt_for_setup() {
         if (options_.setup.empty()) return;
         for (Finding& finding : result_.rounds) {
@@ -427,7 +428,7 @@ class DiagnosisRun {
         }
     }
 
-    // What doubtful findings would explain beside a known torque is that torque's error, and is left.
+    // With a known torque, uncertain findings may explain that torque's error, which counts as residual.
     [[nodiscard]] bool is_residual_left(const Searched& found, const Candidate& last) const {
         if (!options_.setup.empty()) return false;
         const bool doubtful = std::any_of(result_.rounds.begin(), result_.rounds.end(), is_doubtful);
@@ -483,10 +484,10 @@ class DiagnosisRun {
         }
     }
 
-    // The gaps; they are what `simulate` leaves with the same model and log.
+    // The gaps; they equal those of `simulate` with the same model and log.
     void measure(const Candidate& last, const NoiseFloor& noise, const Case& all) {
         const KnownValues known = fit_known_values(all, last.stated, noise);
-        // What is uncertain of an arm is fitted beside the model as given, too.
+        // The uncertain values of an arm are also fitted with the model as given.
         const KnownValues alone = fit_known_values(all, result_.baseline, noise);
         result_.given = reported_values(options_.given, known);
         given_alone_ = reported_values(options_.given, alone);
@@ -512,8 +513,8 @@ class DiagnosisRun {
         result_.beside_given_nm = residual_nm(improved, {result_.model.gear_ratio, {}});
     }
 
-    // No model is an improvement that leaves more than the one given, here or on the validation log: the
-    // newest finding goes, and where there is none the values as they were. True when something was
+    // A model whose residual exceeds that of the one given, here or on the validation log, is no improvement:
+    // the newest finding is withdrawn, or with none the previous values are restored. True when something was
     // withdrawn.
     [[nodiscard]] bool withdraw_for_gap(const ModelBench& bench, Candidate& last) {
         const DiagnosisGap& gap = result_.gap;
@@ -549,7 +550,7 @@ class DiagnosisRun {
     Case whole_;
     std::optional<Case> other_;
     Work work_, more_work_;
-    std::vector<GivenValue> given_alone_;      ///< fitted beside the model as given
+    std::vector<GivenValue> given_alone_;      ///< fitted with the model as given
     const ModelBench* first_bench_ = nullptr;  ///< with the noise of the first search, during the second
     std::size_t own_ = 0;                      ///< terms of the model as given
     std::vector<std::string> without_;

@@ -18,8 +18,8 @@ namespace ripplenotch {
 /// `of_position`: whether effects that need the joint's position take part.
 [[nodiscard]] std::vector<const Effect*> examined(std::span<const std::string> without, bool of_position);
 
-/// Faults whose effect is not to be tried have no name: what they spoiled is unexplained. They are taken out
-/// of `faults`.
+/// Faults whose effect is not among those tried have no name: the samples that they invalidate are
+/// unexplained. They are removed from `faults`.
 [[nodiscard]] std::vector<ResidualRegion> nameless(std::vector<Fault>& faults,
                                                    std::span<const std::string> without);
 

@@ -26,8 +26,9 @@ enum class FindingStatus {
     tentative,         ///< something unexplained touches what it is a function of
     immaterial,        ///< there, and too small to matter
     shape_correction,  ///< mends the form of a larger finding
-    unidentifiable,    ///< two large torques that cancel, or a size within its error: this log cannot tell
-    not_reproduced,    ///< the validation log is predicted worse with it than without
+    /// Two large torques that cancel, or a size within its error: not determined by this log.
+    unidentifiable,
+    not_reproduced,  ///< the validation log is predicted worse with it than without
 };
 [[nodiscard]] std::string_view status_name(FindingStatus status);
 
@@ -36,7 +37,8 @@ enum class DiagnosisVerdict {
     explained,         ///< it does with what was named, or with either side of a tie
     partly_explained,  ///< something was named, something is left
     unexplained,       ///< something is left that no effect explains
-    undecided,         ///< another reading of the log, as possible, says something else: see Diagnosis::doubt
+    /// Another interpretation of the log, equally possible, gives another result: see Diagnosis::doubt.
+    undecided,
 };
 [[nodiscard]] std::string_view verdict_name(DiagnosisVerdict verdict);
 
@@ -61,7 +63,7 @@ struct Place {
     Direction direction = Direction::at_rest_too;
 };
 
-/// Why a finding is believed.
+/// The evidence for a finding.
 struct Evidence {
     double gain =
         0.0;  ///< fall of the sum of squares in units of the noise's variance, without it less with it
@@ -73,7 +75,7 @@ struct Evidence {
     double raw_gain = 0.0;     ///< fall of the sum of squares of the residual, Nm^2
     double elsewhere = 0.0;    ///< part of the gain that is left without its best stretch of the log
     double t = 0.0;            ///< the gain in units of its own standard error over blocks of the log
-    std::size_t blocks = 0, blocks_positive = 0;  ///< of a second or more; those in which there is a gain
+    std::size_t blocks = 0, blocks_positive = 0;  ///< of a second or more; those with a reduction of squares
 };
 
 struct RivalFinding {
@@ -83,7 +85,8 @@ struct RivalFinding {
 
 /// A rule that was asked about a finding or a candidate.
 struct Decision {
-    std::string rule;  ///< of diagnosis_rules(); "price": what chance might gain, given all that was tried
+    /// From diagnosis_rules(); "price": reduction of squares expected by chance, given all that was tried.
+    std::string rule;
     double number = 0.0, limit = 0.0;
     std::string unit;
     bool against = false;  ///< it spoke against; the last that did decided
@@ -99,14 +102,14 @@ struct RefusedCandidate {
 struct Finding {
     Term term;  ///< with its values
     FindingStatus status = FindingStatus::confirmed;
-    std::vector<FittedValue> values;  ///< of its parameters that were fitted
+    std::vector<FittedValue> values;  ///< its fitted parameters
     Place where;
     Evidence evidence;
     std::vector<RivalFinding> alternatives;
     double gap_before_nm = 0.0, gap_after_nm = 0.0;
-    /// rms residual of the validation log, without it and with it beside what is believed.
+    /// rms residual of the validation log, without it and with it, together with all accepted findings.
     std::optional<double> validation_before_nm, validation_after_nm;
-    std::string reason;               ///< of a status other than confirmed, in words
+    std::string reason;               ///< reason of a status other than confirmed, as text
     std::vector<Decision> decisions;  ///< in the order in which the rules were asked
 };
 
@@ -125,7 +128,7 @@ struct ResidualRegion {
     RegionKind kind = RegionKind::time;
     Place where;
     double rms_nm = 0.0;  ///< within the place
-    double part = 0.0;    ///< of the squared residual of the whole log
+    double part = 0.0;    ///< share of the squared residual of the whole log
 };
 
 /// An effect that this log does not let be examined.
@@ -137,7 +140,7 @@ struct Undecidable {
 
 /// A fault of the converter that was seen in the log itself.
 struct Fault {
-    Term term;  ///< of a converter effect
+    Term term;  ///< term of a converter effect
     std::size_t samples = 0;
     std::vector<Span> time_s;
     std::string words;
@@ -150,17 +153,17 @@ struct BandGap {
     double torque_nm = 0.0, beside_given_nm = 0.0, after_nm = 0.0;
 };
 
-/// A finding that the log leaves in doubt and the user takes into the model.
+/// A finding that is uncertain from this log and that the user takes into the model.
 struct AcceptedFinding {
     Term term;                                        ///< with its values, of the last fit
     FindingStatus status = FindingStatus::tentative;  ///< before
-    std::string reason;                               ///< of the doubt
+    std::string reason;                               ///< reason against it
     std::vector<FittedValue> values;
 };
 
 /// A value of a given term.
 struct GivenValue {
-    std::string name;  ///< of the term
+    std::string name;  ///< name of the term
     double value = 0.0;
     std::optional<Interval> ci95;
 };
@@ -168,11 +171,12 @@ struct GivenValue {
 struct DiagnosisGap {
     double before_nm = 0.0, after_nm = 0.0;  ///< rms of measured less predicted torque, samples in order
     double noise_floor_nm = 0.0;
-    std::optional<double> closed_percent;  ///< of the squared gap above the floor; empty when there was none
+    /// Share of the squared gap above the floor that was closed; empty when there was none.
+    std::optional<double> closed_percent;
     std::optional<double> validation_before_nm, validation_after_nm, validation_closed_percent;
 };
 
-/// The angle where a log has no position, as the ripple tells it.
+/// The correction of the angle from the ripple, where a log has no position.
 struct AngleAccount {
     double walk_deg = 0.0;  ///< rms by which the integral of the log's velocity was moved, less its mean
     /// Where the validation log begins, in the angle of the log; empty where both have a position.
@@ -195,7 +199,7 @@ struct Diagnosis {
     DiagnosisVerdict verdict = DiagnosisVerdict::matches;
     Model baseline;  ///< the model as given, with the values that were fitted to it alone
     Model model;     ///< the improved one: with what was found, but for what is tentative or unidentifiable
-    std::vector<FittedValue> values;  ///< of every fitted value of the improved model
+    std::vector<FittedValue> values;  ///< every fitted value of the improved model
     std::vector<Finding> rounds;
     std::vector<RefusedCandidate> refused;
     std::vector<Fault> faults;
@@ -206,15 +210,15 @@ struct Diagnosis {
     std::vector<Undecidable> undecidable;
     DiagnosisGap gap;
     std::vector<GivenValue> given;  ///< values of the given terms, in their order
-    /// Beside given terms: measured less predicted torque of the model as given and of the improved one, an
-    /// entry per row of the log. Empty without given terms: a model's own prediction tells it then.
+    /// With known terms: measured less predicted torque of the model as given and of the improved one, an
+    /// entry per row of the log. Empty without known terms: a model's own prediction gives it then.
     std::vector<double> residual_before_nm, residual_after_nm;
-    std::vector<double> beside_given_nm;  ///< beside given terms: torque less what they bring, as fitted
-    std::vector<BandGap> bands;           ///< beside given terms
+    std::vector<double> beside_given_nm;  ///< with known terms: torque less their contribution, as fitted
+    std::vector<BandGap> bands;           ///< with known terms
     std::vector<AcceptedFinding> accepted;
     std::vector<std::string> not_accepted;  ///< why a name is not, a sentence each
-    std::vector<std::string> next;          ///< what to do where something is in doubt, a sentence each
-    /// Faults of the set-up, which make every name doubtful; the first to repair comes first.
+    std::vector<std::string> next;          ///< what to do where something is uncertain, a sentence each
+    /// Faults of the set-up, which call every name into question; the first to repair comes first.
     std::vector<SetupFault> setup;
     /// How far the log is behind the user's simulation, where their motions show it. The known torque is
     /// shifted by that: it is no effect of the model.
@@ -224,7 +228,7 @@ struct Diagnosis {
         disagreement;  ///< where the model as given and the log disagree, largest first
     std::size_t samples = 0, samples_used = 0;
     std::vector<UnusedRows> unused;                     ///< with those of `samples_used` all samples
-    std::vector<EffectOfUnusedRows> acts_where_unused;  ///< of the effects that are tried
+    std::vector<EffectOfUnusedRows> acts_where_unused;  ///< effects that were tried
     /// Evaluations of a model along the samples searched, and whether the search was ended for their number.
     double evaluations = 0.0;
     bool search_ended = false;
@@ -234,16 +238,16 @@ struct Diagnosis {
     double false_alarm = 0.01;          ///< chance that a log with nothing hidden gets a name, by design
 };
 
-/// Chance in percent that one of the confirmed names is wrong, as counted over simulated logs that ended with
-/// the same verdict. Empty where nothing is named, and of names beside a region, which those logs do not
-/// have.
+/// Probability in percent that one of the confirmed names is wrong, as counted over simulated logs that ended
+/// with the same verdict. Empty where nothing is named, and for names with an unexplained region remaining,
+/// which those logs do not have.
 [[nodiscard]] std::optional<double> wrong_percent(const Diagnosis& diagnosis);
 
 struct DiagnosisOptions {
     Seconds smoothing = default_smoothing;
     std::span<const std::string> without = {};  ///< names of effects that are not tried
-    /// Names of findings that are taken into the model though the log leaves them in doubt; diagnose_in_full
-    /// looks at them.
+    /// Names of findings that are taken into the model although the log leaves them uncertain; used by
+    /// diagnose_in_full.
     std::span<const std::string> accept = {};
     /// Terms that are stated and not searched, a column per value and a row per row of the log; the same of
     /// the validation log, where there is one.
@@ -264,8 +268,8 @@ struct DiagnosisOptions {
                                  const DiagnosisOptions& options = {});
 
 /// diagnose(), then once more with what the user accepts as a part of the model, its values open: gap and
-/// disagreement are those before that. A name that is neither in doubt nor a side of a tie is told in
-/// `not_accepted`. `next` and `bands` are told, too. Throws as diagnose().
+/// disagreement are those before that. A name that is neither uncertain nor a side of a tie is reported in
+/// `not_accepted`. `next` and `bands` are filled in, too. Throws as diagnose().
 [[nodiscard]] Diagnosis diagnose_in_full(const Model& model, const TraceView& log,
                                          const TraceView* validation, const DiagnosisOptions& options = {});
 

@@ -20,14 +20,14 @@ struct MotionLimits {
 void check(const MotionLimits& limits);
 
 struct PlanOptions {
-    Seconds longest{30.0};  ///< by hand
+    Seconds longest{30.0};  ///< chosen, not derived
     std::uint64_t seed = 1;
-    Hertz sample_rate{1000.0};  ///< by hand
+    Hertz sample_rate{1000.0};  ///< chosen, not derived
     Seconds smoothing = default_smoothing;
     DiagnosisRules rules = {};
 };
 
-/// What is to be told from what.
+/// Two effects that a planned motion is to distinguish.
 struct PlanQuestion {
     std::string effect;        ///< a side of a tie, a finding in doubt, or one that has to be found again
     std::string rival;         ///< what imitates it best along the planned motion; empty: all else together
@@ -41,17 +41,18 @@ struct MotionPlan {
     std::vector<std::string> motions;  ///< for make_motion and `simulate --motion`
     Motion motion;                     ///< the same, sampled
     std::vector<PlanQuestion> questions;
-    bool decides =
-        false;  ///< each gain is rules.advice.plan_gain or more, or of what was told half of what it was
+    /// Each gain is rules.advice.plan_gain or more, or half of its previous value where the log determined
+    /// it.
+    bool decides = false;
     [[nodiscard]] Seconds duration() const;
 };
 
 /// The shortest motion of some durations up to the longest along which the least gain of all questions is
 /// enough, or else the longest of most. A gain is that of T-optimal design (Atkinson and Fedorov, Biometrika
-/// 62, 1975): what is left of an effect's torque when all else of the model, an offset and the rival's best
-/// shape have taken up of it what they can, squared, over the noise's variance. Motions are Fourier sums
-/// (Swevers et al., 1997), drawn and improved by the seed: the same on every machine. Empty where the log
-/// left nothing open that a motion of the joint could decide. Throws UsageError of check().
+/// 62, 1975): the residual of an effect's torque after a fit of all else in the model, an offset and the
+/// rival's best form, squared, over the noise's variance. Motions are Fourier sums (Swevers et al., 1997),
+/// drawn and improved by the seed: the same on every machine. Empty where the log left nothing open that a
+/// motion of the joint could decide. Throws UsageError of check().
 [[nodiscard]] std::optional<MotionPlan> plan_motion(const Diagnosis& diagnosis, const TraceView& log,
                                                     const MotionLimits& limits,
                                                     const PlanOptions& options = {});

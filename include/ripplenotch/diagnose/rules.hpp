@@ -11,9 +11,9 @@
 
 namespace ripplenotch {
 
-/// The limits, grouped by the judge that uses them: `rules.doubt.least_elsewhere`. Each line of rules.def is
-/// one: its value, the bounds within which it may be changed, its unit, and why it is there. Numbers that
-/// only say how closely a computation is carried out are not among them.
+/// The limits, grouped by the test that uses them: `rules.doubt.least_elsewhere`. Each line of rules.def is
+/// one: its value, the bounds within which it may be changed, its unit, and its reason. Numbers that only
+/// control the accuracy of a computation are not among them.
 struct DiagnosisRules {
 #define GROUP(Type, group) struct Type {
 #define NUMBER(name, value, lowest, highest, unit, why) double name = value;

@@ -30,8 +30,8 @@ struct SeriesAgreement {
     double correlation = 0.0;
     double scale = 0.0;  ///< log = scale * simulation + offset, by least squares
     double offset = 0.0;
-    double rms_difference = 0.0;  ///< of log less simulation as they are, in the unit of the series
-    double travel = 0.0;          ///< of the log, from least to greatest
+    double rms_difference = 0.0;  ///< log less simulation as they are, in the unit of the series
+    double travel = 0.0;          ///< range of the log, from least to greatest
 
     /// The rms difference as a share of the travel.
     [[nodiscard]] double relative_difference() const { return travel > 0.0 ? rms_difference / travel : 0.0; }
@@ -43,7 +43,7 @@ struct SimulationLag {
     std::string reason;  ///< why it is not
     double delay_s = 0.0;
     Interval delay_95_s;  ///< delete-a-block jackknife, Student's t
-    double scale = 1.0;   ///< of the simulation, fitted with the lag
+    double scale = 1.0;   ///< scale of the simulation, fitted with the lag
     Interval scale_95;
     double middle_s = 0.0;  ///< on the log's clock, of what both have in common
     /// Relative difference of the two clocks: the delay grows by so many seconds a second. Empty where it
@@ -89,11 +89,12 @@ struct AlignmentOptions {
     /// between. Friction that a simulation lacked moved the lag by 1.8 ms with one term of 2 deg/s, and by
     /// less than 0.01 ms with both.
     double slow_width_deg_s = 1.0, fast_width_deg_s = 8.0;
-    /// Of the misfit that half the interval of a torque's lag holds in quadrature: an effect that is neither
-    /// in the simulation nor among the nuisance parameters biases the lag, which blocks do not show. Of 57
-    /// logs with random hidden effects, 48 intervals covered the delay without it and 54 with it.
+    /// Share of the misfit that is added in quadrature to half the interval of a torque's lag: an effect that
+    /// is neither in the simulation nor among the nuisance parameters biases the lag, which blocks do not
+    /// show. Of 57 logs with random hidden effects, 48 intervals covered the delay without it and 54 with it.
     double misfit_share = 0.25;
-    double hysteresis_width_deg = 2.0;  ///< of Dahl's friction, where it is among the nuisance parameters
+    /// Width of Dahl's friction, where it is among the nuisance parameters.
+    double hysteresis_width_deg = 2.0;
 };
 
 /// From the motions: the velocities over a triangular window (of positions their slope, so that a slow
@@ -106,8 +107,8 @@ struct AlignmentOptions {
 /// From the torques over the same window, together with nuisance parameters: an offset, friction (Coulomb of
 /// two widths, viscous) and, with a gear ratio, ripple of motor orders 1 and 2 whose amplitude is an affine
 /// function of the speed. Inertia, gravity, friction that grows with the torque and hysteresis join them
-/// where they halve the squares of blocks held out at about the same scale; where they do not and disagree,
-/// the interval reaches to what they say. Of 133 logs with random hidden effects, which no limit was
+/// where they halve the squares of held-out blocks at about the same scale; where they do not and disagree,
+/// the interval is extended to their estimates. Of 133 logs with random hidden effects, which no limit was
 /// chosen by, 130 intervals cover the delay.
 [[nodiscard]] SimulationLag lag_by_torque(const TraceView& log, const SimulatedMotion& simulation,
                                           std::optional<GearRatio> gear_ratio = {},
@@ -119,18 +120,20 @@ struct LoggedJoint {
     TraceView trace;
 };
 
-/// What a fault has to show. A true fault passes each by far: the factors that are asked for lie 10 or more
-/// apart, and a repaired set-up leaves what a simulation usually leaves.
+/// The limits that a fault has to reach. A true fault passes each by far: the possible factors lie 10 or more
+/// apart, and the residual of a repaired set-up is that of an ordinary simulation.
 struct SetupLimits {
-    double least_ratio = 4.0;        ///< squares held out, before to after: half the residual
-    double least_blocks = 0.9;       ///< share of the blocks that improve: at a fair coin 1 of 93 for 9 of 10
-    double least_explained = 0.5;    ///< of the variance, once the fault is repaired
-    double torque_tolerance = 1.5;   ///< of a fitted scale of the torque about a factor: friction, payload
-    double motion_tolerance = 1.1;   ///< the same of a motion, which a controller follows closer
-    double least_correlation = 0.9;  ///< of two motions that are the same
+    double least_ratio = 4.0;      ///< squares held out, before to after: half the residual
+    double least_blocks = 0.9;     ///< share of the blocks that improve: at a fair coin 1 of 93 for 9 of 10
+    double least_explained = 0.5;  ///< share of the variance, once the fault is repaired
+    /// Tolerance of a fitted scale of the torque about a factor: friction, payload.
+    double torque_tolerance = 1.5;
+    double motion_tolerance = 1.1;     ///< the same of a motion, which a controller follows closer
+    double least_correlation = 0.9;    ///< correlation of two motions that are the same
     double largest_correlation = 0.1;  ///< explained by a simulation of another motion, of the torque
-    double least_turn_deg = 60.0;     ///< of gravity; less is an error of the position's zero or of the mount
-    double gravity_tolerance = 1.25;  ///< of its size
+    /// Rotation of gravity; less is an error of the position's zero or of the mount.
+    double least_turn_deg = 60.0;
+    double gravity_tolerance = 1.25;  ///< tolerance of its magnitude
 };
 
 struct SetupContext {
@@ -138,7 +141,7 @@ struct SetupContext {
     /// Names of the simulation's columns, as options have them; empty: it has no such column.
     std::string torque_column = "simulated", position_column = "position", velocity_column = "velocity";
     double torque_scale = 1.0;  ///< stated, and in the simulation's torque already
-    std::string joint;          ///< of the log; may be empty
+    std::string joint;          ///< name of the log's joint; may be empty
     std::vector<LoggedJoint> others = {};
     AlignmentOptions alignment = {};
     SetupLimits limits = {};
@@ -153,11 +156,11 @@ struct SetupAnswer {
     [[nodiscard]] const SimulationLag* lag() const;
 };
 
-/// Asks of the motions: another joint, another motion, sign, rad for deg, motor side; of the torques at the
+/// Tests of the motions: another joint, another motion, sign, rad for deg, motor side; of the torques at the
 /// lag that was found: another joint, another motion, sign, mNm for Nm, motor side, direction of gravity. A
 /// scale between these factors is no fault of the set-up. Torques are compared over the window of the
-/// alignment beside an offset and friction of any size. Of 150 simulated logs with random effects, payloads,
-/// lags and tracking errors that the simulation lacks none has a fault (the study in
+/// alignment together with an offset and friction of any size. Of 150 simulated logs with random effects,
+/// payloads, lags and tracking errors that the simulation lacks none has a fault (the study in
 /// tests/diagnose/setup_test.cpp): below 2 % at 95 % confidence.
 [[nodiscard]] SetupAnswer suspect_setup(const TraceView& log, const SimulatedMotion& simulation,
                                         const SetupContext& context);

@@ -20,7 +20,7 @@ namespace ripplenotch {
 
 namespace {
 
-/// The steps in which a walk is told, each from where the one before has led.
+/// The iterations of the estimate, each from the result of the one before.
 constexpr int walk_steps = 3;
 
 Motion moved_by_walk(Motion motion, double by_deg) {
@@ -35,8 +35,8 @@ std::vector<double> left_of_stated(const Case& looked_at, const Model& stated, c
     return left;
 }
 
-// Less its mean over some tenths of a second: what is slow, or rests, tells nothing of a ripple's phase, and
-// an effect that nobody has named yet is mostly slow.
+// Less its moving average over some tenths of a second: slow or constant torque carries no information on a
+// ripple's phase, and effects that are not named yet are mostly slow.
 std::vector<double> quick_part(const std::vector<double>& values, double rate_hz, double window_s) {
     const auto half = static_cast<std::size_t>(0.5 * window_s * rate_hz) + 1;
     std::vector<double> sum{0.0}, quick(values.size());
@@ -54,7 +54,7 @@ struct Walk {
     std::vector<double> deviation;
 };
 
-// The sines into which a random walk falls apart (Karhunen and Loeve), as in motion_errors().
+// The sines of the Karhunen-Loeve expansion of a random walk, as in motion_errors().
 std::vector<double> sine_of(const std::vector<double>& time_s, std::size_t mode) {
     const double quarter_turns = (static_cast<double>(mode) - 0.5) * std::numbers::pi;
     const double duration_s = time_s.back() - time_s.front();
@@ -64,9 +64,9 @@ std::vector<double> sine_of(const std::vector<double>& time_s, std::size_t mode)
     return sine;
 }
 
-// What of the quick part is noise of the sensor counts as it is. The rest is coherent as long as the window
-// is: an effect without a name, a lag for one, turns the ripple's phase with the speed, and must not pass for
-// a walk.
+// Sensor noise in the quick part is independent from sample to sample. The rest is coherent over the window:
+// an effect without a name, a lag for one, turns the ripple's phase with the speed, and must not pass for a
+// random-walk error.
 double quick_noise_of(const Case& looked_at, const std::vector<double>& quick, double window_s) {
     const double white_nm = sample_noise(looked_at.torque_nm);
     const double square = dot(quick.data(), quick.data(), quick.size()) /
@@ -116,7 +116,7 @@ Walk walk_of(const Case& looked_at, const Model& stated, WalkOf of, const Record
     return walk;
 }
 
-// How the torque changes with the values that are fitted beside the walk.
+// Derivatives of the torque with respect to the values that are fitted together with the random walk.
 void add_walk_slopes(Walk& walk, const Case& looked_at, const Model& open, const Model& stated) {
     const Prediction prediction(stated, looked_at.motion);
     const Coordinates coordinates(open, &stated);
@@ -156,9 +156,10 @@ double best_place(const Case& other, const Model& stated, double step_deg, std::
     return best;
 }
 
-// One step: moves the position of a case by what the torque says of its walk, beside the values that `open`
-// leaves out and `stated` has: by the sines of motion_errors(), drawn to their usual sizes, and for another
-// log by a constant. A case without a walk is moved by the constant alone, the log itself not at all.
+// One iteration: moves the position of a case by the random-walk error estimated from the torque, together
+// with the values that `open` leaves out and `stated` has: by the sines of motion_errors(), drawn to their
+// usual sizes, and for another log by a constant. A case without a random walk is moved by the constant
+// alone, the log itself not at all.
 void step_of_walk(Case& looked_at, const Model& open, const Model& stated, WalkOf of,
                   const RecordingRules& rules) {
     Walk walk = walk_of(looked_at, stated, of, rules);

@@ -257,7 +257,8 @@ double rounded_step(const std::vector<double>& distances, double usual) {
     }
     const double rounded_to = longest - shortest, step = range / steps;
     double value = 0.0, place = 0.0;
-    bool in_place = rounded_to < 0.5 * usual;  // coarser, it would leave no steps to be seen; by hand
+    // Coarser, it would leave no steps to be seen; chosen, not derived.
+    bool in_place = rounded_to < 0.5 * usual;
     for (const double distance : distances) {
         value += distance;
         place += std::round(distance / step) * step;
@@ -279,7 +280,7 @@ double step_of(const std::vector<double>& torque_nm, double noise_nm, const Faul
     if (distances.empty() ||
         static_cast<double>(distances.size()) > rules.most_distinct_part * static_cast<double>(values.size()))
         return 0.0;
-    // The smallest that is common: rarer levels leave multiples of it, rounding leaves crumbs.
+    // The smallest that is common: rarer levels cause multiples of it, rounding causes tiny differences.
     const double step = median_of(distances);
     std::size_t fitting = 0;
     for (const double distance : distances) {
@@ -288,7 +289,7 @@ double step_of(const std::vector<double>& torque_nm, double noise_nm, const Faul
             ++fitting;
     }
     if (fitting >= distances.size() * rules.fitting_percent / 100) return step;
-    // Finer than the noise nothing tells such steps from values that happen to lie so.
+    // Finer than the noise, such steps cannot be distinguished from values that happen to lie so.
     const double rounded = rounded_step(distances, step);
     return rounded >= rules.step_of_noise * noise_nm ? rounded : 0.0;
 }
@@ -455,7 +456,7 @@ bool needs_position(const Effect& effect) {
     if (effect.side == Side::converter || effect.side == Side::motion) return false;
     const Motion here = make_motion("poly6,from=0deg,to=200deg,duration=2s", Hertz(200.0));
     Motion there = here;
-    const double turn_deg = 360.0 / 100.0;  // of the motor
+    const double turn_deg = 360.0 / 100.0;  // 3.6 deg of the motor
     for (double& position : there.position_deg) position += turn_deg;
     const Model with = joint_with(effect, true), without = joint_with(effect, false);
     const auto at_here = predict_nm(with, here), at_there = predict_nm(with, there);

@@ -31,10 +31,10 @@ struct Case {
     std::optional<Seconds> expected_delay;  ///< at which the search for a delay begins as well
     double walk_deg =
         0.0;               ///< rms error of the position after 1 s, where it is the integral of a noisy speed
-    double step_nm = 0.0;  ///< of a log that holds whole steps coarser than its noise
+    double step_nm = 0.0;  ///< quantization step of a log whose steps are coarser than its noise
     double moving_deg_s = 0.0;      ///< slower samples count as resting where direction or speed decides
     std::vector<std::size_t> from;  ///< samples at which a stretch begins; the first is 0
-    std::vector<std::size_t> row;   ///< of the log that each sample is
+    std::vector<std::size_t> row;   ///< row of the log for each sample
 
     [[nodiscard]] std::size_t size() const { return torque_nm.size(); }
     [[nodiscard]] std::size_t used() const;
@@ -49,7 +49,7 @@ struct Case {
 [[nodiscard]] Case sketch(const Case& whole, std::size_t count);
 /// The same number in short stretches at the full rate, for what looks at neighbouring samples.
 [[nodiscard]] Case blocks(const Case& whole, std::size_t count, const RecordingRules& rules);
-/// The same in longer stretches, for what rings on.
+/// The same in longer stretches, for effects with a transient response.
 [[nodiscard]] Case long_blocks(const Case& whole, std::size_t count, RecordingRules rules);
 
 /// Whether errors of the measured acceleration pass this term with the torque: a sensor, but for one by which
@@ -62,7 +62,7 @@ struct Case {
 [[nodiscard]] std::vector<Nuisance> acceleration_errors(const Case& looked_at, const Model& model);
 /// The columns of the known torque that are not certain, as the sensors of the model show them.
 [[nodiscard]] std::vector<Nuisance> uncertain_torques(const Case& looked_at, const Model& model);
-/// Shapes that the walk of an integrated position leaves in the torque of a model; none where the log has a
+/// Torque errors of a model due to the random-walk error of an integrated position; none where the log has a
 /// position.
 [[nodiscard]] std::vector<Nuisance> walk_errors(const Case& looked_at, const Model& model,
                                                 const RecordingRules& rules);
@@ -90,8 +90,8 @@ using PlaceRules = DiagnosisRules::PlaceRules;
 struct Effect;
 
 /// True when the effect's torque depends on where the joint is and not only on how it moves. The integral of
-/// a velocity tells how far the joint has gone and not from where: a log without position cannot decide such
-/// an effect. Ripple is not among them: its phase is that of the motor, and a whole turn of it changes
+/// a velocity determines how far the joint has gone and not from where: a log without position cannot decide
+/// such an effect. Ripple is not among them: its phase is that of the motor, and a whole turn of it changes
 /// nothing.
 [[nodiscard]] bool needs_position(const Effect& effect);
 

@@ -21,8 +21,8 @@ inline constexpr double any_size = std::numeric_limits<double>::infinity();
 
 class Ridge {
   public:
-    /// `columns` must outlive it, all of one length. `deviation`: of each value, infinity leaves it free.
-    /// `noise`: rms of what the columns do not explain, against which deviations are weighed.
+    /// `columns` must outlive it, all of one length. `deviation`: prior of each value, infinity leaves it
+    /// free. `noise`: rms residual of the columns, relative to which deviations are weighted.
     Ridge(const std::vector<std::vector<double>>& columns, std::span<const double> deviation, double noise);
 
     [[nodiscard]] std::vector<double> solve(std::span<const double> target) const;
@@ -37,7 +37,7 @@ class Ridge {
 
 // Measured less predicted torque of a case.
 
-/// Of the values that `use` counts.
+/// rms of the values that `use` counts.
 [[nodiscard]] double rms_of(const std::vector<double>& values, const std::vector<unsigned char>& use);
 
 /// Measured less predicted torque, a number a sample.
@@ -47,7 +47,7 @@ class Ridge {
 
 /// Puts the known torque, with its values as given, into the motion of a case that has every row of the log.
 /// Values that are not certain become nuisance parameters of the case, with their prior deviation. The scale
-/// of a simulation does not: whether it is 1 is a question for the effect `simulation-scale`.
+/// of a simulation is not one of them: whether it is 1 is a question for the effect `simulation-scale`.
 void take_known_torque(Case& whole, std::span<const GivenTerm> given);
 
 /// Departures of the uncertain values from their means, and their standard errors; one for each of
@@ -56,8 +56,8 @@ struct KnownValues {
     std::vector<double> departure, standard_error;
 };
 
-/// The fit of the uncertain values to what a model leaves: generalized least squares with the noise's colour
-/// and the priors.
+/// The fit of the uncertain values to the residual of a model: generalized least squares with the noise's
+/// colour and the priors.
 class KnownFit {
   public:
     /// The columns are taken through the sensors of `model`. `weighing`: of the case.
@@ -66,7 +66,7 @@ class KnownFit {
     KnownFit& operator=(const KnownFit&) = delete;
 
     [[nodiscard]] KnownValues values(const Weighing& weighing, const std::vector<double>& left_nm) const;
-    /// What is left of a residual when they have their best values.
+    /// The residual after the uncertain values are fitted to it.
     [[nodiscard]] std::vector<double> residual(const Weighing& weighing, std::vector<double> left_nm) const;
 
   private:
@@ -74,7 +74,7 @@ class KnownFit {
     Ridge fit_;
 };
 
-/// The same along a case, beside this model.
+/// The same for a case and this model.
 [[nodiscard]] KnownValues fit_known_values(const Case& looked_at, const Model& stated,
                                            const NoiseFloor& noise);
 

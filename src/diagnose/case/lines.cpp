@@ -41,7 +41,7 @@ LineSpectrum spectrum_of(const LineSamples& samples, double spacing, std::size_t
     return spectrum;
 }
 
-// As finely spaced as the range of the samples tells, up to `highest` or as many cells as the rules allow.
+// As finely spaced as the range of the samples resolves, up to `highest` or as many cells as the rules allow.
 LineSpectrum spectrum_of(const LineSamples& samples, double highest, const LineRules& rules) {
     const double spacing = 1.0 / (rules.oversampling * range_of(samples));
     return spectrum_of(
@@ -340,8 +340,7 @@ RatioCandidates likely_ratios(const Case& looked_at, const std::vector<double>& 
         spectrum_of(samples, 1.04 * range.highest * highest_order / 360.0, rules.lines);
     // The finest order decides how closely ratios are compared.
     const double step = 0.5 * spectrum.spacing * 360.0 / highest_order;
-    // Beyond the spectrum there is nothing to score, however far a clock that is wrong says that the joint
-    // turned.
+    // Beyond the spectrum there is nothing to score, however far the joint turned according to a wrong clock.
     const double finest = 2.0 * static_cast<double>(spectrum.power.size()) * highest_order /
                           *std::min_element(orders.begin(), orders.end());
     const auto first = static_cast<std::size_t>(std::min(range.lowest / step, finest));

@@ -28,7 +28,7 @@ void NoiseColumns::cut(std::size_t count) {
     products_.resize(std::min(count, products_.size()));
 }
 
-// Of the columns that are new since the last time, two by two.
+// Adds the products of the columns that are new since the last call, two by two.
 void NoiseColumns::sum_products() {
     const std::size_t begin = products_.size(), end = columns_.size(), rows = use_.size();
     for (std::size_t i = begin; i < end; ++i) products_.emplace_back(i + 1, 0.0);
@@ -288,7 +288,7 @@ double NoiseFloor::of_sums() const {
 
 namespace {
 
-// Lines that stand out of what is about them are no noise: they become columns, two at a time.
+// Lines that rise above their surroundings are no noise: they become columns, two at a time.
 std::vector<double> left_without_lines(NoiseColumns& columns, const Case& c,
                                        const std::vector<double>& torque_nm, const DiagnosisRules& rules) {
     std::vector<double> left = columns.left_of(torque_nm);

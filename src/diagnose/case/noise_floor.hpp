@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Size and colour of the noise of a log, from what a model of far too many terms leaves: taken from the
-// residual of the model in hand, the noise would grow with what the model misses.
+// Size and colour of the noise of a log, from the residual of a model of far too many terms: estimated from
+// the residual of the current model, the noise would grow with the missing terms.
 
 #include <concepts>
 #include <cstddef>
@@ -50,7 +50,7 @@ class NoiseColumns {
 
     std::span<const unsigned char> use_;
     std::vector<std::vector<double>> columns_;
-    std::vector<std::vector<double>> products_;  ///< of each column with those up to it
+    std::vector<std::vector<double>> products_;  ///< products of each column with those up to it
 };
 
 // What a model of far too many terms has of a case, whatever the model in hand: ripple of orders about the
@@ -79,7 +79,7 @@ class NoiseGround {
 };
 
 struct NoiseFloor {
-    double rms_nm = 0.0;                      ///< of the noise
+    double rms_nm = 0.0;                      ///< rms of the noise
     double white_nm = 0.0;                    ///< rms of its white part
     std::vector<double> color;                ///< coefficients of FitOptions::noise_color
     double material_nm = 0.0;                 ///< rms against which a torque matters or not; 0: rms_nm
@@ -105,8 +105,8 @@ struct NoiseFloor {
 [[nodiscard]] NoiseFloor noise_floor(const Case& looked_at, const Model& model, const Model& open,
                                      const DiagnosisRules& rules, NoiseGround& ground);
 
-/// Where more than noise is left of the best model: what is left, as noise with a memory of `memory_s`. Names
-/// are weighed where it is quiet.
+/// Where the best model leaves more than noise: its residual, as noise with a correlation time of `memory_s`.
+/// Names are weighted where it is quiet.
 [[nodiscard]] NoiseFloor noise_of_residual(const Case& looked_at, const std::vector<double>& residual_nm,
                                            const NoiseFloor& floor, const DiagnosisRules& rules);
 

@@ -29,14 +29,14 @@ struct PlaceSums {
     double samples = 0.0, left = 0.0, torque = 0.0, both = 0.0, square = 0.0;
 };
 
-// The finding's torque and what is left over, a number per row that counts, in units of the white noise.
+// The finding's torque and the residual, a number per row that counts, in units of the white noise.
 struct Torques {
     static constexpr double variance_nm2 = 1.0;
     std::vector<double> finding_nm, left_nm;
     double telling_nm2 =
-        0.0;               ///< sum of squares from which a torque tells its size: rules.telling_deviations
-    bool changes = false;  ///< in the log, be it in rows that do not count
-    bool by_its_torque = false;  ///< a place has the say of the finding's torque there
+        0.0;  ///< sum of squares from which a torque determines its size: rules.telling_deviations
+    bool changes = false;        ///< in the log, be it in rows that do not count
+    bool by_its_torque = false;  ///< an interval has the weight of the finding's torque in it
 };
 
 // Both whitened, so that noise of whatever colour counts alike in every sum.
@@ -69,8 +69,9 @@ std::vector<PlaceSums> sums_of(const Torques& torques, const std::vector<std::si
     return sums;
 }
 
-// Each place that tells a size has the same say; of a spring that all torque passes, the say of its torque:
-// that goes with the motion's frequency, and where it is hardly driven, what else rings in it counts as much.
+// Each interval that determines a size has the same weight; for a spring that all torque passes, the weight
+// of its torque: its response depends on the motion's frequency, and where it is hardly driven, other
+// transients count as much.
 double between(const Torques& torques, double least_sigma, const std::vector<std::size_t>& place,
                std::size_t count) {
     double off = 0.0, places = 0.0, told = 0.0;
@@ -95,7 +96,7 @@ bool only_constant(const Torques& torques) {
     return sum.square - sum.torque * sum.torque / sum.samples < torques.telling_nm2;
 }
 
-// Of the change within places alone; each has the say of how much the torque changes in it.
+// The share from changes within intervals alone; each is weighted by how much the torque changes in it.
 double share_within(const Torques& torques, double telling_deviations, const std::vector<std::size_t>& place,
                     std::size_t count) {
     double off = 0.0, all = 0.0, chance = 0.0;
@@ -171,7 +172,7 @@ using DoubtRules = DiagnosisRules::DoubtRules;
 
 constexpr const char* more_is_left = "more is left unexplained than it explains";
 
-// Domains in which something unexplained casts doubt on an effect.
+// Domains in which an unexplained region is a reason against an effect.
 bool touches(Domain domain, const ResidualRegion& region) {
     switch (region.kind) {
         case RegionKind::order:
@@ -231,13 +232,13 @@ std::optional<double> shortest_delay_samples(const Term& term, const ModelBench&
     return shortest;
 }
 
-// The size that is told best, and its standard error as a part of it.
+// The size that is determined best, and its relative standard error.
 struct Size {
     std::string_view name;
     double error = 0.0;
 };
 
-// Empty for an effect without a size; of several the first that is told, or the last.
+// Empty for an effect without a size; of several the first that is identifiable, or the last.
 std::optional<Size> size_of(const Term& stated, const std::vector<FittedValue>& values, std::size_t term,
                             double most_error) {
     std::optional<Size> size;
@@ -258,7 +259,7 @@ struct RaisedDoubt {
     std::string reason;
 };
 
-// A size that its own error covers, unless another number tells that the effect is there.
+// Tests whether the standard error covers the size, unless another size of the effect is identifiable.
 RaisedDoubt doubt_of_error(const Candidate& model, std::size_t term, const DoubtRules& rules,
                            Hearing& hearing) {
     const auto size = size_of(model.stated.terms[term], model.values, term, rules.most_error);
@@ -268,7 +269,7 @@ RaisedDoubt doubt_of_error(const Candidate& model, std::size_t term, const Doubt
     return {};
 }
 
-// Too small to matter, or too small to be told.
+// Tests whether a finding is too small to matter, or too small to be identifiable.
 RaisedDoubt doubt_of_size(const ModelBench& bench, const Candidate& model, std::size_t term,
                           const Evidence& evidence, Hearing& hearing) {
     const Term& stated = model.stated.terms[term];
@@ -280,7 +281,7 @@ RaisedDoubt doubt_of_size(const ModelBench& bench, const Candidate& model, std::
     if (bench.noise_holds_residual() &&
         hearing.asked("residual.least_t", evidence.t, evidence.t < bench.rules().residual.least_t))
         return {FindingStatus::tentative, "its gain is that of a few blocks of the log"};
-    // A delay of part of a sample is a matter of when a sample is said to be taken.
+    // A delay of part of a sample is within the definition of the sampling instant.
     if (const auto samples = shortest_delay_samples(stated, bench); samples && !slight)
         slight = hearing.asked("doubt.least_delay_samples", *samples, *samples < rules.least_delay_samples);
     if (slight)
@@ -370,7 +371,7 @@ void doubt_for_residual(Finding& finding, double excess_nm, const ModelBench& be
             continue;
         if (largest == nullptr || place.rms_nm > largest->rms_nm) largest = &place;
     }
-    // What is left must not be small beside the finding to cast doubt on it.
+    // The residual must not be small compared with the finding to count against it.
     if (largest == nullptr || !hearing.asked("doubt.casts_doubt", largest->rms_nm / share_nm,
                                              !(largest->rms_nm < rules.casts_doubt * share_nm)))
         return;
@@ -381,8 +382,8 @@ void doubt_for_residual(Finding& finding, double excess_nm, const ModelBench& be
 void doubt_for_size(Finding& finding, const std::vector<Finding>& findings, const DiagnosisRules& all) {
     const DoubtRules& rules = all.doubt;
     const Evidence& evidence = finding.evidence;
-    // A number that acts without the size says less of what is there: the phase of a ripple differs by
-    // direction wherever the form of its resonance is not quite the catalogue's.
+    // A parameter that acts without the size is weaker evidence: the phase of a ripple differs by direction
+    // wherever the form of its resonance is not quite the catalogue's.
     const double share_nm = evidence.sized_nm < evidence.own_nm
                                 ? std::min(evidence.share_nm, evidence.sized_nm)
                                 : evidence.share_nm;

@@ -44,8 +44,8 @@ void leave_out_limited(Case& looked_at, const Model& stated, const std::vector<F
     }
 }
 
-// The first of the findings whose size the settled values do not tell after all: it was judged beside terms
-// that have come to other values since, or are gone.
+// The first of the findings whose size is not identifiable with the settled values: it was tested together
+// with terms that have come to other values since, or are gone.
 std::optional<std::size_t> untold(const Candidate& told, const ToldOf& of, const DiagnosisRules& rules) {
     std::size_t term = of.own_terms;
     for (Finding& finding : of.findings) {
@@ -158,8 +158,8 @@ bool is_fixed_curve(const Effect& effect) {
                        [](const Parameter& parameter) { return parameter.linear; });
 }
 
-// By how much the rival is behind. Where something is left, two curves of fixed form that lie nearer to each
-// other than to what is there are not told: the form is neither's.
+// By how much the rival is behind. With unexplained residual remaining, two curves of fixed form that lie
+// nearer to each other than to the measured torque cannot be distinguished: the form is neither's.
 double ahead_of_left(double behind, const ModelBench& bench, const Candidate& model) {
     return std::max(behind - std::max(model.gain_left - bench.samples(), 0.0), 0.0);
 }
@@ -170,7 +170,7 @@ double margin_of(const ModelBench& bench, const Candidate& model, const Candidat
     return !is_form_alone || !something_left || behind <= 0.0 ? behind : ahead_of_left(behind, bench, model);
 }
 
-// What doubtful findings took up is left as well.
+// The torque of uncertain findings counts as residual as well.
 void doubt_for_form(const ModelBench& bench, const Candidate& kept, std::vector<Finding>& findings) {
     const double tie_margin = bench.rules().judge.tie_margin;
     for (Finding& finding : findings) {
@@ -257,7 +257,8 @@ Finding judged_finding(const ModelBench& bench, const Candidate& model, const Ca
     evidence.price = model.prices[term];
     evidence.share_sigma = bench.share(model, fewer);
     evidence.share_nm = evidence.share_sigma * bench.noise().material_nm;
-    // Of the rows that the share is of: where a resonance is largest may be what is left out.
+    // rms over the rows that the share is computed from: the rows where a resonance is largest may be left
+    // out.
     evidence.own_nm = counted_rms(bench, torque_nm);
     evidence.sized_nm = sized_rms(bench, model.stated, term, evidence.own_nm);
     evidence.raw_gain = squares(bench, fewer.stated) - squares(bench, model.stated);
@@ -272,7 +273,7 @@ Finding tested_finding(const ModelBench& bench, const Candidate& model, std::siz
                        std::span<const Effect* const> effects, bool something_left) {
     const Candidate fewer = without_term(bench, model, term);
     Finding finding = judged_finding(bench, model, fewer, term, bench.torque_of(model.stated, term));
-    // It was worth its price when it was added; beside later ones it may be worth less.
+    // It was worth its penalty when it was added; together with later ones it may be worth less.
     const Evidence& evidence = finding.evidence;
     Hearing(bench.rules(), finding.decisions).asked_price(evidence.gain, evidence.price, false);
     doubt_alone(finding, bench, model, term);
@@ -343,7 +344,7 @@ Model with_own_phase(const Case& other, const Model& stated, std::size_t term) {
     return fit(open, other.motion, other.torque_nm, {.first_guess = &stated, .use = other.use}).model;
 }
 
-// The other log with what is uncertain of the known torque as this model leaves it to be.
+// The other log with the uncertain values of the known torque as fitted with this model.
 Case beside(const ModelBench& bench, const Case& other, const Model& stated) {
     if (other.uncertain.empty()) return other;
     return with_known_values(other, fit_known_values(bench.looked_at(), stated, bench.noise()));
@@ -371,7 +372,7 @@ void note(Finding& finding, const Check& check) {
     finding.validation_after_nm = check.after_nm;
 }
 
-// What a finding that is in doubt would do beside the model.
+// Evaluates each uncertain finding together with the model.
 void note_doubtful(const ModelBench& bench, const Candidate& all, const Candidate& model, const Case& other,
                    std::size_t own_terms, std::vector<Finding>& findings) {
     for (std::size_t i = 0; i < findings.size(); ++i) {
@@ -423,7 +424,7 @@ void withdraw_newest(const ModelBench& bench, Candidate& kept, const Model& give
 struct Worst {
     Finding* finding = nullptr;
     Candidate without;
-    double most = 0.0;  ///< what it leaves, of what is left without it
+    double most = 0.0;  ///< ratio of the residual with it to the residual without it
 };
 
 void withdraw(Finding& finding, double left_part, const DiagnosisRules& rules) {
@@ -436,9 +437,9 @@ void withdraw(Finding& finding, double left_part, const DiagnosisRules& rules) {
 
 }  // namespace
 
-// What has no name goes before a name does: extrapolated to the other log, a form that was mended in this one
-// may leave more there than any name explains. It goes, too, where the whole does worse than the model as
-// given though every name does well.
+// Unnamed correction terms are removed before names: extrapolated to the other log, a form that was corrected
+// in this one may add more residual there than any name explains. They are also removed where the whole does
+// worse than the model as given although every name does well.
 Candidate reproduced(const ModelBench& bench, const Candidate& all, const Candidate& model,
                      const Model& given, const Case& other, std::size_t own_terms,
                      std::vector<Finding>& findings) {

@@ -30,7 +30,7 @@ class Residual {
         // Errors of the measured motion are no disagreement.
         const auto cleared = bench.cleared_residual(stated);
         for (std::size_t r = 0; r < cleared.size(); ++r) raw_nm_[bench.rows()[r]] = cleared[r];
-        // Of whole steps a torque that stays on one is off by up to half of it.
+        // A torque that stays on a quantization step is off by up to half of it.
         const double step_nm = bench.looked_at().step_nm;
         matters_mean_ =
             std::max(rules_.matters_mean, rules_.matters_mean_steps * step_nm / bench.noise().rms_nm);
@@ -91,7 +91,7 @@ class Residual {
         std::vector<ResidualRegion> found;
         std::vector<double> left_nm = raw_nm_;
         for (std::size_t peeled = 0; peeled < rules_.most_lines; ++peeled) {
-            // One at a time: what is beside a strong line is often its own foot.
+            // One at a time: a peak near a strong line is often its own leakage.
             const auto lines =
                 standing_out(bench_.looked_at(), left_nm, rules_.line_prominence, 1, bench_.rules().lines);
             if (lines.empty()) break;
@@ -131,7 +131,7 @@ class Residual {
         }
     }
 
-    // Of the bins whose mean is significant and matters; nothing when there are none.
+    // The region of the bins whose mean is significant and matters; nothing when there are none.
     [[nodiscard]] ResidualRegion in_direction(const Bins& bins, RegionKind kind, Direction direction) const {
         ResidualRegion region{kind, {}, 0.0, 0.0};
         double squares = 0.0, total = 0.0;

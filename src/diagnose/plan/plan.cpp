@@ -32,20 +32,20 @@ namespace {
 
 // How far the torque of an effect is, along a motion, from all that other effects could make of it.
 
-/// What is to be told from something else.
+/// A term that is to be distinguished from others.
 struct AskedTerm {
     Term term;                          ///< with its values
     Model rest;                         ///< the model without it, every value stated
     std::vector<const Effect*> rivals;  ///< each may stand in its place
-    double scale = 1.0;                 ///< of its torque: what cancels is no larger than what is there
-    bool open = true;                   ///< whether the log left it open
-    double needed = 0.0;                ///< gain
-    double gain_before = 0.0;           ///< along the log
+    double scale = 1.0;   ///< scale of its torque: a torque that cancels is no larger than the measured one
+    bool open = true;     ///< whether the log left it open
+    double needed = 0.0;  ///< gain
+    double gain_before = 0.0;  ///< along the log
 };
 
 struct Separation {
-    double squares = 0.0;    ///< of the torque that only the term brings, Nm^2
-    std::string_view rival;  ///< that leaves the least of it; empty: none is asked about
+    double squares = 0.0;    ///< squares of the torque that only the term explains, Nm^2
+    std::string_view rival;  ///< the rival that explains the most of it; empty: none is tested
 };
 
 using TermColumn = std::vector<double>;
@@ -55,7 +55,7 @@ double square(const TermColumn& column) { return dot(column.data(), column.data(
 // Columns made orthogonal to one another, one after the other (Gram and Schmidt, twice for each).
 class Basis {
   public:
-    // What is left of the column beside those that are in.
+    // The residual of the column after projection on those that are in.
     [[nodiscard]] TermColumn left(TermColumn column) const {
         for (int turn = 0; turn < 2; ++turn)
             for (const TermColumn& one : ortho_)
@@ -64,7 +64,7 @@ class Basis {
         return column;
     }
     void add(TermColumn column) {
-        constexpr double next_to_nothing = 1e-14;  // of its square: it is in already
+        constexpr double next_to_nothing = 1e-14;  // share of its square: it is in already
         const double before = square(column);
         column = left(std::move(column));
         const double after = square(column);
@@ -130,7 +130,7 @@ std::vector<TriedPlace> tried_places(const Effect& effect, const Prediction& pre
     return places;
 }
 
-// Squares of `target` that the place leaves, all of it beside the basis.
+// Squares of `target` outside the span of the basis and of the place's columns.
 double left_beside(const Basis& basis, const TermColumn& target, const TriedPlace& place) {
     Basis own;
     for (const TermColumn& column : place.columns) own.add(basis.left(column));
@@ -155,8 +155,8 @@ Separation separation(const AskedTerm& asked, const Motion& motion) {
     return least;
 }
 
-// The rival with the values with which it is nearest to the term along `motion`, beside the rest; false
-// where no place of it takes up anything.
+// The rival with the values with which it is nearest to the term along `motion`, together with the rest;
+// false where no place of it explains anything.
 bool nearest_rival(const AskedTerm& asked, const Effect& rival, const Motion& motion, Term& found) {
     const Prediction prediction(asked.rest, motion);
     const Basis basis = basis_beside(asked, prediction, motion.size());
@@ -170,7 +170,7 @@ bool nearest_rival(const AskedTerm& asked, const Effect& rival, const Motion& mo
         least = left;
         any = true;
         found = place.terms.front();
-        // Its size, as if it had the first phase: how far it is from the term hangs little on the phase.
+        // Its size, computed with the first phase: the separation depends little on the phase.
         const double size = std::sqrt(square(torque) / square(one));
         for (std::size_t p = 0; p < found.values.size(); ++p)
             if (rival.parameters[p].linear && allows(rival.parameters[p], size)) found.values[p] = size;
@@ -178,7 +178,7 @@ bool nearest_rival(const AskedTerm& asked, const Effect& rival, const Motion& mo
     return any;
 }
 
-// What a diagnosis left open, as terms to be told from rivals.
+// The open questions of a diagnosis, as terms to be distinguished from rivals.
 
 void add_rival(std::vector<const Effect*>& rivals, const Effect& own, std::string_view name) {
     for (const Effect* const effect : catalogue()) {
@@ -187,7 +187,7 @@ void add_rival(std::vector<const Effect*>& rivals, const Effect& own, std::strin
     }
 }
 
-// Those that the log tells, and those that the catalogue knows.
+// The rivals found in the log, and those in the catalogue.
 std::vector<const Effect*> rivals_of(const Diagnosis& diagnosis, const Finding& finding) {
     const Effect& own = *finding.term.effect;
     std::vector<const Effect*> rivals;
@@ -200,7 +200,7 @@ std::vector<const Effect*> rivals_of(const Diagnosis& diagnosis, const Finding& 
     return rivals;
 }
 
-// The improved model without the finding, which is in it unless it is in doubt.
+// The improved model without the finding, which is in it unless it is uncertain.
 Model model_beside(const Diagnosis& diagnosis, const Finding& finding) {
     Model rest = diagnosis.model;
     if (is_doubtful(finding)) return rest;
@@ -220,8 +220,9 @@ Model model_beside(const Diagnosis& diagnosis, const Finding& finding) {
 
 bool is_of_the_joint(const Effect& effect) { return effect.side != Side::converter && !effect.chance; }
 
-// Sides of ties and findings in doubt first, then findings that have to be found again. None where nothing
-// is open. `along`: the motion of the log; `variance_nm2`: of the noise, for as many rows as `along` has.
+// Sides of ties and uncertain findings first, then findings that have to be found again. None where nothing
+// is open. `along`: the motion of the log; `variance_nm2`: variance of the noise, for as many rows as `along`
+// has.
 std::vector<AskedTerm> asked_terms(const Diagnosis& diagnosis, const Motion& along, double variance_nm2,
                                    double enough) {
     std::vector<AskedTerm> open, found;
@@ -253,7 +254,7 @@ std::vector<AskedTerm> asked_terms(const Diagnosis& diagnosis, const Motion& alo
     open.insert(open.end(), found.begin(), found.end());
     for (AskedTerm& term : open) {
         term.gain_before = separation(term, along).squares / variance_nm2;
-        // What the log told well has to be told half as well, no better than what is open.
+        // A term that the log determined well has to be determined half as well, no better than an open one.
         term.needed = term.open ? enough : std::min(enough, 0.5 * term.gain_before);
     }
     std::erase_if(open, [](const AskedTerm& term) { return !(term.needed > 0.0); });

@@ -15,7 +15,7 @@ namespace ripplenotch {
 
 struct FourierMotion {
     std::vector<double> speeds_deg_s;
-    double place = 0.5;  ///< of the span within what the range leaves free, 0 to 1
+    double place = 0.5;  ///< position of the span within the range that remains, 0 to 1
 };
 
 [[nodiscard]] FourierMotion drawn(Noise& noise);
@@ -23,8 +23,8 @@ struct FourierMotion {
 /// Moved a little: by `step` of its own size.
 [[nodiscard]] FourierMotion moved(const FourierMotion& motion, double step, Noise& noise);
 
-/// Rest, the motion with its acceleration 0 at both ends and as large as the limits let it be, rest; together
-/// `duration`. Words for make_motion.
+/// Standstill, the motion with its acceleration 0 at both ends and as large as the limits permit, standstill;
+/// together `duration`. Arguments for make_motion.
 [[nodiscard]] std::vector<std::string> within(const FourierMotion& motion, const MotionLimits& limits,
                                               Seconds duration);
 

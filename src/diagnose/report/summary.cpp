@@ -28,9 +28,9 @@ namespace {
 // How often a name is wrong, as counted over simulated logs whose truth is known
 // (docs/studies/diagnose-catalogue.md).
 
-// Names told in two runs of the studies (single, rarer, pair, triple, noise, poor, disturbed logs and
-// formulas that are not the catalogue's): numbers from 9000 on and from 44000 on. A third run was held
-// against it.
+// Names reported in two runs of the studies (single, rarer, pair, triple, noise, poor, disturbed logs and
+// formulas that are not the catalogue's): numbers from 9000 on and from 44000 on. A third run was compared
+// with it.
 struct Counted {
     double names, wrong;
 };
@@ -103,12 +103,12 @@ std::vector<EffectOfUnusedRows> mainly_unused(std::span<const Effect* const> eff
 
 namespace {
 
-// What a user can do about what a diagnosis leaves in doubt: the motion that would decide, and the word that
-// takes a finding into the model all the same.
+// The user's options with uncertain findings: the motion that would decide, and the option that takes a
+// finding into the model all the same.
 
-// What of a motion tells effects apart.
+// Features of a motion that distinguish effects.
 struct Seen {
-    double positive = 0.0, negative = 0.0, rest = 0.0, slowly = 0.0;  ///< of the samples
+    double positive = 0.0, negative = 0.0, rest = 0.0, slowly = 0.0;  ///< shares of the samples
     double travel_deg = 0.0;
 };
 
@@ -130,7 +130,7 @@ Seen seen_in(const Motion& motion, const DiagnosisRules& rules) {
     return seen;
 }
 
-// Everything that this log leaves open.
+// Everything that is undecided from this log.
 std::set<std::string_view> in_doubt(const Diagnosis& diagnosis) {
     std::set<std::string_view> names;
     for (const Tie& tie : diagnosis.ambiguous) names.insert(tie.effects.begin(), tie.effects.end());
@@ -140,7 +140,7 @@ std::set<std::string_view> in_doubt(const Diagnosis& diagnosis) {
     return names;
 }
 
-// What the motion of this log lacks for the effects in doubt.
+// Missing features of this log's motion for the uncertain effects.
 std::vector<std::string> missing_motion(const Diagnosis& diagnosis, const Seen& seen,
                                         const DiagnosisRules::AdviceRules& rules) {
     bool direction = false, speed = false, position = false, load = false;
@@ -187,7 +187,7 @@ void add_doubtful(const Diagnosis& diagnosis, std::vector<std::string>& steps) {
     }
 }
 
-// A sentence each; nothing where nothing is in doubt. `smoothed` is the log's motion.
+// A sentence each; nothing where nothing is uncertain. `smoothed` is the log's motion.
 std::vector<std::string> next_steps(const Diagnosis& diagnosis, const Motion& smoothed,
                                     const DiagnosisRules& rules) {
     std::vector<std::string> steps;
@@ -209,7 +209,7 @@ std::vector<std::string> next_steps(const Diagnosis& diagnosis, const Motion& sm
 
 // A diagnosis with what its user decides, and what there is to do next.
 
-// The effect with its values open, but for those that say which line is meant.
+// The effect with its values open, except those that name a line.
 Term open_term(const Term& found) {
     Term term{found.effect, std::vector<std::optional<double>>(found.values.size())};
     for (std::size_t p = 0; p < term.values.size(); ++p) {
@@ -223,7 +223,7 @@ bool needs_a_line(const Effect& effect) {
                        [](const Parameter& parameter) { return parameter.left_out == LeftOut::refused; });
 }
 
-// What the name stands for in this diagnosis: findings in doubt, or a side of a tie.
+// The findings that the name refers to in this diagnosis: uncertain findings, or a side of a tie.
 std::vector<AcceptedFinding> accepted_of(const Diagnosis& diagnosis, const std::string& name) {
     std::vector<AcceptedFinding> accepted;
     for (const Finding& finding : diagnosis.rounds) {
@@ -260,7 +260,7 @@ std::string why_not(const Diagnosis& diagnosis, const std::string& name) {
         there.empty() ? "nothing" : there);
 }
 
-// Of the squared gap above the floor.
+// Closed share, in percent, of the squared gap above the floor.
 std::optional<double> closed_of_round(double before_nm, double after_nm, double floor_nm) {
     const double before = before_nm * before_nm - floor_nm * floor_nm;
     if (!(before > 0.0)) return std::nullopt;

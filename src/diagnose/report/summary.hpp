@@ -17,10 +17,10 @@ namespace ripplenotch {
 // Rows of the log that do not count, and effects that act mainly there: such an effect is not found, however
 // large it is.
 
-/// Adds the rows that the case lacks beside those that are listed, where there are any.
+/// Adds the rows that the case lacks in addition to those that are listed, where there are any.
 void add_unused_rows(std::vector<UnusedRows>& listed, const Case& whole, std::string_view reason);
 
-/// Of these effects those that have half of their largest torque or more mainly in rows that do not count,
+/// Those of these effects that have half of their largest torque or more mainly in rows that do not count,
 /// each by itself with the sizes at which a search begins.
 [[nodiscard]] std::vector<EffectOfUnusedRows> mainly_unused(std::span<const Effect* const> effects,
                                                             const Case& whole, const Model& model);
@@ -35,8 +35,8 @@ struct GapCase {
     const Case& improved;
 };
 
-/// Gaps are over every sample, so that they are what `simulate` says of the same model and log. `validation`
-/// may be absent.
+/// Gaps are over every sample, so that they equal those of `simulate` for the same model and log.
+/// `validation` may be absent.
 void measure_gap(Diagnosis& diagnosis, const GapCase& whole, const GapCase* validation,
                  const DiagnosisRules& rules);
 

@@ -119,7 +119,7 @@ std::vector<Term> sensors_of(const Model& model) {
 
 // Errors of the motion that pass them are as good as the same.
 bool is_as_good(const std::vector<Term>& sensors, const std::vector<Term>& others) {
-    constexpr double part = 0.01;  // by hand
+    constexpr double part = 0.01;  // chosen, not derived
     return std::ranges::equal(sensors, others, [](const Term& one, const Term& other) {
         return one.effect == other.effect && std::ranges::equal(one.values, other.values, [](auto a, auto b) {
                    return a == b || (a && b && std::abs(*a - *b) <= part * std::abs(*b));
@@ -145,8 +145,9 @@ double ModelBench::same_model_nm2() const {
 }
 
 void ModelBench::settle_on(const Model& model) {
-    // A walk of the angle is weighed against all that the model leaves: against the sensor's noise alone, one
-    // that nobody expects would stand in for what the model lacks, and blow up the ripple to do so.
+    // The random-walk error of the angle is weighted against the whole residual of the model: against the
+    // sensor's noise alone, an implausible walk would replace missing terms of the model, and inflate the
+    // ripple to do so.
     if (!case_.uncertain.empty() && !known_)
         known_ = std::make_shared<KnownFit>(case_, model, weighing_, noise_.white_nm);
     const std::vector<double> white = weighing_.whitened(raw_residual(model));
@@ -167,8 +168,8 @@ std::vector<Nuisance> ModelBench::errors_of(const Model& model) const {
     return errors;
 }
 
-// Errors of the motion lie where the sensors of a model put them: a resonance that rings with what smoothing
-// took of the acceleration must not be judged by errors that do not ring.
+// Errors of the motion pass through the sensors of a model: a resonance excited by accelerations that
+// smoothing removed must not be tested with errors that do not pass through it.
 ModelBench::OwnWeighing ModelBench::weighing_of(const Model& model) const {
     OwnWeighing own;
     own.beside = sensors_of(model);
@@ -192,7 +193,7 @@ Candidate ModelBench::fitted(const Model& open, const Model& first_guess, std::v
     };
     // Errors that pass a sensor as it is no longer can stand in for the torque itself: the last look takes
     // them where they are. Before, it is known only roughly where that is.
-    constexpr double roughly = 1e-3;  // by hand, as the steps of each look
+    constexpr double roughly = 1e-3;  // chosen, not derived: as the steps of each search
     bool is_rough = own.other.has_value();
     Candidate found = from(first_guess, most_iterations, is_rough ? std::max(settled, roughly) : settled);
     for (const int iterations : {std::min(most_iterations, 6), 2, 0}) {
@@ -250,8 +251,8 @@ double ModelBench::share(const Candidate& with, const Candidate& without) const 
         raw += (left_without[k] * left_without[k] - left_with[k] * left_with[k]) / samples();
         moved += (left_without[k] - left_with[k]) * (left_without[k] - left_with[k]) / samples();
     }
-    // Of coloured noise the whitened gain is the sharper measure, of a slow effect the torque itself; nothing
-    // explains more than the torque that it brings.
+    // With coloured noise the whitened gain is the sharper measure, for a slow effect the torque itself;
+    // nothing explains more than its own torque.
     const double white = (without.gain_left - with.gain_left) / samples() * noise_.white_nm * noise_.white_nm;
     return std::sqrt(std::max({std::min(white, moved), raw, 0.0})) / noise_.material_nm;
 }
@@ -260,7 +261,7 @@ std::vector<double> ModelBench::cleared_residual(const Model& stated) const {
     Weighing plain(case_.size(), case_.use, {});
     plain.set_nuisance(motion_errors(case_, stated, rules_.recording), noise_.rms_nm);
     const auto cleared = plain(raw_residual(stated));
-    // Weighing leaves out what noise_.color makes unusable as well; here only rows() are told.
+    // Weighing leaves out what noise_.color makes unusable as well; here only rows() are returned.
     std::vector<double> all(case_.size(), 0.0), told;
     for (std::size_t r = 0; r < plain.rows().size(); ++r) all[plain.rows()[r]] = cleared[r];
     for (const std::size_t k : rows()) told.push_back(all[k]);

@@ -55,7 +55,7 @@ using Column = std::vector<double>;
 /// combination of the columns before it, to a part in ten million, is left out.
 [[nodiscard]] std::vector<Column> orthonormal(std::span<const Column> columns);
 
-/// Of a column, what lies outside the basis, whose columns are orthonormal().
+/// The part of a column outside the basis, whose columns are orthonormal().
 [[nodiscard]] Column outside_of(std::span<const Column> basis, Column column);
 
 /// Square of what the basis and the columns together explain of `left`, in its unit squared: as by
@@ -64,7 +64,7 @@ using Column = std::vector<double>;
 [[nodiscard]] double explained(std::span<const Column> basis, std::span<const Column> columns,
                                const Column& left);
 
-// What the rules said of one finding or candidate.
+// The results of the rules for one finding or candidate.
 
 /// Notes each rule that is asked, in the order in which they are.
 class Hearing {
@@ -80,7 +80,7 @@ class Hearing {
         return against;
     }
 
-    /// The price of a name follows from what was tried and is no rule of its own; see Evidence::price.
+    /// The threshold of a name follows from what was tried and is no rule of its own; see Evidence::price.
     bool asked_price(double gain, double price, bool against) {
         decisions_.push_back({"price", gain, price, "gain", against});
         return against;
@@ -91,9 +91,8 @@ class Hearing {
     std::vector<Decision>& decisions_;
 };
 
-// What was found beside a model along one case, so that it is not looked for again beside a model that leaves
-// the same torque: a search comes back to the model that it began with, fitted from elsewhere or against
-// another noise.
+// Results for a model along one case, kept so that they are not computed again for a model with the same
+// residual: a search returns to the model that it began with, fitted from elsewhere or against another noise.
 
 /// A model by what a screening sees of it. What is kept of it lives no longer than what it points to.
 struct SeenModel {
@@ -105,8 +104,8 @@ struct SeenModel {
 template <class Found>
 class KeptBeside {
   public:
-    /// What was found beside a model of the same terms whose torque differs by no more than `most_nm2`,
-    /// summed over the samples that `use` counts; null where there is none.
+    /// The result for a model of the same terms whose torque differs by no more than `most_nm2`, summed over
+    /// the samples that `use` counts; null where there is none.
     [[nodiscard]] const Found* find(const SeenModel& model, std::span<const unsigned char> use,
                                     double most_nm2) const {
         for (const Entry& entry : entries_) {
@@ -145,7 +144,7 @@ class KeptBeside {
 struct Trial {
     Term open;          ///< values to be fitted are empty
     Term start;         ///< with the place to begin at
-    double gain = 0.0;  ///< of the whole log, foreseen, in units of the noise's variance
+    double gain = 0.0;  ///< predicted for the whole log, in units of the noise's variance
     double price = 0.0;
     [[nodiscard]] double score() const { return gain - price; }
 };
@@ -154,10 +153,10 @@ struct Trial {
 struct Screened {
     std::vector<Trial> trials;
     double unit_nm2 = 1.0;
-    std::vector<double> color = {};  ///< of the noise that they were weighed by
+    std::vector<double> color = {};  ///< colour of the noise that weighted them
 };
 
-/// The best gear ratios where the torque is late by what makes the most of them, and without.
+/// The best gear ratios with the torque delay that makes the most of them, and without.
 struct LateRatio {
     double delay_s = 0.0;
     RatioCandidates ratios;
@@ -172,7 +171,7 @@ struct KeptScreenings {
 /// Share of the noise floor below which a torque does not matter. Steps coarser than the noise bend whatever
 /// is in the torque into shapes of their own, which are no effects.
 [[nodiscard]] double material_sigma(const Case& looked_at, const DiagnosisRules& rules);
-/// The name of the rule that says so.
+/// The name of the rule for it.
 [[nodiscard]] std::string_view material_rule(const Case& looked_at);
 
 /// A model in hand: the terms of the user's model first, then those that were added.
@@ -233,7 +232,7 @@ class ModelBench {
 
     /// What screenings along this case found, whichever bench they were made on.
     [[nodiscard]] const std::shared_ptr<KeptScreenings>& kept() const { return kept_; }
-    /// Sum of squares by which two models may differ for what was found beside one to hold beside the other.
+    /// Sum of squares by which two models may differ for the results of one to hold for the other.
     [[nodiscard]] double same_model_nm2() const;
 
   private:
@@ -254,8 +253,8 @@ class ModelBench {
     const DiagnosisRules& rules_;
     Weighing weighing_;
     bool is_settled_ = false;
-    std::vector<Term> sensors_;    ///< of the model settled on
-    std::vector<Nuisance> walks_;  ///< and what its angle's walk would leave
+    std::vector<Term> sensors_;    ///< sensors of the settled model
+    std::vector<Nuisance> walks_;  ///< errors from the random walk of its angle
     double walks_beside_nm_ = 1.0;
     std::shared_ptr<KeptScreenings> kept_;
     std::shared_ptr<const KnownFit> known_;  ///< behind the sensors of the model settled on

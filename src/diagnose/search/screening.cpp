@@ -15,12 +15,12 @@
 namespace ripplenotch {
 namespace {
 
-// Of coordinates that a screening solves anew beside another effect.
+// Whether a screening solves for this coordinate anew together with another effect.
 bool is_solved(const Coordinate& coordinate) {
     return coordinate.linear || coordinate.kind != CoordinateKind::logarithm;
 }
 
-// A term whose torque a change of the ripple leaves as it is.
+// A term whose torque a change of the ripple does not affect.
 bool is_plain(const Term& term) { return term.effect->side == Side::joint && !term.effect->ripple_order; }
 
 std::vector<double> starts(const Coordinates& coordinates) {
@@ -29,8 +29,8 @@ std::vector<double> starts(const Coordinates& coordinates) {
     return point;
 }
 
-// Of the samples that a screening looks at, of what the model leaves along the whole log: what it remembers
-// (hysteresis, lag) lies in samples that were left out.
+// The samples that a screening uses, from the model's residual along the whole log: effects with memory
+// (hysteresis, lag) depend on samples that were left out.
 Column residual_of(const ModelBench& bench, const Case& some, const std::vector<double>& left_nm) {
     const std::vector<std::size_t>& rows = bench.looked_at().row;
     Column residual;
@@ -153,7 +153,7 @@ class Screening {
         return sized ? gain_beside(start) : gain_within(start);
     }
 
-    // Of an effect with a size: its torque is added to the model's.
+    // Gain of an effect with a size: its torque is added to the model's.
     [[nodiscard]] double gain_beside(const Term& start) const {
         const Effect& effect = *start.effect;
         std::vector<Column> columns;
@@ -199,7 +199,7 @@ class Screening {
         return gain;
     }
 
-    // Of an effect that changes the model's own torque: everything linear is solved anew.
+    // Gain of an effect that changes the model's own torque: everything linear is solved anew.
     [[nodiscard]] double gain_within(const Term& start) const {
         if (const auto torque_nm = prediction_.behind(start, prediction_.torque_nm()))
             return gain_behind(start, *torque_nm);
@@ -221,7 +221,7 @@ class Screening {
         return fall(only_ripple ? plain_basis_ : errors_basis_, columns, changed.torque_nm());
     }
 
-    // Of a sensor that comes after all others: it does to each slope what it does to the torque.
+    // Gain of a sensor that comes after all others: it transforms each slope as it does the torque.
     [[nodiscard]] double gain_behind(const Term& sensor, const std::vector<double>& torque_nm) const {
         const Coordinates coordinates(model_.open, &prediction_.model());
         std::vector<Column> columns;
@@ -260,7 +260,7 @@ class Screening {
     std::vector<std::vector<double>> slopes_nm_;  ///< one for each of the model's coordinates
     std::vector<Nuisance> errors_, walk_;
     std::vector<Column> basis_, plain_basis_,
-        errors_basis_;  ///< of all, of what no ripple is part of, of errors
+        errors_basis_;  ///< bases of all, of all without ripple, of errors
     const Hints& hints_;
 };
 

@@ -10,8 +10,8 @@
 
 namespace ripplenotch {
 
-/// The best trial of each effect in `effects`, the best first. Effects of which the log tells nothing beside
-/// the model are not in it.
+/// The best trial of each effect in `effects`, the best first. Effects on which the log carries no
+/// information in addition to the model are not in it.
 [[nodiscard]] std::vector<Trial> screen(const ModelBench& bench, const Candidate& model,
                                         std::span<const Effect* const> effects);
 

@@ -83,7 +83,7 @@ bool worth_it(const ModelBench& bench, const Candidate& now, const Candidate& ne
     Hearing hearing(bench.rules(), decisions);
     const double gain = now.gain_left - next.gain_left, samples = bench.samples();
     if (hearing.asked_price(gain, next.prices.back(), next.criterion() >= now.criterion())) return false;
-    // What is small against the noise floor still stands out of the residual where that is quiet.
+    // A torque that is small against the noise floor may still rise above the residual where that is quiet.
     const double share = bench.share(next, now);
     if (!bench.noise_holds_residual() &&
         hearing.asked(material_rule(bench.looked_at()), share, share < bench.material_sigma()))
@@ -102,8 +102,8 @@ bool worth_it(const ModelBench& bench, const Candidate& now, const Candidate& ne
 }
 
 // Two effects that act on the same ripple may each do little alone, and a third, which does a part of both,
-// more than either. Where the best addition leaves much of the gap, the finalists are compared by what they
-// come to with one more. One that comes to the best itself is the same two in another order.
+// more than either. Where the best addition closes little of the gap, the finalists are compared by their
+// result with one more. One that reaches the best itself is the same two in another order.
 std::optional<Candidate> best_with_one_more(const ModelBench& bench, const Candidate& now,
                                             const Candidate& best, const std::vector<Candidate>& tried,
                                             std::span<const Effect* const> effects) {
@@ -119,7 +119,7 @@ std::optional<Candidate> best_with_one_more(const ModelBench& bench, const Candi
     std::optional<Candidate> found;
     double least = one_ahead(bench, best, effects).criterion();
     for (const Candidate& other : tried) {
-        // What is not worth its price alone would not be added.
+        // An effect that is not worth its penalty alone would not be added.
         if (other.criterion() == best.criterion() || other.criterion() >= now.criterion() ||
             adds_torque(other) || bench.work().is_over())
             continue;
@@ -133,12 +133,12 @@ std::optional<Candidate> best_with_one_more(const ModelBench& bench, const Candi
     return found;
 }
 
-// A delay and a gear ratio that are both there, where each is worth it beside the other and the two close
-// more than the best effect by itself.
+// A delay and a gear ratio that are both present, where each is worth its penalty in addition to the other
+// and the two close more than the best effect by itself.
 std::optional<Candidate> late_ratio_instead(const ModelBench& bench, const Candidate& now,
                                             const std::optional<Candidate>& alone,
                                             std::span<const Effect* const> effects, std::size_t own_terms) {
-    // What hides so leaves the ripple: there is much to close.
+    // Such a pair leaves the ripple unexplained: there is much to close.
     if (now.gain_left - bench.samples() <= bench.rules().search.open_gap * bench.samples())
         return std::nullopt;
     auto both = with_late_ratio(bench, now, own_terms, effects);
@@ -169,7 +169,7 @@ std::vector<RefusedCandidate> refused_by(const ModelBench& bench, const Candidat
     return {best};
 }
 
-// `spared`: how many of the newest were judged a moment ago.
+// `spared`: how many of the newest have just been tested.
 void drop_needless(const ModelBench& bench, Candidate& now, std::size_t own_terms, std::size_t spared = 1) {
     while (now.stated.terms.size() > own_terms + spared) {
         std::optional<Candidate> best;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Which effects to add to a model: the best first, as long as each is worth its price; then whatever later
-// ones made needless is dropped, and each is tried against its rivals.
+// Selection of the effects to add to a model: the best first, as long as each is worth its penalty; then
+// terms that later ones made needless are dropped, and each is compared with its rivals.
 
 #include <span>
 #include <vector>
@@ -22,7 +22,7 @@ namespace ripplenotch {
 
 [[nodiscard]] Candidate without_term(const ModelBench& bench, const Candidate& model, std::size_t term);
 [[nodiscard]] Candidate with_trial(const ModelBench& bench, const Candidate& model, const Trial& trial);
-/// The candidate with the best that the screening beside it finds, or as it is.
+/// The candidate with the best addition from its own screening, or as it is.
 [[nodiscard]] Candidate one_ahead(const ModelBench& bench, const Candidate& candidate,
                                   std::span<const Effect* const> effects);
 

@@ -146,7 +146,8 @@ class Shapes {
         return torque_nm;
     }
 
-    // Part of a torque that the best multiple of the other leaves; 1 where that has the other sign.
+    // Share of a torque that remains after subtraction of the best multiple of the other; 1 where that has
+    // the other sign.
     [[nodiscard]] static double difference(const std::vector<double>& torque,
                                            const std::vector<double>& other) {
         double square = 0.0, both = 0.0, others = 0.0;
@@ -218,7 +219,8 @@ Bend bend_of(const ModelBench& bench, const Candidate& model, std::size_t term) 
 
 namespace {
 
-constexpr Eigen::Index changing_columns = 3, all_columns = 4;  // inertia and gravity, beside them an offset
+// Inertia and gravity, and an offset in addition.
+constexpr Eigen::Index changing_columns = 3, all_columns = 4;
 using ProductSums = Eigen::Matrix<double, all_columns + 1, all_columns + 1>;
 
 // Sums of products of the columns and the residual up to each sample, the first none.
@@ -486,7 +488,7 @@ std::vector<double> tried(const Effect& effect, std::size_t p, const Hints& hint
 
 // Travel that is passed in both directions.
 double both_ways_deg(const Case& looked_at) {
-    constexpr double cell_deg = 5.0;  // by hand
+    constexpr double cell_deg = 5.0;  // chosen, not derived
     std::map<long, unsigned> passed;
     for (std::size_t k = 0; k < looked_at.size(); ++k) {
         const double v = looked_at.motion.velocity_deg_s[k];
@@ -593,8 +595,8 @@ std::vector<Term> starts_of(const Effect& effect, const Hints& hints, double sam
         }
         starts = std::move(more);
     }
-    // A ripple effect of the very order that the model has already tells nothing new, but a screening
-    // finds that out by itself.
+    // A ripple effect of an order that the model has already adds nothing new, but a screening finds that out
+    // by itself.
     return starts;
 }
 

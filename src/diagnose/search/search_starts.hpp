@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Where the search for an effect may begin: the values that the catalogue says to try, and those that the
-// residual itself shows.
+// Where the search for an effect may begin: the values from the catalogue, and those that the residual itself
+// shows.
 
 #include <optional>
 #include <span>
@@ -17,29 +17,30 @@ namespace ripplenotch {
 
 // Whether a fitted shape is the effect's own.
 
-// At which speed a ripple that swells has the amplitude of its term. A ripple that is nothing at rest has no
-// amplitude there, and a gain on nothing is a number that no log tells: it is stated from a speed of the log.
+// The speed at which a ripple that grows with speed has the amplitude of its term. A ripple that is zero at
+// standstill has no amplitude there, and a factor on zero is not identifiable: it is stated from a speed of
+// the log.
 
 /// The speed of the log from which such a ripple is stated: the rms of those at which the joint moves, in two
 /// digits. 0 where it rests.
 [[nodiscard]] double usual_speed_deg_s(const Case& looked_at);
 
-/// States each change of the ripple that was found (it has a price) from rest, or from the usual speed where
-/// less of the ripple than search.least_at_rest is there at rest. Terms whose ripple is not all fitted stay
-/// as they are. The torque stays the same.
+/// States each change of the ripple that was found (it has a price) from standstill, or from the usual speed
+/// where less of the ripple than search.least_at_rest is present at standstill. Terms whose ripple is not all
+/// fitted stay as they are. The torque stays the same.
 void state_where_told(Candidate& model, const Case& looked_at, const DiagnosisRules& rules);
 
 /// How a shape is bent.
 struct Bend {
     std::string_view parameter;  ///< empty: it is not
-    std::string_view rule;       ///< that says so
+    std::string_view rule;       ///< the rule for it
     double number = 0.0;         ///< what it was asked about
 };
 
 /// The first parameter of a term that is bent as far as its bounds allow, or so far that the torque is as
-/// good as at a bound. Such an effect has lost what tells it from others: Stribeck friction of a Stribeck
-/// speed far above all speeds is Coulomb friction. A bound at which the effect is what it is at its neutral
-/// value, and one that the log hardly tells from a value within, bend nothing.
+/// good as at a bound. Such an effect can no longer be distinguished from others: Stribeck friction of a
+/// Stribeck speed far above all speeds is Coulomb friction. A bound at which the effect is the same as at its
+/// neutral value, and one that the log hardly distinguishes from a value within, bend nothing.
 [[nodiscard]] Bend bend_of(const ModelBench& bench, const Candidate& model, std::size_t term);
 
 // When inertia and gravity change within a log: where the search for a payload that is picked up or put down
@@ -51,7 +52,7 @@ struct ChangeTimes {
 };
 
 /// The times at which a change of inertia and gravity reduces the sum of squares of the residual most, each
-/// by least squares beside a constant inertia, gravity and offset.
+/// by least squares together with a constant inertia, gravity and offset.
 [[nodiscard]] ChangeTimes change_times(const Case& looked_at, const std::vector<double>& residual_nm,
                                        double noise_nm, const DiagnosisRules& rules);
 
@@ -62,12 +63,11 @@ struct Hints {
     RatioCandidates ratios;
     std::optional<double> delay_s = {};
     ChangeTimes changes;
-    double least_order =
-        0.0;  ///< of what goes with position and direction: fewer cycles per turn are not passed
+    double least_order = 0.0;  ///< for orders in position and direction: fewer cycles per turn are ignored
 };
 
-/// Gear ratios that are compared beside a model whose ratio is `about`. An order that the search chose from
-/// its list states nothing: a ratio that brings it nearer to another one of the list is that order of the
+/// Gear ratios that are compared for a model whose ratio is `about`. An order that the search chose from its
+/// list determines nothing: a ratio that brings it nearer to another one of the list is that order of the
 /// same gear.
 [[nodiscard]] RatioRange ratios_beside(const Candidate& model, double about, const DiagnosisRules& rules);
 
@@ -84,17 +84,17 @@ struct Hints {
 /// are empty.
 [[nodiscard]] bool is_there_already(const Term& tried, const Model& open);
 
-// A gear ratio that is wrong and a torque that is late hide each other: without the delay no ratio puts the
-// ripple on a line, and without the ratio no delay does. They are looked for together.
+// A gear ratio that is wrong and a delayed torque mask each other: without the delay no ratio puts the ripple
+// on a line, and without the ratio no delay does. They are searched for together.
 
-/// The case as a torque that is `late` sees it: each sample with the position of that much earlier. Samples
-/// whose earlier position is not in the same stretch do not count.
+/// The case for a torque delayed by `late`: each sample with the position of that much earlier. Samples whose
+/// earlier position is not in the same stretch do not count.
 [[nodiscard]] Case seen_late(const Case& looked_at, Seconds late);
 
-/// The model with a delay and a gear ratio that together make the ripple's lines stand out by
-/// rules.screening.late_ratio of what the best ratio makes of them alone; fitted. One of the two that the
-/// search has added gives way to the pair. None where the first `own_terms` terms hold one, where the model
-/// has both, where they are not among `effects`, or where no delay makes that much.
+/// The model with a delay and a gear ratio that together raise the ripple's lines above those of the best
+/// ratio alone by a factor of rules.screening.late_ratio; fitted. One of the two that the search has added is
+/// replaced by the pair. None where the first `own_terms` terms hold one, where the model has both, where
+/// they are not among `effects`, or where no delay makes that much.
 [[nodiscard]] std::optional<Candidate> with_late_ratio(const ModelBench& bench, const Candidate& now,
                                                        std::size_t own_terms,
                                                        std::span<const Effect* const> effects);

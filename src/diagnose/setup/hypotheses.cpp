@@ -269,7 +269,7 @@ class TorqueComparison {
     [[nodiscard]] std::vector<double> total() const {
         return BlockedSquares({friction_.front()}, measured_, block_).held_out();
     }
-    // How much of the torque the simulation has: deviations beside offset and friction.
+    // How much of the torque the simulation explains: deviations together with offset and friction.
     [[nodiscard]] double relative_size() const {
         const auto deviation = [&](const std::vector<double>& torque) {
             return std::sqrt(sum_of_squares(BlockedSquares(friction_, torque, block_).left()));

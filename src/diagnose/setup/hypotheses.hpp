@@ -8,10 +8,11 @@
 
 namespace ripplenotch {
 
-/// Of motions of log and simulation at their lag.
+/// Faults from the motions of log and simulation at their lag.
 [[nodiscard]] std::vector<SetupFault> motion_faults(const TraceView& log, const SimulatedMotion& simulation,
                                                     const SimulationLag& lag, const SetupContext& context);
-/// Of torques; `delay_s` is their lag, or 0 where that is not known. `is_same_motion`: the motions say so.
+/// Faults from the torques; `delay_s` is their lag, or 0 where that is not known. `is_same_motion`: from the
+/// motions.
 [[nodiscard]] std::vector<SetupFault> torque_faults(const TraceView& log, const SimulatedMotion& simulation,
                                                     const SimulationLag& lag, const SetupContext& context,
                                                     bool is_same_motion);

@@ -98,16 +98,16 @@ struct SmoothedSignal {
 
 struct ShiftProblem {
     std::vector<double> at_s;                    ///< ascending; of the log
-    std::vector<double> target;                  ///< of the log, at these times
+    std::vector<double> target;                  ///< the log's values at these times
     std::vector<std::vector<double>> nuisances;  ///< at these times
     SmoothedSignal simulated;
     double range_s = 1.0, smoothing_s = 0.05;
-    double misfit_share = 0.0;  ///< of SimulationLag::misfit_s that the interval holds besides
+    double misfit_share = 0.0;  ///< share of SimulationLag::misfit_s that the interval includes
 };
 
 struct ShiftFit {
     SimulationLag lag;
-    double held_out_squares = 0.0;  ///< of blocks that the fit was made without
+    double held_out_squares = 0.0;  ///< squares of held-out blocks
 };
 
 using ShiftColumns = std::vector<std::vector<double>>;
@@ -153,7 +153,7 @@ struct Shift {
 struct Refined {
     Shift shift;
     double scale = 0.0, correlation = 0.0, squares = 0.0;
-    std::vector<std::size_t> block;  // of each row
+    std::vector<std::size_t> block;  // block of each row
     std::vector<double> block_squares, held_out;
     double delay_error_s = 0.0, scale_error = 0.0;
     double clock = 0.0, clock_error = 0.0;  // and its standard error
@@ -227,7 +227,8 @@ class ShiftSearch {
             const ShiftColumns columns = with_shift(complement, shift, with_clock);
             const std::vector<std::size_t> one(rows(), 0);
             const auto values = BlockedSquares(columns, target_, one).values();
-            // Of samples joined by lines the curvature has steps, about which whole steps may go to and fro.
+            // With samples joined by lines the curvature has steps, between which the iteration may
+            // alternate.
             const double part = iteration < 8 ? 1.0 : 0.5;
             const double change_s = part * std::clamp(values[0], -step_s_, step_s_);
             shift.delay_s += change_s;
@@ -293,7 +294,8 @@ class ShiftSearch {
             slope[k] *= scale;
             drift.push_back(slope[k] * (at_s_[k] - shift.middle_s));
         }
-        // Of one sine the second derivative is a multiple of the value, and no scale could be told.
+        // For a single sine the second derivative is a multiple of the value, and no scale would be
+        // identifiable.
         const double before = product_of(second, second);
         std::vector<double> alone = second;
         Complement with_value = complement;
@@ -343,8 +345,8 @@ class ShiftSearch {
     ShiftColumns nuisances_;
 };
 
-// Whether one fit leaves more than another by more than the scatter between blocks: a paired t test of the
-// logarithms, in which a block with large residuals counts no more than any other.
+// Whether the residual of one fit exceeds that of another by more than the scatter between blocks: a paired t
+// test of the logarithms, in which a block with large residuals counts no more than any other.
 bool clearly_worse(const std::vector<double>& squares, const std::vector<double>& best, double quantile) {
     const auto count = static_cast<double>(best.size());
     std::vector<double> ratios;
@@ -481,8 +483,8 @@ bool is_constant(std::span<const double> values) {
     return !(*high > *low);
 }
 
-// Two fits whose scales differ by more are fits of different things: beside a weight and an inertia of the
-// joint, what is left of a simulation that holds nothing else may have any scale.
+// Two fits whose scales differ by more are fits of different effects: together with a weight and an inertia
+// of the joint, the remainder of a simulation that holds nothing else may have any scale.
 bool has_like_scale(const SimulationLag& a, const SimulationLag& b) {
     return a.scale * b.scale > 0.0 && std::abs(portable::log(a.scale / b.scale)) <= portable::log(1.5);
 }

@@ -10,7 +10,7 @@
 
 namespace ripplenotch {
 
-// Least squares by blocks of rows: what each block says alone, so that any of them can be left out.
+// Least squares by blocks of rows: the sums of each block separately, so that any of them can be left out.
 
 class BlockedSquares {
   public:
@@ -45,8 +45,8 @@ class BlockedSquares {
 /// rows.
 [[nodiscard]] std::vector<std::size_t> equal_blocks(std::span<const double> weight, std::size_t blocks);
 
-// What a measured torque may have that a simulation lacks, over the window of an alignment: columns whose
-// values nobody asks for.
+// What a measured torque may have that a simulation lacks, over the window of an alignment: columns of
+// nuisance parameters.
 
 struct NuisanceChoice {
     bool friction = false, inertia = false, ripple = false, gravity = false, load = false;
