@@ -20,9 +20,10 @@ namespace {
 
 constexpr int points_a_side = 9;        // over which the largest gain of a trial band is looked for
 constexpr double as_exact = 1e-9;       // share of a Q or a centre to which searches go
-constexpr double edge_as_exact = 1e-7;  // of a band's edge, from the side on which it still holds
-constexpr int most_secants = 8;         // by hand: bisection follows
-constexpr double secant_as_exact = 1e-6, bracket_width = 1e-10;  // by hand: checked by its bracket
+constexpr double edge_as_exact = 1e-7;  // share of a band's edge, from the side on which it still holds
+constexpr int most_secants = 8;         // chosen, not derived: bisection follows
+// Chosen, not derived: checked by its bracket.
+constexpr double secant_as_exact = 1e-6, bracket_width = 1e-10;
 
 // The end of the first stretch, from `low` upward, on which `holds` is true; `high` when it never fails.
 template <class Holds>
@@ -157,7 +158,7 @@ std::optional<Tuning> BandFit::tune(double center_deg_s, const QRule& rule) cons
 
 // A digital notch of a lower Q would be wider than half the sample rate, and is none.
 double BandFit::least_q(const std::vector<Centre>& centres) const {
-    constexpr double inside = 1.0 + 1e-6;  // by hand: off the edge by rounding
+    constexpr double inside = 1.0 + 1e-6;  // chosen, not derived: off the edge by rounding
     double least = 0.0;
     for (std::size_t i = 0; i < centres.size(); ++i)
         least = std::max(least, inside * centres[i].half_angle / (0.5 * std::numbers::pi * shape_[i]));
@@ -259,7 +260,7 @@ std::optional<std::vector<double>> BandFit::edges(double from_deg_s, double to_d
 
 namespace {
 
-constexpr double most_db = 140.0, least_db = 0.1;  // complete_null_gain in dB; and by hand
+constexpr double most_db = 140.0, least_db = 0.1;  // complete_null_gain in dB; and chosen, not derived
 constexpr int settling_trials = 49;                // Q from widest to narrowest, 6 % apart
 
 double gain_of(double attenuation_db) { return portable::pow(10.0, -attenuation_db / 20.0); }

@@ -14,8 +14,8 @@
 
 namespace ripplenotch {
 
-/// The narrowest and the widest notch that a search may take: the paper's twin-T, and one that rings for
-/// three periods of its line (4.E of the design notes: 2 % settling of a pair at Q 5).
+/// The narrowest and the widest notch that a search may use: the paper's twin-T, and one whose transient
+/// lasts three periods of its line (4.E of the design notes: 2 % settling of a pair at Q 5).
 inline constexpr double widest_q = 0.25, narrowest_q = 5.0;
 
 /// How Q is chosen for a centre: stated, or as low as a delay allows (never below widest_q).
@@ -87,8 +87,8 @@ class BandFit {
 
 // The three-way trade of a designed table, attenuation, delay and number of bands: any two give the third.
 
-inline constexpr std::size_t most_bands_ever = 1000;  // by hand: bounds the time
-inline constexpr double gain_worth_a_band_db = 0.25;  // by hand
+inline constexpr std::size_t most_bands_ever = 1000;  // chosen, not derived: bounds the time
+inline constexpr double gain_worth_a_band_db = 0.25;  // chosen, not derived
 /// What rounding of edges and Q may take off an attenuation; searches aim this much higher.
 inline constexpr double rounding_db = 0.002;
 
@@ -103,9 +103,9 @@ class BandSearch {
     [[nodiscard]] QRule rule(std::optional<double> delay_s) const;
     /// Fewest bands; empty when no number (up to most_bands_ever) holds it.
     [[nodiscard]] std::optional<std::size_t> bands(double attenuation_db, const QRule& rule) const;
-    /// Most attenuation that so many bands hold; empty when they hold less than 0.1 dB. `known_db` may give
-    /// an attenuation that they surely hold, to begin from; what is told to be held, `held_db`, is not looked
-    /// at again, and changes nothing of what is found.
+    /// Largest attenuation that so many bands hold; empty when they hold less than 0.1 dB. `known_db` may
+    /// give an attenuation that they certainly hold, to begin from; the attenuation `held_db` is assumed to
+    /// hold without a test and does not change the result.
     [[nodiscard]] std::optional<double> attenuation_db(std::size_t bands, const QRule& rule,
                                                        double known_db = 0.0, double held_db = 0.0) const;
     /// Delays that are known to be too short and to be enough: not looked at again.
@@ -121,7 +121,7 @@ class BandSearch {
     struct Settling {
         double delay_s = 0.0, settle_s = 0.0, q = 0.0;
     };
-    /// Of notches at the lowest speed, those whose step response settles soonest.
+    /// The notches at the lowest speed whose step response settles soonest.
     [[nodiscard]] Settling soonest() const;
     /// Delay at the lowest speed of the narrowest and of the widest notches.
     [[nodiscard]] double least_delay_s() const { return fit_.delay_s(*fit_.tune(from_, {narrowest_q, {}})); }

@@ -154,11 +154,12 @@ void check_stored(const Band& band, int number, const TableSpec& spec) {
     }
 }
 
-// What is left of the lines while the joint speed runs through the band, both edges included, and the gear
-// ratio through its interval: a ratio that is 1 % higher looks like a joint that is 1 % faster.
+// The remaining gain of the lines while the joint speed runs through the band, both edges included, and the
+// gear ratio through its interval: a ratio that is 1 % higher looks like a joint that is 1 % faster.
 struct Left {
     std::vector<double> largest_gain;  // per order
-    double largest_together = 0.0;     // of all orders by their amplitudes; of the weakest line without them
+    // Gain of all orders by their amplitudes; without them, of the weakest line.
+    double largest_together = 0.0;
 };
 
 Left largest_left(std::span<const Biquad> cascade, const TableSpec& spec, const Band& band) {

@@ -75,7 +75,7 @@ std::string delay_text(double delay_s) { return fmt::format("{} ms", plain(1e3 *
             : "");
 }
 
-// Not even a band of one single speed holds the attenuation: says what stands in the way.
+// Not even a band of one single speed holds the attenuation: reports the reason.
 [[noreturn]] void refuse_attenuation(const TableSpec& spec, const DesignGoal& goal, const BandSearch& search,
                                      const QRule& rule) {
     const double wanted = *goal.min_attenuation_db;

@@ -15,7 +15,7 @@ namespace ripplenotch {
 
 namespace {
 
-constexpr int highest_order = 20;  // by hand
+constexpr int highest_order = 20;  // chosen, not derived
 
 void check_low_pass(const LowPassSpec& spec, Hertz sample_rate) {
     if (!std::isfinite(sample_rate.value()) || !(sample_rate.value() > 0.0)) {
@@ -72,11 +72,12 @@ namespace {
 
 constexpr double longest_run = 5e7;  // samples; about half a second of work per section
 
-constexpr std::size_t samples_a_look = 32;        // by hand: each look costs
+constexpr std::size_t samples_a_look = 32;        // chosen, not derived: each test costs
 constexpr double least_overshoot_percent = 1e-6;  // less is rounding
-constexpr double for_rounding = 1.25;  // of the bound, which is good to nine digits where it is used
-constexpr double least_band = 1e-6;  // of the final value; in less the rounding of the run itself would show
-constexpr double most_cancelling = 1e6;  // by hand: ten of a double's digits are left
+constexpr double for_rounding = 1.25;  // margin on the bound, which is good to nine digits where it is used
+// Share of the final value; in less the rounding of the run itself would show.
+constexpr double least_band = 1e-6;
+constexpr double most_cancelling = 1e6;  // chosen, not derived: ten of a double's digits remain
 
 /// What is still to come of a step response at most. It is target + sum of residue p^k over the poles p: with
 /// their magnitudes for residues and poles that is a bound which no later sample passes.
@@ -129,7 +130,7 @@ class Remainder {
 std::size_t samples_to_settle(std::span<const Biquad> cascade, double remainder) {
     const double radius = pole_radius(cascade);
     if (!(radius < 1.0)) raise<UsageError>("the filter is unstable: a pole at radius {}", shortest(radius));
-    // What is left after n samples is at most about (n / tau)^(order - 1) / (order - 1)! * exp(-n / tau).
+    // The residual after n samples is at most about (n / tau)^(order - 1) / (order - 1)! * exp(-n / tau).
     // Three more time constants per order make up for the polynomial, twenty for unfavourable residues.
     const double orders = 2.0 * static_cast<double>(cascade.size());
     const double time_constants = 20.0 - portable::log(remainder) + 3.0 * orders;

@@ -28,12 +28,13 @@ struct Band {
     DegPerSec from, to;
     std::vector<CandidateNotch> notches;  ///< one per order, lowest first
     Seconds dc_delay;                     ///< group delay at 0 Hz of all notches in series
-    Seconds settle;                       ///< of a step, into settle_band_percent
+    Seconds settle;                       ///< settling time of a step, into settle_band_percent
     double settle_band_percent = 0.5;
     double overshoot_percent = 0.0;
     std::vector<double> worst_attenuation_db;  ///< per order, anywhere in the band
-    double held_attenuation_db = 0.0;          ///< of all orders, weighed by TableSpec::amplitude_nm; without
-                                               ///< amplitudes, of the order least attenuated
+    /// Attenuation of all orders, weighted by TableSpec::amplitude_nm; without amplitudes, of the order least
+    /// attenuated.
+    double held_attenuation_db = 0.0;
     std::vector<double>
         predicted_residual_nm;  ///< per order, the most that is left; empty without amplitudes
 
@@ -53,9 +54,10 @@ struct TableSpec {
     double q = 0.25;                                     ///< the paper's twin-T
     double depth_db = infinite_depth_db;
     WidthRule width = WidthRule::analog;
-    double ratio_error = 0.0;            ///< share by which the true gear ratio may be off, 0 <= it < 0.5
-    std::vector<double> amplitude_nm{};  ///< of the ripple, zero to peak, one per order; empty when unknown
-    double settle_band_percent = 0.5;    ///< the one that fits the paper's figures (docs/theory.md)
+    double ratio_error = 0.0;  ///< share by which the true gear ratio may be off, 0 <= it < 0.5
+    /// Ripple amplitudes, zero to peak, one per order; empty when unknown.
+    std::vector<double> amplitude_nm{};
+    double settle_band_percent = 0.5;  ///< the one that fits the paper's figures (docs/theory.md)
     OutsideRule below = OutsideRule::pass;
     OutsideRule above = OutsideRule::hold;
 };
@@ -95,14 +97,14 @@ class CandidateTable {
 
 // What holds at which speed: the bands of a table, and the rules for what lies below, between and above them.
 
-/// In force when no candidate is: the torque passes.
+/// Active when no candidate is: the torque passes.
 inline constexpr int no_candidate = -1;
 
 /// A range of speed in which one rule holds: from < |v| <= to.
 struct SpeedRegion {
     double from_deg_s = 0.0, to_deg_s = 0.0;
     int candidate = no_candidate;  ///< index into the table's bands; no_candidate
-    bool holds = false;            ///< the candidate in force stays, whichever it is
+    bool holds = false;            ///< the active candidate stays, whichever it is
     /// Share of the filtered signal in the output: 1 but where the rule fades. It falls linearly from 1 at
     /// full_deg_s to 0 at none_deg_s and stays 0 beyond; both equal means 1 everywhere.
     double full_deg_s = 0.0, none_deg_s = 0.0;
@@ -118,8 +120,8 @@ struct SpeedRegion {
 [[nodiscard]] std::vector<SpeedRegion> speed_regions(std::span<const Band> bands, OutsideRule below,
                                                      OutsideRule above);
 
-// A line near half the sample rate can be neither notched nor told from its mirror image: methods that follow
-// the ripple let go of it before it gets there, all in the same way.
+// A line near half the sample rate can be neither notched nor distinguished from its mirror image: methods
+// that follow the ripple fade out before it gets there, all in the same way.
 
 /// In cycles a sample: up to the first a line is taken out whole, from the second on not at all.
 inline constexpr double full_below_rate = 0.45, none_above_rate = 0.48;
@@ -129,11 +131,10 @@ inline constexpr double full_below_rate = 0.45, none_above_rate = 0.48;
     return std::clamp((none_above_rate - cycles) / (none_above_rate - full_below_rate), 0.0, 1.0);
 }
 
-// How much work it is to measure the bands of a table: told before it is done, so that no table keeps anybody
-// waiting.
+// The cost of measuring the bands of a table, estimated beforehand, so that no table takes unreasonably long.
 
-constexpr std::size_t most_bands = 10000;  ///< by hand: docs/security.md
-constexpr std::size_t most_orders = 64;    ///< by hand: docs/security.md
+constexpr std::size_t most_bands = 10000;  ///< chosen, not derived: docs/security.md
+constexpr std::size_t most_orders = 64;    ///< chosen, not derived: docs/security.md
 
 /// Adds up what measure_band() will have to do. A table that can be designed can be read again: both ask
 /// here.

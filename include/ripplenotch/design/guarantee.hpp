@@ -17,7 +17,7 @@ struct DesignGoal {
     std::optional<double>
         min_attenuation_db;            ///< held at every speed of every band (Band::held_attenuation_db)
     std::optional<Seconds> max_delay;  ///< DC group delay of every band
-    std::optional<double> q;           ///< of all notches; else each band and order gets its own
+    std::optional<double> q;           ///< Q of all notches; else each band and order gets its own
     std::optional<int> most_bands;     ///< at least 1
     DegPerSec from, to;                ///< speeds to cover, when TableSpec::bands is empty
 };
@@ -61,7 +61,7 @@ struct Frontier {
     std::vector<TradePoint> points;
     std::size_t recommended = 0;       ///< index; the table that design_for gives for the same goal
     std::string reason;                ///< why it: a clause
-    std::optional<DegPerSec> slowest;  ///< of the recommended delay: see slowest_within
+    std::optional<DegPerSec> slowest;  ///< lower speed limit of the recommended delay: see slowest_within
 };
 
 inline constexpr int frontier_bands = 32;  ///< most_bands where only attenuation and delay are traded

@@ -21,8 +21,9 @@ namespace ripplenotch {
 /// ... times the joint's angle, then one in proportion to the load, then one in proportion to the temperature
 /// above the middle of its range.
 struct MapForm {
-    std::vector<double> speeds_deg_s = {0.0};  ///< of |v|, rising; a single one: alike at every speed
-    std::size_t directions = 1;                ///< 2: forward (v > 0) and backward have their own amplitudes
+    /// Values of |v|, rising; a single one: the same at every speed.
+    std::vector<double> speeds_deg_s = {0.0};
+    std::size_t directions = 1;  ///< 2: forward (v > 0) and backward have their own amplitudes
     std::size_t turn_harmonics = 0;
     bool by_load = false;
     bool by_temperature = false;
@@ -54,9 +55,9 @@ struct MapRange {
 /// Where a joint is.
 struct MapState {
     double speed_deg_s = 0.0;   ///< signed
-    double position_deg = 0.0;  ///< of the joint, as the log has it
+    double position_deg = 0.0;  ///< position of the joint, as in the log
     double load_nm = 0.0;       ///< its torque
-    /// Of what the log calls so; the middle of the map's range where nobody knows it.
+    /// Temperature in the units of the log's column; if unknown, the middle of the map's range.
     std::optional<double> temperature_degc = std::nullopt;
 };
 
@@ -71,7 +72,7 @@ struct RippleMap {
     double zero_deg = 0.0;                           ///< joint position at which the motor's angle is 0
     MapRange speeds_deg_s, positions_deg, loads_nm;  ///< seen by the logs; held at the edges beyond
     MapRange temperatures_degc = {};                 ///< the same; 0 to 0 where none was stated
-    std::string temperature_column;                  ///< of the logs, {joint} in the place of a joint's name
+    std::string temperature_column;  ///< column in the logs, with {joint} for the joint's name
     std::vector<std::vector<std::complex<double>>> values;  ///< by order, then by column; Nm
     std::vector<double> spread_nm;  ///< by order: rms by which amplitudes stray from the map in its logs
 };

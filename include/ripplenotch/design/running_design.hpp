@@ -21,7 +21,7 @@ struct TrackingDesign {
     double depth_gain = 0.0;  ///< at the centre, with full share
     double min_hz = 0.0, fade_hz = 0.0;
     bool parks = false;
-    double speed_pole = 0.0;  ///< of the low-pass on the speed, 0 for none
+    double speed_pole = 0.0;  ///< pole of the low-pass on the speed, 0 for none
     double slew = 1.0;        ///< 1 for none
 };
 
@@ -42,7 +42,8 @@ struct OscillatorDesign {
     double jump = 0.0;          ///< 0: never
     double largest_slip = 0.0;
     bool minus_ripple = false;
-    /// Taken off before, its angles counted from position 0: the amplitudes are what is beside it.
+    /// Subtracted first, its angles counted from position 0: the amplitudes are those of the remaining
+    /// ripple.
     std::optional<RippleMap> map = std::nullopt;
 };
 
