@@ -16,7 +16,7 @@ namespace ripplenotch {
 namespace {
 
 constexpr std::size_t longest_run = 10'000'000;  // samples; 80 MB of output
-constexpr std::size_t block_samples = 16384;     // by hand
+constexpr std::size_t block_samples = 16384;     // chosen, not derived
 
 // One filter and one signal, run on for as long as somebody wants to see more of it.
 class Run {
@@ -62,7 +62,7 @@ std::size_t first_length(Hertz sample_rate) {
     return std::max<std::size_t>(64, static_cast<std::size_t>(std::min(0.5 * sample_rate.value(), 1e6)));
 }
 
-// Amplitude of the sine of `omega` radians per sample in y[from, end), beside a constant.
+// Amplitude of the sine of `omega` radians per sample in y[from, end), fitted together with a constant.
 double sine_amplitude(std::span<const double> y, std::size_t from, double omega) {
     Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
     Eigen::Vector3d right = Eigen::Vector3d::Zero();
@@ -117,7 +117,7 @@ Seconds Bench::ramp_delay(double slope_nm_s) const {
     const double rise = slope_nm_s / sample_rate_.value();  // per sample
     const auto signal = [rise](std::size_t k) { return rise * static_cast<double>(k); };
     Run run(contender_, sample_rate_, speed_);
-    constexpr double rest_s = 1e-8;  // by hand
+    constexpr double rest_s = 1e-8;  // chosen, not derived
     std::size_t count = first_length(sample_rate_);
     while (true) {
         run.extend(count, signal);
@@ -136,8 +136,8 @@ std::optional<double> Bench::attenuation_db(Hertz at) const {
     const double omega = 2.0 * std::numbers::pi * (at / sample_rate_);
     const auto signal = [omega](std::size_t k) { return portable::sin(omega * static_cast<double>(k)); };
     Run run(contender_, sample_rate_, speed_);
-    // Three quarters of a run to settle, one to measure; it must hold a few periods to tell the sine from a
-    // constant.
+    // Three quarters of a run to settle, one to measure; it must hold a few periods to separate the sine from
+    // a constant.
     const auto periods = static_cast<std::size_t>(std::min(16.0 * (sample_rate_ / at), 1e7));
     std::size_t count = std::max(first_length(sample_rate_), periods);
     double before = std::numeric_limits<double>::infinity();

@@ -30,8 +30,8 @@ std::vector<std::string> parts_of(const std::string& method) {
     return parts;
 }
 
-constexpr std::size_t short_enough = 36;  // letters of a method that is told as it was typed
-constexpr std::size_t longest_name = 40;  // of a name in a table and beside a line
+constexpr std::size_t short_enough = 36;  // letters of a method that is named as it was typed
+constexpr std::size_t longest_name = 40;  // letters of a name in a table and next to a line
 
 // "oscillator B", with the letter that the page of results has for it.
 std::string lettered(const std::string& method, const MethodFigures& figures, const Comparison& comparison) {
@@ -40,7 +40,7 @@ std::string lettered(const std::string& method, const MethodFigures& figures, co
         if (&other == &figures) break;
         if (!is(other, "none")) ++before;
     }
-    constexpr std::size_t letters = 'Z' - 'A' + 1;  // of the alphabet
+    constexpr std::size_t letters = 'Z' - 'A' + 1;  // number of letters in the alphabet
     return before < letters ? fmt::format("{} {}", method, static_cast<char>('A' + before))
                             : fmt::format("{} M{}", method, before + 1);
 }
@@ -245,15 +245,15 @@ std::optional<double> predicted_nm(const FilterMetrics& metrics, std::size_t ord
 
 namespace {
 
-constexpr std::size_t block_rows = 4096;  // by hand
+constexpr std::size_t block_rows = 4096;  // chosen, not derived
 
 // One method on its way through a log.
 struct Runner {
     std::unique_ptr<CausalFilter> filter;
     std::vector<double> out;
-    std::span<const double> temperature_degc;  ///< of the whole log, or empty
+    std::span<const double> temperature_degc;  ///< temperature over the whole log, or empty
     double error_squares = 0.0;
-    std::optional<SwitchLedger> ledger = std::nullopt;  ///< of a method that switches
+    std::optional<SwitchLedger> ledger = std::nullopt;  ///< ledger of a method that switches
 };
 
 double ripple_rms_nm(const RippleLevels& levels, std::size_t signal) {

@@ -70,7 +70,7 @@ namespace {
 constexpr double step_nm = 10.0, ramp_nm_s = 20.0;
 constexpr std::array typical_speeds_deg_s = {5.0, 10.0, 20.0, 50.0, 100.0, 200.0};
 constexpr int speeds_looked_at = 97;  // steps of 5 % over two decades at most
-constexpr double slowest_searched_deg_s = 0.1, fastest_searched_deg_s = 3000.0;  // by hand
+constexpr double slowest_searched_deg_s = 0.1, fastest_searched_deg_s = 3000.0;  // chosen, not derived
 
 // The same method with a table of one band: at the band's middle speed it does the same, and a table of a
 // thousand bands does not run a thousand filters a thousand times.

@@ -19,9 +19,9 @@ namespace ripplenotch {
 
 namespace {
 
-constexpr double lowest_cutoff = 1e-5, highest_cutoff = 0.49;  // of the sample rate
-constexpr double wanted_precision = 1e-5;                      // by hand, and told in match_low_pass.hpp
-constexpr std::size_t cutoffs_a_pass = 15;                     // by hand: tried in one pass over a log
+constexpr double lowest_cutoff = 1e-5, highest_cutoff = 0.49;  // shares of the sample rate
+constexpr double wanted_precision = 1e-5;   // chosen, not derived; stated in match_low_pass.hpp
+constexpr std::size_t cutoffs_a_pass = 15;  // chosen, not derived: tried in one pass over a log
 
 struct Bracket {
     double low_hz, high_hz;
@@ -193,7 +193,7 @@ std::string late(const JudgedMethod& method) {
 }
 
 std::string short_text(const MethodFigures& figures) {
-    constexpr std::size_t longest_text = 60;  // by hand: of a line of the page
+    constexpr std::size_t longest_text = 60;  // chosen, not derived: a line of the page
     if (figures.method.size() <= longest_text) return figures.method;
     return figures.method.substr(0, figures.method.find(',')) + ",...";
 }
@@ -242,7 +242,7 @@ std::string recommendation_verdict(const Recommendation& found) {
 
 namespace {
 
-constexpr double slow_turn_s = 0.5;  // by hand
+constexpr double slow_turn_s = 0.5;  // chosen, not derived
 
 std::pair<Seconds, DegPerSec> longest_of(const Contender& contender, Hertz sample_rate, DegPerSec slowest,
                                          DegPerSec fastest) {
@@ -288,7 +288,7 @@ void hold_to(JudgedMethod& method, const RecommendationLimits& limits,
     method.excess += (delay_ms - limit_ms) / std::max(limit_ms, 1.0);
 }
 
-// What a method costs beside what it was measured to leave.
+// The delay of a method in addition to its measured remaining ripple.
 JudgedMethod judged(const Contender& contender, MethodFigures&& measured, const ComparedLog& log,
                     const Recommendation& found) {
     JudgedMethod method;
@@ -343,8 +343,8 @@ const JudgedMethod* Recommendation::runner_up() const {
 }
 
 double torque_rate_nm_s(const TraceView& trace, GearRatio ratio) {
-    double squares = 0.0, lasted_s = 0.0;                                      // of all turns
-    double turned = 0.0, torque = 0.0, time = 0.0, rows = 0.0, began_s = 0.0;  // of this one
+    double squares = 0.0, lasted_s = 0.0;                                      // sums over all turns
+    double turned = 0.0, torque = 0.0, time = 0.0, rows = 0.0, began_s = 0.0;  // sums over the current turn
     std::optional<std::pair<double, double>> before;  // time and torque of the one before
     for (std::size_t k = 0; k < trace.size(); ++k) {
         if (k == 0 || trace.starts_run(k)) {

@@ -18,7 +18,7 @@ namespace ripplenotch {
 
 struct OrderAttenuation {
     double order = 0.0;
-    double hz = 0.0;  ///< of the line; on a log its mean
+    double hz = 0.0;  ///< frequency of the line; on a log its mean
     std::optional<double>
         db;  ///< empty where the line is not below half the sample rate, or was not measured
 };
@@ -33,7 +33,7 @@ struct MethodFigures {
     std::vector<LedgerEntry> ledger;                    ///< empty unless asked for
     std::optional<DegPerSec> within_from;               ///< lowest speed above which it keeps a delay limit
     std::vector<OrderAttenuation> attenuation;
-    std::optional<double> ripple_rms_nm;  ///< of the orders alone, over the measured windows
+    std::optional<double> ripple_rms_nm;  ///< ripple of the orders alone, over the measured windows
     std::optional<double> residual_rms_nm,
         residual_peak_to_peak_nm;  ///< torque minus its trend, as RippleMeter does
     std::optional<std::size_t> switches;
@@ -50,7 +50,7 @@ struct MethodFigures {
 struct LowPassMatch {
     std::string subject;                  ///< the method, or "22 dB" when the attenuation was given
     std::optional<std::string> low_pass;  ///< "lowpass,cutoff=2.1Hz,order=1"; empty when none is equal
-    std::string clause;                   ///< "at equal ...", or the sentence that says why there is none
+    std::string clause;                   ///< "at equal ...", or a sentence with the reason why there is none
     int order = 1;
     std::optional<Hertz> cutoff;
     std::optional<double> ripple_rms_nm;   ///< what was matched on a log ...
@@ -61,7 +61,7 @@ struct Comparison {
     Hertz sample_rate;
     DegPerSec speed;  ///< for delays and attenuation; on a log its median moving speed
     std::optional<double> step_nm, ramp_nm_s;
-    std::optional<Hertz> crossover;           ///< of the control loop
+    std::optional<Hertz> crossover;           ///< crossover of the control loop
     std::optional<Seconds> max_delay;         ///< a limit of the user's
     std::optional<DegPerSec> no_notch_below;  ///< no notch of any method can keep it there
     std::optional<GearAccount>
@@ -70,7 +70,7 @@ struct Comparison {
     std::vector<MethodFigures> methods;
     bool on_log = false;
     DegPerSec slowest, fastest;         ///< |v| of the log
-    std::size_t rows = 0, windows = 0;  ///< of the log; windows that RippleMeter measured
+    std::size_t rows = 0, windows = 0;  ///< rows of the log; windows that RippleMeter measured
     double measured_share = 0.0;
 
     /// The method that the others are held against: the first contender, else the first rival. Null when only
@@ -81,8 +81,8 @@ struct Comparison {
     [[nodiscard]] const MethodFigures* rival() const;
 };
 
-/// What a method is called beside the others of a comparison: as it was typed where that is short; a long one
-/// by its name where no other has it, else with the keys that tell it from those:
+/// The name of a method among the others of a comparison: as it was typed where that is short; a long one by
+/// its name where no other has it, else with the keys that distinguish it from those:
 /// "switching,transition=reset"; where those are long too, with a letter: "switching B".
 [[nodiscard]] std::string short_name(const MethodFigures& figures, const Comparison& comparison);
 
@@ -117,7 +117,7 @@ struct LogLevels {
     std::vector<MethodFigures> methods;  ///< one per contender: attenuation, ripple, residual, switches
     std::size_t windows = 0;
     double measured_share = 0.0;
-    std::string why_none;  ///< a clause that says why no window could be measured
+    std::string why_none;  ///< a clause with the reason why no window could be measured
 };
 [[nodiscard]] LogLevels measure_on_log(std::span<const Contender> contenders, const ComparedLog& log,
                                        const GearAccount& lines);

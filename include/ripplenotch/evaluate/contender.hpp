@@ -23,7 +23,7 @@ struct Contender {
     const Method* method = nullptr;
     Settings settings;
     std::shared_ptr<const CandidateTable> table = nullptr;  ///< null unless the method needs one
-    std::optional<GearAccount> gear = std::nullopt;         ///< empty when nobody says it
+    std::optional<GearAccount> gear = std::nullopt;         ///< empty when unknown
     std::vector<std::string> files = {};                    ///< that table and gear were read from, each once
     std::shared_ptr<const RippleMap> map = nullptr;         ///< that it was given, if any
     /// The same method that knows no ripple, where it knows one from a map.
@@ -35,7 +35,7 @@ struct Contender {
     [[nodiscard]] std::unique_ptr<CausalFilter> start_on_bench(Hertz sample_rate) const;
     /// Null for methods that need no first pass over the log.
     [[nodiscard]] std::unique_ptr<Learner> learner(Hertz sample_rate) const;
-    /// The linear filter in force at a constant speed; empty for methods that have none.
+    /// The active linear filter at a constant speed; empty for methods that have none.
     [[nodiscard]] std::optional<FrozenFilter> frozen(Hertz sample_rate, DegPerSec speed) const;
     /// The gear ratio that its filter is made for: its key's or its table's; empty where it has neither.
     [[nodiscard]] std::optional<GearRatio> made_for() const;
@@ -57,7 +57,8 @@ struct StepMeasurement {
     double overshoot_percent = 0.0;  ///< above the step, in its direction
 };
 
-/// Attenuations above this cannot be told from a complete null in double precision and are reported as this.
+/// Attenuations above this cannot be distinguished from a complete null in double precision and are reported
+/// as this.
 inline constexpr double most_attenuation_db = 200.0;
 
 class Bench {
@@ -87,7 +88,7 @@ class Bench {
 // torque that is known to be true.
 
 /// Errors are |output - truth|, from the change up to the next one, a gap or the end of the log: its stretch.
-/// They hold all that is wrong there, the new filter's lag and the ripple that it leaves included.
+/// They include all errors there, also the new filter's lag and the remaining ripple.
 struct SwitchEntry {
     Switch change;
     Seconds time;

@@ -16,11 +16,11 @@ namespace ripplenotch {
 
 /// One filter that can come into force: that of a band, or of a method without bands at one speed.
 struct LedgerEntry {
-    int band = 0;        ///< 0 when the method has no bands
-    DegPerSec from, to;  ///< of the band, or twice the speed of a filter that follows it; both 0 for one that
-                         ///< does neither
-    std::string filter;  ///< what it is, in words
-    Seconds dc_delay;    ///< group delay at 0 Hz at the log's rate
+    int band = 0;  ///< 0 when the method has no bands
+    /// Range of the band, or twice the speed of a filter that follows it; both 0 for one that does neither.
+    DegPerSec from, to;
+    std::string filter;                   ///< description of the filter
+    Seconds dc_delay;                     ///< group delay at 0 Hz at the log's rate
     std::optional<Seconds> ramp_delay;    ///< how far its output lags on a ramp; empty when not measured
     std::optional<StepMeasurement> step;  ///< empty when not measured
     std::optional<double> phase_lag_deg;  ///< at LedgerRequest::crossover; a lead is negative
@@ -28,7 +28,7 @@ struct LedgerEntry {
 };
 
 struct LedgerRequest {
-    std::optional<Hertz> crossover;  ///< of the control loop that the torque is for
+    std::optional<Hertz> crossover;  ///< crossover of the control loop that the torque is for
     bool measured = true;            ///< run a step and a ramp; else only what follows from the sections
 };
 
@@ -39,13 +39,13 @@ struct CrossoverFigures {
 /// Throws UsageError unless 0 < at < sampled.rate / 2.
 [[nodiscard]] CrossoverFigures at_crossover(std::span<const Biquad> cascade, Hertz at, SampledAt sampled);
 
-/// Of every band of a method's table, each at its middle speed; of a method that follows the gear at 5, 10,
-/// 20, 50, 100 and 200 deg/s; else one entry.
+/// One entry for every band of a method's table, at its middle speed; for a method that follows the gear at
+/// 5, 10, 20, 50, 100 and 200 deg/s; else one entry.
 [[nodiscard]] std::vector<LedgerEntry> delay_ledger(const Contender& contender, Hertz sample_rate,
                                                     const LedgerRequest& request);
 
 /// The longest DC delay of a method, and at which speed, for |v| in `speeds`; a joint slower than a hundredth
-/// of the fastest counts as standing.
+/// of the fastest counts as standstill.
 struct LongestDelay {
     Seconds delay;
     DegPerSec speed;
@@ -66,9 +66,8 @@ struct FilterMetrics {
     Hertz sample_rate;                  ///< that the filter was designed for, or started with
     std::optional<Hertz> table_rate;    ///< that the table was designed for
     StreamReport stream;
-    std::optional<GearAccount> gear;  ///< empty when unknown: then there are no levels
-    std::optional<RippleLevels>
-        levels;  ///< of two signals, raw and filtered torque, one per order of the gear
+    std::optional<GearAccount> gear;     ///< empty when unknown: then there are no levels
+    std::optional<RippleLevels> levels;  ///< levels of raw and filtered torque, one per order of the gear
     std::vector<LedgerEntry> delays;
     std::optional<Hertz> crossover;  ///< that the ledger's phase lags are for
 };
@@ -76,8 +75,9 @@ struct FilterMetrics {
 /// Attenuation of one order in dB; empty when there was nothing to attenuate or nothing was left.
 [[nodiscard]] std::optional<double> attenuation_db(const OrderLevel& level);
 
-/// What the filter's own response says is left of one order at the speeds of this log: of the amplitude that
-/// table or joint state, else of what the log shows before filtering. Empty when it was not worked out.
+/// The remaining ripple of one order at the speeds of this log, predicted from the filter's response: from
+/// the amplitude in the table or joint if stated, else from the measured one before filtering. Empty when it
+/// was not computed.
 [[nodiscard]] std::optional<double> predicted_nm(const FilterMetrics& metrics, std::size_t order);
 
 }  // namespace ripplenotch

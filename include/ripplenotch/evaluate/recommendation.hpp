@@ -27,9 +27,9 @@ namespace ripplenotch {
 [[nodiscard]] std::optional<double> ripple_gain(std::span<const Biquad> cascade, const GearAccount& lines,
                                                 Hertz sample_rate, DegPerSec speed);
 
-/// On a log: the cut-off of the low-pass that leaves `ripple_rms_nm` of the lines' ripple over the measured
-/// windows, to one part in 1e5; found by filtering the log again and again. Empty when even the lowest or
-/// highest cut-off tried (1e-5 and 0.49 sample rates) leaves more or less than that.
+/// On a log: the cut-off of the low-pass with a remaining ripple of `ripple_rms_nm` over the measured
+/// windows, to one part in 1e5; found by filtering the log repeatedly. Empty when it lies outside the
+/// cut-offs tried (1e-5 to 0.49 sample rates).
 [[nodiscard]] std::optional<Hertz> cutoff_for_ripple(double ripple_rms_nm, int order, const ComparedLog& log,
                                                      const GearAccount& lines);
 
@@ -43,7 +43,7 @@ namespace ripplenotch {
 /// Gains below this (140 dB) count as a complete null, which no low-pass equals.
 inline constexpr double complete_null_gain = 1e-7;
 
-/// What --match-lowpass says: the low-pass, or why there is none. `subject` is for the text.
+/// The result of --match-lowpass: the low-pass, or why there is none. `subject` is for the text.
 [[nodiscard]] LowPassMatch match_at_speed(const std::string& subject, double gain, int order,
                                           const GearAccount& lines, Hertz sample_rate, DegPerSec speed);
 [[nodiscard]] LowPassMatch match_on_log(const std::string& subject, double ripple_rms_nm, int order,
@@ -51,7 +51,7 @@ inline constexpr double complete_null_gain = 1e-7;
 
 struct RecommendationLimits {
     std::optional<Seconds> max_delay;          ///< DC delay at any speed of the log
-    std::optional<double> min_attenuation_db;  ///< of every order that is present
+    std::optional<double> min_attenuation_db;  ///< attenuation of every order that is present
 };
 
 /// One method on the log.
@@ -59,9 +59,9 @@ struct JudgedMethod {
     MethodFigures figures;
     Seconds delay;                            ///< longest DC delay at speeds of the log ...
     DegPerSec delay_at;                       ///< ... and where
-    std::optional<OrderAttenuation> weakest;  ///< of the orders that are present
-    /// What its output is off by: the ripple it leaves and, for its DC delay at the log's median speed, the
-    /// way that the log's torque moves in that time; root of the sum of squares.
+    std::optional<OrderAttenuation> weakest;  ///< the least attenuated of the orders that are present
+    /// Error of its output: the remaining ripple and, for its DC delay at the log's median speed, the change
+    /// of the log's torque in that time; root of the sum of squares.
     double error_nm = 0.0;
     std::vector<std::string> shortfalls;  ///< one clause for each limit that it breaks
     double excess = 0.0;                  ///< by how much, as a share of the limits, added up; 0: none
@@ -79,10 +79,11 @@ enum class RecommendationFinding {
 
 struct Recommendation {
     RecommendationFinding finding = RecommendationFinding::cannot_tell;
-    std::string why;  ///< of no_ripple and cannot_tell: a sentence
+    std::string why;  ///< reason of no_ripple and cannot_tell: a sentence
     RecommendationLimits limits;
-    std::vector<RippleEstimate> orders;  ///< of the whole log; empty where its reading is in doubt
-    std::size_t windows = 0;             ///< that the methods were measured in
+    /// Orders of the whole log; empty where their interpretation is uncertain.
+    std::vector<RippleEstimate> orders;
+    std::size_t windows = 0;        ///< that the methods were measured in
     double torque_rate_nm_s = 0.0;  ///< at which the log's torque moves from motor turn to motor turn, rms
     std::vector<JudgedMethod> methods;  ///< the one to take first; those within the limits before the others
 
@@ -92,15 +93,17 @@ struct Recommendation {
     [[nodiscard]] const JudgedMethod* runner_up() const;
 };
 
-/// Fewer windows of eight motor turns are too few to judge anything by. They overlap by half: four lengths.
+/// Fewer windows of eight motor turns are insufficient for a recommendation. They overlap by half: four
+/// lengths.
 inline constexpr std::size_t fewest_judged_windows = 7;
 
 /// Rms rate of the mean torque from one motor turn to the next; of half a second where the motor is slower.
 [[nodiscard]] double torque_rate_nm_s(const TraceView& trace, GearRatio ratio);
 
-/// Runs all over the log and sorts them by what their output is off by. The same methods under looser limits
-/// give the same or a better one. The control is among them or not, as given. `ripple`: what
-/// estimate_ripple() says of the whole log, of which `log` is the part to judge by, one for each of `lines`.
+/// Runs all over the log and sorts them by the error of their output. The same methods under looser limits
+/// give the same or a better one. The control is among them or not, as given. `ripple`: the result of
+/// estimate_ripple() for the whole log, of which `log` is the part used for the recommendation, one for each
+/// of `lines`.
 [[nodiscard]] Recommendation recommend(std::span<const Contender> contenders, const ComparedLog& log,
                                        const GearAccount& lines, const RecommendationLimits& limits,
                                        std::vector<RippleEstimate> ripple);
