@@ -14,8 +14,8 @@
 
 namespace ripplenotch {
 
-// Reads back what text targets wrote: walks from marker to marker and takes the numbers between brackets. It
-// knows no values, only text.
+// Reads back the output of text targets: searches from marker to marker and takes the numbers between
+// brackets. It knows no values, only text.
 
 enum class Comments { none, c, percent, hash };
 

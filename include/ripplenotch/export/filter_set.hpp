@@ -24,7 +24,7 @@ struct ExportSection {
 
 struct ExportBand {
     int number = 0;      ///< from 1; 0 for a filter without bands
-    DegPerSec from, to;  ///< in force while from < |v| <= to; both 0 without bands
+    DegPerSec from, to;  ///< active while from < |v| <= to; both 0 without bands
     std::vector<ExportSection> sections;
 
     [[nodiscard]] DegPerSec middle() const { return 0.5 * (from + to); }
@@ -86,7 +86,7 @@ struct SvfSection {
 struct LoadedSection {
     Arithmetic arithmetic;
     Biquad biquad;   ///< its transfer function, a1 and a2 in the sign of core/biquad.hpp
-    SvfSection svf;  ///< in force when the form is svf
+    SvfSection svf;  ///< used when the form is svf
 };
 [[nodiscard]] LoadedSection loaded(const Biquad& section, Arithmetic arithmetic);
 [[nodiscard]] LoadedSection loaded(const SvfSection& section, Precision precision);

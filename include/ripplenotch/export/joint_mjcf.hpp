@@ -34,8 +34,8 @@ struct MjcfBristle {
 struct MjcfAccount {
     std::string file;
     std::vector<MjcfPart> holds, not_held;
-    /// rms of measured less predicted torque with what is held alone: of the model as given and of the
-    /// improved one. MuJoCo along the same motion leaves the same.
+    /// rms of measured less predicted torque with the terms that are held alone: of the model as given and of
+    /// the improved one. MuJoCo along the same motion gives the same.
     double before_nm = 0.0, after_nm = 0.0;
 };
 
@@ -47,7 +47,7 @@ struct JointMjcf {
     double damping = 0.0;            ///< Nm per rad/s
     double quadratic_damping = 0.0;  ///< Nm per (rad/s)^2, times v |v|
     double frictionloss_nm = 0.0;
-    double friction_width_rad_s = 0.0;  ///< of the tanh that the step is in the model
+    double friction_width_rad_s = 0.0;  ///< width of the tanh that replaces the step in the model
     double weight_nm = 0.0, weight_rad = 0.0;
     std::vector<MjcfWave> waves;
     std::vector<MjcfBristle> bristles;

@@ -25,14 +25,14 @@ struct LoadedMap {
 
 struct MapTarget {
     std::string_view name, summary, source;
-    std::string_view endings;  ///< of the names that fit its files, with blanks between them
+    std::string_view endings;  ///< file name endings, separated by blanks
     std::span<const Key> keys = {};
-    /// `heading` says what made the file, one line each. Throws UsageError, naming value, limit and remedy,
-    /// when the target cannot hold the map; what it leaves out is a warning.
+    /// `heading` describes the origin of the file, one line each. Throws UsageError, naming value, limit and
+    /// remedy, when the target cannot hold the map; omitted parts are reported as a warning.
     Written (*write)(const RippleMap& map, const Settings& settings,
                      std::span<const std::string> heading) = nullptr;
-    /// Reads what write() wrote; `map` says the gear and what was to be held. Throws DataError that begins
-    /// with `source`.
+    /// Reads the output of write(); `map` gives the gear and the map that was to be held. Throws DataError
+    /// that begins with `source`.
     LoadedMap (*read)(std::string_view bytes, const std::string& source, const RippleMap& map,
                       const Settings& settings) = nullptr;
 };
@@ -46,7 +46,8 @@ struct MapCheck {
     std::size_t states = 0;
     double ripple_nm = 0.0;    ///< rms of the map
     double not_held_nm = 0.0;  ///< rms of what the target has no place for: other speeds, the joint's turn
-    double largest_error_nm = 0.0;  ///< of the target's arithmetic, against what it was given to hold
+    /// Error of the target's arithmetic, relative to the map that it was to hold.
+    double largest_error_nm = 0.0;
 };
 [[nodiscard]] MapCheck verify_map_export(const RippleMap& map, const LoadedMap& loaded);
 

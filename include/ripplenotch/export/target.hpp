@@ -27,20 +27,20 @@ struct LoadedFilters {
 
 struct Target {
     std::string_view name, summary, source;
-    std::string_view endings;  ///< of the names that fit its files, with blanks between them
+    std::string_view endings;  ///< file name endings, separated by blanks
     bool binary = false;
     bool notches_only = false;  ///< it cannot hold a low-pass
-    bool switches = false;      ///< it holds the bands of a table and puts the one for the speed in force
+    bool switches = false;      ///< it holds the bands of a table and activates the one for the speed
     std::span<const Key> keys = {};
-    /// `heading` says what made the file, one line each, for a comment; it may be empty. Throws UsageError,
-    /// naming value, limit and remedy, when the target cannot hold the filters.
+    /// `heading` describes the origin of the file, one line each, for a comment; it may be empty. Throws
+    /// UsageError, naming value, limit and remedy, when the target cannot hold the filters.
     Written (*write)(const FilterSet& filters, const Settings& settings,
                      std::span<const std::string> heading) = nullptr;
-    /// Reads what write() wrote, from the bytes alone; `filters` says at which rate and speeds parameters
-    /// become filters. Throws DataError that begins with `source`.
+    /// Reads the output of write(), from the bytes alone; `filters` gives the rate and speeds at which
+    /// parameters become filters. Throws DataError that begins with `source`.
     LoadedFilters (*read)(std::string_view bytes, const std::string& source, const FilterSet& filters,
                           const Settings& settings) = nullptr;
-    /// One line to paste where the file is used, with `path` in it; empty when there is nothing to say.
+    /// One line to paste where the file is used, with `path` in it; may be empty.
     std::string (*usage)(const FilterSet& filters, const Settings& settings,
                          const std::string& path) = nullptr;
 };
@@ -59,7 +59,7 @@ struct Target {
 /// name, precision.
 [[nodiscard]] std::span<const Key> method_code_keys();
 
-/// The header. `heading` says what made it, one line each. Throws UsageError.
+/// The header. `heading` describes its origin, one line each. Throws UsageError.
 [[nodiscard]] Written write_method_code(const RunningDesign& design, const Settings& settings,
                                         std::span<const std::string> heading);
 
@@ -77,7 +77,7 @@ struct LoadedCode {
     /// The next sample; gives the torque without ripple. Copies share their state.
     std::function<double(const CodeInput&)> step;
 };
-/// `design` says how many orders there are. Throws DataError that begins with `source`.
+/// `design` gives the number of orders. Throws DataError that begins with `source`.
 [[nodiscard]] LoadedCode read_method_code(std::string_view bytes, const std::string& source,
                                           const RunningDesign& design, const Settings& settings);
 

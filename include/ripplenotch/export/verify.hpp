@@ -24,11 +24,11 @@ struct SectionCheck {
     std::optional<Order> order;
     Hertz center;                         ///< as designed
     bool is_notch = true;                 ///< false: a section of a low-pass, which has no depth
-    std::optional<double> shift_percent;  ///< of the centre, from what was read; empty: there is none left
-    double q = 0.0;                       ///< of the poles read
+    std::optional<double> shift_percent;  ///< shift of the centre, from the values read; empty: it has none
+    double q = 0.0;                       ///< Q of the poles read
     double response_depth_db = 0.0;       ///< at the designed centre, from the coefficients read
     std::optional<double> depth_db;       ///< the same, from running it; empty when it cannot be run
-    std::optional<double> dc_error_db;    ///< of the gain at 0 Hz, from running it
+    std::optional<double> dc_error_db;    ///< error of the gain at 0 Hz, from running it
     std::optional<double> mean_error_nm;  ///< on the load of 8 Nm, from running it
     double pole_radius = 0.0;             ///< below 1 is stable
 };

@@ -193,7 +193,7 @@ std::string MapCode::sum(std::size_t part) const {
     return sum_code(fmt::format("{}[{}]", speeds > 1 ? "low" : "v", part), products);
 }
 
-// The amplitudes of one direction, put where `form` says: {0} their place, {1} their value.
+// The amplitudes of one direction, formatted by `form`: {0} their index, {1} their value.
 std::string MapCode::side(std::size_t direction, std::string_view indent, std::string_view form) const {
     const std::size_t parts = 2 * apart_.orders.size();
     std::string text = fmt::format("{}const @real@* const v = @name@_amplitudes + {};\n", indent,

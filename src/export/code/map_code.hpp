@@ -25,7 +25,7 @@ class MapTables {
     std::vector<double> amplitudes;
 
     explicit MapTables(const RippleMap& map);
-    /// Those of a header; `map` says how many there are.
+    /// Those of a header; `map` gives their number.
     MapTables(TextReader& reader, const RippleMap& map, const CodeStyle& style);
     MapTables() = default;
     [[nodiscard]] static std::size_t columns_a_direction(const MapForm& form);
@@ -47,7 +47,8 @@ class MapCode {
 
     /// Tables, and the function NAME_at where amplitudes are not the same everywhere.
     [[nodiscard]] std::string definitions() const;
-    /// What a public function is told beside torque and motor angle: "speed_deg_s, joint_deg" with types.
+    /// Arguments of a public function in addition to torque and motor angle: "speed_deg_s, joint_deg" with
+    /// types.
     [[nodiscard]] std::string parameters() const;
     /// Lines that declare z[], the amplitudes here, cosine before sine. `torque` is the load's expression.
     [[nodiscard]] std::string amplitudes_here(std::string_view torque) const;

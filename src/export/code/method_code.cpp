@@ -228,9 +228,9 @@ constexpr std::array keys = {
         .choices = precisions,
         .help = "of numbers and arithmetic"}};
 
-// Polynomials in the square of the quarter turns beside the nearest whole one, by interpolation at
-// Chebyshev's places: within 2.5e-9 but for rounding. Where a processor has a fused multiplication and
-// addition it is used: that is one instruction for two.
+// Polynomials in the square of the quarter turns from the nearest whole one, by interpolation at Chebyshev
+// points: within 2.5e-9 except for rounding. Where a processor has a fused multiplication and addition it is
+// used: that is one instruction for two.
 constexpr std::string_view float_turn = R"c(
 #if defined FP_FAST_FMAF || defined __FP_FAST_FMAF
 static inline float @name@_fma(float a, float b, float c) { return fmaf(a, b, c); }

@@ -94,7 +94,7 @@ constexpr StepPart steep{0.5163, 0.8}, flat{0.4837, 1.95};
 constexpr double softest = 1e-4;
 constexpr double longest_step_s = 0.002, shortest_step_s = 1e-5;
 
-// A point mass that weighs as the model says, with at most a quarter of its inertia.
+// A point mass with the weight in the model, and at most a quarter of its inertia.
 struct PointMass {
     double mass_kg = 1.0, distance_m = 0.0;
     [[nodiscard]] double inertia_kgm2() const { return mass_kg * distance_m * distance_m; }
@@ -328,7 +328,7 @@ class Taking {
     JointMjcf mjcf_;
     GearRatio ratio_;
     std::vector<double> ringing_orders_;
-    double start_rad_ = 0.0;  // of the last bristle
+    double start_rad_ = 0.0;  // start angle of the last bristle
 };
 
 }  // namespace

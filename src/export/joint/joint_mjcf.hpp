@@ -8,7 +8,7 @@ namespace ripplenotch {
 
 // Pieces of MuJoCo's description that a file of its own and the user's file have alike.
 
-/// A comment that tells what is held and what is not; `heading` first.
+/// A comment that lists what is held and what is not; `heading` first.
 [[nodiscard]] std::string mjcf_comment(const JointMjcf& mjcf, std::span<const std::string> heading);
 /// "0.3 1e-05", or one number where there is no friction with the square of the speed.
 [[nodiscard]] std::string damping_words(const JointMjcf& mjcf);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A joint's friction and motors in a file of MuJoCo's that somebody wrote, whose words stay as they are.
+// Writes a joint's friction and motors into an existing MuJoCo file, whose text otherwise stays as it is.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,12 +14,12 @@ namespace ripplenotch {
 namespace {
 
 // MuJoCo's step turns over where the speed is the acceleration times half of this time (s): five times sooner
-// than without a word, and still slower than two steps of 2 ms, which MuJoCo asks for.
+// than by default, and still slower than two steps of 2 ms, which MuJoCo requires.
 constexpr std::string_view quick_step = "0.004 1";
 
 struct XmlAttribute {
     std::string_view name, value;
-    std::size_t from = 0, to = 0;  ///< of the value in the file
+    std::size_t from = 0, to = 0;  ///< range of the value in the file
 };
 
 // One start tag of a file; the reader of chains has read the file, so that it is sound.

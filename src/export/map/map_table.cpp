@@ -19,7 +19,7 @@ RippleMap flat_map(const RippleMap& map, const Settings& settings) {
     const auto temperature =
         settings.has("temperature") ? std::optional(settings.number("temperature")) : std::nullopt;
     const std::string direction = settings.text("direction");
-    // The mean over the joint's turn is what is left without its harmonics and the second comb.
+    // The mean over the joint's turn is the map without its harmonics and the second comb.
     RippleMap still = map;
     const std::size_t each = map.form.columns_a_direction(), speeds = map.form.speeds_deg_s.size();
     for (auto& values : still.values) {

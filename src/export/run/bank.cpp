@@ -21,10 +21,10 @@ namespace ripplenotch {
 
 namespace {
 
-constexpr double settled_to = 1e-10;  // of the first step; a hundredth of the deepest measured notch
-constexpr std::size_t longest_run = 4'000'000;  // samples; slower sections are judged by their coefficients
-constexpr std::size_t shortest_window = 4096;   // by hand
-constexpr double periods_in_window = 8.0;       // by hand
+constexpr double settled_to = 1e-10;  // share of the first step; a hundredth of the deepest measured notch
+constexpr std::size_t longest_run = 4'000'000;  // samples; slower sections are verified by their coefficients
+constexpr std::size_t shortest_window = 4096;   // chosen, not derived
+constexpr double periods_in_window = 8.0;       // chosen, not derived
 
 double as_db(double gain) { return 20.0 * portable::log10(gain); }
 
@@ -281,7 +281,7 @@ SvfSection svf_of(const ExportSection& section, Hertz sample_rate) {
         k = 2.0 * (1.0 - f.a2) / (g * at_half_rate);
         const double scale = 4.0 / at_half_rate;
         const double high = (f.b0 - f.b1 + f.b2) * scale / 4.0;
-        // A low-pass has no high-pass part; what is left of it is rounding.
+        // A low-pass has no high-pass part; the difference from 0 is rounding.
         svf.m0 = std::abs(high) < 1e-12 ? 0.0 : high;
         svf.m1 = (f.b0 - f.b2) * scale / (2.0 * g) - k * svf.m0;
         svf.m2 = 1.0 - svf.m0;

@@ -59,7 +59,7 @@ class MapRun {
             orders_[i] = static_cast<Real>(map.orders[i].value());
     }
 
-    /// Of each order cosine and sine, Nm.
+    /// Cosine and sine amplitude of each order, Nm.
     const std::vector<Real>& at(const CodeInput& in) {
         find_amplitudes(in);
         if (form_.second_comb == 0) return z_;
@@ -137,9 +137,9 @@ class MapRun {
 };
 
 inline constexpr int region_passes = -1;  ///< no filter: the torque passes
-inline constexpr int region_holds = -2;   ///< the filter in force stays
+inline constexpr int region_holds = -2;   ///< the active filter stays
 
-/// In force while |v| <= to and above the region before. With full and none apart, the share of the filtered
+/// Active while |v| <= to and above the region before. With full and none apart, the share of the filtered
 /// signal in the output falls linearly from 1 at `full` to 0 at `none`.
 struct BankRegion {
     double to_deg_s = 0.0;  ///< infinite in the last

@@ -141,7 +141,7 @@ class StepCode {
                 i);
             line("        s->x[{0}] = @name@_fma(g{0}, surprise, {1});", i,
                  i == 0 ? std::string("expected") : fmt::format("s->x[{}]", i));
-            // Of the first state the rest is the gain itself.
+            // The updated covariance of the first state is the gain itself.
             line("        s->p[{0}] = g{0};", i);
         }
         for (std::size_t i = 1; i < m_; ++i) {
@@ -151,7 +151,7 @@ class StepCode {
             }
         }
     }
-    // What the ripple's phase says of the angle's rate.
+    // Corrects the angle's rate from the ripple's phase.
     void correct() {
         line("        if (size > (@real@)1e-5) {{\n            @real@ ahead = 0, weights = 0;");
         for (std::size_t i = 2; i < m_; i += 2) {

@@ -27,7 +27,7 @@ namespace ripplenotch {
 struct OscillatorValue {
     enum : std::size_t {
         noise_nm,
-        seen_noise,  ///< of the sensor, which is 1, and what a sample adds to the torque
+        seen_noise,  ///< variance of the sensor's noise, which is 1, plus the torque's increment in a sample
         cross_noise,
         rate_noise,
         first_rate_variance,
@@ -177,12 +177,12 @@ class OscillatorRun {
         for (std::size_t i = 0; i < m_; ++i) {
             const Real gain = i == 0 ? 1 - scale : v_[i] * scale;
             x_[i] += gain * surprise;
-            // Of the first state the rest is the gain itself.
+            // The updated covariance of the first state is the gain itself.
             p(0, i) = gain;
             for (std::size_t j = std::max<std::size_t>(i, 1); i > 0 && j < m_; ++j) p(i, j) -= gain * v_[j];
         }
     }
-    // What the ripple's phase says of the angle's rate.
+    // Corrects the angle's rate from the ripple's phase.
     void correct(Real step) {
         const Real most = c_[Value::largest_slip], size = std::abs(step);
         if (!(most > 0) || !(size > static_cast<Real>(1e-5))) return;
@@ -205,7 +205,7 @@ class OscillatorRun {
     std::size_t m_;
     std::vector<Real> x_, h_, before_, v_, p_;  ///< p_: above the diagonal; v_: its first row before a sample
     Real slowest_fade_;                         ///< turns a sample at which the first order begins to fade
-    Real left_ = 1;                             ///< of the amplitudes, since they were last brought back
+    Real left_ = 1;  ///< remaining share of the amplitudes, since they were last rescaled
     Real origin_ = 0, turns_ = 0, slip_ = 0, slipped_ = 0, lost_ = 0, surprise_ = 0, squares_ = 0,
          variance_ = 0;
     bool started_ = false;

@@ -170,7 +170,7 @@ Written write(const FilterSet& filters, const Settings& settings, std::span<cons
 
 LoadedFilters read(std::string_view bytes, const std::string& source, const FilterSet& filters,
                    const Settings&) {
-    // The file itself says in which type and form it computes.
+    // The file itself states in which type and form it computes.
     const bool single = bytes.find("typedef float ") != std::string_view::npos;
     TextReader reader(bytes, source, Comments::c, single ? Precision::float32 : Precision::float64);
     const auto has = [&](std::string_view declaration) {

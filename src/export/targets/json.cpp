@@ -10,8 +10,8 @@
 namespace ripplenotch {
 namespace {
 
-// The JSON library lives in room document, which sees this one; what is written here is text of our
-// own and numbers, so that quoting is all there is to it.
+// The JSON library is in the module document, which depends on this one; the output here is this module's own
+// text and numbers, so that quoting is all that is needed.
 std::string in_quotes(std::string_view text) {
     std::string out = "\"";
     for (const char c : text) {

@@ -16,8 +16,8 @@ namespace {
 
 constexpr std::array keys = {limits_key};
 
-// Width over centre is 0.5 * 2^(code / 4), code 0 to 20: from Q 2 down to Q 1/16. Depth code d leaves d
-// per cent at the centre; 0 cuts it off.
+// Width over centre is 0.5 * 2^(code / 4), code 0 to 20: from Q 2 down to Q 1/16. Depth code d is a gain of d
+// per cent at the centre; 0 is a complete null.
 constexpr double sharpest_q = 2.0;
 constexpr double widest_q = 1.0 / 16.0;
 constexpr double lowest_hz = 50.0, highest_hz = 4999.0;  // 5000 turns the notch off
