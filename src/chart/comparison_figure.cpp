@@ -162,8 +162,8 @@ ResponsePanels empty_panels(const Comparison& comparison) {
     return panels;
 }
 
-// Beside a null the delay of a notch runs to where the rest of the picture would be a line: the axis keeps to
-// what the delays are at low frequencies.
+// Near a null the delay of a notch is so large that the rest of the picture would be a line: the axis is
+// limited to the delays at low frequencies.
 void fit_delay_axis(Panel& delay, double longest_dc_ms) {
     delay.y.from = -0.25 * std::max(longest_dc_ms, 1.0);
     delay.y.to = 1.25 * std::max(longest_dc_ms, 1.0);

@@ -18,7 +18,7 @@ constexpr std::size_t most_bins = 400;
 /// Columns of the figure: the map's speeds, with empty ones where no speed was measured.
 struct Columns {
     std::vector<double> edges;
-    std::vector<std::optional<std::size_t>> row;  ///< of the map; empty: no speed here
+    std::vector<std::optional<std::size_t>> row;  ///< row of the map; empty: no speed here
 };
 
 Columns columns_of(const SpeedMap& map) {
@@ -120,7 +120,7 @@ Ink ink_of(const Line& line) {
     return line.kind == LineKind::order && line.order ? order_ink(*line.order) : unknown_ink;
 }
 
-// A line that is no order is told from orders by its mark, too.
+// A line that is no order also has a mark of its own.
 CurveStyle style_of(const Line& line) {
     return line.kind == LineKind::order && line.order ? order_style(*line.order, CurveStyle::points)
                                                       : other_mark(CurveStyle::points);

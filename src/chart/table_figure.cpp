@@ -17,7 +17,7 @@ namespace ripplenotch {
 namespace {
 
 constexpr int response_points = 600;
-constexpr double lowest_share = 1e-4, highest_share = 0.499;  // of the sample rate
+constexpr double lowest_share = 1e-4, highest_share = 0.499;  // shares of the sample rate
 
 // Where a section's zeros lie on the unit circle, if they do.
 std::optional<double> null_hz(const Biquad& section, Hertz sample_rate) {
@@ -91,7 +91,7 @@ Curve stairs(const CandidateTable& table, std::string name, Ink ink,
     return curve;
 }
 
-// Room for the numbers of the bands above the highest curve.
+// Adds space for the numbers of the bands above the highest curve.
 void leave_room(Panel& panel) {
     panel.y.from = 0.0;
     double highest = 0.0;

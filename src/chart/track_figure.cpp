@@ -61,7 +61,7 @@ void add_curves(const MapFit& fit, std::size_t order, double sign, const std::st
         double deg = -portable::arg(at.value) * degrees_per_radian;
         if (k > 0) deg += 360.0 * std::round((angle.y.back() - deg) / 360.0);
         angle.y.push_back(deg);
-        // Of an amplitude that may be 0 any phase may be.
+        // An amplitude that may be 0 may have any phase.
         const double off = normal_95_errors * at.error_nm;
         const double off_deg = off < nm ? portable::atan2(off, nm) * degrees_per_radian : 180.0;
         doubt.x.push_back(speed);

@@ -16,15 +16,15 @@ namespace ripplenotch {
 
 // Figures of designs: the candidate table over speed, and attenuation against delay.
 
-/// The centres of every band over the speed beside the ripple that they are for (Kim, Kim, Song 2011, fig.
-/// 4), the worst attenuation in each band, and its delay and settling time.
+/// The centres of every band over the speed, with the ripple that they are for (Kim, Kim, Song 2011, fig. 4),
+/// the worst attenuation in each band, and its delay and settling time.
 [[nodiscard]] Figure table_figure(const CandidateTable& table);
 
 /// One design of a frontier.
 struct FrontierPoint {
     double delay_ms = 0.0, attenuation_db = 0.0;
     bool chosen = false;
-    std::string name;  ///< of a rival that is shown beside the frontier; empty on the frontier itself
+    std::string name;  ///< name of a rival that is shown with the frontier; empty on the frontier itself
 };
 
 /// Attenuation against delay, the designs on the frontier joined in the order of their delay.
@@ -41,8 +41,8 @@ class ComparedCourse {
 
     [[nodiscard]] bool empty() const { return methods_.empty(); }
 
-    /// Panels: the torque of each method beside the true one, and what it is off by. Names carry the rms
-    /// error of the comparison's figures.
+    /// Panels: the torque of each method with the true one, and its error. Names carry the rms error of the
+    /// comparison's figures.
     [[nodiscard]] Figure figure(const std::string& source, const Comparison& comparison) const;
 
   private:

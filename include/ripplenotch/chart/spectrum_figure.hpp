@@ -15,7 +15,7 @@
 
 namespace ripplenotch {
 
-/// Line frequency against speed with the fitted ratio, what the fit leaves, and amplitude against speed.
+/// Line frequency against speed with the fitted ratio, the residual of the fit, and amplitude against speed.
 [[nodiscard]] Figure identification_figure(const std::string& source, const Identification& identification);
 
 struct ShownSpectrum {
@@ -26,7 +26,7 @@ struct ShownSpectrum {
 
 /// Lines that get their name in a spectrum, strongest first.
 inline constexpr std::size_t most_named_lines = 12;
-/// Spectra that get a panel; the sentence says how many there were.
+/// Spectra that get a panel; the caption states the total number.
 inline constexpr std::size_t most_spectrum_panels = 8;
 
 /// Amplitude against frequency with the noise floor, lines named by frequency and amplitude.
@@ -37,7 +37,7 @@ inline constexpr std::size_t most_spectrum_panels = 8;
                                            const MotionLines& lines);
 
 /// Campbell diagram or order map: speed along x. With a gear the lines of its orders are drawn;
-/// `axis_per_motor_turn` says that the map's own orders are per motor turn, not per output turn.
+/// `axis_per_motor_turn`: the map's own orders are per motor turn, not per output turn.
 struct MapLines {
     std::optional<GearAccount> gear;
     bool axis_per_motor_turn = false;

@@ -52,7 +52,7 @@ class TorqueCourse {
     void add(const CourseSample& sample);
 
     /// Panels: a close-up where the log is long enough, torque before and after, joint speed, and for a
-    /// filter that switches the band in force and the jump of the output at each switch.
+    /// filter that switches the active band and the jump of the output at each switch.
     [[nodiscard]] Figure figure(const std::string& source, const std::string& method,
                                 const StreamReport& report) const;
 

@@ -15,7 +15,7 @@ namespace ripplenotch {
 
 // Where a model and a log disagree, before and after.
 
-/// What is left of the torque by two models, one value a sample; `position_deg` may be empty. `after_nm` may
+/// The residual of the torque for two models, one value a sample; `position_deg` may be empty. `after_nm` may
 /// be empty: one model only.
 struct Residuals {
     std::span<const double> time_s, speed_deg_s, position_deg, before_nm, after_nm;
