@@ -20,7 +20,7 @@ namespace ripplenotch {
 
 namespace {
 
-constexpr double left_px = 84.0;  ///< of a panel, for the numbers and the name of its y axis
+constexpr double left_px = 84.0;  ///< left margin of a panel, for the numbers and the name of its y axis
 
 constexpr double page_width = 900.0, wide_page_width = 1160.0;
 constexpr double right_px = 22.0, box_height = 250.0, below_px = 50.0, colours_px = 96.0;
@@ -30,7 +30,7 @@ constexpr std::size_t longest_label = 32;
 double px(const std::string& text) { return letter_px * static_cast<double>(text_width(text)); }
 
 struct Frame {
-    double left, top, width, beside;  ///< beside: kept free at the right, in all panels alike
+    double left, top, width, beside;  ///< beside: kept free at the right, the same in all panels
 };
 
 // Labels of the lines that pass through the panel, not yet placed.
@@ -231,13 +231,13 @@ std::string same_pdf(std::string pdf) {
 
 namespace {
 
-constexpr std::size_t most_cells = 400;  // of a map, each way: finer is not seen
+constexpr std::size_t most_cells = 400;  // cells of a map, each way: finer is not visible
 
 // Dark to light without turning back, so that it reads in grey and to every kind of eye.
 constexpr const char* palette =
     "0 '#08112f', 0.2 '#17396e', 0.4 '#1d6d86', 0.6 '#4aa27a', 0.8 '#b9c54b', 1 '#ffe94a'";
 
-// One panel of one page, in gnuplot's words.
+// One panel of one page, as gnuplot commands.
 class PanelScript {
   public:
     PanelScript(GnuplotScript& script, const PictureLayout& page, const Panel& panel, const PanelLayout& box)

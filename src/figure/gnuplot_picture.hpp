@@ -26,7 +26,7 @@ struct LineLabel {
 };
 
 struct PanelLayout {
-    double left = 0.0, right = 0.0, top = 0.0, bottom = 0.0;  ///< of the axes' box
+    double left = 0.0, right = 0.0, top = 0.0, bottom = 0.0;  ///< edges of the axes' box
     double title_y = 0.0;
     double legend_x = 0.0, legend_y = 0.0;
     int legend_rows = 0;  ///< 0: no legend
@@ -50,8 +50,8 @@ struct PictureLayout {
 [[nodiscard]] std::vector<double> pushed_apart(const std::vector<double>& wanted, double apart, double from,
                                                double to);
 
-/// Without gnuplot's version and its empty groups; and "]]>" in a text, which gnuplot leaves as it is, made
-/// lawful XML.
+/// Removes gnuplot's version and its empty groups; escapes "]]>" in a text, which gnuplot does not, to make
+/// it valid XML.
 [[nodiscard]] std::string same_svg(std::string svg);
 
 /// With the clock and the library's version, which cairo writes into every document, replaced by as many

@@ -113,7 +113,7 @@ bool read_some(int from, std::string& to) {
     return got > 0;
 }
 
-// Feeds and listens at once: either side may have more to say than a pipe holds.
+// Writes and reads at once: either side may have more data than a pipe holds.
 void converse(const std::string& script, Pipe& in, Pipe& out, Pipe& complaints, std::string& printed,
               std::string& complained) {
     std::size_t given = 0;
@@ -148,7 +148,7 @@ std::optional<std::string> run_gnuplot(const std::string& script) {
     int status = 0;
     while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
     }
-    // POSIX lets posix_spawn tell only so that nothing was started; it does under an emulator.
+    // POSIX lets posix_spawn report only that nothing was started; it does under an emulator.
     constexpr int not_started = 127;
     if (WIFEXITED(status) && WEXITSTATUS(status) == not_started && printed.empty() && complained.empty())
         return std::nullopt;
@@ -262,7 +262,7 @@ bool segment_of(const NamedLine& line, const PlotRange& x, const PlotRange& y, S
         segment = {x.from, line.value, x.to, line.value};
         return line.value >= y.from && line.value <= y.to;
     }
-    // A ray through the origin of slope value, from where it enters to where it leaves.
+    // A ray through the origin of slope value, within the panel.
     double from = x.from, to = x.to;
     if (line.value != 0.0) {
         const double a = y.from / line.value, b = y.to / line.value;
@@ -285,7 +285,7 @@ namespace {
 
 constexpr int rows_of_panel = 20;
 constexpr double plot_rows = rows_of_panel - 4.0;
-constexpr std::string_view curve_characters = "*#$%@&=";  // of gnuplot's line types 1, 2, ...
+constexpr std::string_view curve_characters = "*#$%@&=";  // characters of gnuplot's line types 1, 2, ...
 constexpr std::string_view level_characters = " .:-=+*%@";
 constexpr std::string_view letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZ";
 constexpr std::size_t left_columns = 11;  // for the numbers of the y axis
@@ -365,8 +365,8 @@ class TextPanel {
         parts.push_back(fmt::format("{} using 1:2 with {} lt {}", data, how, type));
     }
 
-    // A letter where each line leaves the panel, none on top of another; rays and levels are dotted on the
-    // way.
+    // A letter where each line meets the edge of the panel, none on top of another; rays and levels are
+    // dotted on the way.
     void mark_lines() {
         std::vector<std::size_t> above, beside;
         std::vector<double> columns, rows;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// A figure as a value: what it shows, in which units, under which names. Built once from results (room
-// chart); renderers draw it, document writes it as JSON. Nothing here knows pixels.
+// A figure as a value: what it shows, in which units, under which names. Built once from results (module
+// chart); renderers draw it, document writes it as JSON. Nothing here depends on pixels.
 
 #include <optional>
 #include <span>
@@ -28,19 +28,19 @@ void require_listed_figure(std::string_view name);
 /// `whole`: linear, of things that are counted; numbers stand at whole values alone.
 enum class PlotScale { linear, logarithmic, whole };
 
-/// What an axis counts. A logarithmic axis leaves out what is not above 0.
+/// An axis with its quantity and unit. A logarithmic axis omits values that are not above 0.
 struct PlotAxis {
     std::string label, unit = {};  ///< "torque", "Nm"; a number without a unit has none
     PlotScale scale = PlotScale::linear;
     std::optional<double> from = {}, to = {};  ///< left out: what the panel's contents span
 };
 
-/// Eight colours that the colour-blind can tell apart (Okabe and Ito 2002). The number is the place in
-/// ink_rgb.
+/// Eight colours that are distinguishable with colour blindness (Okabe and Ito 2002). The number is the index
+/// in ink_rgb.
 enum class Ink { black, blue, vermilion, green, orange, purple, sky, grey };
 /// "#0072b2"
 [[nodiscard]] std::string ink_rgb(Ink ink);
-/// The i-th of the inks that tell series apart; starts again after six.
+/// The i-th of the inks that distinguish series; starts again after six.
 [[nodiscard]] Ink series_ink(std::size_t i);
 
 enum class CurveStyle { line, dashed, steps, points, stems, crosses };
@@ -53,7 +53,7 @@ enum class CurveStyle { line, dashed, steps, points, stems, crosses };
 /// 4 orange, 5 purple, 6 sky. Broken orders and those above 6 share these inks with the other mark.
 [[nodiscard]] Ink order_ink(double order);
 [[nodiscard]] CurveStyle order_style(double order, CurveStyle style);
-/// A tone does not turn with the motor: it is black, with the other mark. What nobody knows is grey.
+/// A tone does not turn with the motor: it is black, with the other mark. An unknown line is grey.
 inline constexpr Ink tone_ink = Ink::black, unknown_ink = Ink::grey;
 
 /// Points of equal length x and y, joined in this order; a nan breaks the line.
@@ -74,12 +74,12 @@ struct Ribbon {
 /// A rectangle behind the curves: a band of speeds, a stretch of time. Edges may be infinite: to the panel's
 /// edge.
 struct Shade {
-    std::string name;  ///< written in it when there is room
+    std::string name;  ///< written in it when it fits
     Ink ink = Ink::grey;
     double x_from = 0.0, x_to = 0.0, y_from = 0.0, y_to = 0.0;
 };
 
-/// A straight line with a name of its own beside the panel: a peak, an order, a fit.
+/// A straight line with a name of its own next to the panel: a peak, an order, a fit.
 struct NamedLine {
     enum class Run {
         at_x,  ///< x = value
@@ -95,9 +95,9 @@ struct NamedLine {
 
 /// cells[row * (x_edges.size() - 1) + column]; edges rise, nan is an empty cell.
 struct HeatMap {
-    std::string label, unit = {};  ///< of the cells
+    std::string label, unit = {};  ///< label of the cells
     PlotScale scale = PlotScale::linear;
-    double lowest = 0.0, highest = 1.0;  ///< of the colours; cells beyond take the colour of the end
+    double lowest = 0.0, highest = 1.0;  ///< range of the colours; cells beyond take the colour of the end
     std::vector<double> x_edges = {}, y_edges = {}, cells = {};
 };
 
@@ -110,7 +110,7 @@ struct Panel {
     std::vector<Ribbon> ribbons = {};
     std::vector<Curve> curves = {};
     std::vector<NamedLine> lines = {};
-    bool legend = true;   ///< false where a panel beside it has the same names
+    bool legend = true;   ///< false where a neighbouring panel has the same names
     double height = 1.0;  ///< against that of other panels
 };
 

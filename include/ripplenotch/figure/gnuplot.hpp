@@ -13,7 +13,7 @@ namespace ripplenotch {
 enum class PictureKind { svg, png, pdf };
 
 /// The bytes of a picture, the same each time: no clock, no version. Empty when gnuplot is not installed;
-/// throws FileError with gnuplot's own words when it fails.
+/// throws FileError with gnuplot's own message when it fails.
 [[nodiscard]] std::optional<std::string> draw_picture(const Figure& figure, PictureKind kind);
 
 /// The figure in characters, lines of at most `columns` (40 to 200), one panel under the other. As above.
