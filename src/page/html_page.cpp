@@ -63,8 +63,8 @@ details > summary { cursor: pointer; color: var(--soft); }
   figure, table, article { break-inside: avoid; } figure img { filter: none; } }
 )css";
 
-// The figures come in the colours of paper; at night each of these has another that stands out as much. White
-// names on a heat map stay white, since the map stays as it is.
+// The figures come in the colours of paper; in dark mode each of these has another of the same contrast.
+// White names on a heat map stay white, since the map stays as it is.
 const std::string_view page_script = R"js(
 const dark = matchMedia("(prefers-color-scheme: dark)"), narrow = matchMedia("(max-width: 45rem)");
 const night = {"#1b1b1b": "#e4e6e8", "#222": "#e4e6e8", "#444": "#aab1b8", "#555": "#8f969d", "#888": "#8f969d",
@@ -129,7 +129,7 @@ bool is_number(std::string_view cell) {
            (!cell.empty() && cell.find_first_not_of("0123456789+-.e, ") == std::string_view::npos);
 }
 
-// Of the web or of a file; whatever else may run is no page to go to.
+// Only addresses of the web or of a file are links; other schemes may run code.
 bool is_page_address(std::string_view address) {
     const std::size_t colon = address.find(':');
     if (colon == std::string_view::npos || address.find('/') < colon) return !address.empty();

@@ -44,7 +44,7 @@ std::optional<double> number_at(const Json& owner, const std::string& name) {
     return found->get<double>();
 }
 
-// Decimals at which an error has two digits; empty for none or one that says nothing.
+// Decimals at which an error has two digits; empty for none or a meaningless one.
 std::optional<int> decimals_of(double error) {
     if (!std::isfinite(error) || !(error > 0.0)) return std::nullopt;
     return std::clamp(1 - static_cast<int>(std::floor(portable::log10(error))), 0, most_decimals);
@@ -60,7 +60,7 @@ std::optional<int> decimals_of_span(const Json& ci95) {
     return decimals_of(0.5 * (ci95[1].get<double>() - ci95[0].get<double>()));
 }
 
-// Of a field by the error that stands beside it.
+// The decimals of a field, from the error in the same object.
 std::optional<int> decimals_beside(const Json& owner, const std::string& name) {
     const bool of_value = name == "value" || name == "stderr" || name == "ci95";
     if (of_value && owner.contains("ci95")) return decimals_of_span(owner["ci95"]);
@@ -137,7 +137,7 @@ std::string value_text(const Json& json) {
 }
 
 std::string coarse_text(double value) {
-    constexpr double dust = 1e-9;  // of Nm, dB, %, ms: what rounding leaves of nothing
+    constexpr double dust = 1e-9;  // in Nm, dB, %, ms: rounding errors of zero
     return std::abs(value) < dust ? "0" : fmt::format("{:.4g}", value);
 }
 
@@ -199,7 +199,7 @@ bool says_nothing(const std::string& cell) {
 }
 
 // A row's objects become columns of their own: settle_ms {"0.5": 147} is column "settle 0.5, ms". One more
-// cell than there may be columns tells that some are left out.
+// cell than there may be columns indicates that some are left out.
 void cells_of(const Json& row, const std::string& prefix, const std::string& unit,
               std::vector<std::pair<std::string, std::string>>& cells) {
     for (const auto& [name, entry] : row.items()) {
@@ -232,7 +232,7 @@ bool is_table(const Json& json) {
 PageTable table_of(const std::string& name, const Json& rows) {
     PageTable table{spoken(name).name, {}, {}};
     std::vector<std::vector<std::pair<std::string, std::string>>> all;
-    std::unordered_map<std::string, std::size_t> places;  // of columns in the header
+    std::unordered_map<std::string, std::size_t> places;  // indices of the columns in the header
     bool left_out = false;
     for (const Json& row : rows) {
         if (all.size() == most_rows) break;
@@ -250,7 +250,7 @@ PageTable table_of(const std::string& name, const Json& rows) {
         }
         table.rows.push_back(std::move(row));
     }
-    // Columns that no row fills say nothing.
+    // Removes columns that no row fills.
     for (std::size_t c = table.header.size(); c-- > 0;) {
         if (!std::all_of(table.rows.begin(), table.rows.end(),
                          [c](const auto& row) { return says_nothing(row[c]); }))

@@ -22,10 +22,10 @@ struct Spoken {
 /// "-" for null; numbers with six significant digits, or four below 1, spans as "0.5 to 2.25; 4 to 5".
 [[nodiscard]] std::string value_text(const Json& json);
 
-/// Four significant digits; 0 for what rounding leaves of nothing (below 1e-9).
+/// Four significant digits; 0 for a rounding error of zero (below 1e-9).
 [[nodiscard]] std::string coarse_text(double value);
 
-/// A field of `owner`: digits as far as its standard error (NAME_stderr, or stderr and ci95 beside a value)
+/// A field of `owner`: digits as far as its standard error (NAME_stderr, or stderr and ci95 next to a value)
 /// reaches, else four for torques, levels, shares and milliseconds, else as value_text.
 [[nodiscard]] std::string field_text(const Json& owner, const std::string& name);
 
@@ -40,8 +40,8 @@ struct Spoken {
 [[nodiscard]] bool is_table(const Json& json);
 
 /// One row an object, one column a field, units apart; objects and short lists within a row are columns of
-/// their own, and columns that no row fills are left out. At most 200 rows; the title says how many there
-/// are.
+/// their own, and columns that no row fills are left out. At most 200 rows; the title states the total
+/// number.
 [[nodiscard]] PageTable table_of(const std::string& name, const Json& rows);
 
 }  // namespace ripplenotch

@@ -121,7 +121,7 @@ Json ribbon_trace(Json json, const Ribbon& ribbon, bool upper) {
     return json;
 }
 
-// The colour bar stands beside the panel, between `bottom` and `top` of the figure.
+// The colour bar is to the right of the panel, between `bottom` and `top` of the figure.
 Json map_trace(Json json, const Panel& panel, double bottom, double top) {
     const HeatMap& map = *panel.map;
     const std::size_t across = map.x_edges.size() - 1;
@@ -160,8 +160,8 @@ Json map_trace(Json json, const Panel& panel, double bottom, double top) {
     return json;
 }
 
-// The named lines of a panel in a plotly figure: where a line leaves the panel its name stands, and names
-// that would lie on each other are pushed apart.
+// The named lines of a panel in a plotly figure: the name is where a line meets the edge of the panel, and
+// names that would overlap are pushed apart.
 
 constexpr double plot_px = 780.0;  ///< a page's width less the margins; narrower screens scale it
 
@@ -291,7 +291,7 @@ constexpr double axis_px = 56.0, row_px = 24.0;
 
 constexpr double phone_px = 280.0;  // a panel's width on a screen of 400
 
-// Rows that the names of a panel's curves fill, set one after the other as far as there is room.
+// Rows that the names of a panel's curves fill, set one after the other as far as there is space.
 std::size_t legend_rows(const Panel& panel, double room_px) {
     if (!panel.legend) return 0;
     std::size_t rows = 0;
@@ -375,7 +375,7 @@ class PlotlyPanel {
         return wrapped(visible_text(panel_.title), 44);
     }
     [[nodiscard]] std::string title_text() const { return joined(title_lines()); }
-    // No longer than the axis that it stands beside.
+    // No longer than the axis that it belongs to.
     [[nodiscard]] std::string axis_title(std::string_view which, const PlotAxis& axis) const {
         const double room_px = which == "yaxis" ? panel_px * panel_.height : 0.5 * plot_px;
         return joined(wrapped(visible_text(axis_text(axis)), static_cast<std::size_t>(room_px / letter_px)));

@@ -364,7 +364,7 @@ void of_metrics(const Json& json, Numbers& numbers) {
         numbers.add_text("delay at 0 Hz", from_to(*delay), "ms");
 }
 
-// Of the first method beside the control, which the table calls A.
+// The figures of the first method other than the control, which the table calls A.
 void of_comparison(const Json& json, Numbers& numbers) {
     for (const Json& method : list_at(json, "methods")) {
         if (!method.is_object() || method.value("method", Json("none")) == "none") continue;
@@ -383,7 +383,7 @@ void of_diagnosis(const Json&, Numbers& numbers) {
     numbers.add("noise floor, rms", "/gap/noise_floor_nm", "Nm");
 }
 
-// Of each order of the map: what is left of it on blocks that the map was not fitted to.
+// The cross-validated ripple of each order of the map, before and after.
 void of_map(const Json& json, Numbers& numbers) {
     for (const Json& line : list_at(json, "left_out")) {
         const auto order = number_under(line, "/order"), left = number_under(line, "/left_nm"),
@@ -394,7 +394,7 @@ void of_map(const Json& json, Numbers& numbers) {
     }
 }
 
-// Of the method that it says to take.
+// The figures of the recommended method.
 void of_recommendation(const Json& json, Numbers& numbers) {
     const auto take = json.find("take");
     for (const Json& method : list_at(json, "methods")) {

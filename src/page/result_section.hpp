@@ -23,13 +23,13 @@ namespace ripplenotch {
 /// The design itself: one row a band, with centre frequency and Q of the notch for each order.
 [[nodiscard]] PageTable notch_table(const Json& bands);
 
-/// How many switches have a jump of which size; none for fewer than 20, which a table tells better.
+/// How many switches have a jump of which size; none for fewer than 20, for which a table is clearer.
 [[nodiscard]] std::optional<Figure> switch_figure(const Json& switches);
 
 /// The ten switches with the largest jumps; all of them where there are no more.
 [[nodiscard]] PageTable largest_switches(const Json& switches);
 
-// What the top of a page says of a result: the question, an answer in a sentence, and its numbers.
+// The top of a page for a result: the question, an answer in a sentence, and its numbers.
 
 /// What a person asked who got this kind of result; the kind itself where none is known.
 [[nodiscard]] std::string question_of(const std::string& kind);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// A page as a value: what is said about some results, before anybody turns it into HTML. All text is text:
-// whoever renders it escapes it.
+// A page as a value: the text on some results, before it is rendered as HTML. All text is plain: the renderer
+// escapes it.
 
 #include <optional>
 #include <string>
