@@ -19,7 +19,7 @@ namespace ripplenotch {
 
 namespace {
 
-// Internal to the survey room: what is said of a joint's rows, found out while they go by.
+// Internal to the survey module: the figures of a joint's rows, collected in one pass.
 
 class PassingRows {
   public:
@@ -29,13 +29,13 @@ class PassingRows {
 
     [[nodiscard]] std::optional<Range> speed_deg_s() const { return speed_.range(); }
     [[nodiscard]] std::optional<Range> torque_nm() const { return torque_.range(); }
-    /// Of the joint, both directions added up.
+    /// Turns of the joint, both directions added up.
     [[nodiscard]] double turns() const;
     /// Means of so many consecutive rows each, as a trace of its own, at a rate that is as much lower.
     [[nodiscard]] Trace take_means();
 
   private:
-    /// Of a signal whose first value is a number.
+    /// Range of a signal whose first value is a number.
     struct Extremes {
         double low = std::numeric_limits<double>::infinity(), high = -low;
         bool any = false, known = false;
@@ -111,7 +111,7 @@ void PassingRows::add(const TraceView& rows) {
     }
 }
 
-// A gap within the rows of a mean is told by the one before it, which is near enough for a stretch of
+// A gap within the rows of a mean is placed before the mean, which is accurate enough for a stretch of
 // seconds.
 void PassingRows::end_mean() {
     const auto rows = static_cast<double>(sums_.rows);
@@ -166,7 +166,7 @@ std::vector<SteadyStretch> stretches_of(const Log& log) {
     return stretches;
 }
 
-/// One joint, and of its log what is told beside: no rows.
+/// One joint, and the description of its log: no rows.
 struct Surveyed {
     Log log;
     JointInfo info;
@@ -182,7 +182,7 @@ Surveyed surveyed(Log log) {
     return {std::move(log), std::move(joint)};
 }
 
-// A log that is too long to be held goes by twice, and its motion is judged by the means of many rows.
+// A log that is too long for memory is read twice, and its motion is determined from the means of many rows.
 Surveyed survey_long(const std::shared_ptr<const Spool>& spool, const ReadOptions& options,
                      std::size_t most_rows) {
     LogPasses passes(spool, options);
@@ -233,7 +233,7 @@ std::vector<Surveyed> survey_joints(const std::string& path, const ReadOptions& 
     return all;
 }
 
-// Several joints that are warned of the same are told in one warning, with the text of the first.
+// Several joints with the same warning share one, with the text of the first.
 void add_warnings(LogInfo& info, const std::vector<Surveyed>& joints) {
     struct Told {
         const LogWarning* first;
@@ -332,7 +332,7 @@ void state_uses(LogInfo& info) {
     info.uses = {spectrum, identify, filter, clock};
 }
 
-// A log of unknown columns is told like any other, since `info` is what one looks with.
+// A log of unknown columns is described like any other, since `info` is the command to inspect one.
 void warn_where_nothing_is_known(LogInfo& info) {
     const auto& columns = info.layout.columns;
     if (!std::all_of(columns.begin(), columns.end(),

@@ -31,7 +31,7 @@ struct JointInfo {
     std::optional<Range> speed_deg_s, torque_nm, position_deg;
     Recording recording;
     std::optional<double> clock_factor;
-    double turns = 0.0;                    ///< of the joint, both directions added up
+    double turns = 0.0;                    ///< turns of the joint, both directions added up
     std::vector<SteadyStretch> stretches;  ///< rest included
     std::string options;                   ///< the option line that reads this joint
 };
@@ -45,7 +45,7 @@ struct Use {
 
 struct LogInfo {
     std::string source;
-    Layout layout;  ///< of the file, or of the joint chosen
+    Layout layout;  ///< layout of the file, or of the joint chosen
     std::size_t rows = 0;
     std::optional<double> duration_s;  ///< first to last time, gaps included; empty without a clock
     ClockFacts clock;
