@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // The descriptors of a joint from one log: lines and ratio are those of an identification, all else is one
-// fit of the model, with what the motion does not tell left out of it.
+// fit of the model, without the terms that are not identifiable from the motion.
 
 #include <optional>
 #include <string>
@@ -15,16 +15,16 @@
 
 namespace ripplenotch {
 
-// What one log tells of one joint, in one line: descriptors (the word of ISO 13379) with their intervals, the
-// conditions that they were measured under, and a reason for each that this log does not tell.
+// The result of one log for one joint, in one line: descriptors (the term of ISO 13379) with their intervals,
+// the conditions that they were measured under, and a reason for each that is not identifiable from this log.
 
 /// A figure that a joint keeps from log to log unless something happens to it.
 struct Descriptor {
     std::string stem;             ///< "coulomb_friction", "ripple_2_amplitude"
     std::string unit;             ///< as it ends the name: "nm", "deg"; empty for a plain number
-    std::optional<double> value;  ///< empty: the log does not tell it
+    std::optional<double> value;  ///< empty: not identifiable from the log
     std::optional<Interval> ci95;
-    std::string reason;  ///< of an empty value, one clause
+    std::string reason;  ///< reason for an empty value, one clause
 
     /// "coulomb_friction_nm"
     [[nodiscard]] std::string name() const { return unit.empty() ? stem : stem + "_" + unit; }
@@ -36,20 +36,21 @@ struct Descriptor {
 
 /// What the motion and the load were while the descriptors were measured.
 struct MotionMix {
-    double moving_share = 0.0, forward_share = 0.0;  ///< of the samples; of the moving ones
-    double speed_p10_deg_s = 0.0, speed_p50_deg_s = 0.0, speed_p90_deg_s = 0.0;  ///< of |v| while moving
-    double travel_deg = 0.0;                                                     ///< from end to end
+    double moving_share = 0.0, forward_share = 0.0;  ///< shares of the samples; of the moving ones
+    /// Percentiles of |v| while moving.
+    double speed_p10_deg_s = 0.0, speed_p50_deg_s = 0.0, speed_p90_deg_s = 0.0;
+    double travel_deg = 0.0;  ///< from end to end
     std::size_t reversals = 0;
     double torque_rms_nm = 0.0;              ///< less its mean
-    std::optional<double> load_rms_nm = {};  ///< of the torque of inertia and gravity, as fitted
+    std::optional<double> load_rms_nm = {};  ///< rms torque of inertia and gravity, as fitted
     bool operator==(const MotionMix&) const = default;
 };
 
 /// One log and one joint of it; or a log that could not be read, with its error and nothing else.
 struct FeatureLine {
     std::string log, sha256;          ///< as named; of its bytes, empty where it could not be opened
-    std::string robot, joint;         ///< empty where nobody names them
-    std::string version;              ///< of the tool
+    std::string robot, joint;         ///< empty when unknown
+    std::string version;              ///< version of the tool
     std::optional<std::string> date;  ///< "2026-01-05T12:30:00Z"
     std::string date_source;          ///< "log", "name", "manifest", "file"; or why there is none
     std::optional<double> temperature_degc;
@@ -67,14 +68,14 @@ struct FeatureLine {
     [[nodiscard]] const Descriptor* find(const std::string& name) const;
 };
 
-/// A descriptor without a value, by its name in a line: its stem and unit told apart. Throws DataError where
-/// no descriptor has this name, and says what it would be where only the unit is another.
+/// A descriptor without a value, by its name in a line, split into stem and unit. Throws DataError where no
+/// descriptor has this name, and gives the right name where only the unit is another.
 [[nodiscard]] Descriptor descriptor_named(const std::string& name);
 
 /// Whether a torque sensor of another gain shows another value: amplitudes and coefficients in Nm.
 [[nodiscard]] bool scales_with_torque(const Descriptor& descriptor);
 
-// When a log was recorded, and on which robot, as its name says; and dates as numbers.
+// When a log was recorded, and on which robot, according to its name; and dates as numbers.
 
 /// "2026-01-05T12:30:00Z" of seconds since 1970 in universal time.
 [[nodiscard]] std::string date_text(double seconds);
@@ -107,7 +108,8 @@ struct Features {
     std::vector<Descriptor> descriptors;  ///< always the same ones, but for those of the orders of ripple
 };
 
-/// `found`: what identify says of the log. `stated`: the gear that the user states; its ratio and orders are
+/// `found`: the result of identify for the log. `stated`: the gear that the user states; its ratio and orders
+/// are
 /// those of the ripple then, and else those that were found. Samples beyond 2^14 are thinned out evenly.
 /// Throws DataError: fewer samples than values to be fitted, or times that do not increase.
 [[nodiscard]] Features features_of(const TraceView& log, const Identification& found,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// A list of logs, cut into shards that any engine may work on in any order, and what a finished shard leaves
-// behind so that nobody does it again. docs/fleet.md.
+// A list of logs, cut into shards that any engine may work on in any order, and the record of a finished
+// shard, so that it is not repeated. docs/fleet.md.
 
 #include <cstddef>
 #include <optional>
@@ -12,7 +12,7 @@
 
 namespace ripplenotch {
 
-/// One log of a manifest, with what its line says of it.
+/// One log of a manifest, with the fields of its line.
 struct ManifestEntry {
     std::string log;
     std::optional<std::string> date, robot;  ///< date as date_text() gives it
@@ -21,7 +21,7 @@ struct ManifestEntry {
 
 struct Manifest {
     std::vector<ManifestEntry> entries;
-    std::string sha256;  ///< of the bytes of the list
+    std::string sha256;  ///< digest of the bytes of the list
 };
 
 /// A log a line: its path, then fields after tabs: date=2026-01-05, robot=R7, temperature_degc=31.5. Empty
@@ -34,20 +34,20 @@ struct Shard {
     std::size_t number = 1, of = 1;
     bool operator==(const Shard&) const = default;
 };
-inline constexpr std::size_t most_shards = 1'000'000;  ///< by hand
-/// Of "3/16". Throws UsageError.
+inline constexpr std::size_t most_shards = 1'000'000;  ///< chosen, not derived
+/// Parses "3/16". Throws UsageError.
 [[nodiscard]] Shard shard_of(std::string_view text);
 /// The entries of a shard: neighbours in the list, as many in each shard but for one.
 [[nodiscard]] std::span<const ManifestEntry> part_of(const Manifest& manifest, const Shard& shard);
 
-/// What a complete shard says of itself.
+/// The record of a complete shard.
 struct ShardRecord {
-    std::string version;          ///< of the tool
-    std::string manifest_sha256;  ///< of the list
+    std::string version;          ///< version of the tool
+    std::string manifest_sha256;  ///< digest of the list
     std::string settings;         ///< the command line, without list, shard and output
     Shard shard;
     std::size_t logs = 0, lines = 0, failed = 0;  ///< failed: logs or joints that are a line with an error
-    std::string sha256;                           ///< of its lines
+    std::string sha256;                           ///< digest of its lines
     bool operator==(const ShardRecord&) const = default;
 };
 
@@ -59,8 +59,8 @@ inline constexpr std::string_view record_ending = ".done.json";
 /// Why two records are not of one job; empty where they are.
 [[nodiscard]] std::string why_mixed(const ShardRecord& one, const ShardRecord& other);
 
-/// The shards that no record tells of, rising. Throws DataError for records of more than one job, and where
-/// two tell of one shard; `names` are those of their files.
+/// The shards without a record, rising. Throws DataError for records of more than one job, and for two
+/// records of one shard; `names` are those of their files.
 [[nodiscard]] std::vector<std::size_t> missing_shards(std::span<const ShardRecord> records,
                                                       std::span<const std::string> names, std::size_t of);
 /// "3, 7 to 9, 12"

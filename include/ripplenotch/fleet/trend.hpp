@@ -15,18 +15,18 @@ namespace ripplenotch {
 
 struct TrendOptions {
     double false_alarms = 0.001;  ///< that are to be expected in a month of a joint in which nothing happens
-    std::uint64_t seed = 1;       ///< of the permutations
+    std::uint64_t seed = 1;       ///< seed of the permutations
 };
 
 /// One descriptor over the logs of a joint.
 struct DescriptorTrend {
     std::string name;                       ///< with its unit
-    std::size_t lines = 0;                  ///< that tell it
+    std::size_t lines = 0;                  ///< that contain it
     std::optional<double> baseline;         ///< before the first change, at the joint's median conditions
-    std::optional<double> slope_per_month;  ///< beside the changes that were found
+    std::optional<double> slope_per_month;  ///< fitted together with the changes that were found
     std::optional<Interval> slope_ci95;
     double spread = 0.0;  ///< rms of a log about all this
-    std::string reason;   ///< of an absent baseline
+    std::string reason;   ///< reason for an absent baseline
 };
 
 /// By how much a descriptor is another one after a change; of a drift, from its first log to its last.
@@ -34,7 +34,7 @@ struct ChangedDescriptor {
     std::string name;
     double size = 0.0;
     Interval ci95;
-    std::optional<double> percent;  ///< of the baseline
+    std::optional<double> percent;  ///< change relative to the baseline
 };
 
 /// A value of a descriptor as it would have been at the joint's median conditions.
@@ -42,7 +42,7 @@ struct AdjustedValue {
     std::string date;
     double value = 0.0;
     std::string log;
-    std::string page;  ///< address of the log's own report; empty: nobody tells of one
+    std::string page;  ///< address of the log's own report; empty: none known
 };
 
 /// How far a joint is from its baseline in a month, in the descriptor that is farthest.
@@ -56,16 +56,16 @@ struct JointMonth {
 struct JointChange {
     bool drift = false;            ///< no day: it went on from the first log to the last
     std::string cause;             ///< "Coulomb friction", "gain of the torque sensor"
-    std::string date;              ///< of the first log after it; of a drift, of the last
-    std::string earliest, latest;  ///< days that the logs hardly tell from it
+    std::string date;              ///< date of the first log after it; for a drift, of the last
+    std::string earliest, latest;  ///< days that are hardly distinguished from it by the logs
     double p = 1.0;                ///< chance that a joint in which nothing happens shows as much anywhere
     double limit = 0.0;            ///< that p was held against
     std::vector<ChangedDescriptor> descriptors;  ///< that took part, the surest first
     std::size_t kin = 0;                ///< other joints of its kind with the same alert within 30 days
     std::string first_log, last_log;    ///< after it, and the last one before
-    std::string first_date, last_date;  ///< of these two logs
-    std::string first_page, last_page;  ///< addresses of their reports; empty: nobody tells of one
-    std::vector<AdjustedValue> course;  ///< of the surest descriptor, over all logs
+    std::string first_date, last_date;  ///< dates of these two logs
+    std::string first_page, last_page;  ///< addresses of their reports; empty: none known
+    std::vector<AdjustedValue> course;  ///< time series of the surest descriptor, over all logs
 };
 
 /// A descriptor in which a joint is unlike the others of its kind.

@@ -164,7 +164,7 @@ std::optional<double> date_seconds(std::string_view text) {
     constexpr std::string_view marks = "--T::";
     for (std::size_t field = 0; field < letters.size(); ++field) {
         if (field > 0) {
-            // A day or a minute may be the last that is said.
+            // The text may end with a day or a minute.
             if (text.empty() && (field == 3 || field == 5)) break;
             const bool blank = field == 3 && text.starts_with(' ');
             if (!blank && !text.starts_with(marks[field - 1])) return std::nullopt;
@@ -209,9 +209,10 @@ std::optional<NamePattern::Found> NamePattern::match(const std::string& name) co
 
 namespace {
 
-constexpr std::size_t most_feature_samples = std::size_t{1} << 14U;  // by hand: bounds the time of a log
-constexpr std::size_t most_orders = 6;                               // by hand: bounds the time of a log
-constexpr double widest_phase_deg = 45.0;                            // half of its interval
+// Chosen, not derived: bounds the time of a log.
+constexpr std::size_t most_feature_samples = std::size_t{1} << 14U;
+constexpr std::size_t most_orders = 6;     // chosen, not derived: bounds the time of a log
+constexpr double widest_phase_deg = 45.0;  // half of its interval
 
 Descriptor untold(std::string stem, std::string unit, std::string reason) {
     return {std::move(stem), std::move(unit), {}, {}, std::move(reason)};
@@ -263,7 +264,7 @@ void add_ripple(const RippleEstimate& one, bool has_position, std::vector<Descri
     all.push_back(std::move(phase));
 }
 
-// Of the ripple: what is stated, else what was found.
+// The gear of the ripple: the stated one, else the one that was found.
 std::optional<GearAccount> gear_of_ripple(const Identification& found,
                                           const std::optional<GearAccount>& stated) {
     std::optional<GearAccount> gear = stated ? stated : found_gear(found);

@@ -13,19 +13,20 @@
 namespace ripplenotch {
 namespace {
 
-constexpr double least_travel_deg = 20.0;  // less, and the weight of a link is hardly told from a zero error
-constexpr double width_deg_s = 0.5;        // of the step of friction where the joint reverses
-constexpr std::size_t fewest_samples = 200;            // as recording.fewest_samples of a diagnosis
-constexpr std::size_t stretches = 40;                  // of the log, for errors that are not white
-constexpr double widest_of_value = 0.5;                // an interval's half, of the value ...
-constexpr double widest_of_torque = 0.02;              // ... or, in torque, of all torque of the log
-constexpr double least_load = 0.1;                     // of inertia and weight, of all torque
-constexpr std::size_t fewest_reversals = 2;            // a way there and back
-constexpr double way_of_start_deg = 1.0;               // by hand
-constexpr double seen_angles = 1.5;                    // after a reversal, of the lost motion ...
-constexpr std::size_t fewest_in_angle = 8;             // ... in which there are so many samples
-constexpr double far_deviations = 10.0;                // of a residual that is no noise
-constexpr int linear_iterations = 3, iterations = 15;  // by hand
+// Less, and the weight of a link is hardly distinguished from a zero error.
+constexpr double least_travel_deg = 20.0;
+constexpr double width_deg_s = 0.5;          // width of the step of friction where the joint reverses
+constexpr std::size_t fewest_samples = 200;  // as recording.fewest_samples of a diagnosis
+constexpr std::size_t stretches = 40;        // stretches of the log, for errors that are not white
+constexpr double widest_of_value = 0.5;      // an interval's half, of the value ...
+constexpr double widest_of_torque = 0.02;    // ... or, in torque, of all torque of the log
+constexpr double least_load = 0.1;           // share of inertia and weight in all torque
+constexpr std::size_t fewest_reversals = 2;  // a way there and back
+constexpr double way_of_start_deg = 1.0;     // chosen, not derived
+constexpr double seen_angles = 1.5;          // after a reversal, of the lost motion ...
+constexpr std::size_t fewest_in_angle = 8;   // ... in which there are so many samples
+constexpr double far_deviations = 10.0;      // in standard deviations: a residual that is no noise
+constexpr int linear_iterations = 3, iterations = 15;  // chosen, not derived
 
 FitOptions fit_options(std::size_t samples, int most_iterations) {
     FitOptions options;
@@ -91,7 +92,7 @@ void JointFit::refine() {
     fit_ = fit(model_, motion_, torque_nm_, options);
 }
 
-// Takes the fit whose friction turns over within an angle, if the log tells the angle.
+// Uses the fit with presliding friction over an angle, if the log determines the angle.
 bool JointFit::winds(std::size_t place, double friction_nm, FitOptions options) {
     Model open = model_, guess = *options.first_guess;
     open.terms[place] = parse_term("hysteresis,initial_state=0");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Internal: the model of a joint, fitted to one log, with only the terms that its motion can tell.
+// Internal: the model of a joint, fitted to one log, with only the terms that are identifiable from its
+// motion.
 
 #include <span>
 #include <string>
@@ -24,7 +25,7 @@ class JointFit {
     /// rms torque of inertia and gravity; empty where neither is fitted.
     [[nodiscard]] std::optional<double> load_rms_nm() const;
 
-    /// rms of what is new from sample to sample beside the fit.
+    /// rms of the white noise, from second differences of the residual.
     [[nodiscard]] double noise_nm() const;
 
   private:
@@ -42,7 +43,7 @@ class JointFit {
     const std::vector<unsigned char>& known_;
     const MotionFacts& facts_;
     std::optional<GearAccount> gear_;
-    std::string no_wind_;  ///< why the angle in which friction turns over is not told; empty: it is
+    std::string no_wind_;  ///< why the presliding angle of friction is not identifiable; empty: it is
     Model model_;
     Fit fit_;
 };

@@ -16,9 +16,9 @@
 namespace ripplenotch {
 namespace {
 
-constexpr double jump_deviations = 8.0, jump_part = 0.02;  // by hand
-constexpr double least_over_noise = 5.0;                   // of accelerations, rms
-constexpr double least_change = 1e-3;                      // of the speed within a window, or it is rounding
+constexpr double jump_deviations = 8.0, jump_part = 0.02;  // chosen, not derived
+constexpr double least_over_noise = 5.0;                   // ratio to the noise of accelerations, rms
+constexpr double least_change = 1e-3;  // share of the speed within a window, or it is rounding
 
 double mean_square(const std::vector<double>& values) {
     const double size = rms(values);
@@ -45,8 +45,8 @@ double share_beside(std::vector<double> values, const std::vector<std::vector<do
 }
 
 constexpr double moving_most_deg_s = 0.5, moving_part = 0.01;  // as a diagnosis counts
-constexpr std::size_t fewest_moving = 100;                     // by hand
-constexpr double least_share = 0.05;                           // of a direction, so that its friction is seen
+constexpr std::size_t fewest_moving = 100;                     // chosen, not derived
+constexpr double least_share = 0.05;  // share of a direction, so that its friction is seen
 constexpr double least_speeds = 1.5;  // between slow and fast, so that viscous friction is seen
 
 double at_share(const std::vector<double>& sorted, double share) {
@@ -103,7 +103,7 @@ Accelerations accelerations_of(const TraceView& log, const Motion& motion,
         direction.push_back(speed.back() > 0.0 ? 1.0 : speed.back() < 0.0 ? -1.0 : 0.0);
     }
     const double samples = std::max(1.0, default_smoothing.value() * log.sample_rate.value());
-    // Of the slope of a cubic in the middle of so many samples.
+    // Noise of the slope of a cubic in the middle of so many samples.
     const double noise = usual_noise(log.velocity_deg_s) * log.sample_rate.value() *
                          std::sqrt(75.0 / (samples * samples * samples));
     const auto count = static_cast<double>(std::max<std::size_t>(acceleration.size(), 1));
@@ -111,7 +111,7 @@ Accelerations accelerations_of(const TraceView& log, const Motion& motion,
     const double beside = share_beside(acceleration, {ones, direction, speed});
     const double alone = std::sqrt(whole * beside), along = std::sqrt(whole * std::max(0.0, 1.0 - beside));
     const double rounding = least_change * rms(speed) / default_smoothing.value();
-    // What noise leaves along three columns, of accelerations that are alike for a window.
+    // The projection of noise on three columns, for accelerations that are correlated over a window.
     const double noise_along = noise * std::sqrt(3.0 * samples / count);
     Accelerations found;
     found.known = alone > std::max(least_over_noise * noise, rounding);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // Internal: in which rows of a log the joint's motion is known, and what it lets be determined of the joint.
-// Where the speed jumps, nobody knows the acceleration, and what is smoothed over the jump is no speed that
-// the joint had.
+// Where the speed jumps, the acceleration is unknown, and a speed smoothed over the jump is none that the
+// joint had.
 
 #include <span>
 #include <vector>
@@ -28,7 +28,7 @@ struct Accelerations {
 struct MotionFacts {
     MotionMix mix;
     double moving_deg_s = 0.0;     ///< slower samples count as resting
-    double speed_rms_deg_s = 0.0;  ///< of all samples
+    double speed_rms_deg_s = 0.0;  ///< rms speed of all samples
     double acceleration_rms_rad_s2 = 0.0;
     bool has_position = false;
     Accelerations accelerations;
@@ -55,8 +55,8 @@ struct FittedSamples {
 [[nodiscard]] std::size_t samples_after_reversals(const Motion& motion, std::span<const unsigned char> use,
                                                   double most_deg);
 
-/// At rest, friction that has no angle to turn over in may stand anywhere: only samples that move count. All
-/// of them again where the rest is too little to fit.
+/// At standstill, presliding friction without a fitted angle may have any value: only samples that move
+/// count. All samples count where too few move for a fit.
 [[nodiscard]] std::vector<unsigned char> moving_samples(const Motion& motion, std::vector<unsigned char> use,
                                                         double moving_deg_s);
 

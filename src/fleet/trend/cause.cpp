@@ -113,7 +113,7 @@ class Namer {
     std::vector<Hypothesis> list_;
 };
 
-// Residuals of the series at the rows that all of them have, beside the change.
+// Correlation of the residuals of the series at the rows that all of them have, without the change.
 MatrixXd correlation_of(const JointHistory& history, const std::vector<Regression>& known,
                         const FoundChange& change, const std::vector<ChangedSeries>& changed) {
     const auto d = static_cast<Index>(changed.size()), n = static_cast<Index>(history.lines.size());
@@ -129,7 +129,7 @@ MatrixXd correlation_of(const JointHistory& history, const std::vector<Regressio
         if (size > 0.0) residual.col(i) /= size;
     }
     MatrixXd correlation = residual.transpose() * residual;
-    // What few logs tell of it is drawn towards none.
+    // Estimates from few logs are drawn towards zero correlation.
     const double kept = static_cast<double>(n) / static_cast<double>(n + 2 * d);
     for (Index i = 0; i < d; ++i)
         for (Index j = 0; j < d; ++j) correlation(i, j) = i == j ? 1.0 : kept * correlation(i, j);
@@ -197,7 +197,7 @@ std::string cause_of(const JointHistory& history, const std::vector<Regression>&
         least = score;
         left_by_best = root.triangularView<Eigen::Lower>() * (seen - columns * values);
     }
-    // By what no other descriptor changed beside it.
+    // No other descriptor has a significant change that this cause does not explain.
     if (best != nullptr && left_by_best.cwiseAbs2().maxCoeff() < took_part) return best->name;
     std::string words;
     for (const ChangedSeries& one : changed)

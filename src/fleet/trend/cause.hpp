@@ -16,14 +16,14 @@ struct ChangedSeries {
     double baseline = 0.0;
 };
 
-/// Of the series that can tell it. `scatter`: what is known of each beside its lines.
+/// Changes of the series in which it is identifiable. `scatter`: prior on each in addition to its lines.
 [[nodiscard]] std::vector<ChangedSeries> changed_series(const JointHistory& history,
                                                         const std::vector<Regression>& known,
                                                         const ScatterOfSeries& scatter,
                                                         const FoundChange& change);
 
-/// The cause that explains the changes with the fewest numbers (by Schwarz's criterion); what took part in
-/// words where none does.
+/// The cause that explains the changes with the fewest numbers (by Schwarz's criterion); where none does, a
+/// list of the descriptors that took part.
 [[nodiscard]] std::string cause_of(const JointHistory& history, const std::vector<Regression>& known,
                                    const FoundChange& change, const std::vector<ChangedSeries>& changed);
 

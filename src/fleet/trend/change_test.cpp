@@ -20,7 +20,7 @@ namespace ripplenotch {
 
 namespace {
 
-constexpr double least_left = 0.05;  // of the squares of a column, beside the others
+constexpr double least_left = 0.05;  // share of a column's squares outside the others
 
 double dot_product(const std::vector<double>& a, const std::vector<double>& b) {
     double sum = 0.0;
@@ -101,21 +101,26 @@ namespace {
 class Scan {
   public:
     Scan(const JointHistory& history, const Series& series, const Regression& regression);
-    /// All torques together, each by its relative residual: what a sensor of another gain moves at once, each
-    /// of them by too little. Empty where fewer than three torques are told by every line.
+    /// All torques together, each by its relative residual: a change of the sensor's gain affects all at
+    /// once, each of them below its own limit. Empty where fewer than three torques are present in every
+    /// line.
     [[nodiscard]] static std::optional<Scan> of_sensor_gain(const JointHistory& history,
                                                             const std::vector<Regression>& known);
 
     [[nodiscard]] const std::string& name() const { return name_; }
     [[nodiscard]] double unit() const { return unit_; }  ///< unit_of(), 1 of all torques together
-    [[nodiscard]] const Scatter& scatter() const { return scatter_; }  ///< of its own lines
+    [[nodiscard]] const Scatter& scatter() const { return scatter_; }  ///< scatter of its own lines
     /// From here on a statistic is held against its own scatter and this one together.
     void lean_on(const Scatter& known);
 
     [[nodiscard]] double largest() const { return largest_; }  ///< t squared, in the order of time
     [[nodiscard]] bool is_drift() const { return drift_; }
-    [[nodiscard]] std::size_t row() const { return row_; }   ///< of the joint's lines: first after the step
-    [[nodiscard]] double memory() const { return memory_; }  ///< from row to row, beside the best change
+    [[nodiscard]] std::size_t row() const {
+        return row_;
+    }  ///< index among the joint's lines: first after the step
+    [[nodiscard]] double memory() const {
+        return memory_;
+    }  ///< autocorrelation from row to row, without the best change
     /// The same of what chance makes of the series, in another order of the joint's rows.
     [[nodiscard]] double largest_of(const std::vector<std::size_t>& order, std::vector<double>& room) const;
 
@@ -133,22 +138,22 @@ class Scan {
     std::string name_;
     double unit_ = 0.0;
     Scatter scatter_;
-    Scatter known_;  ///< of others, in the series' unit
+    Scatter known_;  ///< scatter of other joints, in the series' unit
     std::vector<std::size_t> rows_;
-    std::vector<std::size_t> place_of_row_;  ///< in rows_; rows that do not tell the series have rows_.size()
+    std::vector<std::size_t> place_of_row_;  ///< in rows_; rows without the series have rows_.size()
     Regression regression_;
     std::vector<double> norm_;  ///< squares that are left of a step before each place; 0: it is not looked at
-    std::vector<double> chance_;  ///< residual beside the best change, if it is one, weighed
+    std::vector<double> chance_;  ///< weighted residual without the best change, if it is one
     std::vector<double> slope_;
     double slope_norm_ = 0.0, largest_ = 0.0, memory_ = 0.0;
     bool drift_ = false;
     std::size_t row_ = 0;
 };
 
-constexpr std::size_t fewest_before = 5, fewest_after = 3;  // by hand
-constexpr double least_left_of_step = 0.05;                 // of a step, beside conditions and other changes
-constexpr std::size_t fewest_torques = 3;                   // by hand
-constexpr double hardly_chance = 16.0;  // t squared that chance has in one series of fifty
+constexpr std::size_t fewest_before = 5, fewest_after = 3;  // chosen, not derived
+constexpr double least_left_of_step = 0.05;  // share of a step outside conditions and other changes
+constexpr std::size_t fewest_torques = 3;    // chosen, not derived
+constexpr double hardly_chance = 16.0;       // t squared that chance has in one series of fifty
 
 double squares_of(const std::vector<double>& values) {
     double sum = 0.0;
@@ -302,7 +307,7 @@ std::optional<Scan> Scan::of_sensor_gain(const JointHistory& history, const std:
 constexpr std::size_t enough_exceed = 10;  // orders that show as much, after which p is known well enough
 constexpr double hardly_worse = 3.84;      // fall of twice the log-likelihood, 95 % of one degree of freedom
 constexpr double takes_part = 4.0;         // t squared
-constexpr double least_error = 0.7;        // of a line, of the usual one
+constexpr double least_error = 0.7;        // share of the usual error of a line
 
 using RowOrder = std::vector<std::size_t>;
 
@@ -391,7 +396,7 @@ void settle_row(const JointHistory& history, const std::vector<Regression>& know
     }
 }
 
-// How much lines scatter beside what they state, as a variance (DerSimonian and Laird, 1986).
+// Scatter of lines in addition to their stated errors, as a variance (DerSimonian and Laird, 1986).
 double variance_beside(const Series& series, const std::vector<double>& errors,
                        const std::vector<std::vector<double>>& columns) {
     std::vector<double> weights;
@@ -407,8 +412,8 @@ double variance_beside(const Series& series, const std::vector<double>& errors,
     return room > 0.0 ? std::max(0.0, (seen - stated.freedom()) / room) : 0.0;
 }
 
-// By the error that a line states and by what joints scatter beside it. A line that states next to none does
-// not count more than twice as much as the usual one.
+// Weights from the stated error of a line and the additional scatter of joints. A line with a stated error
+// near zero does not count more than twice as much as the usual one.
 std::vector<double> weights_of(const Series& series, const std::vector<std::vector<double>>& columns) {
     std::vector<double> errors = series.error;
     const double usual = median_in(errors);
@@ -485,7 +490,7 @@ std::optional<FoundChange> next_change(const JointHistory& history, const std::v
 
 namespace {
 
-constexpr double fewest_others = 4.0;  // by hand
+constexpr double fewest_others = 4.0;  // chosen, not derived
 constexpr double most_worth = 100.0;   // lines, however alike the joints are
 
 /// One joint's scatter as a number that is about normal among joints: its logarithm, without the bias that
@@ -514,7 +519,8 @@ LogScatter log_scatter(std::size_t history, const Scatter& own) {
             2.0 / own.freedom + 2.0 / (own.freedom * own.freedom)};
 }
 
-// What joints differ by beside the chance of few lines tells what one is worth for another.
+// The difference between joints beyond the sampling error of few lines determines the weight of one for
+// another.
 Scatter scatter_of(const Sums& others) {
     const double mean = others.value / others.count;
     const double variance = std::max(others.squares - others.count * mean * mean, 0.0) / (others.count - 1.0);

@@ -20,7 +20,7 @@ namespace ripplenotch {
 
 /// What one more column explains.
 struct Extra {
-    double size = 0.0;   ///< of the column
+    double size = 0.0;   ///< coefficient of the column
     double error = 0.0;  ///< standard error of it
     double t_squared = 0.0;
 };
@@ -36,11 +36,11 @@ class Regression {
     [[nodiscard]] const std::vector<double>& weights() const { return weights_; }
     [[nodiscard]] double freedom() const;    ///< rows less columns
     [[nodiscard]] double deviation() const;  ///< rms of the weighed residual, by its freedom
-    /// What is left of a column beside the others, weighed.
+    /// The residual of a column after projection on the others, weighted.
     [[nodiscard]] std::vector<double> beside(std::span<const double> column) const;
     /// Takes the columns out of weighed numbers.
     void project(std::vector<double>& weighed) const;
-    /// Empty where less than a twentieth of the column is left beside the others.
+    /// Empty where less than a twentieth of the column is outside the others.
     [[nodiscard]] std::optional<Extra> extra(std::span<const double> column) const;
     /// Value of the first column, where all others are 0.
     [[nodiscard]] double first_value() const { return first_value_; }
@@ -51,27 +51,27 @@ class Regression {
     double first_value_ = 0.0;
 };
 
-// Internal: how much the lines of a series scatter, as the other joints of the kind show it. Thirty lines
-// alone know their scatter to an eighth, and four of them have to stand out of it.
+// Internal: how much the lines of a series scatter, estimated from the other joints of the kind. Thirty lines
+// alone determine their scatter to an eighth, and four changed lines have to exceed it.
 
-/// What is known of a series' scatter beside its own lines, and how many lines that is worth.
+/// Prior of a series' scatter in addition to its own lines, and its weight as a number of lines.
 struct Scatter {
     double freedom = 0.0;
-    double variance = 0.0;  ///< of lines, in squares of Scan::unit()
+    double variance = 0.0;  ///< variance of lines, in squares of Scan::unit()
 };
 
-/// By the names of scans; without those that nobody else tells.
+/// By the names of scans; without those that no other joint has.
 using ScatterOfSeries = std::map<std::string, Scatter>;
 
-/// Of each history, by the joints of its name on other robots, never by its own lines; worth the more lines
-/// the more alike those joints are (G. K. Smyth, Linear models and empirical Bayes methods for assessing
-/// differential expression in microarray experiments, 2004).
+/// The scatter for each history, from the joints of its name on other robots, never from its own lines; with
+/// the greater weight the more similar those joints are (G. K. Smyth, Linear models and empirical Bayes
+/// methods for assessing differential expression in microarray experiments, 2004).
 [[nodiscard]] std::vector<ScatterOfSeries> scatter_of_kin(std::span<const JointHistory> histories);
 
 /// A change that was found: its column, and where it is.
 struct FoundChange {
     bool drift = false;
-    std::size_t row = 0;                   ///< of the joint's lines: the first after a step
+    std::size_t row = 0;                   ///< index among the joint's lines: the first after a step
     std::size_t earliest = 0, latest = 0;  ///< rows that are hardly worse
     double p = 1.0, limit = 0.0;
 };
@@ -80,12 +80,12 @@ struct FoundChange {
 [[nodiscard]] std::vector<double> change_column(const JointHistory& history, const FoundChange& change,
                                                 std::span<const std::size_t> rows);
 
-/// Each series beside the conditions and the changes that are known.
+/// Each series, fitted with the conditions and the changes that are known.
 [[nodiscard]] std::vector<Regression> regressions(const JointHistory& history,
                                                   std::span<const FoundChange> known);
 
 /// The likeliest change, if its chance is at most `limit`; and the autocorrelation is kept by blocks.
-/// `scatter`: what is known of each series beside its lines.
+/// `scatter`: prior on each series in addition to its lines.
 [[nodiscard]] std::optional<FoundChange> next_change(const JointHistory& history,
                                                      const std::vector<Regression>& known,
                                                      const ScatterOfSeries& scatter, double limit,

@@ -107,10 +107,10 @@ void note_new_names(const std::vector<JointHistory>& histories, std::vector<std:
 
 constexpr double seconds_a_day = 86400.0;
 constexpr double comparable = 2.5;          // speeds that differ by more are another job of the joint
-constexpr double fewest_share = 0.6;        // of the lines have to tell a descriptor
-constexpr std::size_t lines_for_bend = 20;  // by hand
+constexpr double fewest_share = 0.6;        // share of the lines that have to contain a descriptor
+constexpr std::size_t lines_for_bend = 20;  // chosen, not derived
 
-// Logs in which the joint moves at quite another speed say nothing of what changed.
+// Logs in which the joint moves at quite another speed carry no information on a change.
 void leave_out_other_motions(JointHistory& history) {
     std::vector<double> speeds;
     for (const FeatureLine* line : history.lines) speeds.push_back(line->mix.speed_p50_deg_s);

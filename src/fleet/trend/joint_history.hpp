@@ -12,7 +12,7 @@ namespace ripplenotch {
 
 inline constexpr double days_a_month = 365.25 / 12.0;
 
-/// One descriptor in the rows that tell it.
+/// One descriptor in the rows that contain it.
 struct Series {
     std::string name;
     bool torque = false;  ///< scales with the gain of the torque sensor
@@ -31,15 +31,15 @@ struct JointHistory {
     std::vector<double> day;  ///< since 1970
     std::vector<Condition> conditions;
     std::vector<Series> series;
-    std::vector<DescriptorTrend> untold;  ///< descriptors that too few lines tell
+    std::vector<DescriptorTrend> untold;  ///< descriptors that too few lines contain
     std::vector<std::string> notes;
 
     [[nodiscard]] double months() const;
     [[nodiscard]] std::string name() const { return robot.empty() ? joint : robot + " " + joint; }
 };
 
-/// Of all joints, by robot and joint. Throws what trend_of() throws for its lines; `notes` takes what is told
-/// of the fleet.
+/// The histories of all joints, by robot and joint. Throws what trend_of() throws for its lines; `notes`
+/// receives the notes on the fleet.
 [[nodiscard]] std::vector<JointHistory> joint_histories(std::span<const FeatureLine> lines,
                                                         std::vector<std::string>& notes);
 

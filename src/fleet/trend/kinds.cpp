@@ -92,11 +92,12 @@ void tell_courses(const JointHistory& history, std::span<const FoundChange> chan
 
 namespace {
 
-constexpr std::size_t fewest_kin = 5;           // by hand
-constexpr double odd_from = 5.0;                // robust deviations
-constexpr double least_deviation = 0.01;        // of the kind's median: less apart is no other joint
-constexpr double same_time_s = 30.0 * 86400.0;  // by hand: a month
-constexpr double shared_part = 0.3;             // of a kind, from which a change is none of the joint alone
+constexpr std::size_t fewest_kin = 5;  // chosen, not derived
+constexpr double odd_from = 5.0;       // robust deviations
+// Share of the kind's median: a smaller difference is no other joint.
+constexpr double least_deviation = 0.01;
+constexpr double same_time_s = 30.0 * 86400.0;  // chosen, not derived: a month
+constexpr double shared_part = 0.3;  // share of a kind, from which a change is none of the joint alone
 
 using Kind = std::vector<JointTrend*>;
 

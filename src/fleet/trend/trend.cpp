@@ -13,9 +13,9 @@
 namespace ripplenotch {
 namespace {
 
-constexpr std::size_t most_changes = 4;  // by hand
-constexpr double spent_at_once = 0.8;    // by hand: of the false alarms that are left
-constexpr double least_t_squared = 9.0;  // of a descriptor that is listed with a change
+constexpr std::size_t most_changes = 4;  // chosen, not derived
+constexpr double spent_at_once = 0.8;    // chosen, not derived: share of the remaining false alarms
+constexpr double least_t_squared = 9.0;  // limit for a descriptor that is listed with a change
 
 // The same for a joint whatever else is in the fleet (Fowler, Noll and Vo).
 std::uint64_t seed_of(const JointHistory& history, std::uint64_t seed, std::size_t turn) {
