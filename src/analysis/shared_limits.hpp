@@ -22,7 +22,7 @@ inline constexpr double tries_per_cell = 1.6;
 /// into order 2 where a joint reverses.
 inline constexpr std::ptrdiff_t window_trend_terms = 4;
 
-/// Smaller lines are not reported: a share of the torque's range, and in any case what rounding makes of a
+/// Smaller lines are not reported: a share of the torque's range, and in any case the rounding error of a
 /// constant.
 inline double least_amplitude_nm(std::span<const TraceView> logs, double share) {
     double range = 0.0, largest = 0.0;

@@ -17,7 +17,7 @@ namespace ripplenotch {
 
 namespace {
 
-// Terms of a model, and those that a search changes: what a model of many ripples needs at a time; of long
+// Terms of a model, and those that a search changes: enough for a model of many ripples at a time; for long
 // logs fewer.
 std::size_t most_kept(std::size_t samples) { return samples < 200'000 ? 16 : 4; }
 

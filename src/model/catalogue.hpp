@@ -16,8 +16,8 @@ namespace ripplenotch {
 
 class Carriers {
   public:
-    /// Adds the torque of a joint term, with what the ripple gain makes of it; false, and nothing is added,
-    /// where the effect has no such parts. The situation has the motion of every other call.
+    /// Adds the torque of a joint term, multiplied by the ripple gain; false, and nothing is added, where the
+    /// effect has no such parts. The situation has the motion of every other call.
     [[nodiscard]] bool add_torque(const Term& term, const Situation& situation, const Gain& gain,
                                   std::span<double> torque_nm);
 

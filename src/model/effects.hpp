@@ -20,8 +20,7 @@ inline constexpr Parameter width_parameter = {.name = "width_deg_s",
                                               .logarithmic = true,
                                               .left_out = LeftOut::assumed};
 
-/// Cycles per turn of what goes with a cosine of an angle, and its phase; where a screening begins is
-/// `tried`.
+/// Cycles per turn and phase of a cosine of an angle; a screening begins at `tried`.
 constexpr Parameter cycles_parameter(std::string_view name, std::string_view help, double start, double upper,
                                      std::span<const double> tried) {
     return {.name = name,

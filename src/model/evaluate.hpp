@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// What the terms of a model bring along a motion, before they are summed: shared by a whole evaluation and by
-// Prediction, which asks for parts of one.
+// The contributions of the terms of a model along a motion, before they are summed: shared by a whole
+// evaluation and by Prediction, which needs parts of one.
 
 #include <algorithm>
 #include <array>
@@ -36,7 +36,7 @@ void each(const Model& model, Side side, const Action& action) {
 /// Throws UsageError that lists the values which the model does not state.
 void refuse_missing_values(const Model& model);
 
-/// Torque of what bears load; nothing when no effect asks for it.
+/// Torque of the terms that bear load; nothing when no effect needs it.
 [[nodiscard]] std::vector<double> load_nm(const Model& model, const Situation& situation);
 
 /// The gain of a ripple term of the given order; empty when nothing changes the model's ripple.

@@ -6,7 +6,7 @@
 
 namespace ripplenotch {
 
-/// Most that any motion may ask for; wide enough for any joint, narrow enough that no product overflows.
+/// Limits of any motion; wide enough for any joint, narrow enough that no product overflows.
 inline constexpr double longest_duration_s = 1e6, largest_angle_deg = 1e7, largest_speed_deg_s = 1e5;
 
 /// The keys that every kind has.
@@ -23,7 +23,7 @@ inline constexpr Key from_key = {
     .at_most = largest_angle_deg,
     .help = "position at its beginning; without it, where the motion before ended, or 0deg"};
 
-/// Keys that the kinds made of sines have, with what they mean there.
+/// Keys common to the kinds made of sines, with their meaning there.
 constexpr Key swing_amplitude_key(std::string_view help) {
     return {.name = "amplitude",
             .dimension = Dimension::angle,

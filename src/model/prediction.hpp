@@ -13,8 +13,8 @@
 
 namespace ripplenotch {
 
-// What a prediction keeps of a model along a motion: the differences of torque that a changed term makes come
-// from what the other terms have left in store.
+// The state of a prediction of a model along a motion: the change of torque by a changed term is computed
+// from the stored results of the other terms.
 
 struct Prediction::State {
     /// A change of a ripple, a complex number a sample, takes as long as so many torques.
@@ -152,7 +152,7 @@ struct Prediction::State {
         return entry->second;
     }
 
-    // What this model makes of a ripple, its own or a new one.
+    // The gain of a ripple in this model, its own or a new one.
     const Gain& gain(const Term& term) {
         static const Gain none;
         if (!term.effect->ripple_order) return none;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Folded orders: what turns faster than half the sample rate is seen at |k * rate - order * |v| / 360|. The
-// sum over the measured angle may be asked at the unfolded order directly: where the speed changes within a
-// sweep, the true order gathers more of the line than its images do.
+// Folded orders: a line above half the sample rate is seen at |k * rate - order * |v| / 360|. The sum over
+// the measured angle may be evaluated at the unfolded order directly: where the speed changes within a sweep,
+// the true order gathers more of the line than its images do.
 
 #include <span>
 #include <vector>
@@ -23,9 +23,9 @@ struct Fold {
 struct SeenOrder {
     double seen = 0.0, highest = 0.0;
 };
-/// Orders up to the highest whose image at the speeds of the sweeps is the one seen, with what each explains,
-/// best first. Each is asked at its own maximum, within what the speeds of the heaviest sweep allow. Rests on
-/// the heaviest sweeps, 20,000 samples at most. Empty where no image lies below the highest order.
+/// Orders up to the highest whose image at the speeds of the sweeps is the one seen, with the improvement by
+/// each, best first. Each is evaluated at its own maximum, within the speeds of the heaviest sweep. Uses the
+/// heaviest sweeps, 20,000 samples at most. Empty where no image lies below the highest order.
 [[nodiscard]] std::vector<Fold> folds_of(std::span<const Sweep> sweeps, const Stack& angle,
                                          const SeenOrder& order);
 

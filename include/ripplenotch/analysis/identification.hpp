@@ -51,7 +51,7 @@ struct Doubt {
     bool operator==(const Doubt&) const = default;
 };
 
-/// What a verdict rests on.
+/// The data that a verdict is based on.
 struct Grounds {
     std::size_t sweeps = 0, rests = 0;  ///< pieces of motion in one direction, and of standstill
     double sweep_turns = 0.0;           ///< output turns that the sweeps cover
@@ -131,7 +131,7 @@ struct ToneFamily {
 struct Hum {
     double from_hz = 0.0, to_hz = 0.0;
     double peak_hz = 0.0;
-    double rms_nm = 0.0;  ///< in the band, noise taken off, largest of the stretches or rms over sweeps
+    double rms_nm = 0.0;  ///< rms in the band, noise subtracted, largest of the stretches or rms over sweeps
 };
 
 /// The estimates of one quantity from recordings of one joint that disagree beyond their errors.
@@ -144,7 +144,7 @@ struct Disagreement {
     About about = About::ratio;
     std::optional<double> order, order_output;  ///< order of the line, for amplitudes and phases
     std::vector<Value> values;                  ///< by recording
-    double chance = 1.0;                        ///< that recordings which agree differ as much
+    double chance = 1.0;                        ///< probability that recordings which agree differ as much
 };
 [[nodiscard]] std::string_view about_name(Disagreement::About about);
 /// Empty where nothing has this name.
@@ -179,12 +179,12 @@ struct Identification {
     std::vector<Doubt> doubts;
     Grounds grounds;                 ///< not in joint.json
     std::string verdict;             ///< verdict_sentence of all this: one sentence with numbers
-    std::vector<std::string> notes;  ///< what was looked at and why it was not enough, one sentence each
+    std::vector<std::string> notes;  ///< tests that were made and why they failed, one sentence each
     bool conclusive = false;  ///< lines found and a ratio, or certainly nothing, and no reason against it
 };
 
 /// Cycles per motor turn of a line that follows the motor; empty for others. A line that was seen at one
-/// speed has an order where identify gave it one, because the gear ratio rests on it.
+/// speed has an order where identify assigned it one, because the gear ratio depends on it.
 [[nodiscard]] std::optional<double> motor_order(const Line& line);
 
 /// The gear that was found: the ratio and the orders of the lines that follow the motor. Empty where nothing
@@ -202,7 +202,7 @@ struct IdentifyOptions {
     std::optional<GearRatio> hint;   ///< checked against the lines
     std::vector<int> hinted_orders;  ///< n at which the strongest line is expected
     double false_alarm = 0.01;       ///< chance that a log of noise gives any line
-    std::vector<Doubt> doubts;       ///< what is known against these logs before they are looked at
+    std::vector<Doubt> doubts;       ///< reasons against these logs that are known beforehand
 };
 
 inline constexpr std::size_t fewest_identify_samples = 64;  ///< chosen, not derived: as for a spectrum

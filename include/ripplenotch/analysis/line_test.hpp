@@ -38,12 +38,12 @@ struct SignificantPeak {
     double false_alarm = 1.0;  ///< chance that noise gives a peak as high as this anywhere in the spectrum
 };
 
-/// Local maxima whose false_alarm is at most the one asked for, in bin order. Each is compared with the
+/// Local maxima whose false_alarm is at most the one requested, in bin order. Each is compared with the
 /// largest of four floors: 2 to 5, 3 to 12 and 3 to 40 cells away, and the one below it. So the flank of a
 /// broad resonance is no line, and neither is the noise inside a narrow one. Near the low end the lower floor
-/// is what lies just outside of the main lobe, or what a spectrum as steep as behind a resonance would have
-/// there. The floor is known from few cells, which the test allows for: the ratio follows an F distribution.
-/// Maxima with fewer than 4 cells around them are not tested.
+/// is the power just outside of the main lobe, or that of a spectrum as steep as behind a resonance. The
+/// floor is estimated from few cells, which the test allows for: the ratio follows an F distribution. Maxima
+/// with fewer than 4 cells around them are not tested.
 [[nodiscard]] std::vector<SignificantPeak> significant_peaks(const PowerSpectrum& spectrum,
                                                              double false_alarm);
 /// The same where noise_floor(spectrum) is at hand.
@@ -65,8 +65,8 @@ struct LineThreshold {
 [[nodiscard]] LineThreshold line_threshold(const PowerSpectrum& spectrum, std::span<const double> floor,
                                            std::size_t bin, double false_alarm);
 
-/// What a median of exponential values knows of their mean, as a share of what the mean of as many knows:
-/// (ln 2)^2.
+/// Efficiency of a median of exponential values as an estimate of their mean, relative to the mean of as
+/// many: (ln 2)^2.
 inline constexpr double median_efficiency = 0.48;
 
 /// Power over a floor, of so many averages; the floor was itself estimated as well as by the mean of `cells`
@@ -76,7 +76,7 @@ struct PowerOverFloor {
 };
 
 /// The noise-free power, over the mean noise power, of a line that exceeds `threshold` with a probability of
-/// 95 %: its power is noncentral chi-square, here by its mean and variance. `cells` is not asked.
+/// 95 %: its power is noncentral chi-square, here by its mean and variance. `cells` is ignored.
 [[nodiscard]] double detectable_ratio(const PowerOverFloor& threshold);
 
 /// The power over a floor, with the averages and cells of `noise`, that noise exceeds with this chance.

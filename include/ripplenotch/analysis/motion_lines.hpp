@@ -18,7 +18,7 @@ struct MotionLine {
     LineKind kind = LineKind::unknown;  ///< order, tone, or unknown: angle and time explain it alike
     double order_output = 0.0, order_stderr = 0.0;  ///< for kinds order and unknown
     double hz = 0.0, hz_stderr = 0.0;               ///< for kind tone
-    double amplitude_nm = 0.0;                      ///< zero to peak, rms over sweeps, noise taken off
+    double amplitude_nm = 0.0;                      ///< zero to peak, rms over sweeps, noise subtracted
     double floor_nm = 0.0;                          ///< what noise alone shows, rms over sweeps
     double snr = 0.0;                               ///< amplitude_nm / floor_nm
     double false_alarm = 1.0;  ///< chance that noise shows such a line anywhere on this axis
@@ -42,7 +42,7 @@ struct MotionLinesOptions {
 
 struct MotionLines {
     std::vector<MotionLine> lines;      ///< in the order found: clearest first
-    std::vector<SpectralHump> humps;    ///< against frequency, of what the lines leave
+    std::vector<SpectralHump> humps;    ///< against frequency, in the residual of the lines
     std::size_t sweeps = 0, rests = 0;  ///< pieces of motion and of standstill that were used
     std::size_t sweeps_left_out = 0;
     double turns = 0.0;  ///< output turns that the sweeps cover

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // Spectra over speed: frequency against speed (Campbell diagram) and order against speed (order map), as
-// numbers. And what a band of orders holds.
+// numbers. Also the torque in a band of orders.
 
 #include <cstddef>
 #include <optional>

@@ -89,8 +89,8 @@ struct SpeedTrack {
 /// the highest speed; 1 when nothing moves.
 [[nodiscard]] double speed_step(const SpeedSpan& speeds);
 
-/// Rows that do not follow on the row before, since there are no data between: the joint turns round or
-/// rests, or the log has a gap. Rising, never 0; over speed those with an empty range before them.
+/// Rows that do not follow on the row before, since there are no data between: the joint reverses or is at
+/// standstill, or the log has a gap. Rising, never 0; over speed those with an empty range before them.
 [[nodiscard]] std::vector<std::size_t> track_breaks(const OrderTracks& tracks);
 [[nodiscard]] std::vector<std::size_t> track_breaks(const SpeedTrack& tracks);
 

@@ -18,7 +18,7 @@
 
 namespace ripplenotch {
 
-/// Probability that noise alone makes any of the orders asked for count as present.
+/// Probability that noise alone makes any of the requested orders count as present.
 inline constexpr double ripple_false_alarm = 0.01;
 /// Motor orders within which lines are one line, under a Hann window of eight motor turns.
 inline constexpr double ripple_resolution_orders = 1.5 / 8.0;
@@ -67,7 +67,7 @@ struct OrderLevel {
     std::vector<double> amplitude_nm;  ///< per signal, zero to peak, rms over windows; nan without any
     std::optional<double>
         expected_gain;  ///< remaining share of the line behind the filter of LineGains, rms over windows
-    std::size_t windows = 0;  ///< that hold the order
+    std::size_t windows = 0;  ///< windows that hold the order
 };
 
 struct RippleLevels {
@@ -75,7 +75,7 @@ struct RippleLevels {
     std::vector<double> residual_rms_nm;           ///< per signal: torque minus the window's trend
     std::vector<double> residual_peak_to_peak_nm;  ///< per signal: the same, median over windows
     std::vector<double> ripple_peak_to_peak_nm;    ///< per signal: of the fitted orders alone, largest window
-    std::size_t windows = 0;                       ///< in which at least one order was measured
+    std::size_t windows = 0;                       ///< windows in which at least one order was measured
     std::size_t windows_too_few_samples = 0;       ///< left out: fewer than two samples per unknown
     double measured_share = 0.0;                   ///< rows in windows / rows seen
 };
@@ -89,7 +89,7 @@ using LineGains = std::function<void(double speed_deg_s, std::span<std::complex<
 /// motion that is longer goes on in the next ones, half a window before their end.
 class RippleMeter {
   public:
-    /// `gains`: works out what a filter should leave at the speeds of the windows that are measured. Throws
+    /// `gains`: computes the expected gain of a filter at the speeds of the windows that are measured. Throws
     /// UsageError unless ratio, sample_rate and all orders are above 0 and signals is at least 1.
     RippleMeter(GearRatio ratio, std::span<const Order> orders, Hertz sample_rate, std::size_t signals,
                 LineGains gains = {});

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Spectra of many sweeps on one grid, against output angle or against time, each sweep measured by its own
-// noise before they are averaged. Order and time are treated alike so that they can be compared: what stands
-// out more is what a line is.
+// Spectra of many sweeps on one grid, against output angle or against time, each sweep normalized by its own
+// noise before they are averaged. Order and time are treated alike so that they can be compared: a line
+// belongs to the axis on which it has the higher SNR.
 
 #include <cstddef>
 #include <span>

@@ -49,8 +49,8 @@ struct Stretch {
     DegPerSec speed;
     double speed_error_deg_s = 0.0;  ///< standard error of that mean
     bool rest = false;               ///< standstill
-    /// Mean and standard deviation of the speed's size over the angle that is turned: rests do not count, and
-    /// white noise of the velocity is taken off. 0 where hardly anything is turned.
+    /// Mean and standard deviation of |speed| over the angle that is turned: standstill does not count, and
+    /// white noise of the velocity is subtracted. 0 where hardly anything is turned.
     double turning_deg_s = 0.0, turning_spread_deg_s = 0.0;
     static constexpr double largest_spread =
         0.1;  ///< share of the mean, beyond which a line of an order is smeared

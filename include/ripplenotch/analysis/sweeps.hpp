@@ -56,7 +56,7 @@ struct SweepRule {
     /// Chosen, not derived: a line of four cycles and four neighbouring cells.
     std::size_t fewest_samples = 24;
     double slowest_share = 0.02;  ///< share of the log's highest speed; slower motion belongs to no sweep
-    /// The smooth part of the torque that is taken out of a sweep: a line, and cosines up to so many cycles
+    /// The smooth part of the torque that is removed from a sweep: a line, and cosines up to so many cycles
     /// in the sweep.
     double trend_cycles = 2.5;
     std::size_t most_samples =
@@ -88,7 +88,7 @@ struct Sweep {
     double mean_deg_s = 0.0;                     ///< signed mean speed under the weight
     double rate_hz = 0.0;
 
-    /// How many samples of equal weight would know as much: (sum w)^2 / sum w^2.
+    /// Equivalent number of samples of equal weight: (sum w)^2 / sum w^2.
     [[nodiscard]] double effective_samples() const { return weight_sum * weight_sum / weight_square_sum; }
     [[nodiscard]] bool rest() const { return !(length_turns > 0.0); }
     /// From 0 to 1 along the piece, in angle, or in time at standstill.

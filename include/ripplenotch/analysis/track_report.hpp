@@ -64,7 +64,7 @@ struct TrackColumn {
 /// greatest of Vold-Kalman leave out rows within 1 / bandwidth of the log's ends, where an envelope rests on
 /// one side alone.
 struct TrackSummary {
-    std::size_t rows = 0;  ///< where it was measured; 0: the rest means nothing
+    std::size_t rows = 0;  ///< rows where it was measured; 0: the other values mean nothing
     double median_nm = 0.0, least_nm = 0.0, greatest_nm = 0.0;
     double least_at_deg_s = 0.0, greatest_at_deg_s = 0.0;
 };

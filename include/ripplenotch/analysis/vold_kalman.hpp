@@ -28,7 +28,7 @@ struct VoldKalmanTracks {
     Hertz bandwidth;        ///< as obtained in the middle of the longest run, from the equations solved
     Seconds envelope_step;  ///< between points of the envelopes
     std::size_t runs_too_short = 0;                ///< left out: shorter than 1.5 / bandwidth
-    std::vector<std::vector<double>> waveform_nm;  ///< per line and sample: what it adds to the torque
+    std::vector<std::vector<double>> waveform_nm;  ///< per line and sample: its part of the torque
     std::vector<double> trend_nm;                  ///< per sample; both are nan in runs left out
 };
 

@@ -37,7 +37,7 @@ inline constexpr std::size_t values_beside_arm = 6;  ///< number of values in Be
 
 struct ArmFitOptions {
     std::vector<bool> use;             ///< rows that count, one entry each; empty: all
-    std::vector<std::size_t> joints;   ///< whose torque counts; empty: of all that have one
+    std::vector<std::size_t> joints;   ///< joints whose torque counts; empty: all that have one
     std::optional<Seconds> smoothing;  ///< left out: the best of arm_smoothings for rows left out
     std::optional<double> pull;        ///< left out: the best of 1e-6 ... 1e4, the same way
 };
@@ -63,7 +63,7 @@ struct ArmFit {
     double pull = 0.0;                ///< towards 0, in units of (5 kg, 0.5 kg m, 0.1 kg m^2) of a 100 Nm arm
     Seconds smoothing;                ///< smoothing of the motion that the arm terms use
     double weighed_rows = 1.0;        ///< rows of the log to one row of the fit
-    std::vector<ArmJointFit> joints;  ///< whose torque counted
+    std::vector<ArmJointFit> joints;  ///< joints whose torque counted
     std::size_t values_there = 0, values_told = 0;
 
     [[nodiscard]] const ArmJointFit* find(std::size_t joint) const;
@@ -80,7 +80,7 @@ struct ArmFit {
 
 // A fitted arm as part of a model: known columns, fitted together with every candidate of a search.
 
-/// What is known of the arm before the torque of the joint in hand is looked at.
+/// The prior on the arm before the torque of the current joint is used.
 enum class ArmKnowledge {
     /// Nothing but the pull: a value a column, its mean 0, its deviation ArmFit::deviation.
     pull,

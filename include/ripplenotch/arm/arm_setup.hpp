@@ -20,8 +20,8 @@ struct ArmSetupLimits {
     /// squares. Measured on arms of six joints: corrected gravity reduces the error to 0.05, no other
     /// direction or sign of a right one to less than 1.
     double most_error = 0.7;
-    /// Friction that drives a joint counts where its rms is so much of the fit's error on fifths left out:
-    /// below, it is what the fit could not explain.
+    /// Friction that drives a joint counts where its rms is so much of the fit's error on held-out fifths:
+    /// below, it is part of the residual.
     double least_friction = 1.0;
 };
 
@@ -75,7 +75,7 @@ struct AdvancedLog {
 struct ArmAccount {
     std::string source;  ///< "ur10.urdf", "axes zyyzyz"
     std::string rule;    ///< how joints were matched: "by name"
-    std::string option;  ///< that would force it
+    std::string option;  ///< option to force it
     std::vector<JointTravel> joints;
     std::size_t values_there = 0, values_told = 0;
     bool values_are_stated = false;   ///< by a model; there is no fit then, and nothing below of one

@@ -60,9 +60,9 @@ void settle_chain(Chain& chain);
 /// "the joints of robot.urdf are a, b, c": all that move, for messages.
 [[nodiscard]] std::string joint_list(const Chain& chain);
 
-// The ways in which people have a chain: the robot's description, a table of its manual, or no more than a
-// look at the robot. Each takes the text of a file and its name for messages, and throws DataError with file
-// and line where that is none, UsageError where a choice is left to the user.
+// The sources of a chain: the robot's description, a table of its manual, or inspection of the robot. Each
+// takes the text of a file and its name for messages, and throws DataError with file and line where that is
+// none, UsageError where a choice is left to the user.
 
 /// A robot's description has links and joints, of which these elements and attributes count: robot, joint
 /// {name, type}, parent, child, origin, axis, limit, mimic. Fixed joints become part of the next moving one.

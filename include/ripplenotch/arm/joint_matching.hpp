@@ -18,14 +18,14 @@ using StatedJoints = std::vector<std::pair<std::string, std::string>>;
 struct JointMatch {
     std::vector<std::size_t> of;  ///< for each joint of the chain, the place of its joint in the log
     std::string rule;             ///< "as stated", "by name", "by number", "by order"
-    std::string option;           ///< that would force it: "joints=panda_joint1:1|panda_joint2:2"
+    std::string option;           ///< option to force it: "joints=panda_joint1:1|panda_joint2:2"
     std::vector<std::string> warnings, notes;  ///< a sentence each
 };
 
 /// Joints that are stated first; then, for all the others, the first of these that finds one for each and no
 /// two the same: the same name without case, '_', '-' and the words joint, axis, link, robot; the number at
 /// the end of both names, the log's counted from 0 or 1; the order, where there are as many. Throws
-/// UsageError that names the joint without a partner and what the log has.
+/// UsageError that names the joint without a partner and the joints of the log.
 [[nodiscard]] JointMatch match_joints(const Chain& chain, std::span<const std::string> log_joints,
                                       const StatedJoints& stated, std::string_view log_name);
 

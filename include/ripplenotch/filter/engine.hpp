@@ -91,7 +91,7 @@ struct TimedSwitch {
 /// What a whole log turned out to be, for one of its joints.
 struct StreamReport {
     Recording recording;
-    std::size_t held_bad_values = 0;    ///< cells replaced because the caller asked for it
+    std::size_t held_bad_values = 0;    ///< cells replaced because the caller requested it
     std::vector<TimedSwitch> switches;  ///< as listed by the filter
     std::size_t switch_count = 0;
     double slowest_deg_s = 0.0, fastest_deg_s = 0.0;  ///< range of |v|; both 0 without a row

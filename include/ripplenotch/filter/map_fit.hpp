@@ -35,7 +35,7 @@ struct MapAgreement {
     std::size_t log = 0;
     double order = 0.0;
     double amplitude_ratio = 1.0, amplitude_error = 0.0;
-    double phase_deg = 0.0, phase_error_deg = 0.0;  ///< by which its ripple is ahead
+    double phase_deg = 0.0, phase_error_deg = 0.0;  ///< phase lead of its ripple
     bool agrees = true;                             ///< within three of its errors, or 15 %
 };
 

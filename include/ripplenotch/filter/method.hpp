@@ -67,7 +67,7 @@ struct FrozenFilter {
     bool follows_ripple = false;
 };
 
-/// The first pass of a method that looks at the whole log before it filters. Fed like a filter, it passes the
+/// The first pass of a method that needs the whole log before it filters. Fed like a filter, it passes the
 /// torque unchanged; then learned() gives the filter for a second pass over the same samples.
 class Learner : public CausalFilter {
   public:
@@ -76,7 +76,7 @@ class Learner : public CausalFilter {
     [[nodiscard]] virtual std::vector<std::string> notes() const { return {}; }
 };
 
-/// What a comparison makes of a method.
+/// The part of a method in a comparison.
 enum class MethodPart {
     contender,
     rival,    ///< what joints have without this tool: contenders are held against it
@@ -97,7 +97,7 @@ struct Method {
     /// The active linear filter at a constant speed; empty function for methods that have none.
     FrozenFilter (*frozen)(const Settings& settings, Hertz sample_rate, const CandidateTable* table,
                            DegPerSec speed) = nullptr;
-    bool frozen_is_dear = false;  ///< frozen() takes too long to be asked for every window of a log
+    bool frozen_is_dear = false;  ///< frozen() is too slow to be called for every window of a log
     /// What can be exported as coefficients; null for methods whose coefficients change while they run.
     SteadyDesign (*steady)(const Settings& settings) = nullptr;
     /// Null for causal methods. Where there is one, start() gives the filter that has learned nothing: it

@@ -73,21 +73,21 @@ enum class Side {
     ripple,     ///< changes size and phase of the model's ripple terms
     joint,      ///< adds torque
     sensor,     ///< transforms the sum, as a continuous signal; noise is added after it
-    converter,  ///< transforms what is logged, noise included
+    converter,  ///< transforms the logged torque, noise included
 };
 [[nodiscard]] std::string_view side_name(Side side);
 
-/// What an effect's torque is mainly a function of: where it is looked for, and what can pass for it.
+/// The main variable of an effect's torque: where it is searched for, and what can pass for it.
 enum class Domain { time, position, speed, order, frequency };
 
 /// Another cause that leaves nearly the same residual, and how the two are distinguished.
 struct LookAlike {
     std::string_view name;     ///< name of an effect; or a description, when it is not in the catalogue
-    std::string_view when;     ///< the logs in which they look alike
+    std::string_view when;     ///< the logs in which they are hard to distinguish
     std::string_view told_by;  ///< the experiment that would decide
 };
 
-/// What an effect may look at besides its own values. Spans have motion.size() entries, or none.
+/// Inputs of an effect besides its own values. Spans have motion.size() entries, or none.
 struct Situation {
     const Motion& motion;
     GearRatio ratio;
@@ -118,7 +118,7 @@ struct Effect {
     std::span<const Parameter> parameters;
     std::optional<Polar> polar = std::nullopt;
     bool bears_load = false;  ///< joint: its torque is part of the load that gear and bearings carry
-    bool uses_load = false;   ///< it looks at Situation::load_nm
+    bool uses_load = false;   ///< it uses Situation::load_nm
     bool resists = false;     ///< joint: a friction, whose first parameter is its size; below 0 it drives
     bool chance = false;      ///< converter: which samples it hits is chance, so that no prediction holds it
     bool linear_in_torque = true;  ///< sensor, converter: acts on a sum as the sum of its actions
@@ -132,7 +132,7 @@ struct Effect {
     std::optional<std::size_t> whole = std::nullopt;
     /// converter: this parameter is the end of the range in Nm, so that torques near it are cut on one side
     std::optional<std::size_t> range_limit = std::nullopt;
-    /// converter: detectors of a lower turn have marked what they spoiled before this one looks
+    /// converter: detectors of a lower turn have marked the samples that they invalidate before this one runs
     std::size_t detect_turn = 0;
 
     // One of the following, by side. `values` has one entry per parameter, in their order and units, each
@@ -148,8 +148,8 @@ struct Effect {
     /// amplitude * Re(gain * exp(i * angle)).
     void (*change_ripple)(const Situation& situation, Order order, std::span<const double> values,
                           std::span<std::complex<double>> gain) = nullptr;
-    /// ripple, with stated_from: states the values from another speed. Returns by what the amplitude of the
-    /// ripple terms it concerns has to be multiplied for the torque to be the same.
+    /// ripple, with stated_from: states the values from another speed. Returns the factor for the amplitude
+    /// of the ripple terms it concerns that leaves the torque the same.
     double (*restate)(double from_deg_s, std::span<double> values) = nullptr;
 
     /// converter, in addition to apply: whether a log shows this effect, and where. Every one has it: a fit

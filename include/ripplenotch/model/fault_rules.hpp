@@ -7,7 +7,7 @@
 namespace ripplenotch {
 
 /// Numbers by which Effect::detect decides. Each line of fault_rules.def is one: its value, the bounds within
-/// which it may be changed, its unit, and why it is there.
+/// which it may be changed, its unit, and its reason.
 struct FaultRules {
 #define NUMBER(name, value, lowest, highest, unit, why) double name = value;
 #define WHOLE(name, value, lowest, highest, unit, why) std::size_t name = value;

@@ -91,7 +91,7 @@ struct Fit {
     double residual_rms_nm = 0.0;     ///< rms residual of the samples used, after whitening
     std::size_t samples = 0;          ///< used
     int iterations = 0;
-    std::size_t applied = 0;  ///< how often an effect was run along the motion: what the fit has cost
+    std::size_t applied = 0;  ///< number of evaluations of an effect along the motion: the cost of the fit
     bool converged = false;
 };
 
@@ -106,8 +106,8 @@ struct FitOptions {
     int most_iterations = 50;  ///< chosen, not derived
     /// Improvement of the sum of squares at which the search ends, relative.
     double settled = 1e-9;
-    /// Samples in a stretch of the log, for errors that look at how the residual pulls in each stretch: what
-    /// the noise remembers, and what the model lacks here and there, widens them. 0: the noise is white.
+    /// Samples in a stretch of the log, for errors from the pull of the residual in each stretch: correlated
+    /// noise and local model errors widen them. 0: the noise is white.
     std::size_t error_stretch = 0;
     /// Whether standard errors are computed, which takes about one more iteration.
     bool errors = true;

@@ -88,8 +88,8 @@ inline constexpr GearRatio largest_gear_ratio{1e5};
 /// when there are any.
 [[nodiscard]] std::vector<double> predict_nm(const Model& model, const Motion& motion);
 
-/// What the model's sensors make of a torque in front of them: delays, lags, the joint's spring. A sensor
-/// that is not linear is left out, and so are converters.
+/// The response of the model's sensors to a torque in front of them: delays, lags, the joint's spring. A
+/// sensor that is not linear is left out, and so are converters.
 [[nodiscard]] std::vector<double> sensed_nm(const Model& model, const Motion& motion,
                                             std::vector<double> torque_nm);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// A model along a motion, ready to answer how its torque changes with one of its terms: what a fit and a
-// screening ask for again and again.
+// A model along a motion, ready to compute how its torque changes with one of its terms: the operation that a
+// fit and a screening need again and again.
 
 #include <memory>
 #include <optional>
@@ -38,7 +38,7 @@ class Prediction {
     [[nodiscard]] Prediction with(const Term& term) const;
     /// Made by with(), and every joint term that is no ripple has the very torque that it had before.
     [[nodiscard]] bool has_only_ripple_anew() const;
-    /// What a further sensor makes of a torque as this model's sensors have left it: of torque_nm(), or of a
+    /// The response of a further sensor to a torque behind this model's sensors: to torque_nm(), or to a
     /// slope of it. The motion that the torques see stays as it is, though the sensor may change it. Empty
     /// where the effect is no such sensor, or a converter comes after it.
     [[nodiscard]] std::optional<std::vector<double>> behind(const Term& sensor,

@@ -25,8 +25,8 @@ enum class SetupFaultKind {
 struct SetupFault {
     SetupFaultKind kind = SetupFaultKind::other_motion;
     std::string statement;  ///< a sentence without its full stop
-    std::string option;     ///< that would repair it, "scale=-1"; empty where none does
-    double factor = 1.0;    ///< by which the series of the simulation has to be multiplied, where that is it
+    std::string option;     ///< the option to repair it, "scale=-1"; empty where none does
+    double factor = 1.0;    ///< factor for the series of the simulation, where that is the fault
     /// Shares of the variance that simulation or arm explain in held-out blocks: as things are, and with the
     /// fault repaired. Below 0 where the residual of the simulation exceeds the torque itself.
     double explained_before = 0.0, explained_after = 0.0;

@@ -121,7 +121,7 @@ namespace {
 constexpr int highest_multiple = 12;          // chosen, not derived
 constexpr std::size_t fewest_multiples = 3;   // two frequencies are multiples of something always
 constexpr double lowest_hz = 1.0;             // chosen, not derived: below is motion
-constexpr double same_family_share = 0.0025;  // by which tones of one source may miss their multiples
+constexpr double same_family_share = 0.0025;  // largest deviation of tones of one source from their multiples
 
 /// A fixed tone and the standard error of its frequency.
 struct Tone {

@@ -22,15 +22,15 @@ namespace ripplenotch {
 [[nodiscard]] double excess_scatter(double squares, double freedom);
 
 /// The family that explains most of the tones, or none: three multiples or more of one frequency, up to 12,
-/// that meet so many tones by chance less than once in 150 cases.
+/// that match so many tones by chance less than once in 150 cases.
 [[nodiscard]] std::vector<ToneFamily> families_among(std::span<const Reported> reported);
 
 /// Notes at tones that they are the mains frequency or a multiple of it: 50 or 60 Hz, whichever accounts for
 /// more of the tones of these logs, lower multiples counting more.
 void name_mains(std::span<Reported> reported);
 
-/// Humps of what the lines leave of the sweeps: those that outdo the strongest line that may turn with the
-/// joint. At most three, most torque first.
+/// Humps in the residual of the lines in the sweeps: those that exceed the strongest line that may turn with
+/// the joint. At most three, most torque first.
 [[nodiscard]] std::vector<Hum> hums_beside(const MotionLines& motion, const std::vector<Line>& lines);
 
 /// Each recording's own result, compared with the lines and the ratio of all of them. Amplitudes are compared

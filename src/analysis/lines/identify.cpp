@@ -27,7 +27,7 @@ namespace ripplenotch {
 
 namespace {
 
-// Names of what an identification holds, and what is read off it.
+// Names in an identification, and values derived from it.
 
 template <class Value>
 using Named = std::pair<Value, std::string_view>;
@@ -151,7 +151,7 @@ RippleFinding finding_in(const Identification& result) {
     return result.searched ? RippleFinding::nothing : RippleFinding::too_little;
 }
 
-/// A ratio from lines of one speed alone is the likeliest, and not settled; nor is one of several, or one
+/// A ratio from lines of one speed alone is the likeliest, but not settled; nor is one of several, or one
 /// that cannot be distinguished from that of the other spline.
 bool settled(const Identification& result) {
     const bool two_ratios =

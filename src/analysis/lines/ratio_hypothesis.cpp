@@ -66,7 +66,7 @@ struct OrderPrior {
     double one_comb = 0.0, two_combs = 0.0;  ///< how many joints are so
 };
 
-/// `named` are the shares of n = 1 on; what they leave is shared by the multiples of `step` above them.
+/// `named` are the shares of n = 1 on; the remainder is shared by the multiples of `step` above them.
 OrderPrior order_prior(double one_comb, double two_combs, int step, std::initializer_list<double> named) {
     OrderPrior prior{{}, one_comb, two_combs};
     std::copy(named.begin(), named.end(), prior.share.begin() + 1);
@@ -114,7 +114,7 @@ double normal(double off, double deviation) {
     return 0.39894 / deviation * portable::exp(-0.5 * z * z);
 }
 
-/// A line by chance, or of the output side: once or a few times a turn of the joint, from what it carries.
+/// A line by chance, or of the output side: once or a few times a turn of the joint, from its load.
 double chance_density(const OrderLine& line) {
     constexpr double output_side = 0.2;   // chosen, not derived
     constexpr int highest_of_output = 4;  // chosen, not derived

@@ -21,7 +21,7 @@ double noise_at(const Stack& stack, std::size_t sweep, double place) {
     return bin < floors.size() ? static_cast<double>(floors[bin]) : 0.0;
 }
 
-/// True when to look at one place in all sweeps is worth a second thread.
+/// True when the evaluation of one position in all sweeps is worth a second thread.
 bool are_long(std::span<const Sweep> sweeps) {
     // Chosen, not derived: a third of a millisecond at one position.
     constexpr std::size_t long_samples = 20'000;
@@ -79,7 +79,7 @@ std::vector<SweepPart> parts_asked(std::span<const Sweep> sweeps, const Stack& s
     return all;
 }
 
-/// Without the strongest: averages behind the weighted mean, and what a steady line has of its power there.
+/// Without the strongest: averages behind the weighted mean, and the share of a steady line's power there.
 struct Others {
     double ratio = 0.0, share = 0.0, averages = 0.0;
 };
@@ -193,10 +193,10 @@ double disagreement(std::span<const Opinion> opinions) {
     return excess_scatter(squares, count - 1.0);
 }
 
-/// Standard error of the place of the largest summed power, in turns or hertz. First what the noise near the
-/// line makes of it (one Newton step, delta method, with the sweeps' own weights). Where the sweeps, or
-/// thirds of them when they are few, put the line further apart than that noise explains, as a phase that
-/// wanders with speed or load does, the error is widened to what they show.
+/// Standard error of the position of the largest summed power, in turns or hertz. First from the noise near
+/// the line (one Newton step, delta method, with the sweeps' own weights). Where the estimates of the sweeps,
+/// or thirds of them when they are few, scatter more than that noise explains, as with a phase that drifts
+/// with speed or load, the error is widened to their scatter.
 double place_error(std::span<const Sweep> sweeps, const Stack& stack, double place) {
     std::vector<std::size_t> asked;
     for (std::size_t i = 0; i < sweeps.size(); ++i) {

@@ -36,7 +36,7 @@ struct GainDifference {
 };
 GainDifference gain_difference(std::span<const Sweep> sweeps, const PlacedLine& one, const PlacedLine& other);
 
-/// The same after another line is taken out of each sweep with the amplitude and phase that it has there.
+/// The same after another line is removed from each sweep with the amplitude and phase that it has there.
 double gain_without(std::span<const Sweep> sweeps, const KnownLine& line, const Stack& stack, double place);
 
 /// True when a line is seen even without the sweep that shows it best: a burst, or another joint's ripple

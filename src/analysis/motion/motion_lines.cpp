@@ -118,7 +118,7 @@ class SmoothProducts {
         }
     }
 
-    /// The lower half of what they are among themselves.
+    /// Writes the lower half of their products with each other.
     void put_into(Eigen::MatrixXd& normal) const {
         const auto at = [&](std::size_t a, std::size_t b) -> double& {
             return normal(static_cast<Eigen::Index>(std::max(a, b)),
@@ -342,7 +342,7 @@ Candidate best_place_between(const Stack& stack, double from, double to) {
     return best;
 }
 
-/// The order at half the sample rate in the sweeps that know most: the lower median over their weights, at
+/// The order at half the sample rate in the most informative sweeps: the lower median over their weights, at
 /// the upper quartile of their speeds.
 double half_rate_of_most(std::span<const Sweep> sweeps, const Stack& stack) {
     std::vector<std::pair<double, double>> orders;
@@ -447,7 +447,7 @@ LineKind judged(std::span<const Sweep> sweeps, const Stacks& stacks, const Rival
     const double decisive = std::max(decisive_nats, error);
     if (std::abs(apart) > decisive) return apart > 0.0 ? LineKind::order : LineKind::tone;
     if (!rivals.two_lines) return LineKind::unknown;
-    // Two lines, not one seen twice, when each keeps what it explains after the other is removed.
+    // Two lines, not one seen twice, when the improvement by each remains after the other is removed.
     const double order_left = gain_without(sweeps, {Axis::time, rivals.hz}, angle, rivals.order);
     const double tone_left = gain_without(sweeps, {Axis::angle, rivals.order}, time, rivals.hz);
     if (order_left < kept_share * gain_of(sweeps, angle, rivals.order) ||
@@ -490,9 +490,9 @@ class LineSearch {
         }
     }
 
-    /// The clearest first. What does not recur is no line: a burst, or the ripple of another joint that
-    /// passes by. Near the low end what is no noise may still be motion. Both stay removed, and are not
-    /// reported.
+    /// The clearest first. A line that does not recur is none: a burst, or the ripple of another joint that
+    /// passes by. Near the low end a maximum that is no noise may still be motion. Both stay removed, and are
+    /// not reported.
     [[nodiscard]] std::vector<MotionLine> lines() {
         std::vector<MotionLine> lines;
         for (std::size_t i = 0; i < out_.size(); ++i) {
@@ -709,7 +709,7 @@ MotionSearch search_sweeps(Sweeps cut, std::span<const TraceView> logs, const Mo
     found.absolute_angle = cut.absolute_angle;
     if (sweeps.empty()) return search;
     for (const Sweep& sweep : sweeps) found.turns += sweep.length_turns;
-    std::vector<std::vector<double>> values;  // as they were before lines were taken out
+    std::vector<std::vector<double>> values;  // values before lines were removed
     for (const Sweep& sweep : sweeps) {
         if (!cut.absolute_angle) values.push_back(sweep.value);
     }

@@ -16,8 +16,8 @@ struct KnownLine {
     double place = 0.0;  ///< cycles per turn or per second
 };
 
-/// Sets the sweep's torque, and its value, to what the smooth part and the lines leave of the measured
-/// torque: all of them fitted at once, by least squares under the weights. Cost O(n (terms + 2 lines)^2).
+/// Sets the sweep's torque, and its value, to the residual of the measured torque after the smooth part and
+/// the lines: all of them fitted at once, by least squares under the weights. Cost O(n (terms + 2 lines)^2).
 void fit_out(Sweep& sweep, std::span<const KnownLine> lines);
 
 /// The sweep without what least squares finds of a line in it, nothing else fitted anew.

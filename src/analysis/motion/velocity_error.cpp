@@ -339,9 +339,9 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using Complex = std::complex<double>;
 
-/// A sweep's torque at one order: demodulated, and averaged over short cells. The three columns are what the
-/// order's own place, the offset and the delay add to the angle, in turns for one unit of each, about their
-/// means.
+/// A sweep's torque at one order: demodulated, and averaged over short cells. The three columns are the
+/// derivatives of the angle with respect to the order's own position, the offset and the delay, in turns for
+/// one unit of each, about their means.
 struct DemodulatedSweep {
     std::size_t sweep = 0, order = 0;  ///< which
     double cycles = 0.0;               ///< per turn
@@ -354,8 +354,8 @@ struct DemodulatedSweep {
     double weights = 0.0, weight_squares = 0.0;
 };
 
-/// Half of the summed power over noise at some values of the unknowns: one for each order (its place, as a
-/// share), the offset in deg/s, the delay in seconds. With what the unknowns may be beforehand.
+/// Half of the summed power over noise at some values of the unknowns: one for each order (its position, as a
+/// share), the offset in deg/s, the delay in seconds. Includes the prior of the unknowns.
 class RipplePower {
   public:
     /// `beforehand`: its errors are how far offset and delay may be from 0.
@@ -386,8 +386,8 @@ class RipplePower {
         return sum;
     }
 
-    /// Covariance of the slope at the maximum: of noise of the torque, and of what the orders have in common,
-    /// noise of the velocity and the prior.
+    /// Covariance of the slope at the maximum: from noise of the torque, and from the common sources of all
+    /// orders, noise of the velocity and the prior.
     struct SlopeVariance {
         Eigen::MatrixXd own, common;
     };
@@ -583,10 +583,10 @@ double of_steps(std::span<const double> velocity_deg_s, Hertz rate) {
     return sum / (static_cast<double>(velocity_deg_s.size()) / rate.value());
 }
 
-/// Variance that the velocity's noise adds to its sum in each second, in deg^2/s: the noise of means over
-/// 25 ms, which motion hardly bends, times their length. From third differences of neighbouring means (the
-/// squares of 1, 3, 3, 1 are 20 together), by their median, so that a few jerks do not count; and what a
-/// velocity in coarse steps is off by where it turns. 0 for a log of fewer than a hundred means.
+/// Variance that the velocity's noise adds to its sum in each second, in deg^2/s: the noise of means over 25
+/// ms, which motion hardly bends, times their length. From third differences of neighbouring means (the
+/// squares of 1, 3, 3, 1 are 20 together), by their median, so that a few jerks do not count; plus the error
+/// of a velocity in coarse steps where it turns. 0 for a log of fewer than a hundred means.
 double velocity_noise(const TraceView& log) {
     // Chosen, not derived: long enough for the noise that a filter passes, short enough for motion of some
     // hertz.

@@ -25,12 +25,12 @@ struct VelocityFit {
 
 /// One offset and one delay of the velocity of all logs that have no position. An angle that is a sum of
 /// velocities is off by -offset * t + delay * velocity, and ripple of order n is out of phase by 2 pi n times
-/// that: the offset, the delay and the place of each line that make the summed power of the lines over their
-/// noise largest, which are the likeliest where each sweep has an amplitude and a phase of its own. What they
-/// may be beforehand: normal, 1 % of the fastest speed and 20 ms. The errors (sandwich) hold noise of torque,
-/// the velocity's noise, and what is not known of the other unknowns. Needs at most four lines, the clearest.
+/// that: the offset, the delay and the position of each line that make the summed power of the lines over
+/// their noise largest, which are the likeliest where each sweep has an amplitude and a phase of its own.
+/// Their prior: normal, 1 % of the fastest speed and 20 ms. The errors (sandwich) include noise of torque,
+/// the velocity's noise, and the uncertainty of the other unknowns. Needs at most four lines, the clearest.
 ///
-/// `sweeps` as cut, no line taken out; `angle` is the stack of the same sweeps whose floors are the noise;
+/// `sweeps` as cut, no line removed; `angle` is the stack of the same sweeps whose floors are the noise;
 /// `orders` are cycles per output turn. Empty where the power has no clear maximum. Cost O(samples * orders).
 [[nodiscard]] std::optional<VelocityFit> fit_velocity_error(std::span<const TraceView> logs,
                                                             std::span<const Sweep> sweeps, const Stack& angle,

@@ -157,7 +157,7 @@ fftw_plan plan_for(std::size_t n) {
 
 std::complex<double> unit_phasor(double angle) { return portable::phasor(angle); }
 
-/// Places of samples, looked at once for sums at several frequencies.
+/// Positions of samples, evaluated at once for sums at several frequencies.
 class Places {
   public:
     explicit Places(std::span<const double> where) : where_(where) {

@@ -113,9 +113,9 @@ double censored_expectation(double averages) {
     return (partial_mean + (1.0 - uncensored_share) * quantile) / uncensored_share;
 }
 
-/// Mean noise of values that are exponential means, from their lower three quarters: the rest counts as if at
-/// the largest of these (type-II censoring, of which this is the maximum-likelihood estimate; as sure as the
-/// mean of so many values). Reorders the values.
+/// Mean noise of values that are exponential means, from their lower three quarters: the others count as if
+/// at the largest of these (type-II censoring, of which this is the maximum-likelihood estimate; with the
+/// variance of the mean of so many values). Reorders the values.
 Floor floor_from(std::vector<double>& values, double averages, double bins_per_cell) {
     const auto kept =
         static_cast<std::size_t>(std::ceil(uncensored_share * static_cast<double>(values.size())));

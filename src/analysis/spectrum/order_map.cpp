@@ -210,7 +210,7 @@ double mean_speed(std::span<const double> speed, const SampleRun& run) {
     return sum / static_cast<double>(run.size());
 }
 
-/// The windows of all runs, of one length, which is set: the one asked for, or the longest run when that is
+/// The windows of all runs, of one length, which is set: the requested one, or the longest run when that is
 /// shorter.
 std::vector<SampleRun> cut(const std::vector<SampleRun>& runs, std::span<const double> place,
                            const MapOptions& options, double& length, std::size_t& too_short) {

@@ -17,8 +17,8 @@ class LineMeter {
     /// itself.
     LineMeter(double start_hz, double bin_hz) : start_hz_(start_hz), bin_hz_(bin_hz) {}
 
-    /// For many pieces: what even ones have in common is worked out once. Their maxima are then found from
-    /// the sum's moments about the start, right to 1e-5 of the amplitude and of a bin.
+    /// For many pieces: the parts common to even ones are computed once. Their maxima are then found from the
+    /// sum's moments about the start, accurate to 1e-5 of the amplitude and of a bin.
     void expect_even_pieces(std::span<const double> even_time_s);
 
     void add(const Piece& piece);

@@ -21,8 +21,8 @@ constexpr double hann_error_factor =
 constexpr double skirt_margin = 2.0;  // a side lobe may be this much higher than the window's own
 constexpr std::size_t trend_bins = 3;  // main lobe at zero of the residual of the straight line
 
-/// Offset in bins of a Hann peak from the logs of three powers around it; within 0.02 bin, the rest is for
-/// Newton.
+/// Offset in bins of a Hann peak from the logs of three powers around it; within 0.02 bin, to be refined by
+/// Newton's method.
 double log_parabola(double left, double middle, double right) {
     if (!(left > 0.0) || !(right > 0.0)) return 0.0;
     const double a = portable::log(left), b = portable::log(middle), c = portable::log(right);
@@ -36,8 +36,8 @@ double leakage(double bins) {
     return d < 2.0 ? 1.0 : 1.0 / (std::numbers::pi * d * (d * d - 1.0));
 }
 
-/// Drops what is only the skirt of a stronger peak, and what lies 100 dB below the strongest, where rounding
-/// is the floor. `powers` by bin; strongest first on return.
+/// Drops peaks that are only the skirt of a stronger one, and those 100 dB below the strongest, where
+/// rounding is the floor. `powers` by bin; strongest first on return.
 std::vector<SignificantPeak> without_skirts(std::vector<SignificantPeak> found,
                                             std::span<const double> power) {
     std::stable_sort(found.begin(), found.end(), [&](const SignificantPeak& a, const SignificantPeak& b) {

@@ -23,7 +23,7 @@ namespace {
 /// A clock counts as even when no sample is off it by more than this share of a step: then the plain
 /// transform is the same sum.
 constexpr double even_share = 1e-3;
-constexpr double most_steps = 3.0;       // that one sample stands for, next to a gap
+constexpr double most_steps = 3.0;       // longest interval of one sample, next to a gap
 constexpr std::size_t most_ahead = 8;    // pieces; those of usual lengths stay in the processor's cache
 constexpr std::size_t side_by_side = 8;  // sums, so that an addition need not wait for the one before
 
@@ -140,8 +140,7 @@ void PieceMaker::look_ahead(std::span<const double> time_s, std::span<const doub
 
 EvenPart PieceMaker::look_at(std::span<const double> time_s, std::span<const double> torque_nm) {
     const std::size_t half = length_ / 2;
-    // What an even piece has seen is not looked at again; its own beginning may be as far off as that, no
-    // more.
+    // The result for an even piece is reused; its own beginning may be as far off as that, no more.
     const bool seen = late_ && late_->count == half;
     const EvenPart early = seen ? *late_ : look_at_even(time_s.first(half), torque_nm.first(half), step_s_);
     late_ = ahead_.back();

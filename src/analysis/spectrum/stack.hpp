@@ -10,8 +10,8 @@
 
 namespace ripplenotch {
 
-// Pieces of a log for spectra: a straight line taken out, a Hann window, the transform. One after another in
-// the same memory.
+// Pieces of a log for spectra: straight line removed, Hann window, transform. One after another in the same
+// memory.
 
 /// The result of one pass over a part of an evenly sampled piece, its two columns interleaved: reading them
 /// dominates the cost.

@@ -385,8 +385,8 @@ bool only_trembles(std::span<const double> values) {
     return *high - *low <= trembling * white_noise_of(values);
 }
 
-/// The angle goes no further than noise takes it: a few times its own trembling where it is measured,
-/// `walk_deg` as integrated velocity.
+/// The angle varies no more than its noise: a few times its own deviation where it is measured, `walk_deg` as
+/// integrated velocity.
 bool moves_nowhere(const TraceView& trace, double walk_deg) {
     if (trace.has_position() && only_trembles(trace.position_deg)) return true;
     double angle = 0.0, lowest = 0.0, highest = 0.0;

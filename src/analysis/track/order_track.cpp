@@ -53,8 +53,8 @@ const std::vector<double>& amplitudes(const TrackReport& report, std::size_t lin
                            : report.tracks.lines[line].amplitude_nm;
 }
 
-// Where an envelope has as much log before as after it. Within one response time of an end it rests on one
-// side alone, and may be anything.
+// Where an envelope has as much log before as after it. Within one response time of an end it depends on one
+// side alone, and is not reliable.
 struct Settled {
     bool any = false;  ///< false: all rows count
     double from_s = 0.0, to_s = 0.0;

@@ -55,8 +55,8 @@ class WindowFit {
     [[nodiscard]] std::vector<double> lines_in_sum(const Torque& torque) const;
     /// Values of the samples between a quarter and three quarters of the window, without their root weights.
     [[nodiscard]] std::vector<double> middle_half(std::span<const double> weighted) const;
-    /// Squared amplitude of the residual at a line that was not fitted; nan within `clear_cycles` of a line
-    /// that was, or of the trend, whose fit took the noise there along.
+    /// Squared amplitude of the residual at a line that was not fitted; nan within `clear_cycles` of a fitted
+    /// line, or of the trend, since their fit removed the noise there.
     [[nodiscard]] double power_beside(const Torque& torque, const TrackedLine& line,
                                       double clear_cycles) const;
     /// Sum of the weights.

@@ -245,7 +245,7 @@ constexpr double least_range_share = 1e-4;  // as MotionLinesOptions::least_shar
 constexpr double agreeing_share = 0.5;      // share of the power that segments have in common, for a phase
 constexpr double normal_99 = 2.3263478740408408;  // one-sided quantile of 0.99
 constexpr double independent_spacing = 1.5;       // in bins under a Hann window
-// Averages that know a mean as well as one value of a median of them does, as in exceedance().
+// Efficiency of a median relative to a mean, as in exceedance().
 constexpr double median_knowledge_of_mean = 0.48;
 
 /// Mean power near an order, scaled as the fit of the order receives it, and from how many independent bins.
@@ -279,7 +279,7 @@ NoisePower noise_power(const OrderSegments& order, double averages) {
     return noise;
 }
 
-/// How many segments of equal noise power would know as much: slow ones often hold far more than others.
+/// Equivalent number of segments of equal noise power: slow ones often hold far more than others.
 double effective_averages(const OrderSegments& order) {
     double sum = 0.0, squares = 0.0;
     for (const SegmentAmplitude& one : order.segments) {

@@ -82,7 +82,7 @@ void RippleMeter::add(Seconds time, double velocity_deg_s, const double* positio
     if (position_deg != nullptr) state.position_deg.push_back(*position_deg);
     for (std::size_t j = 0; j < state.torque_nm.size(); ++j) state.torque_nm[j].push_back(torque_nm[j]);
     if (state.time_s.size() < most_rows_held) return;
-    // A run that fills what is held is too slow to be one segment.
+    // A run that fills the buffer is too slow to be one segment.
     const std::size_t from = state.measure(state.segments);
     state.keep_from(from < most_rows_held / 2 ? most_rows_held : from);
 }

@@ -280,7 +280,7 @@ EnvelopeResponse envelope_response(EnvelopeSettings settings, double duration_s,
     const Section section = lone_line(static_cast<std::size_t>(points), settings.samples_per_point);
     const Sparse data = section.data();
     const Factors solver(section.equations(settings));
-    // What a point makes of samples, and how samples see that, straight lines between points included.
+    // The weights from samples to a point, and back to samples, straight lines between points included.
     const auto kernel_of = [&](Eigen::Index point) {
         Eigen::VectorXd unit = Eigen::VectorXd::Zero(points);
         unit[point] = 0.5 * settings.samples_per_point;

@@ -60,8 +60,8 @@ void ArmRow::move(std::span<const JointState> states) {
     }
 }
 
-// The torque is what the joint's axis, as a screw (turn, shift) carried out to each link, sees of the link's
-// moment and force; that is the inward recursion read from the other end.
+// The torque is the product of the joint's axis, as a screw (turn, shift) carried out to each link, with the
+// link's moment and force; that is the inward recursion read from the other end.
 void ArmRow::torque_of(std::size_t joint, std::span<double> row) const {
     std::fill(row.begin(), row.end(), 0.0);
     Vector3 turn{}, shift{};

@@ -8,7 +8,7 @@
 
 namespace ripplenotch {
 
-// One sample of an arm: how its links move, and what a value of a link is to the torque of a joint.
+// One sample of an arm: how its links move, and the torque of a joint per unit of a link's value.
 
 /// A joint at one sample, in radians or metres, and the cosine and sine of its angle.
 struct JointState {

@@ -224,7 +224,7 @@ constexpr double identifiable_share = 1e-6;
 
 struct Found {
     double pull = 0.0;
-    std::vector<double> noise_nm;  ///< that the joints were weighed by
+    std::vector<double> noise_nm;  ///< noise by which the joints were weighted
     ArmRidge::Errors errors;
 };
 
@@ -266,7 +266,7 @@ Found best_pull(const ArmRidge& ridge, std::vector<double> noise_nm, std::option
     return *std::move(best);
 }
 
-// Joints are first weighed by what they have, then by what was left of them.
+// Joints are first weighted by the rms of their torque, then by that of their residual.
 Found two_passes(const std::vector<JointSums>& joints, std::size_t links, std::optional<double> pull) {
     const ArmRidge ridge(links, joints, size_of(joints));
     std::vector<double> noise_nm = torque_rms(joints);

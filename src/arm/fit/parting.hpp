@@ -22,7 +22,7 @@ class Parting {
         lower_ = DefiniteFactors(scaled).lower();
     }
 
-    /// The mean of what is known, parted.
+    /// The prior mean, in the transformed coordinates.
     [[nodiscard]] Eigen::VectorXd of_values() const {
         const auto n = static_cast<Eigen::Index>(own_.mean.size());
         const Eigen::VectorXd mean = Eigen::Map<const Eigen::VectorXd>(own_.mean.data(), n);

@@ -25,7 +25,7 @@ namespace ripplenotch {
 
 struct CheckedLog {
     const ArmLog& log;
-    std::vector<Motion> friction;     ///< whose speed friction sees
+    std::vector<Motion> friction;     ///< motions with the speed that friction uses
     std::vector<std::size_t> fitted;  ///< joints whose torque counts
     std::vector<bool> use;            ///< by row
 };

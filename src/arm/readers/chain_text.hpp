@@ -16,7 +16,7 @@ struct LinkTree {
     std::vector<bool> moves;                         ///< against its parent
 };
 
-/// The links from the base to the tip that was asked for, or to the only end behind which nothing moves.
+/// The links from the base to the requested tip, or to the only end behind which nothing moves.
 /// Throws DataError where links go round in a circle, and UsageError where there are several ends, or no link
 /// with that name; `what` is "link" or "body".
 [[nodiscard]] std::vector<std::size_t> way_to_tip(const std::string& source, const LinkTree& tree,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The bodies and joints of MuJoCo's description; masses, shapes, actuators and all else are not looked at.
+// The bodies and joints of a MuJoCo description; masses, shapes, actuators and all else are ignored.
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The joints of a robot's description in URDF; masses, shapes and all else are not looked at.
+// The joints of a URDF robot description; masses, shapes and all else are ignored.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -16,7 +16,7 @@ constexpr std::size_t deepest = 100, most_elements = 200'000;  // chosen, not de
 class Lines {
   public:
     explicit Lines(std::string_view text) : text_(text) {}
-    // Offsets are asked for in the order of the document.
+    // Offsets are requested in the order of the document.
     std::size_t of(std::ptrdiff_t offset) {
         const auto end =
             std::clamp<std::size_t>(offset < 0 ? 0 : static_cast<std::size_t>(offset), at_, text_.size());

@@ -34,7 +34,7 @@ struct XmlElement {
                                                             const XmlElement& element,
                                                             std::string_view attribute, std::size_t count,
                                                             std::size_t fewest = 0);
-/// Three of them, or what is there without.
+/// Three of them, or `otherwise` where the attribute is missing.
 [[nodiscard]] Vector3 vector_of(const std::string& source, const XmlElement& element,
                                 std::string_view attribute, const Vector3& otherwise);
 /// Throws DataError where the attribute is missing or empty.

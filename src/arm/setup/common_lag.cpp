@@ -68,7 +68,7 @@ Mean mean_of(const std::vector<Parabola>& parabolas, const ArmLag& lag, std::siz
     return mean;
 }
 
-// Marks the joint farthest from the others, in units of what they differ by; false where none contradicts.
+// Marks the joint farthest from the others, relative to their scatter; false where none contradicts.
 bool mark_outlier(const std::vector<Parabola>& parabolas, ArmLag& lag) {
     std::size_t farthest = parabolas.size();
     double most = 1.0;
@@ -77,7 +77,7 @@ bool mark_outlier(const std::vector<Parabola>& parabolas, ArmLag& lag) {
         const Mean others = mean_of(parabolas, lag, i);
         if (others.joints < 2) return false;
         const double error = std::sqrt(others.excess * (1.0 / parabolas[i].weight + 1.0 / others.weight));
-        // Each of n joints is asked, at 5 % / n: the tail of Student's t falls as the power of its freedom.
+        // Each of n joints is tested, at 5 % / n: the tail of Student's t falls as the power of its freedom.
         const auto freedom = static_cast<double>(others.joints - 1), asked = freedom + 2.0;
         const double limit =
             portable::pow(asked, 1.0 / freedom) * student_95(freedom) * std::max(error, 1e-12);

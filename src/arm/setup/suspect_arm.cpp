@@ -91,7 +91,7 @@ struct Factors {
     std::vector<double> of;
 };
 
-// What a mistake multiplies the torque of a joint by, undone. mNm for Nm is asked only where a thousandth is
+// Inverse factors of the mistakes in the torque of a joint. mNm for Nm is tested only where a thousandth is
 // nearer to the torques of the other joints, on the scale of factors.
 std::vector<double> possible_factors(const ArmLog& log, const ArmFit& fit, std::size_t joint) {
     constexpr double of_milli = 1e-3;  // by the definition of the unit

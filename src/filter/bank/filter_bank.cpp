@@ -73,7 +73,7 @@ namespace {
 constexpr double slowest_turns = 0x1p-15;
 constexpr int points_an_octave = 8;  ///< evenly from an octave's beginning to twice it
 
-// Orders beyond half the sample rate are not looked at and have no gain.
+// Orders beyond half the sample rate are ignored and have no gain.
 std::vector<double> gain_of(const RippleModel& model, double step_turns) {
     RippleModel seen = model;
     std::erase_if(seen.orders, [&](double order) { return model.share(order, step_turns) == 0.0; });

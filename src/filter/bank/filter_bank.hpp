@@ -36,7 +36,7 @@ class CascadeFilter final : public CausalFilter {
     bool started_ = false;
 };
 
-// Settled gains of the ripple's Kalman filter over motor speed, worked out once.
+// Settled gains of the ripple's Kalman filter over motor speed, computed once.
 
 /// Gains in the frame of ripple_rotation, linear between eight speeds an octave.
 class GainSchedule {

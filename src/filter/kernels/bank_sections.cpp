@@ -15,7 +15,8 @@ namespace {
 /// written and to be read again without being waited for.
 constexpr std::size_t behind = 6;
 
-/// Two sections in the lanes of one register. What the first makes of a sample waits in `out` for the second.
+/// Two sections in the lanes of one register. The output of the first for a sample waits in `out` for the
+/// second.
 void run_two(const Biquad& f, const Biquad& g, std::span<Past> past, std::span<const double> in,
              double origin, std::span<double> out) {
     for (std::size_t k = 0; k < behind; ++k) out[k] = advance(f, past[0], in[k] - origin);
@@ -102,7 +103,7 @@ RIPPLENOTCH_INLINED void keep(BankSection& f, const Memory<Lanes>& memory) {
     store(f.s2.data(), memory.s2);
 }
 
-/// Some sections of one group, from the signal or from what the sections before left in `output`.
+/// Some sections of one group, from the signal or from the result of the sections before in `output`.
 template <bool Mirrored, bool FromSignal, class Lanes, std::size_t... S>
 RIPPLENOTCH_INLINED void advance_group(const BankSection* f, Memory<Lanes>* memories, const Lanes& signal,
                                        BankOutput& output, std::index_sequence<S...>) {

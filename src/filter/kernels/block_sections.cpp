@@ -91,7 +91,7 @@ RIPPLENOTCH_INLINED void weigh(Lanes& excess, const Lanes& values) {
     excess = excess + (scaled - scaled);  // zero, or not a number
 }
 
-/// What four inputs add, to the outputs that may know them and to the memory.
+/// Adds the contribution of four inputs, to the outputs that depend on them and to the memory.
 template <bool Early, class Lanes>
 RIPPLENOTCH_INLINED void feed_four(const BlockForm& form, const Lanes& inputs, Lanes& early, Lanes& late,
                                    Lanes& next) {
@@ -230,7 +230,7 @@ bool BlockCascade::run_whole(std::span<const double> in, std::span<double> out, 
     return run_groups(passes_, in, origin_, out, whatever);
 }
 
-// Each output from the inputs that it may know; those that follow count as settled, and their coefficients
+// Each output from the inputs that it depends on; those that follow count as settled, and their coefficients
 // are zero.
 void BlockCascade::run_group_by_output(std::span<double> out, std::size_t from, std::size_t to) {
     for (std::size_t k = from; k < to; ++k) {

@@ -127,9 +127,9 @@ using Eigen::ArrayXd, Eigen::MatrixXcd, Eigen::MatrixXd;
 constexpr double map_false_alarm = 0.01, other_order_false_alarm = 0.05;
 // Speeds of a map that depends on it. Cross-validation on six joints of a robot: 4, 6 and 8 are alike.
 constexpr std::size_t most_speeds = 5;
-constexpr double least_warming_degc = 1.0;        ///< a narrower range does not determine what a degree does
-constexpr std::size_t surrogates_an_order = 200;  ///< twice what the smallest level of the test resolves
-// Orders that are compared with: so far to both sides, beyond what the joint's turn modulates. Of ten that
+constexpr double least_warming_degc = 1.0;  ///< a narrower range does not determine the effect of a degree
+constexpr std::size_t surrogates_an_order = 200;  ///< twice the resolution of the smallest level of the test
+// Orders that are compared with: so far to both sides, beyond the modulation by the joint's turn. Of ten that
 // are independent, noise at the order is twice the largest once in 66 logs (exponential variables).
 constexpr double nearest_order = 0.1, order_span = 0.3, farthest_start = 0.3;
 constexpr int compared_orders = 15;
@@ -402,7 +402,7 @@ MapAgreement agreement_of(const MapRegression& fit, const std::vector<bool>& of_
     if (!(expected > 0.0)) return found;
     const std::complex<double> factor = alike / expected;
     each_block([&](const auto& block) { square += 0.5 * std::norm(block.first - factor * block.second); });
-    // Not below what noise alone makes of each part.
+    // Not below the error of each part from noise alone.
     const double error = std::sqrt(1.0 / expected + square / (expected * expected));
     const double size = portable::hypot(factor.real(), factor.imag());
     found.amplitude_ratio = size;

@@ -18,7 +18,7 @@ namespace ripplenotch {
 struct MapWindow {
     MapState state;  ///< means
     std::vector<std::complex<double>> value;
-    std::vector<double> noise;  ///< by order: mean square of what is no ripple in `value`
+    std::vector<double> noise;  ///< by order: mean square of the noise in `value`
     std::size_t block = 0, log = 0;
     double middle = 0.0, length = 0.0;  ///< in motor turns along the log, back and forth added up
     bool scored = true;                 ///< it shares no sample with another block

@@ -28,7 +28,7 @@ class MapRegression {
 
     /// By column, from all blocks but those `left_out` (by number; nothing: from all).
     [[nodiscard]] Eigen::VectorXcd values(const std::vector<bool>& left_out = {}) const;
-    /// Standard errors of both parts: the larger of what noise makes and of what the spread of blocks shows.
+    /// Standard errors of both parts: the larger of the error from noise and that from the spread of blocks.
     [[nodiscard]] std::vector<std::complex<double>> errors() const;
     [[nodiscard]] MapSquares squares(std::size_t block) const { return blocks_[block].squares; }
     /// Products with the prediction of `values` in a block: weighted with the amplitudes, and with itself.

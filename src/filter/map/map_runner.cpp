@@ -87,7 +87,7 @@ std::complex<double> MapMean::shifted(std::size_t order, double shift_turns) con
     return runner_.amplitude(order) / noise_nm_ * portable::polar(1.0, -phase);
 }
 
-// Squares between what the filter found and the map at this shift.
+// Squared difference between the filter's estimate and the map at this shift.
 double MapMean::misfit(double shift_turns) const noexcept {
     double sum = 0.0;
     for (std::size_t i = 0; i < found_.size(); ++i) {

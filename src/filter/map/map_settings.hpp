@@ -16,7 +16,7 @@ namespace ripplenotch {
 inline constexpr std::array<std::string_view, 2> temperature_of_choices = {"stated", "rows"};
 inline constexpr std::array<std::string_view, 2> beyond_choices = {"refuse", "hold"};
 
-/// `map` is never seen by a method: whoever loads files replaces it by the keys that it stands for.
+/// `map` never reaches a method: the code that loads files replaces it by the keys that it abbreviates.
 inline constexpr std::array ripple_map_keys = [] {
     const auto list = [](std::string_view name, Dimension dimension, std::string_view help,
                          double least = Key{}.at_least) {
@@ -113,7 +113,7 @@ struct StatedMap {
 };
 
 /// The map that the keys hold; empty without cosines. Throws UsageError when there are more or fewer values
-/// than orders and form ask for, or no temperature for a map that depends on it.
+/// than orders and form require, or no temperature for a map that depends on it.
 [[nodiscard]] std::optional<StatedMap> map_of(std::string_view method, const Settings& settings,
                                               const RippleOrders& ripple);
 

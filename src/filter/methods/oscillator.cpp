@@ -197,7 +197,7 @@ class OscillatorFilter final : public CausalFilter {
     std::optional<MapMean> mean_;
     RippleKalman* filter_ = nullptr;
     double origin_nm_ = 0.0, correction_deg_s_ = 0.0;
-    double slip_ = 0.0, slipped_turns_ = 0.0;  ///< correction of the gear ratio, as a share; what it came to
+    double slip_ = 0.0, slipped_turns_ = 0.0;  ///< correction of the gear ratio, as a share; its integral
     bool started_ = false;
 };
 

@@ -133,8 +133,8 @@ class SwitchingFilter final : public CausalFilter {
     [[nodiscard]] std::size_t switch_count() const override { return switch_count_; }
 
   private:
-    /// Looked through and then filtered; short, so that the processor fetches torques while speeds are looked
-    /// through and the other way round.
+    /// Scanned and then filtered; short, so that the processor fetches torques while speeds are scanned and
+    /// the other way round.
     static constexpr std::size_t most_at_once = 512;
 
     // Samples of one region: the active candidate, mixed with the raw torque where the rule fades.

@@ -180,7 +180,7 @@ struct Sum {
     }
 };
 
-// Speeds in quarter octaves, two directions; what a window takes from another falls with their distance.
+// Speeds in quarter octaves, two directions; the weight of one window for another falls with their distance.
 constexpr int bins = 160;
 constexpr int most_bins_apart = 6;                        // chosen, not derived
 constexpr double bins_an_octave = 4.0, reach_bins = 1.5;  // chosen, not derived

@@ -37,7 +37,7 @@ struct RippleWindow {
     double speed_turns_s = 0.0;  ///< signed mean speed of the motor
     double variance = 0.0;       ///< variance of each part of each amplitude, by the fit's own residual
     std::vector<std::complex<double>> amplitudes;
-    /// Per order: mean square of what the same fit finds half an order to its sides, where no ripple is.
+    /// Per order: mean square of the same fit half an order to its sides, where no ripple is.
     std::vector<double> background;
     double middle_turns = 0.0;  ///< mean motor angle
     double torque_nm = 0.0;     ///< mean

@@ -73,7 +73,7 @@ double RippleKalman::ripple() const noexcept {
 }
 
 // Any torque: its variance is that of noise and ripple, and whatever the ripple turns out to be, the torque
-// is the rest.
+// is the remainder.
 void RippleKalman::start(double motor_turns) {
     look(motor_turns, 0.0);
     std::fill(p_.begin(), p_.end(), 0.0);
@@ -112,7 +112,7 @@ void RippleKalman::count_from(std::size_t order, double cosine, double sine) noe
     x_[3 + 2 * order] -= sine;
 }
 
-// Amplitudes shrink by the same share, and with them what is known of them.
+// Amplitudes shrink by the same share, and their covariance with them.
 void RippleKalman::forget(double step_turns) noexcept {
     const double kept = std::max(1.0 - std::abs(step_turns) / model_.return_turns, 0.0);
     for (std::size_t i = 2; i < m_; ++i) {
@@ -318,7 +318,7 @@ Cascade settled_cascade(const RippleModel& model, double step_turns, std::vector
         cascade.push_back({1.0, zeros[i].first, zeros[i].second, poles[i].first, poles[i].second});
         gain_at_zero *= dc_gain(cascade.back());
     }
-    // The gain at 0 Hz is 1; rounding of the roots is taken out.
+    // The gain at 0 Hz is 1; rounding of the roots is corrected.
     for (double* b : {&cascade[0].b0, &cascade[0].b1, &cascade[0].b2}) *b *= direct / gain_at_zero;
     return cascade;
 }

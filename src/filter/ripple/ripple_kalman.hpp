@@ -31,7 +31,7 @@ struct RippleModel {
     [[nodiscard]] double first_rate_variance() const noexcept;
     /// What a step of this many motor turns adds to the variance of each amplitude.
     [[nodiscard]] double amplitude_noise(double step_turns) const noexcept;
-    /// Share of an order that is looked at: 1, and less where it nears half the sample rate, beyond which it
+    /// Share of an order that is modelled: 1, and less where it nears half the sample rate, beyond which it
     /// would be taken for torque.
     [[nodiscard]] double share(double order, double step_turns) const noexcept;
 };
@@ -63,7 +63,7 @@ class RippleKalman {
     [[nodiscard]] double torque() const noexcept { return x_[0]; }
     /// The amplitude of an order: cosine and sine part, and the variance of both together.
     [[nodiscard]] AmplitudePrior amplitude(std::size_t order) const noexcept;
-    /// From now on the amplitudes are what they are beyond these, and the caller subtracts them.
+    /// From now on the amplitudes are relative to these, and the caller subtracts them.
     void count_from(std::size_t order, double cosine, double sine) noexcept;
     [[nodiscard]] double ripple() const noexcept;  ///< at the last sample
     /// By how much the ripple's phase ran ahead of the angle in the last sample, in motor turns: mean over
@@ -83,15 +83,15 @@ class RippleKalman {
     std::size_t m_;
     RippleModel::TorqueNoise torque_noise_;
     std::vector<double> x_, p_, h_, ph_;  ///< p_ is m by m, row by row; ph_ the gain times `scale`
-    double surprise_ = 0.0;          ///< what the last sample was off, times what ph_ has to be scaled by
-    double settled_variance_ = 0.0;  ///< variance of the last measurement, by the schedule
+    double surprise_ = 0.0;               ///< innovation of the last sample, times the scale of ph_
+    double settled_variance_ = 0.0;       ///< variance of the last measurement, by the schedule
 };
 
 /// The model at one constant speed in the frame that turns with the motor: torque, rate, then for each order
-/// the ripple and what it will be a quarter period on.
+/// the ripple and its value a quarter period later.
 struct RippleRotation {
     std::vector<double> step;  ///< m by m, row by row
-    std::vector<double> seen;  ///< how each state shows in what is measured
+    std::vector<double> seen;  ///< weight of each state in the measurement
 };
 [[nodiscard]] RippleRotation ripple_rotation(const RippleModel& model, double step_turns);
 

@@ -14,8 +14,8 @@ namespace {
 constexpr double slow_turns = 0.002;      ///< turns of the motor in a sample
 constexpr double judged_samples = 100.0;  ///< averaging length for the test of position noise
 constexpr double fewest_judged = 6.0;     ///< before which the velocity is taken while slow
-constexpr double still_turns = 1e-5;      ///< trembling that is none
-constexpr double pull_turns = 2e-5;       ///< with which a trembling position at rest still pulls
+constexpr double still_turns = 1e-5;      ///< position noise below this is none
+constexpr double pull_turns = 2e-5;       ///< correction by a noisy position at standstill
 
 }  // namespace
 
@@ -56,8 +56,8 @@ double MotorAngle::trembling() const noexcept {
     return std::max({-covariance_, of_steps, 0.0});
 }
 
-// How far the joint is taken to have moved: to where the position is, or, while the position trembles more
-// than the motor turns, by the velocity and a share of the way to the position.
+// The assumed motion of the joint: to the measured position, or, while the position noise exceeds the motor's
+// motion, by the velocity and a share of the way to the position.
 double MotorAngle::follow(double by_velocity_deg, double by_position_deg) noexcept {
     const double to_turns = gear_ratio_ / 360.0;
     const double turned = std::abs(by_velocity_deg * to_turns);

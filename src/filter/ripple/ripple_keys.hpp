@@ -12,7 +12,7 @@
 
 namespace ripplenotch {
 
-// The motor's angle from what a log has: position, else the velocity added up.
+// The motor's angle from the columns of a log: position, else the integrated velocity.
 
 /// Receives samples in order. From the position where there is one, which is the joint's then (unwrapped at
 /// half turns of the joint); else from the velocity by trapezoids. While the motor turns slowly, a position
@@ -65,7 +65,7 @@ inline constexpr Key orders_key{
     .above = 0.0,
     .at_most = 1e4,
     .help = "ripple lines in cycles per motor turn, e.g. 1:2; or joint=joint.json"};
-/// Never seen by a method: whoever loads files replaces it by the keys that it stands for.
+/// Never reaches a method: the code that loads files replaces it by the keys that it abbreviates.
 inline constexpr Key joint_key{.name = "joint",
                                .kind = KeyKind::text,
                                .help =

@@ -106,7 +106,7 @@ class Convoy {
     std::exception_ptr failure_;  ///< behind put_door_
 };
 
-/// As many as the system gives: what they leave undone, the caller's own thread does.
+/// As many as the system gives: the caller's own thread does the remaining work.
 void start_helpers(Convoy& convoy, std::size_t count, std::vector<std::jthread>& helpers) {
     const auto help = [&convoy] {
         std::optional<BlockItem> item;

@@ -32,7 +32,7 @@ struct BlockSteps {
 };
 
 /// Runs all blocks through the steps. The first failure in the order of the log is thrown, after the blocks
-/// before it have been put: what a reader of a pipe has received does not depend on the threads.
+/// before it have been put: the data received by a reader of a pipe do not depend on the threads.
 void run_blocks(const BlockSteps& steps, std::size_t threads);
 
 }  // namespace ripplenotch

@@ -207,7 +207,7 @@ namespace {
 
 // Digits after the decimal mark of a number as it is written in a log.
 int decimals_of(std::string_view number) {
-    // Character by character: a cell is shorter than what a search for one of two takes to begin.
+    // Character by character: a cell is shorter than the set-up cost of a search for one of two.
     std::size_t mark = 0;
     while (mark < number.size() && number[mark] != '.' && number[mark] != ',') ++mark;
     if (mark == number.size()) return 0;

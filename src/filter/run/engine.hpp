@@ -17,7 +17,7 @@ namespace ripplenotch {
 
 // What happens to the filters' memories when the supervisor activates another candidate.
 
-/// Output at the sample of a change, and what it would have been without the change.
+/// Output at the sample of a change, and the output without the change.
 struct Change {
     double now_nm = 0.0;
     double unchanged_nm = 0.0;

@@ -85,8 +85,7 @@ class Crossfade final : public Transition {
     std::size_t blend_samples_;
     std::size_t step_ = 0;
     int candidate_ = no_candidate;
-    std::vector<Share>
-        leaving_;  ///< what the blend under way comes from; never more entries than candidates + 1
+    std::vector<Share> leaving_;  ///< the start of the current blend; never more entries than candidates + 1
 };
 
 std::unique_ptr<Transition> make(Candidates candidates, std::size_t blend_samples) {

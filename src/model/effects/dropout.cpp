@@ -76,7 +76,7 @@ class Runs {
             static_cast<double>(equal) / static_cast<double>(std::max<std::size_t>(moving, 1)), 1e-3, 0.95);
         const auto run = static_cast<std::size_t>(
             std::ceil(portable::log(rules_.chance_run / static_cast<double>(n)) / portable::log(often)));
-        // On whole steps a slow torque stays on one: what is held must be long against that.
+        // With whole steps a slow torque stays on one: a held value must be long against that.
         return std::max(run, log_.step_nm > 0.0 ? rules_.fewest_held_of_steps : rules_.fewest_held);
     }
 

@@ -241,8 +241,8 @@ std::vector<double> moved(const Problem& problem, std::vector<double> point,
     return point;
 }
 
-// One step from here: the first of ever shorter ones that lowers the sum of squares. Returns false when none
-// does.
+// One step from here: the first of successively shorter ones that lowers the sum of squares. Returns false
+// when none does.
 bool step_down(const Problem& problem, Search& search, const std::vector<std::size_t>& moving,
                double& damping) {
     const Factored factored = factor(problem.slopes(search.place, moving), search.place.residual);
@@ -271,7 +271,7 @@ void descend(const Problem& problem, Search& search, bool only_linear, const Fit
         const double before = search.place.squares;
         const bool lower = step_down(problem, search, moving, damping);
         const double gained = before - search.place.squares;
-        // One step solves what is linear, unless a bound cut it short.
+        // One step solves the linear values, unless a bound cut it short.
         const bool solved = std::all_of(moving.begin(), moving.end(), [&](std::size_t c) {
             return list[c].linear && search.place.point[c] > list[c].lower &&
                    search.place.point[c] < list[c].upper;
@@ -311,7 +311,7 @@ std::vector<double> slope_nm(const Prediction& prediction, const Coordinates& co
         return prediction.changed(coordinate.term, coordinates.at(other).terms[coordinate.term]);
     };
     double up = std::min(point[c] + coordinate.step, coordinate.upper);
-    // At its upper bound what is linear has the slope of a step down.
+    // At its upper bound a linear value has the slope of a step down.
     if (coordinate.linear && !(up > point[c])) up = point[c] - coordinate.step;
     const double down = coordinate.linear ? point[c] : std::max(point[c] - coordinate.step, coordinate.lower);
     std::vector<double> slope = at(up);
@@ -330,7 +330,7 @@ Fit fit(const Model& model, const Motion& motion, std::span<const double> torque
     std::vector<double> start;
     for (const Coordinate& coordinate : problem.coordinates.list()) start.push_back(coordinate.start);
     Search search{problem.at(std::move(start))};
-    // What is linear is right for the first guess of the rest before the rest moves.
+    // Linear values are solved for the first guess of the others before those move.
     FitOptions briefly = options;
     briefly.most_iterations = std::min(2, options.most_iterations);
     descend(problem, search, true, briefly);

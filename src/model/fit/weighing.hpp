@@ -63,8 +63,8 @@ class Weighing {
   public:
     /// `use`: 0 for samples that do not count; empty is all. `color`: coefficients a1 ... ap of the noise
     /// e(k) = a1 e(k-1) + ... + ap e(k-p) + white; the first p samples do not count. `valid`: 0 for samples
-    /// that hold no torque, `use` where it is empty. The whitening filter reads a straight line in their
-    /// place, in every torque alike, so that what is linear in the torques stays so.
+    /// that hold no torque, `use` where it is empty. The whitening filter receives a straight line in their
+    /// place, in every torque alike, so that linearity in the torques is kept.
     Weighing(std::size_t samples, std::span<const unsigned char> use, std::span<const double> color,
              std::span<const unsigned char> valid = {});
 

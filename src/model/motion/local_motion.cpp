@@ -60,7 +60,7 @@ struct PowerSums {
     std::array<double, 5> position{};
 };
 
-// Written out, so that all sums stay in registers: nothing of a motion costs as much.
+// Written out, so that all sums stay in registers: no part of a motion costs as much.
 template <bool both>
 PowerSums power_sums(const TraceView& log, std::size_t k, SampleWindow window, double reach_s) {
     const double now_s = log.time_s[k], by_reach = 1.0 / reach_s, here_deg = both ? log.position_deg[k] : 0.0;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Speed and acceleration at a sample from what is logged about it: the polynomial that fits the velocities of
-// a window, and, where they are trusted, its positions too.
+// Speed and acceleration at a sample from the logged values about it: the polynomial that fits the velocities
+// of a window, and, where they are trusted, its positions too.
 
 #include <vector>
 
@@ -12,7 +12,7 @@ namespace ripplenotch {
 /// rms of the noise on one sample.
 struct MotionNoise {
     double velocity_deg_s = 1.0;
-    double position_deg = 0.0;  ///< 0: the position is not looked at
+    double position_deg = 0.0;  ///< 0: the position is ignored
 };
 
 struct SampleWindow {
@@ -55,7 +55,7 @@ class LocalFit {
     double variance_ = 0.0;
 };
 
-/// rms of what is new from sample to sample, whatever moves slowly: from fourth differences.
+/// rms of the white noise of a signal, whatever moves slowly: from fourth differences.
 [[nodiscard]] double sample_noise(std::span<const double> values);
 
 }  // namespace ripplenotch

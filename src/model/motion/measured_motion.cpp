@@ -14,8 +14,8 @@
 namespace ripplenotch {
 namespace {
 
-// A rest: speeds within so many standard deviations of their noise, for so many smoothing windows. Nothing
-// that moves faster than the last of these rests, however noisy the log.
+// Standstill: speeds within so many standard deviations of their noise, for so many smoothing windows. A
+// joint that moves faster than the last of these is not at standstill, however noisy the log.
 constexpr double rest_deviations = 4.5, rest_windows = 3.0, most_at_rest_deg_s = 0.5;
 
 // Position and speed show the same motion when they differ by no more than this multiple of the difference

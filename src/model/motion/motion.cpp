@@ -34,7 +34,7 @@ double middle_step_s(std::span<const double> time_s) {
     return median_in(steps);
 }
 
-// Steps that may hold more than one sample. Most logs lost none, and every delay asks.
+// Steps that may hold more than one sample. Most logs lost none, and every delay calls this.
 std::size_t long_steps(std::span<const double> time_s, double middle_s) {
     std::size_t found = 0;
     for (std::size_t k = 1; k < time_s.size(); ++k) {
@@ -128,7 +128,7 @@ std::vector<std::size_t> places_found(std::span<const double> time_s, double& st
 
 std::vector<std::size_t> places_of_rows(std::span<const double> time_s, double& step_s) {
     if (time_s.size() < 8) return {};
-    // A diagnosis asks for the places of one clock a thousand times.
+    // A diagnosis needs the positions of one clock a thousand times.
     struct Asked {
         std::vector<double> time_s;
         std::vector<std::size_t> places;

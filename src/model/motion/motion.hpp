@@ -5,7 +5,7 @@
 
 namespace ripplenotch {
 
-// Logs that lost rows here and there: what looks at the samples before one, a delay or a lag, has to know
+// Logs that lost rows here and there: an effect that uses earlier samples, a delay or a lag, has to know
 // which of them is missing.
 
 /// Position of each sample on a clock without gaps, in samples from the first: whole numbers that increase.
@@ -14,8 +14,8 @@ namespace ripplenotch {
 /// everywhere. `step_s` is set to the step of that clock.
 [[nodiscard]] std::vector<std::size_t> places_of_rows(std::span<const double> time_s, double& step_s);
 
-/// A signal known at these places as one at every place: what is missing is the cubic through two samples to
-/// each side.
+/// A signal known at these positions as one at every position: missing samples are on the cubic through two
+/// samples to each side.
 [[nodiscard]] std::vector<double> with_lost_rows(std::span<const double> values,
                                                  std::span<const std::size_t> places);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// A polynomial with position, speed and acceleration given at both ends (here: at rest) has six coefficients
-// and degree five. A seventh coefficient adds a multiple of u^3 (1 - u)^3, the one polynomial of degree six
-// that changes none of the six end values; it moves the moment of greatest speed off the middle.
+// A polynomial with position, speed and acceleration given at both ends (here: standstill) has six
+// coefficients and degree five. A seventh coefficient adds a multiple of u^3 (1 - u)^3, the one polynomial of
+// degree six that changes none of the six end values; it moves the moment of greatest speed off the middle.
 // docs/motions/poly6.md has the figures.
 #include <cmath>
 

@@ -228,7 +228,8 @@ void find_steps(const Motion& motion, TurningDrive& drive) {
         const double step_s = motion.time_s[k] - motion.time_s[k - 1];
         const double beside = (step_s / usual_s - 1.0) / same_step;
         if (!(step_s > 0.0) || std::abs(beside) < 0.5) continue;
-        constexpr double most = 9e18;  // what a whole number holds: longer steps are one, which all dies in
+        // Largest exact integer: longer steps are one, in which all transients decay.
+        constexpr double most = 9e18;
         const auto [found, is_new] =
             known.try_emplace(std::llround(std::min(beside, most)), drive.steps_s.size());
         if (is_new) drive.steps_s.push_back(step_s);
@@ -328,7 +329,8 @@ class Mass {
     State rest_, ringing_;
 };
 
-// Integrals over a step of u^m times what a kick at u is at the step's end: displacement, and speed.
+// Integrals over a step of u^m times the response at the step's end to an impulse at u: displacement, and
+// speed.
 struct KickMoments {
     std::array<double, step_points> at{}, moving{};
 };

@@ -60,7 +60,7 @@ class FreeMoves {
     std::vector<std::optional<FreeMove>> known_;  ///< by place
 };
 
-// A phasor that turns with the joint, as what it drives meets it step by step.
+// A phasor that turns with the joint, as input of the spring step by step.
 
 struct TurningDrive {
     /// From sample to sample, the first of no meaning but that of `hz`, which is of the first sample.
@@ -88,8 +88,8 @@ struct Spring {
 void response_of(const Spring& spring, const Motion& motion, double cycles_per_deg,
                  std::span<std::complex<double>> response);
 
-/// What a signal makes of the mass: `values` become its displacements, each as large as the value that would
-/// hold it there. Between samples the signal is the polynomial through the nearest six, and it begins
+/// The response of the mass to a signal: `values` become its displacements, each as large as the value that
+/// would hold it there. Between samples the signal is the polynomial through the nearest six, and it begins
 /// settled.
 void pass_spring(const Spring& spring, Hertz sample_rate, std::span<double> values);
 
