@@ -88,7 +88,7 @@ double shown_s(const Comparison& comparison) {
     return std::clamp(1.3e-3 * longest_ms, 40.0 / comparison.sample_rate.value(), 10.0);
 }
 
-// Output of a filter that has seen no torque for ever, then `signal(t)` from t = 0 on.
+// Output of a filter in steady state at torque 0, then `signal(t)` from t = 0 on.
 template <class Signal>
 Curve run(const Contender& contender, const std::string& name, const Comparison& comparison,
           double duration_s, const Look& look, const Signal& signal) {

@@ -86,7 +86,7 @@ Figure residual_figure(const std::string& title, const std::string& sentence, co
                     .x = x,
                     .y = {"joint speed", "deg/s"}};
         HeatMap map = rms_map(across, residuals.speed_deg_s, residual_nm);
-        // The colours of the first hold for the second, so that what shrank looks smaller.
+        // The colour range of the first holds for the second, so that a smaller residual looks smaller.
         if (highest == 0.0) highest = highest_cell(map);
         map.lowest = std::min(noise_floor_nm.value_or(0.0), 0.5 * highest);
         map.highest = highest;

@@ -18,7 +18,7 @@ namespace ripplenotch {
 
 namespace {
 
-constexpr int points_a_side = 9;        // over which the largest gain of a trial band is looked for
+constexpr int points_a_side = 9;        // number of points in the search for the largest gain of a trial band
 constexpr double as_exact = 1e-9;       // share of a Q or a centre to which searches go
 constexpr double edge_as_exact = 1e-7;  // share of a band's edge, from the side on which it still holds
 constexpr int most_secants = 8;         // chosen, not derived: bisection follows
@@ -88,7 +88,8 @@ BandFit::BandFit(const TableSpec& spec, bool shaped)
         hz_per_deg_s_[i] = spec.orders[i].value() * spec.gear_ratio.value() / 360.0;
         if (spec.amplitude_nm.empty()) continue;
         weight_.push_back(spec.amplitude_nm[i] * spec.amplitude_nm[i] / all);
-        // Least delay sum 1/(n Q) for a given ripple left sum (a Q)^2: Q goes with (n a^2)^(-1/3).
+        // Least delay sum 1/(n Q) for a given remaining ripple sum (a Q)^2: Q is proportional to (n
+        // a^2)^(-1/3).
         if (shaped) {
             const double order = spec.orders[i].value() / spec.orders[0].value();
             shape_[i] = 1.0 / portable::cbrt(order * weight_[i] / weight_[0]);
@@ -145,8 +146,8 @@ std::optional<Tuning> BandFit::tune(double center_deg_s, const QRule& rule) cons
     const double most_s = *rule.delay_s, at_low_s = delay_at(low), at_high_s = delay_at(high);
     if (at_low_s <= most_s) return tuned(center_deg_s, low);
     if (!(at_high_s <= most_s)) return std::nullopt;
-    // Halving comes to one Q of those that are as exact. Where that is, a few steps along the delay find
-    // sooner, so that most halves are known before they are looked at.
+    // Bisection converges to one of the Qs that are equally exact. A few secant steps along the delay find it
+    // sooner, so that most halves are known without an evaluation.
     const Bracket known = bracket(delay_at, most_s, {low, high}, {at_low_s, at_high_s});
     while (high - low > as_exact * high) {
         const double middle = std::sqrt(low * high);
@@ -265,7 +266,7 @@ constexpr int settling_trials = 49;                // Q from widest to narrowest
 
 double gain_of(double attenuation_db) { return portable::pow(10.0, -attenuation_db / 20.0); }
 
-// A higher Q delays less, so it is rounded up; the limits themselves stay what they are.
+// A higher Q delays less, so it is rounded up; the limits themselves stay unchanged.
 double rounded_up(double q) {
     const double rounded = to_digits(q, 7);
     return rounded >= q ? rounded : to_digits(q * (1.0 + 1e-6), 7);
@@ -421,8 +422,8 @@ TradePoint point_of(const CandidateTable& table) {
     return point;
 }
 
-/// A table with so many bands at that delay, as good as it gets; they are known to hold `held_db`, which
-/// becomes what they hold.
+/// A table with so many bands at that delay, as good as possible; they are known to hold `held_db`, which is
+/// set to the attenuation that they hold.
 std::optional<TradePoint> best(const BandSearch& search, std::size_t bands, double delay_s, double& held_db) {
     const QRule rule = search.rule(delay_s);
     const auto held = search.attenuation_db(bands, rule, 0.0, held_db);
@@ -442,7 +443,7 @@ std::vector<std::size_t> counts(std::size_t from, std::size_t to) {
 
 // Attenuation against delay with so many bands.
 void add_by_attenuation(std::vector<TradePoint>& points, const BandSearch& search, std::size_t bands) {
-    BandSearch::KnownDelays known;  // what is too short for one attenuation is so for more
+    BandSearch::KnownDelays known;  // a delay too short for one attenuation is so for a larger one
     for (const double db : attenuations_db) {
         double held_db = db + rounding_db;
         const auto delay = search.delay_s(held_db, bands, known);
@@ -464,7 +465,7 @@ void add_by_bands(std::vector<TradePoint>& points, const BandSearch& search, dou
     const auto at_narrowest = search.bands(attenuation_db + rounding_db, search.rule(search.least_delay_s()));
     const std::size_t last =
         std::min(most_bands.value_or(most_bands_ever), at_narrowest.value_or(most_bands_ever));
-    BandSearch::KnownDelays known;  // what is enough for some bands is so for more
+    BandSearch::KnownDelays known;  // a delay sufficient for some bands is so for more
     for (const std::size_t count : counts(*fewest, std::min(last, 32 * *fewest))) {
         double held_db = attenuation_db + rounding_db;
         const auto delay = search.delay_s(held_db, count, known);
@@ -519,7 +520,8 @@ Frontier design_frontier(TableSpec spec, DesignGoal goal) {
         raise<UsageError>("the frontier is found by varying the bands; give the speeds as FROM:TO");
     const bool by_attenuation = !goal.min_attenuation_db && !goal.max_delay;
     DesignGoal probe = goal;
-    if (by_attenuation) probe.max_delay = Seconds(1e9);  // anything, to have the rest of the goal checked
+    // Any value, to have the other parts of the goal checked.
+    if (by_attenuation) probe.max_delay = Seconds(1e9);
     if (by_attenuation && !probe.most_bands) probe.most_bands = 1;
     DesignChoice choice = design_for(spec, probe);
     const BandSearch search(spec, goal);

@@ -89,7 +89,7 @@ class BandFit {
 
 inline constexpr std::size_t most_bands_ever = 1000;  // chosen, not derived: bounds the time
 inline constexpr double gain_worth_a_band_db = 0.25;  // chosen, not derived
-/// What rounding of edges and Q may take off an attenuation; searches aim this much higher.
+/// Loss of attenuation by rounding of edges and Q; searches aim this much higher.
 inline constexpr double rounding_db = 0.002;
 
 inline constexpr double delay_as_exact = 1e-4;  ///< share of a delay to which it is searched
@@ -108,7 +108,7 @@ class BandSearch {
     /// hold without a test and does not change the result.
     [[nodiscard]] std::optional<double> attenuation_db(std::size_t bands, const QRule& rule,
                                                        double known_db = 0.0, double held_db = 0.0) const;
-    /// Delays that are known to be too short and to be enough: not looked at again.
+    /// Delays that are known to be too short and to be sufficient: not tested again.
     struct KnownDelays {
         double short_s = 0.0, enough_s = std::numeric_limits<double>::infinity();
     };

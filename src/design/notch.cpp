@@ -91,7 +91,7 @@ class Remainder {
         }
     }
 
-    /// From the next sample to be looked at on; infinite where poles lie so close that their residues cancel.
+    /// From the next tested sample on; infinite where poles lie so close that their residues cancel.
     [[nodiscard]] double bound(double target) const {
         double sum = 0.0, largest = 0.0;
         for (const Mode& mode : modes_) {
@@ -109,7 +109,7 @@ class Remainder {
   private:
     struct Mode {
         double first, now,
-            decay;  ///< magnitudes at sample 0 and here, and by how much it falls until the next look
+            decay;  ///< magnitudes at sample 0 and here, and their decay until the next test
     };
 
     void add(std::span<const Biquad> cascade, const Biquad& own, std::complex<double> pole) {

@@ -45,7 +45,7 @@ void measure_noise(Searched& found, const Case& c, Work& work, const DiagnosisRu
 Searched search_case(const Case& c, const Model& model, std::span<const Effect* const> effects, Work& work,
                      const DiagnosisRules& rules) {
     const std::size_t own = model.terms.size();
-    // The first fit knows nothing of the noise.
+    // The first fit has no estimate of the noise.
     ModelBench rough(c, {1.0, 1.0, {}}, work, rules);
     Searched found;
     found.first = baseline(rough, model);

@@ -18,7 +18,7 @@ namespace {
 constexpr std::size_t longest_run = 10'000'000;  // samples; 80 MB of output
 constexpr std::size_t block_samples = 16384;     // chosen, not derived
 
-// One filter and one signal, run on for as long as somebody wants to see more of it.
+// One filter and one signal, extended by further samples on request.
 class Run {
   public:
     Run(const Contender& contender, Hertz sample_rate, DegPerSec speed)
@@ -57,7 +57,7 @@ class Run {
     std::vector<double> out_;
 };
 
-// Half a second at first, then twice as long each time, until the second half of the run is at rest.
+// Half a second at first, then twice as long each time, until the second half of the run is settled.
 std::size_t first_length(Hertz sample_rate) {
     return std::max<std::size_t>(64, static_cast<std::size_t>(std::min(0.5 * sample_rate.value(), 1e6)));
 }
@@ -82,7 +82,7 @@ StepMeasurement Bench::step(NewtonMeters height) const {
     const double h = height.value();
     if (!std::isfinite(h) || h == 0.0) raise<UsageError>("a step of {} Nm is no step", h);
     Run run(contender_, sample_rate_, speed_);
-    // Sample 0 is the rest before the step: filters start settled on their first sample.
+    // Sample 0 is the steady state before the step: filters start settled on their first sample.
     const auto signal = [h](std::size_t k) { return k == 0 ? 0.0 : h; };
     const double rest = 0.01 * settle_bands_percent.front() / 100.0;
     std::size_t count = first_length(sample_rate_);

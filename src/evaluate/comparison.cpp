@@ -328,7 +328,7 @@ void for_each_block(const TraceView& trace, const Block& block, const Gap& at_ga
     }
 }
 
-// A filter for the log; one that looks at the whole log first has done so.
+// A filter for the log; a method with a first pass over the whole log has made it.
 std::unique_ptr<CausalFilter> filter_for(const Contender& contender, const ComparedLog& log) {
     const auto learner = contender.learner(log.trace.sample_rate);
     if (learner == nullptr) return contender.start(log.trace.sample_rate);

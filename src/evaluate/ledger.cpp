@@ -103,7 +103,7 @@ LedgerEntry entry_of(const Contender& contender, const Contender& runs, Hertz sa
         entry.ramp_delay = bench.ramp_delay(ramp_nm_s);
         entry.step = bench.step(NewtonMeters(step_nm));
     } catch (const UsageError&) {
-        // A filter that does not come to rest has no such figures; the rest of the ledger still counts.
+        // A filter that does not settle has no such figures; the rest of the ledger still counts.
     }
     return entry;
 }

@@ -87,7 +87,7 @@ void check_range(const Settings& settings, std::string_view parameter, double va
 [[nodiscard]] std::string decimal(double value);
 /// Nine significant digits, enough for any float, and the f that keeps C from making it a double.
 [[nodiscard]] std::string decimal_float(double value);
-/// C99 hexadecimal literals of finite numbers: exact, whoever reads them.
+/// C99 hexadecimal literals of finite numbers: exact for every reader.
 [[nodiscard]] std::string hexadecimal(double value);
 [[nodiscard]] std::string hexadecimal_float(double value);
 

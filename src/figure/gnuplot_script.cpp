@@ -104,7 +104,7 @@ pid_t start(const Pipe& in, const Pipe& out, const Pipe& complaints) {
     return child;
 }
 
-// Appends what is there; false at the end.
+// Appends the available bytes; false at the end.
 bool read_some(int from, std::string& to) {
     std::array<char, 65536> buffer;  // NOLINT: filled by read
     const ssize_t got = ::read(from, buffer.data(), buffer.size());
@@ -418,7 +418,7 @@ class TextPanel {
         return text + lines_of(visible_text(axis_text(panel_.y)));
     }
 
-    // The x axis' label, then what the characters and the letters mean.
+    // The x axis' label, then the meaning of the characters and the letters.
     [[nodiscard]] std::string below() const {
         const std::string label =
             cut_to(visible_text(axis_text(panel_.x)), static_cast<std::size_t>(columns_) - 4);

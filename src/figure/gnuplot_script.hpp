@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// What every gnuplot script here is made of. Text goes in as octal numbers of its bytes, so that none of it
-// can be a quote, a back quote, a macro or a command; numbers go in as numbers.
+// Elements common to every gnuplot script. Text goes in as octal numbers of its bytes, so that none of it can
+// be a quote, a back quote, a macro or a command; numbers go in as numbers.
 
 #include <fmt/format.h>
 
@@ -14,8 +14,8 @@
 
 namespace ripplenotch {
 
-/// Runs gnuplot without anybody's settings on this script and gives what it printed; empty when there is no
-/// gnuplot. Throws FileError when it ends with another exit code than 0.
+/// Runs gnuplot without user settings on this script and returns its output; empty when there is no gnuplot.
+/// Throws FileError when it ends with another exit code than 0.
 [[nodiscard]] std::optional<std::string> run_gnuplot(const std::string& script);
 
 /// visible_text(text) as a string constant of gnuplot, quotes included.

@@ -194,7 +194,7 @@ class Writer {
             scripts, shown(title), page_style);
     }
 
-    // What was asked, the verdict and the numbers of each result, before anything else.
+    // The question, the verdict and the numbers of each result, before anything else.
     void summary(const Page& page) {
         put("<div class=\"summary\">\n");
         for (std::size_t i = 0; i < page.sections.size(); ++i) {

@@ -4,9 +4,9 @@
 
 namespace ripplenotch {
 
-// How a page looks and draws: its style sheet, and the script that gives its figures to plotly.js.
+// Style and drawing of a page: its style sheet, and the script that passes its figures to plotly.js.
 
-/// Light and dark by what the reader's system prefers; print is light.
+/// Light or dark by the reader's system setting; print is light.
 extern const std::string_view page_style;
 
 /// Draws every block of figure data, in the colours of the page and within its width, and again when the

@@ -21,7 +21,7 @@ namespace ripplenotch {
 
 namespace {
 
-// eight digits; null for what is not finite
+// eight digits; null for values that are not finite
 Json plotly_number(double value) {
     if (!std::isfinite(value)) return nullptr;
     return *parse_number(fmt::format("{:.8g}", value));

@@ -278,7 +278,7 @@ Json row_of(const Finding& finding) {
 }
 
 // The rounds of a diagnosis as a table that fits a page, which is not as wide as the JSON is deep: a round's
-// gap as "0.435 to 0.0497" in one cell, and of its evidence what people ask for first.
+// gap as "0.435 to 0.0497" in one cell, and the most important items of its evidence.
 PageTable rounds_table(const Diagnosis& diagnosis) {
     Json rows = Json::array();
     for (const Finding& finding : diagnosis.rounds) rows.push_back(row_of(finding));
@@ -415,7 +415,7 @@ void of_trend(const Json& json, Numbers& numbers) {
     numbers.add("alerts by chance alone, at most", "/expected_false_alarms", "");
 }
 
-// The first numbers of a kind that is not looked into.
+// The first numbers of a kind without a section of its own.
 void of_any(const Json& json, Numbers& numbers) {
     for (const auto& [name, entry] : json.items()) {
         const Spoken said = spoken(name);

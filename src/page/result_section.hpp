@@ -16,8 +16,8 @@ namespace ripplenotch {
 // Tables of a trend that lead to the reports of the logs.
 
 /// The methods of a comparison under the labels A, B, C in the order given (a control keeps its name), with
-/// what each label stands for below, and why it does not fit where that was asked; columns that no method
-/// fills are left out.
+/// the meaning of each label below, and the reason why a method does not fit where that was requested;
+/// columns that no method fills are left out.
 [[nodiscard]] PageTable comparison_table(const Json& methods);
 
 /// The design itself: one row a band, with centre frequency and Q of the notch for each order.
@@ -31,10 +31,10 @@ namespace ripplenotch {
 
 // The top of a page for a result: the question, an answer in a sentence, and its numbers.
 
-/// What a person asked who got this kind of result; the kind itself where none is known.
+/// The user's question behind this kind of result; the kind itself where none is known.
 [[nodiscard]] std::string question_of(const std::string& kind);
 
-/// The answer of a kind that carries no verdict of its own, made of its numbers; empty where there are none.
+/// The answer for a kind that has no verdict of its own, made from its numbers; empty where there are none.
 [[nodiscard]] std::string sentence_of(const std::string& kind, const Json& result);
 
 /// At most three numbers, with units, that answer the question.

@@ -58,7 +58,7 @@ class PassingRows {
     Trace means_;
 };
 
-constexpr double stride_s = 0.01;  // noise of a position at rest must not add up to turns
+constexpr double stride_s = 0.01;  // noise of a position at standstill must not add up to turns
 
 PassingRows::PassingRows(const LogFacts& facts, std::size_t most_means)
     : rows_(facts.rows),
@@ -137,7 +137,7 @@ std::optional<Range> range_of(const std::vector<double>& values) {
 }
 
 // Turns of the joint, back and forth added up: from position, else from velocity over time. Position is
-// thinned to hundredths of a second, so that its noise at rest does not add up to turns.
+// thinned to hundredths of a second, so that its noise at standstill does not add up to turns.
 double turns_of(const Trace& trace, double sample_rate) {
     double degrees = 0.0;
     const auto stride = static_cast<std::size_t>(std::max(1.0, 0.01 * sample_rate));
@@ -277,7 +277,7 @@ std::string speeds_text(const std::vector<SteadyStretch>& stretches) {
     return text;
 }
 
-// The joint that turned most decides what the whole log is good for.
+// The joint that turned most decides the suitability of the whole log.
 void state_uses(LogInfo& info) {
     const auto most =
         std::max_element(info.joints.begin(), info.joints.end(),

@@ -31,7 +31,7 @@ struct FrontierPoint {
 [[nodiscard]] Figure frontier_figure(const std::string& title, const std::string& sentence,
                                      std::span<const FrontierPoint> points);
 
-// What each method makes of a log whose true torque is known, in bounded memory.
+// The outputs of the methods for a log whose true torque is known, in bounded memory.
 
 class ComparedCourse {
   public:

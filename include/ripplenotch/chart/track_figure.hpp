@@ -15,8 +15,8 @@ namespace ripplenotch {
 
 // A ripple map: amplitude and phase of each order over speed, by direction.
 
-/// Curves of what is the mean over the joint's turn, at the middle load; ribbons of 95 % by the errors of the
-/// values at the speeds, taken as independent. Two panels, empty for an empty map.
+/// Curves of the mean over the joint's turn, at the middle load; ribbons of 95 % by the errors of the values
+/// at the speeds, taken as independent. Two panels, empty for an empty map.
 [[nodiscard]] Figure map_figure(const std::string& source, const MapFit& fit);
 
 // Torque before and after a filter along a log of any length, in bounded memory, and the ledger of its
@@ -27,7 +27,7 @@ struct CourseSample {
     double time_s = 0.0, speed_deg_s = 0.0, before_nm = 0.0, after_nm = 0.0;
 };
 
-/// The stretch of half a second in which a filter takes off most of what goes fast: there ripple can be seen,
+/// The stretch of half a second in which a filter attenuates fast changes most: there ripple is visible,
 /// which a picture of a whole log blurs.
 class CloseUp {
   public:
@@ -63,7 +63,7 @@ class TorqueCourse {
     bool any_ = false;
 };
 
-/// How the amplitudes of a track are shown: what a cosine of amplitude 1 is, and the name of that.
+/// How the amplitudes of a track are shown: the factor for a cosine of amplitude 1, and its name.
 struct TrackScale {
     double factor = 1.0;
     std::string label = "amplitude, zero to peak";

@@ -123,10 +123,10 @@ struct SpeedRegion {
 // A line near half the sample rate can be neither notched nor distinguished from its mirror image: methods
 // that follow the ripple fade out before it gets there, all in the same way.
 
-/// In cycles a sample: up to the first a line is taken out whole, from the second on not at all.
+/// In cycles a sample: up to the first a line is removed completely, from the second on not at all.
 inline constexpr double full_below_rate = 0.45, none_above_rate = 0.48;
 
-/// The share of a line at this frequency, in cycles a sample, that is taken out.
+/// The share of a line at this frequency, in cycles a sample, that is removed.
 [[nodiscard]] inline double share_below_rate(double cycles) noexcept {
     return std::clamp((none_above_rate - cycles) / (none_above_rate - full_below_rate), 0.0, 1.0);
 }
@@ -136,8 +136,7 @@ inline constexpr double full_below_rate = 0.45, none_above_rate = 0.48;
 constexpr std::size_t most_bands = 10000;  ///< chosen, not derived: docs/security.md
 constexpr std::size_t most_orders = 64;    ///< chosen, not derived: docs/security.md
 
-/// Adds up what measure_band() will have to do. A table that can be designed can be read again: both ask
-/// here.
+/// Adds up the work of measure_band(). A table that can be designed can be read again: both use this check.
 class TableWork {
   public:
     /// Throws UsageError when the bands added so far take more than about a second together.

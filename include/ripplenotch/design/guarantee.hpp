@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Tables from what they have to hold: a worst attenuation, a longest delay, or both. Bands and Q follow.
+// Tables from their requirements: a worst attenuation, a longest delay, or both. Bands and Q follow.
 
 #include <cstddef>
 #include <optional>
@@ -12,7 +12,7 @@
 
 namespace ripplenotch {
 
-/// What is asked of a table. At least one of attenuation and delay; what is not stated is chosen.
+/// Requirements for a table. At least one of attenuation and delay; values that are not stated are chosen.
 struct DesignGoal {
     std::optional<double>
         min_attenuation_db;            ///< held at every speed of every band (Band::held_attenuation_db)
@@ -26,7 +26,8 @@ struct DesignGoal {
 struct DesignChoice {
     CandidateTable table;
     std::string reason;
-    Seconds delay;  ///< that the Qs were chosen for; 0 when they were stated or fixed bands left no choice
+    /// Delay for which the Qs were chosen; 0 when they were stated or fixed bands left no choice.
+    Seconds delay;
 };
 
 /// Finds the table. With TableSpec::bands empty the bands are as few as hold the attenuation, each as wide as
@@ -54,7 +55,7 @@ struct TradePoint {
     double overshoot_percent = 0.0;
 };
 
-/// Along a frontier no point is better than another in both of what it trades.
+/// Along a frontier no point is better than another in both of the traded figures.
 struct Frontier {
     TableSpec spec;  ///< without bands
     DesignGoal goal;

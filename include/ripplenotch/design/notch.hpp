@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Notches: second-order sections that take out one frequency.
+// Notches: second-order sections that remove one frequency.
 
 #include <cstddef>
 #include <span>
@@ -28,9 +28,9 @@ struct StepFigures {
     double overshoot_percent = 0.0;  ///< highest point above the final value; 0 when it never passes it
 };
 
-/// Response to a unit step at t = 0 from rest, run until it has surely settled. `band_percent` is half the
-/// width of the band around the final value, 0 < band_percent < 100. Throws UsageError on an unstable cascade
-/// or one that needs more than 5e7 samples.
+/// Response to a unit step at t = 0 from steady state, run until it has certainly settled. `band_percent` is
+/// half the width of the band around the final value, 0 < band_percent < 100. Throws UsageError on an
+/// unstable cascade or one that needs more than 5e7 samples.
 [[nodiscard]] StepFigures measure_step(std::span<const Biquad> cascade, Hertz sample_rate,
                                        double band_percent);
 

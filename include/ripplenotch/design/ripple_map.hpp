@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// A ripple map: what a joint's ripple is at every angle of its motor, speed and direction. A compensator
-// subtracts it; drives store it. Made from logs by filter/map_fit.hpp.
+// A ripple map: a joint's ripple at every angle of its motor, speed and direction. A compensator subtracts
+// it; drives store it. Made from logs by filter/map_fit.hpp.
 
 #include <complex>
 #include <cstddef>
@@ -74,7 +74,7 @@ struct RippleMap {
     MapRange temperatures_degc = {};                 ///< the same; 0 to 0 where none was stated
     std::string temperature_column;  ///< column in the logs, with {joint} for the joint's name
     std::vector<std::vector<std::complex<double>>> values;  ///< by order, then by column; Nm
-    std::vector<double> spread_nm;  ///< by order: rms by which amplitudes stray from the map in its logs
+    std::vector<double> spread_nm;  ///< by order: rms deviation of amplitudes from the map in its logs
 };
 
 /// The weight of each column at this state. Beyond the range of the map its edge counts; slower than the

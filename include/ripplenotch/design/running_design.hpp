@@ -25,8 +25,7 @@ struct TrackingDesign {
     double slew = 1.0;        ///< 1 for none
 };
 
-/// A Kalman filter of torque and ripple with its gain worked out at every sample
-/// (docs/methods/oscillator.md).
+/// A Kalman filter of torque and ripple with its gain computed at every sample (docs/methods/oscillator.md).
 struct OscillatorDesign {
     /// In units of the noise.
     struct Prior {
@@ -35,10 +34,10 @@ struct OscillatorDesign {
     std::vector<double> orders;
     std::vector<Prior> priors;
     double step_s = 0.0, noise_nm = 0.0;
-    double torque_noise = 0.0, cross_noise = 0.0, rate_noise = 0.0;  ///< that a sample adds
+    double torque_noise = 0.0, cross_noise = 0.0, rate_noise = 0.0;  ///< increments of variance in a sample
     double first_rate_variance = 0.0;
     double memory_turns = 0.0;
-    double return_turns = 0.0;  ///< over which amplitudes are forgotten towards 0; 0: never
+    double return_turns = 0.0;  ///< turns over which amplitudes decay towards 0; 0: never
     double jump = 0.0;          ///< 0: never
     double largest_slip = 0.0;
     bool minus_ripple = false;

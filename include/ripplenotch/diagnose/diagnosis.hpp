@@ -23,7 +23,7 @@ namespace ripplenotch {
 enum class FindingStatus {
     confirmed,
     ambiguous,         ///< another effect explains the log as well
-    tentative,         ///< something unexplained touches what it is a function of
+    tentative,         ///< an unexplained region depends on the same variable
     immaterial,        ///< there, and too small to matter
     shape_correction,  ///< mends the form of a larger finding
     /// Two large torques that cancel, or a size within its error: not determined by this log.
@@ -48,7 +48,7 @@ struct Span {
 };
 
 enum class Direction {
-    at_rest_too,  ///< in none in particular, and where the joint rests
+    at_rest_too,  ///< in none in particular, and at standstill
     positive,
     negative,
     both,  ///< wherever it moves
@@ -83,13 +83,13 @@ struct RivalFinding {
     double margin = 0.0;  ///< gain by which the finding is ahead of it
 };
 
-/// A rule that was asked about a finding or a candidate.
+/// A rule that was applied to a finding or a candidate.
 struct Decision {
     /// From diagnosis_rules(); "price": reduction of squares expected by chance, given all that was tried.
     std::string rule;
     double number = 0.0, limit = 0.0;
     std::string unit;
-    bool against = false;  ///< it spoke against; the last that did decided
+    bool against = false;  ///< it was a reason against; the last such decision is decisive
 };
 
 /// What the search did not add in its last step.
@@ -110,7 +110,7 @@ struct Finding {
     /// rms residual of the validation log, without it and with it, together with all accepted findings.
     std::optional<double> validation_before_nm, validation_after_nm;
     std::string reason;               ///< reason of a status other than confirmed, as text
-    std::vector<Decision> decisions;  ///< in the order in which the rules were asked
+    std::vector<Decision> decisions;  ///< in the order in which the rules were applied
 };
 
 /// Effects between which this log does not decide.
@@ -135,7 +135,7 @@ struct ResidualRegion {
 struct Undecidable {
     std::string_view effect;
     std::string reason;
-    double would_explain_nm = 0.0;  ///< rms torque, if the missing measurement were what is assumed for it
+    double would_explain_nm = 0.0;  ///< rms torque, under the assumption made for the missing measurement
 };
 
 /// A fault of the converter that was seen in the log itself.
@@ -146,8 +146,8 @@ struct Fault {
     std::string words;
 };
 
-/// The torque of a log in a band of frequencies: all of it less its mean, what the given terms leave of it,
-/// and what they and the improved model leave.
+/// The torque of a log in a band of frequencies: all of it less its mean, the residual of the known terms,
+/// and that of the known terms and the improved model.
 struct BandGap {
     double from_hz = 0.0, to_hz = 0.0;  ///< 0: up to half the sample rate
     double torque_nm = 0.0, beside_given_nm = 0.0, after_nm = 0.0;
@@ -192,13 +192,13 @@ struct UnusedRows {
 /// An effect that acts mainly in rows that nothing is fitted to.
 struct EffectOfUnusedRows {
     std::string effect;
-    std::size_t rows = 0, unused = 0;  ///< in which it acts, and of these
+    std::size_t rows = 0, unused = 0;  ///< rows in which it acts, and how many of these are unused
 };
 
 struct Diagnosis {
     DiagnosisVerdict verdict = DiagnosisVerdict::matches;
     Model baseline;  ///< the model as given, with the values that were fitted to it alone
-    Model model;     ///< the improved one: with what was found, but for what is tentative or unidentifiable
+    Model model;     ///< the improved one: with the findings, except tentative or unidentifiable ones
     std::vector<FittedValue> values;  ///< every fitted value of the improved model
     std::vector<Finding> rounds;
     std::vector<RefusedCandidate> refused;

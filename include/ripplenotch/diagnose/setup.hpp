@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Hypotheses on how a simulation and a log were put together, asked before any effect of the joint is.
+// Hypotheses on how a simulation and a log were put together, tested before any effect of the joint.
 
 #include <cstddef>
 #include <optional>
@@ -149,7 +149,7 @@ struct SetupContext {
 
 struct SetupAnswer {
     std::vector<SetupFault> faults;  ///< what makes the others void first
-    /// Both empty where simulation or log lack what they need.
+    /// Both empty where simulation or log lack the required columns.
     std::optional<SimulationLag> motion_lag, torque_lag;
 
     /// By motion where that is identifiable, else by torque; null: neither is.

@@ -23,14 +23,14 @@ struct OrderAttenuation {
         db;  ///< empty where the line is not below half the sample rate, or was not measured
 };
 
-/// What one method does and costs; what was not asked for or cannot be had is empty.
+/// Performance and cost of one method; values that were not requested or are not available are empty.
 struct MethodFigures {
     std::string method;                              ///< as it would be typed
     std::string note;                                ///< e.g. "band 4: 72-90 deg/s"
     std::optional<std::array<double, 4>> settle_ms;  ///< per entry of settle_bands_percent (bench.hpp)
     std::optional<double> overshoot_percent, ramp_delay_ms, dc_delay_ms;
     std::optional<double> phase_lag_deg, crossover_db;  ///< at Comparison::crossover
-    std::vector<LedgerEntry> ledger;                    ///< empty unless asked for
+    std::vector<LedgerEntry> ledger;                    ///< empty unless requested
     std::optional<DegPerSec> within_from;               ///< lowest speed above which it keeps a delay limit
     std::vector<OrderAttenuation> attenuation;
     std::optional<double> ripple_rms_nm;  ///< ripple of the orders alone, over the measured windows
@@ -96,19 +96,20 @@ struct Comparison {
 
 /// A log in memory.
 struct ComparedLog {
-    TraceView trace;  ///< its sample_rate is what the filters are designed for
+    TraceView trace;  ///< its sample_rate is the rate that the filters are designed for
     std::span<const double> truth_nm =
         {};  ///< the torque without ripple and noise, row by row, where it is known
     /// By contender, row by row, degC; no entries, or an empty one, where a method takes none.
     std::vector<std::span<const double>> temperatures_degc = {};
-    /// Sees what each method, counted from 0, makes of each block of the log, in the order of the rows; may
-    /// be empty.
+    /// Receives the output of each method, counted from 0, for each block of the log, in the order of the
+    /// rows; may be empty.
     std::function<void(std::size_t method, const TraceView& block, std::span<const double> out_nm,
                        std::span<const double> truth_nm)>
         watch = {};
 };
 
-/// Median of |v| over the samples that move: faster than a twentieth of the fastest. 0 for a log at rest.
+/// Median of |v| over the samples that move: faster than a twentieth of the fastest. 0 for a log without
+/// motion.
 [[nodiscard]] DegPerSec median_moving_speed(const TraceView& trace);
 
 /// What the methods leave of the log's ripple: all run over the log together, and are measured on the same

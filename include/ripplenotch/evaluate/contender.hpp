@@ -24,14 +24,14 @@ struct Contender {
     Settings settings;
     std::shared_ptr<const CandidateTable> table = nullptr;  ///< null unless the method needs one
     std::optional<GearAccount> gear = std::nullopt;         ///< empty when unknown
-    std::vector<std::string> files = {};                    ///< that table and gear were read from, each once
-    std::shared_ptr<const RippleMap> map = nullptr;         ///< that it was given, if any
-    /// The same method that knows no ripple, where it knows one from a map.
+    std::vector<std::string> files = {};                    ///< files of table and gear, each once
+    std::shared_ptr<const RippleMap> map = nullptr;         ///< its ripple map, if any
+    /// The same method without its ripple map, where it has one.
     std::shared_ptr<const Contender> without_ripple = nullptr;
 
     /// A filter without a past. Throws UsageError on what cannot be designed at this sample rate.
     [[nodiscard]] std::unique_ptr<CausalFilter> start(Hertz sample_rate) const;
-    /// The same for signals that have no ripple: what is known of it from a map is no part of them.
+    /// The same for signals that have no ripple: without the ripple known from a map.
     [[nodiscard]] std::unique_ptr<CausalFilter> start_on_bench(Hertz sample_rate) const;
     /// Null for methods that need no first pass over the log.
     [[nodiscard]] std::unique_ptr<Learner> learner(Hertz sample_rate) const;
@@ -45,8 +45,8 @@ struct Contender {
 [[nodiscard]] Contender make_contender(const Spec& spec,
                                        std::shared_ptr<const CandidateTable> table = nullptr);
 
-// The test bench: a running filter at one constant joint speed, fed with torque signals of the tool's own
-// making. What it reports is what the filter put out, sample by sample; no formula stands in for it.
+// The test bench: a running filter at one constant joint speed, fed with generated torque signals. It reports
+// the output of the filter, sample by sample; no formula replaces it.
 
 /// Per cent of a step within which it counts as settled.
 inline constexpr std::array<double, 4> settle_bands_percent = {0.5, 1.0, 2.0, 5.0};
@@ -63,16 +63,16 @@ inline constexpr double most_attenuation_db = 200.0;
 
 class Bench {
   public:
-    /// Borrows `contender`; `speed` may be 0. Throws UsageError when a measurement has not come to rest after
-    /// 1e7 samples.
+    /// Borrows `contender`; `speed` may be 0. Throws UsageError when a measurement has not settled after 1e7
+    /// samples.
     Bench(const Contender& contender, Hertz sample_rate, DegPerSec speed)
         : contender_(contender), sample_rate_(sample_rate), speed_(speed) {}
     Bench(const Contender&& gone, Hertz sample_rate, DegPerSec speed) = delete;  // it is borrowed
 
-    /// The torque is 0 for ever, and `height` Nm (not 0) from t = 0 on.
+    /// The filter is in steady state at torque 0; the torque is `height` Nm (not 0) from t = 0 on.
     [[nodiscard]] StepMeasurement step(NewtonMeters height) const;
-    /// The torque is 0 for ever, and rises by `slope_nm_s` (not 0) from t = 0 on: how far the output lags
-    /// behind once the lag no longer changes, to 1e-5 ms.
+    /// The filter is in steady state at torque 0; the torque rises by `slope_nm_s` (not 0) from t = 0 on: how
+    /// far the output lags behind once the lag no longer changes, to 1e-5 ms.
     [[nodiscard]] Seconds ramp_delay(double slope_nm_s) const;
     /// Input amplitude over output amplitude of a sine at `at`, once the output has settled; between -inf and
     /// most_attenuation_db. Empty unless 0 < at < sample_rate / 2.
@@ -84,8 +84,8 @@ class Bench {
     DegPerSec speed_;
 };
 
-// The switching ledger: every change of filter on a log with what it did to the output, measured against the
-// torque that is known to be true.
+// The switching ledger: every change of filter on a log with its effect on the output, measured against the
+// known true torque.
 
 /// Errors are |output - truth|, from the change up to the next one, a gap or the end of the log: its stretch.
 /// They include all errors there, also the new filter's lag and the remaining ripple.
@@ -107,7 +107,7 @@ class SwitchLedger {
     /// `truth_nm`: row by row, or empty where it is not known.
     explicit SwitchLedger(std::span<const double> truth_nm);
 
-    /// The next samples: their times and what the filter put out, with all its changes so far.
+    /// The next samples: their times and the output of the filter, with all its changes so far.
     void add(std::span<const double> time_s, std::span<const double> out_nm, std::span<const Switch> changes);
     /// Between two samples: a gap ends the stretch.
     void split();

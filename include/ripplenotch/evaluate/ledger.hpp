@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// The delay ledger: what a method costs, band by band, measured on the output of the running filter.
+// The delay ledger: the delays of a method, band by band, measured on the output of the running filter.
 
 #include <optional>
 #include <string>
@@ -63,13 +63,13 @@ struct LongestDelay {
 
 struct FilterMetrics {
     std::string source, joint, method;  ///< the method as it would be typed again
-    Hertz sample_rate;                  ///< that the filter was designed for, or started with
-    std::optional<Hertz> table_rate;    ///< that the table was designed for
+    Hertz sample_rate;                  ///< rate that the filter was designed for, or started with
+    std::optional<Hertz> table_rate;    ///< rate that the table was designed for
     StreamReport stream;
     std::optional<GearAccount> gear;     ///< empty when unknown: then there are no levels
     std::optional<RippleLevels> levels;  ///< levels of raw and filtered torque, one per order of the gear
     std::vector<LedgerEntry> delays;
-    std::optional<Hertz> crossover;  ///< that the ledger's phase lags are for
+    std::optional<Hertz> crossover;  ///< frequency of the ledger's phase lags
 };
 
 /// Attenuation of one order in dB; empty when there was nothing to attenuate or nothing was left.

@@ -13,7 +13,7 @@
 
 namespace ripplenotch {
 
-// The low-pass that takes out as much ripple as a method does, so that their delays can be compared like for
+// The low-pass that removes as much ripple as a method does, so that their delays can be compared like for
 // like. The paper compares its notch with one.
 
 /// Without a log. `gain` (0 < gain < 1) is output over input rms of the ripple, all lines together at one
@@ -83,8 +83,8 @@ struct Recommendation {
     RecommendationLimits limits;
     /// Orders of the whole log; empty where their interpretation is uncertain.
     std::vector<RippleEstimate> orders;
-    std::size_t windows = 0;        ///< that the methods were measured in
-    double torque_rate_nm_s = 0.0;  ///< at which the log's torque moves from motor turn to motor turn, rms
+    std::size_t windows = 0;        ///< windows in which the methods were measured
+    double torque_rate_nm_s = 0.0;  ///< rate of change of the log's torque from motor turn to motor turn, rms
     std::vector<JudgedMethod> methods;  ///< the one to take first; those within the limits before the others
 
     /// The one to take, or the nearest; null without methods.
@@ -108,7 +108,7 @@ inline constexpr std::size_t fewest_judged_windows = 7;
                                        const GearAccount& lines, const RecommendationLimits& limits,
                                        std::vector<RippleEstimate> ripple);
 
-/// One sentence, or two, with numbers: what to take, what it does, and what would be next.
+/// One sentence, or two, with numbers: the recommended method, its performance, and the next best.
 [[nodiscard]] std::string recommendation_verdict(const Recommendation& found);
 
 }  // namespace ripplenotch

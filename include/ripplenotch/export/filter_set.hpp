@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// What an export starts from: sections with what they were designed for, band by band, whether they come from
-// a candidate table or from one filter that runs at every speed.
+// The input of an export: sections with their design values, band by band, whether they come from a candidate
+// table or from one filter that runs at every speed.
 
 #include <optional>
 #include <span>
@@ -51,7 +51,7 @@ struct FilterSet {
 [[nodiscard]] FilterSet filter_set(const LowPassSpec& low_pass, Hertz sample_rate);
 
 // How a target computes: the structure of a section and the width of its numbers. The same loops run here, in
-// float where the target has float, so that what is measured is what will run.
+// float where the target has float, so that the measured filter is the one that will run.
 
 enum class Form {
     df1,   ///< direct form I: past inputs and outputs
@@ -70,7 +70,8 @@ struct Arithmetic {
 /// g = tan(pi f0 / fs) and k = 1/Q: a1 = 1 / (1 + g (g + k)), a2 = g a1, a3 = g a2, and per sample
 ///   v3 = x - s2;  v1 = a1 s1 + a2 v3;  v2 = s2 + a2 s1 + a3 v3;  s1 = 2 v1 - s1;  s2 = 2 v2 - s2;
 ///   y = m0 x + m1 v1 + m2 v2.
-/// A notch is m0 = 1, m1 = -(1 - gain at the centre) k, m2 = 0. At rest v1 is 0 whatever the rounding, so
+/// A notch is m0 = 1, m1 = -(1 - gain at the centre) k, m2 = 0. In steady state v1 is 0 whatever the
+/// rounding, so
 /// its gain at 0 Hz is exactly 1.
 struct SvfSection {
     double a1 = 1.0, a2 = 0.0, a3 = 0.0;

@@ -30,7 +30,7 @@ struct MjcfBristle {
     double stiffness_nm_rad = 0.0, friction_nm = 0.0;
 };
 
-/// What was written, and what it is worth.
+/// The parts that were written, and the accuracy of the result.
 struct MjcfAccount {
     std::string file;
     std::vector<MjcfPart> holds, not_held;
@@ -53,8 +53,8 @@ struct JointMjcf {
     std::vector<MjcfBristle> bristles;
 };
 
-/// Takes the model apart. Every value has to be stated. Armature, damping, frictionloss, cogging and the
-/// weight of a link are what they are in docs/effects; hysteresis is a LuGre bristle without damping whose
+/// Decomposes the model. Every value has to be stated. Armature, damping, frictionloss, cogging and the
+/// weight of a link are as defined in docs/effects; hysteresis is a LuGre bristle without damping whose
 /// friction is the same at every speed (Dahl's model). Throws std::bad_optional_access where values are left
 /// out.
 [[nodiscard]] JointMjcf joint_mjcf(const Model& model);

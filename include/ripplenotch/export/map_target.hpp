@@ -18,7 +18,7 @@ namespace ripplenotch {
 /// A map as it was read back.
 struct LoadedMap {
     std::string arithmetic;  ///< "float32", "table of 1024 int8 values"
-    RippleMap held;          ///< what the target was given to hold, in full precision
+    RippleMap held;          ///< the map that the target holds, in full precision
     /// The ripple there, computed as the target computes; in Nm at the joint.
     std::function<double(const MapState&)> torque_nm;
 };
@@ -44,8 +44,9 @@ struct MapTarget {
 /// What came through, over states within the range of the map.
 struct MapCheck {
     std::size_t states = 0;
-    double ripple_nm = 0.0;    ///< rms of the map
-    double not_held_nm = 0.0;  ///< rms of what the target has no place for: other speeds, the joint's turn
+    double ripple_nm = 0.0;  ///< rms of the map
+    /// Rms of the parts that the target cannot hold: other speeds, the joint's turn.
+    double not_held_nm = 0.0;
     /// Error of the target's arithmetic, relative to the map that it was to hold.
     double largest_error_nm = 0.0;
 };

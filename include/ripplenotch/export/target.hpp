@@ -17,7 +17,8 @@ namespace ripplenotch {
 
 struct Written {
     std::string bytes;
-    std::vector<std::string> warnings;  ///< what the target cannot hold exactly and how it was rounded
+    /// Parts that the target cannot hold exactly and how they were rounded.
+    std::vector<std::string> warnings;
 };
 
 /// Bands and sections in the order of the file.

@@ -15,7 +15,7 @@ namespace ripplenotch {
 
 struct FigureKind {
     std::string_view name;     ///< Figure::name
-    std::string_view command;  ///< that draws it with --plot
+    std::string_view command;  ///< the command that draws it with --plot
 };
 
 /// All figures, in the order of figures.def.
@@ -32,7 +32,7 @@ enum class PlotScale { linear, logarithmic, whole };
 struct PlotAxis {
     std::string label, unit = {};  ///< "torque", "Nm"; a number without a unit has none
     PlotScale scale = PlotScale::linear;
-    std::optional<double> from = {}, to = {};  ///< left out: what the panel's contents span
+    std::optional<double> from = {}, to = {};  ///< left out: the range of the panel's contents
 };
 
 /// Eight colours that are distinguishable with colour blindness (Okabe and Ito 2002). The number is the index
@@ -116,7 +116,7 @@ struct Panel {
 
 struct Figure {
     std::string name;      ///< kebab-case, which figure this is: "spectrum", "candidate-table"
-    std::string title;     ///< what is shown, of which file
+    std::string title;     ///< what is shown, from which file
     std::string sentence;  ///< what can be seen in it, with numbers; may be empty
     std::vector<Panel> panels;
     int columns = 1;  ///< panels run left to right, then down
@@ -126,12 +126,12 @@ struct Figure {
 struct PlotRange {
     double from = 0.0, to = 1.0;
 };
-/// What an axis of the panel spans: as stated, else what is in the panel, a little wider along y.
+/// The range of an axis of the panel: as stated, else that of the contents, a little wider along y.
 [[nodiscard]] PlotRange x_range(const Panel& panel);
 [[nodiscard]] PlotRange y_range(const Panel& panel);
 /// Distance of the numbers along an axis of PlotScale::whole, at most twelve of them: 1, 2, 5, 10, 20, ...
 [[nodiscard]] double whole_step(const PlotRange& range);
-/// 0 at range.from, 1 at range.to; may lie outside. nan for what a logarithmic axis cannot show.
+/// 0 at range.from, 1 at range.to; may lie outside. nan for values that a logarithmic axis cannot show.
 [[nodiscard]] double share_along(const PlotRange& range, PlotScale scale, double value);
 /// The inverse of share_along.
 [[nodiscard]] double value_at(const PlotRange& range, PlotScale scale, double share);

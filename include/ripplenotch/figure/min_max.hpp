@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Fewer points that look the same: per bucket of consecutive points the lowest and the highest stay, so no
-// peak is hidden however many points there were.
+// Fewer points that look the same: per bucket of consecutive points the lowest and the highest are kept, so
+// no peak is hidden however many points there were.
 
 #include <cstddef>
 #include <span>

@@ -14,14 +14,14 @@
 namespace ripplenotch {
 
 struct TrendOptions {
-    double false_alarms = 0.001;  ///< that are to be expected in a month of a joint in which nothing happens
+    double false_alarms = 0.001;  ///< expected number in a month of a joint without any change
     std::uint64_t seed = 1;       ///< seed of the permutations
 };
 
 /// One descriptor over the logs of a joint.
 struct DescriptorTrend {
     std::string name;                       ///< with its unit
-    std::size_t lines = 0;                  ///< that contain it
+    std::size_t lines = 0;                  ///< lines that contain it
     std::optional<double> baseline;         ///< before the first change, at the joint's median conditions
     std::optional<double> slope_per_month;  ///< fitted together with the changes that were found
     std::optional<Interval> slope_ci95;
@@ -59,8 +59,8 @@ struct JointChange {
     std::string date;              ///< date of the first log after it; for a drift, of the last
     std::string earliest, latest;  ///< days that are hardly distinguished from it by the logs
     double p = 1.0;                ///< chance that a joint in which nothing happens shows as much anywhere
-    double limit = 0.0;            ///< that p was held against
-    std::vector<ChangedDescriptor> descriptors;  ///< that took part, the surest first
+    double limit = 0.0;            ///< the limit for p
+    std::vector<ChangedDescriptor> descriptors;  ///< the descriptors that took part, the surest first
     std::size_t kin = 0;                ///< other joints of its kind with the same alert within 30 days
     std::string first_log, last_log;    ///< after it, and the last one before
     std::string first_date, last_date;  ///< dates of these two logs
@@ -80,12 +80,12 @@ struct JointTrend {
     std::size_t lines = 0;
     std::string from, to;  ///< dates
     double months = 0.0;
-    std::vector<std::string> conditions;  ///< that were regressed out
+    std::vector<std::string> conditions;  ///< conditions that were regressed out
     std::vector<DescriptorTrend> descriptors;
     std::vector<JointChange> changes;  ///< in the order of their dates
     std::vector<OddDescriptor> odd;    ///< farthest first
     std::vector<JointMonth> course;    ///< months in which there are logs, in their order
-    std::vector<std::string> notes;    ///< what could not be looked at, and why
+    std::vector<std::string> notes;    ///< tests that could not be made, and why
     [[nodiscard]] std::string name() const { return robot.empty() ? joint : robot + " " + joint; }
 };
 
@@ -101,7 +101,7 @@ struct Trend {
 /// Alerts whose course over all logs is shown: those of the joints that stand first.
 inline constexpr std::size_t most_trend_courses = 10;
 
-/// Fewest lines of a joint that are looked at.
+/// Fewest lines of a joint for a test.
 inline constexpr std::size_t fewest_trend_lines = 10;
 
 /// The order of the lines does not matter. Throws UsageError for a rate that is none; DataError: no lines,

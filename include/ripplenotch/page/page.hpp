@@ -27,18 +27,18 @@ struct PageTable {
     std::vector<std::string> header;
     std::vector<std::vector<std::string>> rows;  ///< as many cells as the header
     bool folded = false;                         ///< shown on demand: a ledger
-    std::vector<PageFact> legend = {};           ///< what the labels in the first column stand for
+    std::vector<PageFact> legend = {};           ///< meaning of the labels in the first column
     std::vector<PageLink> links = {};            ///< by row, then by column
 };
 
 /// One result.
 struct PageSection {
-    std::string title;            ///< what it is and of which file
+    std::string title;            ///< what it is and from which file
     std::string verdict;          ///< one sentence with numbers; may be empty
     std::vector<PageFact> facts;  ///< every single value, shown on demand
     std::vector<Figure> figures;
     std::vector<PageTable> tables;
-    std::string command;             ///< that makes it again
+    std::string command;             ///< the command that makes it again
     std::vector<PageFact> inputs;    ///< name and SHA-256
     std::string json;                ///< the result itself, one object
     std::string asked = {};          ///< the question that the result answers; empty: a figure alone
@@ -50,7 +50,7 @@ struct Page {
     std::vector<PageSection> sections;
 };
 
-// A page as one self-contained HTML file that asks no network for anything.
+// A page as one self-contained HTML file that makes no network requests.
 
 /// `plotly_js` is the text of that library, which draws the figures; without it gnuplot's pictures take their
 /// place. The same page gives the same bytes. Only the two scripts that it holds itself may run: its content
@@ -61,16 +61,16 @@ struct Page {
 [[nodiscard]] std::string html_escaped(std::string_view text);
 
 /// A figure for plotly.js 3: {"data": [...], "layout": {...}}, panels one under the other, equal time axes
-/// linked; "narrow", where it is there, lists what is otherwise on a phone: {"path", "value"}. Names are
-/// escaped for plotly's own markup; the text holds no "<", so that it can stand in a page.
+/// linked; "narrow", where present, lists the values for a phone: {"path", "value"}. Names are escaped for
+/// plotly's own markup; the text holds no "<", so that it can be embedded in a page.
 [[nodiscard]] std::string plotly_text(const Figure& figure);
 
 // Any result of the tool as a section of a page: its verdict, its numbers, its figures, its tables.
 
 /// `text` is a JSON document with schema ripplenotch/<kind>/1. joint, map, table and figure are read with all
-/// their checks; of diagnosis the rounds become the figure of the gap; whatever else a kind holds becomes
-/// facts (single values), and tables (lists of objects), units taken from the names. Throws DataError for
-/// what is no such document.
+/// their checks; the rounds of a diagnosis become the figure of the gap; everything else in a kind becomes
+/// facts (single values), and tables (lists of objects), units taken from the names. Throws DataError for any
+/// other document.
 [[nodiscard]] PageSection section_of_result(const std::string& text, const std::string& source);
 
 /// The same for a document that may hold several results: the diagnoses of several joints become a section

@@ -32,7 +32,7 @@ struct JointInfo {
     Recording recording;
     std::optional<double> clock_factor;
     double turns = 0.0;                    ///< turns of the joint, both directions added up
-    std::vector<SteadyStretch> stretches;  ///< rest included
+    std::vector<SteadyStretch> stretches;  ///< standstill included
     std::string options;                   ///< the option line that reads this joint
 };
 

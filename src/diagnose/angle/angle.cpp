@@ -48,7 +48,7 @@ std::vector<double> quick_part(const std::vector<double>& values, double rate_hz
     return quick;
 }
 
-/// Changes of the position, how far each usually goes, and the torque that goes with each.
+/// Changes of the position, their standard deviations, and the torque due to each.
 struct Walk {
     std::vector<std::vector<double>> position_deg, torque_nm;
     std::vector<double> deviation;
@@ -130,7 +130,7 @@ void add_walk_slopes(Walk& walk, const Case& looked_at, const Model& open, const
     }
 }
 
-// `window_s`: of what is quick; 0: of everything.
+// `window_s`: squares of the quick part; 0: of everything.
 double squares_left(const Case& looked_at, const Model& stated, double by_deg, double window_s) {
     auto left = left_of_stated(looked_at, stated, moved_by_walk(looked_at.motion, by_deg));
     if (window_s > 0.0) left = quick_part(left, looked_at.motion.sample_rate.value(), window_s);
@@ -142,7 +142,7 @@ bool goes_with_output(const Model& stated) {
                        [](const Term& term) { return needs_position(*term.effect); });
 }
 
-// The first of the best among `count` places, a step apart. By what is quick, or with 0 by everything.
+// The first of the best among `count` positions, a step apart. By the quick part, or with 0 by everything.
 double best_place(const Case& other, const Model& stated, double step_deg, std::size_t count,
                   double window_s) {
     double best = 0.0, least = squares_left(other, stated, 0.0, window_s);

@@ -58,7 +58,8 @@ Case rows_of(const Case& whole, const std::vector<std::size_t>& rows, Hertz samp
     return some;
 }
 
-// Where a rest begins or ends (motion_along holds the speed at 0 there), some time to both sides.
+// Samples near the begin or end of a standstill (motion_along holds the speed at 0 there), some time to both
+// sides.
 std::vector<unsigned char> edges_of(const Motion& motion, double edge_s) {
     const auto reach = static_cast<std::size_t>(edge_s * motion.sample_rate.value()) + 1;
     const std::size_t n = motion.size();
@@ -70,8 +71,8 @@ std::vector<unsigned char> edges_of(const Motion& motion, double edge_s) {
     return edge;
 }
 
-// Where the acceleration jumps, smoothing makes a slope of it, and what the joint's inertia does there is not
-// known: such samples do not count.
+// Where the acceleration jumps, smoothing makes a slope of it, and the torque of the joint's inertia is not
+// known there: such samples do not count.
 void leave_out_kinks(Case& whole, Seconds smoothing, const RecordingRules& rules) {
     std::vector<double> sizes;
     double most = 0.0;
@@ -242,9 +243,8 @@ std::vector<Nuisance> motion_errors(const Case& looked_at, const Model& model, c
 
 namespace {
 
-// Step of a log of whole steps that was rounded once more, by its distances of neighbouring values: these are
-// longer or shorter by what it was rounded to, and no value is further than that from its place. 0 when not
-// so.
+// Step of a quantized log that was rounded once more, from the distances of neighbouring values: these differ
+// from multiples of it by no more than the second rounding step. 0 when not so.
 double rounded_step(const std::vector<double>& distances, double usual) {
     double shortest = usual, longest = usual, range = 0.0, steps = 0.0;
     for (const double distance : distances) {
@@ -302,7 +302,7 @@ double noise_of(const std::vector<double>& torque_nm) {
     return 1.4826 * median_of(off) / std::sqrt(6.0);
 }
 
-// Effects that can be seen in a log, in the order in which they look at it.
+// Effects that can be detected in a log, in the order of their detectors.
 std::vector<const Effect*> detectable() {
     std::vector<const Effect*> effects;
     for (const Effect* effect : catalogue()) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// What of a log a diagnosis looks at: the motion, the torque, which samples count, and what is uncertain
-// about the motion itself.
+// The input of a diagnosis from a log: the motion, the torque, which samples count, and the uncertainty of
+// the motion itself.
 
 #include <optional>
 #include <vector>
@@ -23,12 +23,12 @@ struct Case {
     std::vector<unsigned char> use;    ///< 0: this sample does not count
     std::vector<unsigned char> valid;  ///< 0: it holds no torque of the joint; `use` is 0 there
     /// The acceleration less one of three times the smoothing, its noise; and one of half the smoothing less
-    /// it, what smoothing made of its kinks.
+    /// it, the effect of smoothing on its kinks.
     std::vector<double> rough_deg_s2, blunted_deg_s2;
     /// Columns of the known torque whose factors are not certain, and by how much: an arm's masses.
     std::vector<Nuisance> uncertain;
-    std::vector<unsigned char> edge;  ///< 1: so near to a start or stop that noise decides what the speed is
-    std::optional<Seconds> expected_delay;  ///< at which the search for a delay begins as well
+    std::vector<unsigned char> edge;        ///< 1: so near to a start or stop that noise determines the speed
+    std::optional<Seconds> expected_delay;  ///< an additional start of the search for a delay
     double walk_deg =
         0.0;               ///< rms error of the position after 1 s, where it is the integral of a noisy speed
     double step_nm = 0.0;  ///< quantization step of a log whose steps are coarser than its noise
@@ -47,18 +47,18 @@ struct Case {
 
 /// Every n-th sample, so that about `count` are left. The sample rate falls with it.
 [[nodiscard]] Case sketch(const Case& whole, std::size_t count);
-/// The same number in short stretches at the full rate, for what looks at neighbouring samples.
+/// The same number in short stretches at the full rate, for effects that depend on neighbouring samples.
 [[nodiscard]] Case blocks(const Case& whole, std::size_t count, const RecordingRules& rules);
 /// The same in longer stretches, for effects with a transient response.
 [[nodiscard]] Case long_blocks(const Case& whole, std::size_t count, RecordingRules rules);
 
-/// Whether errors of the measured acceleration pass this term with the torque: a sensor, but for one by which
-/// the torque comes before its motion. Of a real arm whose friction looked early such errors hid the
-/// friction.
+/// Whether errors of the measured acceleration pass this term with the torque: a sensor, except one by which
+/// the torque comes before its motion. In a real arm whose friction seemed to lead its motion such errors
+/// masked the friction.
 [[nodiscard]] bool carries_errors(const Term& term);
 
-/// Shapes that errors of the measured acceleration leave in the torque: what smoothing made of it, as the
-/// sensors of the model show it. Of the model nothing else counts.
+/// Torque errors due to errors of the measured acceleration from smoothing, behind the sensors of the model.
+/// The rest of the model is irrelevant.
 [[nodiscard]] std::vector<Nuisance> acceleration_errors(const Case& looked_at, const Model& model);
 /// The columns of the known torque that are not certain, as the sensors of the model show them.
 [[nodiscard]] std::vector<Nuisance> uncertain_torques(const Case& looked_at, const Model& model);
@@ -85,7 +85,7 @@ using PlaceRules = DiagnosisRules::PlaceRules;
 [[nodiscard]] Place place_of(const Case& looked_at, const std::vector<double>& torque_nm, const Term& term,
                              const PlaceRules& rules);
 
-// Effects that a log does not let be examined, because of what it does not hold.
+// Effects that cannot be examined from a log, because of a missing signal.
 
 struct Effect;
 

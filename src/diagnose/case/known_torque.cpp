@@ -13,7 +13,7 @@ using Eigen::Index;
 
 Ridge::Ridge(const std::vector<std::vector<double>>& columns, std::span<const double> deviation, double noise)
     : columns_(columns), noise_(noise) {
-    // Columns that are as good as one another share what they explain in place of dividing by nothing.
+    // Collinear columns share their contribution in place of a division by zero.
     constexpr double least_of_its_own = 1e-9;
     Eigen::MatrixXd products(static_cast<Index>(columns.size()), static_cast<Index>(columns.size()));
     for (std::size_t r = 0; r < columns.size(); ++r) {

@@ -26,7 +26,7 @@ class Ridge {
     Ridge(const std::vector<std::vector<double>>& columns, std::span<const double> deviation, double noise);
 
     [[nodiscard]] std::vector<double> solve(std::span<const double> target) const;
-    /// Standard errors of the values, where what the columns do not explain is white and of rms `noise`.
+    /// Standard errors of the values, where the residual of the columns is white and of rms `noise`.
     [[nodiscard]] std::vector<double> standard_errors() const;
 
   private:

@@ -49,9 +49,9 @@ LineSpectrum spectrum_of(const LineSamples& samples, double highest, const LineR
         std::min(static_cast<std::size_t>(std::max(highest / spacing, 1.0)) + 1, rules.most_cells));
 }
 
-// A residual against time, as tones are looked for in it. Of a log with long gaps it is the mean of the
-// spectra of its pieces: a spectrum of the whole would be a comb of lines, or end below what the sampling
-// resolves.
+// A residual against time, in the form used to search for tones. For a log with long gaps it is the mean of
+// the spectra of its pieces: a spectrum of the whole would be a comb of lines, or end below the resolution of
+// the sampling.
 
 class Tones {
   public:
@@ -68,7 +68,7 @@ class Tones {
 
     const LineRules& rules_;
     LineSamples all_;
-    std::vector<LineSamples> pieces_;  ///< none where the whole is looked at
+    std::vector<LineSamples> pieces_;  ///< none where the whole is used
     LineSpectrum spectrum_;
 };
 
@@ -229,8 +229,8 @@ std::vector<double> background(const std::vector<double>& power, std::size_t blo
     return all;
 }
 
-// Against the angle each stretch of it counts the same, however long the joint stayed there: rests and slow
-// passes would spread a line over its whole neighbourhood.
+// Against the angle each stretch of it counts the same, however long the joint stayed there: standstill and
+// slow passes would spread a line over its whole neighbourhood.
 LineSamples evenly_by_angle(const Case& c, const std::vector<double>& values) {
     LineSamples samples;
     double sum = 0.0;
@@ -246,7 +246,7 @@ LineSamples evenly_by_angle(const Case& c, const std::vector<double>& values) {
 }
 
 double highest_cycles_per_deg(const Case& c, const LineRules& rules) {
-    // Order 8.6 of a hundredfold gear, or what the sampling resolves at moderate speed: beyond, noise alone.
+    // Order 8.6 of a hundredfold gear, or the limit of the sampling at moderate speed: beyond, noise alone.
     double fastest = 0.0;
     for (const double v : c.motion.velocity_deg_s) fastest = std::max(fastest, std::abs(v));
     return 0.5 * c.motion.sample_rate.value() / std::max(rules.moderate_speed * fastest, 1.0);

@@ -13,7 +13,7 @@
 
 namespace ripplenotch {
 
-// The spectrum in which lines of a residual are looked for: of samples at any places, of time or of angle.
+// The spectrum used to search for lines of a residual: of samples at any positions, in time or in angle.
 
 using LineRules = DiagnosisRules::LineRules;
 

@@ -15,8 +15,8 @@
 
 namespace ripplenotch {
 
-// The many columns that leave nothing of a log but its noise, and what they leave. There are over a hundred,
-// each as long as the log, and they come in turns: products that were summed up once are kept.
+// The many columns whose residual is only the noise of a log, and that residual. There are over a hundred,
+// each as long as the log, and they are added in turns: products that were summed up once are kept.
 
 class NoiseColumns {
   public:
@@ -64,8 +64,8 @@ struct NoiseWave {
 
 void add_wave(NoiseColumns& columns, const NoiseWave& wave);
 
-/// The columns of one case, and their products, between one look at its noise and the next: most of what a
-/// look costs.
+/// The columns of one case, and their products, kept between two estimates of its noise: most of the cost of
+/// an estimate.
 class NoiseGround {
   public:
     /// The columns, and nothing behind them. The case must outlive them, and stay as it is.
@@ -101,7 +101,7 @@ struct NoiseFloor {
 /// `model`: the best one so far, wholly stated; its own slopes take part.
 [[nodiscard]] NoiseFloor noise_floor(const Case& looked_at, const Model& model, const Model& open,
                                      const DiagnosisRules& rules);
-/// The same, where the noise of this case is looked at again and again.
+/// The same, where the noise of this case is estimated repeatedly.
 [[nodiscard]] NoiseFloor noise_floor(const Case& looked_at, const Model& model, const Model& open,
                                      const DiagnosisRules& rules, NoiseGround& ground);
 

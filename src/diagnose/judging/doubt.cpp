@@ -206,7 +206,7 @@ bool is_fast(Domain d) { return d == Domain::order || d == Domain::frequency; }
 
 bool of_one_kind(Domain a, Domain b) { return is_fast(a) == is_fast(b); }
 
-// By how much a spring that does not swell anything delays what is slow, in s; empty where it swells.
+// Delay of a slow torque by a spring without amplification, in s; empty where it amplifies.
 std::optional<double> delay_of_spring(const Term& term, double most_damping) {
     const auto value = [&](std::string_view name) {
         const auto place = find_parameter(*term.effect, name);
@@ -253,7 +253,7 @@ std::optional<Size> size_of(const Term& stated, const std::vector<FittedValue>& 
     return size;
 }
 
-// What speaks against a finding by itself; empty reason when nothing does.
+// A reason against a finding in itself; empty when there is none.
 struct RaisedDoubt {
     FindingStatus status = FindingStatus::confirmed;
     std::string reason;

@@ -26,8 +26,8 @@ struct Unevenness {
 /// short stretches, where only the change of the torque counts and not its mean. `term` is of `stated`.
 [[nodiscard]] Unevenness unevenness(const ModelBench& bench, const Model& stated, std::size_t term);
 
-/// Sets status and reason from the finding's own evidence, which must be filled in; confirmed when nothing
-/// speaks against it. `term`: its place in the model.
+/// Sets status and reason from the finding's own evidence, which must be filled in; confirmed when there is
+/// no reason against it. `term`: its index in the model.
 void doubt_alone(Finding& finding, const ModelBench& bench, const Candidate& model, std::size_t term);
 
 /// The same for its size alone, with the reported values: true, and unidentifiable, where the error covers

@@ -23,9 +23,8 @@ namespace ripplenotch {
 
 namespace {
 
-// Samples that are left out because they stand at the limit are those that noise has brought there; those
-// that noise has kept below would stay, and the torque would come out too small. What counts is where the
-// torque is expected to be.
+// Samples at the limit are there partly because of noise; excluding only those while samples that noise kept
+// below the limit remain would bias the torque low. The expected torque decides instead.
 void leave_out_limited(Case& looked_at, const Model& stated, const std::vector<Fault>& faults,
                        double noise_nm, const DiagnosisRules::ValueRules& rules) {
     for (const Fault& fault : faults) {
@@ -131,7 +130,8 @@ double gain_elsewhere(const ModelBench& bench, const Model& with, const Model& w
     return total > 0.0 ? (total - most) / total : 0.0;
 }
 
-// The gain block by block. A block is longer than what the noise remembers, so that blocks are independent.
+// The gain block by block. A block is longer than the correlation of the noise, so that blocks are
+// independent.
 void take_blocks(const ModelBench& bench, const Model& with, const Model& without, Evidence& evidence) {
     const auto now = bench.residual(with), before = bench.residual(without);
     const double memory = 5.0 * static_cast<double>(bench.noise().color.size());
@@ -392,8 +392,8 @@ double rms_left(const ModelBench& bench, const Case& log, Model stated) {
     return rms_used(other, residual_nm(other, stated));
 }
 
-// Each finding may mend what the one before has spoiled: the newest go until the whole does no worse than
-// the model as given.
+// Each finding may correct an error of the one before: the newest are withdrawn until the whole does no worse
+// than the model as given.
 void withdraw_newest(const ModelBench& bench, Candidate& kept, const Model& given, const Case& other,
                      std::size_t own_terms, std::vector<Finding>& findings) {
     const double given_nm = rms_left(bench, other, given);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// How sure each finding is: what it alone explains, whether it does so all over the log, and who could stand
-// in its place.
+// The evidence for each finding: the torque that it alone explains, whether it does so all over the log, and
+// which rivals could replace it.
 
 #include <cstddef>
 #include <optional>

@@ -78,7 +78,7 @@ class Basis {
     std::vector<TermColumn> ortho_;
 };
 
-// How the torque changes with each value of the model that a fit would look for.
+// Derivatives of the torque with respect to each value of the model that a fit would estimate.
 void add_slope_columns(const Prediction& prediction, Basis& basis) {
     const Model& model = prediction.model();
     for (std::size_t t = 0; t < model.terms.size(); ++t) {
@@ -331,7 +331,7 @@ std::vector<std::string> within(const FourierMotion& motion, const MotionLimits&
 
 namespace {
 
-// How closely is looked, and nothing that is decided by.
+// Effort of the search for a motion; not used for decisions.
 struct Looking {
     static constexpr std::array durations_s = {6.0, 8.0, 10.0, 12.0, 15.0, 20.0, 25.0, 30.0};
     static constexpr int draws = 16, moves = 16;
@@ -353,7 +353,7 @@ Motion thinned(const Motion& motion, std::size_t step) {
 
 struct Judged {
     FourierMotion motion;
-    double score = -1.0;  ///< the least gain, in units of what is needed
+    double score = -1.0;  ///< the least gain, relative to the needed one
 };
 
 class Planning {
@@ -426,7 +426,7 @@ std::optional<MotionPlan> plan_motion(const Diagnosis& diagnosis, const TraceVie
         asked_terms(diagnosis, thinned(whole, step), variance / static_cast<double>(step),
                     options.rules.advice.plan_gain);
     if (asked.empty()) return std::nullopt;
-    // A row that is looked at stands for so many of the log to come.
+    // A row that is evaluated represents so many of the log to come.
     const double judged_variance = variance * Looking::rate.value() / options.sample_rate.value();
     const Planning planning(asked, limits, judged_variance);
     Judged best;

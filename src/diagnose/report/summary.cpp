@@ -36,7 +36,7 @@ struct Counted {
 };
 constexpr Counted where_explained{676.0, 1.0}, where_something_is_left{186.0, 2.0};
 
-// The mean of what the true share may be after so many (Jeffreys), so that none wrong is not never.
+// Posterior mean of the share (Jeffreys prior), so that none wrong of a finite number does not give 0.
 double percent(const Counted& counted) { return 100.0 * (counted.wrong + 0.5) / (counted.names + 1.0); }
 
 }  // namespace
@@ -276,7 +276,7 @@ void take_gap_before(const DiagnosisGap& first, DiagnosisGap& gap) {
         closed_of_round(*gap.validation_before_nm, *gap.validation_after_nm, gap.noise_floor_nm);
 }
 
-// The model as given with what is accepted, its values open.
+// The model as given with the accepted findings, their values open.
 Diagnosis with_accepted(const Model& model, const TraceView& log, const TraceView* validation,
                         const DiagnosisOptions& options, Diagnosis first) {
     std::vector<AcceptedFinding> accepted;
@@ -296,7 +296,7 @@ Diagnosis with_accepted(const Model& model, const TraceView& log, const TraceVie
             if (value.term == place) accepted[i].values.push_back(value);
     }
     told.accepted = std::move(accepted);
-    // What the user accepts is not what the log confirms.
+    // A finding accepted by the user is not one confirmed by the log.
     if (told.verdict == DiagnosisVerdict::matches || told.verdict == DiagnosisVerdict::explained)
         told.verdict = DiagnosisVerdict::partly_explained;
     told.baseline.terms.resize(model.terms.size());
@@ -327,8 +327,8 @@ double residual_rms(const Case& c, const Model& stated, const std::vector<unsign
     return rms_of(residual_nm(c, stated), use);
 }
 
-// Part of the squared gap above the floor that is gone, of samples that no fault spoiled. Empty when there
-// was no gap to speak of.
+// Closed share of the squared gap above the floor, over samples without faults. Empty when the gap was not
+// significant.
 std::optional<double> closed_percent(const GapCase& c, const Diagnosis& diagnosis, double least_gap) {
     const double floor = portable::pow(diagnosis.gap.noise_floor_nm, 2);
     const double before =

@@ -191,8 +191,8 @@ Candidate ModelBench::fitted(const Model& open, const Model& first_guess, std::v
                        .weighing = own.other ? &*own.other : &weighing_,
                        .carriers = &carriers_});
     };
-    // Errors that pass a sensor as it is no longer can stand in for the torque itself: the last look takes
-    // them where they are. Before, it is known only roughly where that is.
+    // Errors that pass a sensor with outdated values can replace the torque itself: the last fit takes them
+    // through the current one. Before, the sensor's values are known only roughly.
     constexpr double roughly = 1e-3;  // chosen, not derived: as the steps of each search
     bool is_rough = own.other.has_value();
     Candidate found = from(first_guess, most_iterations, is_rough ? std::max(settled, roughly) : settled);

@@ -51,29 +51,31 @@ using Column = std::vector<double>;
 /// Sum of products of two columns of the same length.
 [[nodiscard]] double product(const Column& a, const Column& b);
 
-/// Columns of length 1 at right angles that span what `columns` span, the first column first; what is a
-/// combination of the columns before it, to a part in ten million, is left out.
+/// Orthonormal columns that span the same space as `columns`, the first column first; a column that is a
+/// combination of those before it, to a part in ten million, is left out.
 [[nodiscard]] std::vector<Column> orthonormal(std::span<const Column> columns);
 
 /// The part of a column outside the basis, whose columns are orthonormal().
 [[nodiscard]] Column outside_of(std::span<const Column> basis, Column column);
 
-/// Square of what the basis and the columns together explain of `left`, in its unit squared: as by
+/// Square of the projection of `left` on the basis and the columns together, in its unit squared: as by
 /// orthonormal() of all of them, but from their products alone, which takes a third of the time. A column is
-/// left out where it is a combination of the others to a part in a hundred thousand: products know no better.
+/// left out where it is a combination of the others to a part in a hundred thousand: products have no higher
+/// accuracy.
 [[nodiscard]] double explained(std::span<const Column> basis, std::span<const Column> columns,
                                const Column& left);
 
 // The results of the rules for one finding or candidate.
 
-/// Notes each rule that is asked, in the order in which they are.
+/// Records each rule that is applied, in order.
 class Hearing {
   public:
     /// Both must outlive it.
     Hearing(const DiagnosisRules& rules, std::vector<Decision>& decisions)
         : rules_(rules), decisions_(decisions) {}
 
-    /// Notes that `rule` was asked about `number`; returns `against`, whether it spoke against the finding.
+    /// Records that `rule` was applied to `number`; returns `against`, whether it was a reason against the
+    /// finding.
     bool asked(std::string_view rule, double number, bool against) {
         const DiagnosisRule& found = find_diagnosis_rule(rule);
         decisions_.push_back({found.name, number, found.get(rules_), std::string(found.unit), against});
@@ -94,11 +96,11 @@ class Hearing {
 // Results for a model along one case, kept so that they are not computed again for a model with the same
 // residual: a search returns to the model that it began with, fitted from elsewhere or against another noise.
 
-/// A model by what a screening sees of it. What is kept of it lives no longer than what it points to.
+/// A model as a screening uses it. It must not outlive the objects that it refers to.
 struct SeenModel {
     const Model& open;                       ///< values to be fitted are empty
     const std::vector<double>& left_nm;      ///< measured less predicted, a number a sample
-    std::span<const Effect* const> effects;  ///< that are tried
+    std::span<const Effect* const> effects;  ///< the effects tried
 };
 
 template <class Found>
@@ -199,13 +201,13 @@ class ModelBench {
 
     [[nodiscard]] Candidate fitted(const Model& open, const Model& first_guess, std::vector<double> prices,
                                    int most_iterations = 8, double settled = 1e-7) const;
-    /// The same model with the errors of its values, which a search does not ask for.
+    /// The same model with the errors of its values, which a search does not need.
     [[nodiscard]] Candidate with_errors(Candidate model) const;
     /// The same model at its very best, with errors that do not take the noise for white.
     [[nodiscard]] Candidate settled(const Candidate& model) const;
     /// Weighed measured less predicted torque, in units of the noise, a number per row().
     [[nodiscard]] std::vector<double> residual(const Model& stated) const;
-    /// Measured less predicted torque; what is uncertain of the known torque has its best values.
+    /// Measured less predicted torque, with the best values of the uncertain known torque.
     [[nodiscard]] std::vector<double> raw_residual(const Model& stated) const;
     /// A torque whitened, in units of the noise, a number per row().
     [[nodiscard]] std::vector<double> whitened(std::span<const double> torque_nm) const;

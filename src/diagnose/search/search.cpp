@@ -183,8 +183,8 @@ void drop_needless(const ModelBench& bench, Candidate& now, std::size_t own_term
     }
 }
 
-// A second term of one name that changes next to nothing mends the form of the first; while it is there,
-// neither shows what it is worth.
+// A second term of one name that changes next to nothing is a correction term for the form of the first;
+// while it is present, neither shows its own improvement.
 void drop_slight_twins(const ModelBench& bench, Candidate& now, std::size_t own_terms) {
     for (std::size_t term = now.stated.terms.size(); term-- > own_terms;) {
         bool has_twin = false;

@@ -27,7 +27,7 @@ double in_two_digits(double value) {
     return std::round(value / unit) * unit;
 }
 
-// The values with which a term is evaluated, stated from another speed, and what that makes of its ripple.
+// The values with which a term is evaluated, stated from another speed, and the resulting ripple.
 struct Restated {
     std::vector<double> values;
     double ripple = 1.0;
@@ -92,7 +92,7 @@ void state_where_told(Candidate& model, const Case& looked_at, const DiagnosisRu
         const double usual_deg_s = usual_speed_deg_s(looked_at);
         const std::vector<std::size_t> ripple = ripple_of(model, t);
         if (!(usual_deg_s > 0.0) || ripple.empty()) continue;
-        // Amplitude at rest and at the usual speed, in that of the term.
+        // Amplitude at standstill and at the usual speed, relative to that of the term.
         const double rest = restated(stated, 0.0).ripple, usual = restated(stated, usual_deg_s).ripple;
         const double from_deg_s =
             std::abs(rest) < rules.search.least_at_rest * std::abs(usual) ? usual_deg_s : 0.0;
@@ -260,7 +260,7 @@ class RunningSums {
     [[nodiscard]] std::size_t size() const { return times_s_.size(); }
     [[nodiscard]] double time_s(std::size_t place) const { return times_s_[place]; }
 
-    /// Sum of squares above the noise, less what a constant inertia, gravity and offset explain.
+    /// Sum of squares above the noise, less the part explained by a constant inertia, gravity and offset.
     [[nodiscard]] double gap(double noise_nm) const {
         const Eigen::VectorXd along = all_.topRightCorner<all_columns, 1>();
         return all_(all_columns, all_columns) - along.dot(factors_.solve(along)) -

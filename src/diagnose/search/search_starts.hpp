@@ -22,7 +22,7 @@ namespace ripplenotch {
 // the log.
 
 /// The speed of the log from which such a ripple is stated: the rms of those at which the joint moves, in two
-/// digits. 0 where it rests.
+/// digits. 0 without motion.
 [[nodiscard]] double usual_speed_deg_s(const Case& looked_at);
 
 /// States each change of the ripple that was found (it has a price) from standstill, or from the usual speed
@@ -34,7 +34,7 @@ void state_where_told(Candidate& model, const Case& looked_at, const DiagnosisRu
 struct Bend {
     std::string_view parameter;  ///< empty: it is not
     std::string_view rule;       ///< the rule for it
-    double number = 0.0;         ///< what it was asked about
+    double number = 0.0;         ///< the number that the rule was applied to
 };
 
 /// The first parameter of a term that is bent as far as its bounds allow, or so far that the torque is as
@@ -80,8 +80,8 @@ struct Hints {
                                           double& cells);
 
 /// A joint has one delay, one lag, one gear ratio, ripple grows with the speed in one way, and friction of
-/// one form has one size: what a second one would correct is another effect's. `open`: values to be fitted
-/// are empty.
+/// one form has one size: a second one would only correct the first for another effect. `open`: values to be
+/// fitted are empty.
 [[nodiscard]] bool is_there_already(const Term& tried, const Model& open);
 
 // A gear ratio that is wrong and a delayed torque mask each other: without the delay no ratio puts the ripple

@@ -241,8 +241,8 @@ class TorqueComparison {
         found.explained = all > 0.0 ? 1.0 - sum_of_squares(fit.held_out()) / all : 0.0;
         return found;
     }
-    // Whether what offset and friction take of the measured torque, less the simulated one times a factor,
-    // drives the joint, in each set of blocks.
+    // Whether the fitted offset and friction, with the simulated torque times a factor subtracted, drive the
+    // joint, in each set of blocks.
     [[nodiscard]] bool friction_drives(double factor) const {
         if (friction_.size() < 2) return false;
         std::vector<double> target = measured_;

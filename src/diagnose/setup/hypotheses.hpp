@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// What suspect_setup asks of the motions and of the torques.
+// The tests of suspect_setup on the motions and on the torques.
 
 #include <vector>
 

@@ -275,8 +275,8 @@ class ShiftSearch {
     // To either side, over which derivatives of the smoothed simulation are differences.
     [[nodiscard]] double around_s() const { return 0.5 * problem_.smoothing_s; }
 
-    // Columns of the delay, of the clock where it is asked for, of the scale, and of the second derivative,
-    // by which a lag of first order differs from a delay; then the nuisances.
+    // Columns of the delay, of the clock if requested, of the scale, and of the second derivative, by which a
+    // lag of first order differs from a delay; then the nuisances.
     [[nodiscard]] ShiftColumns with_shift(const Complement& complement, const Shift& shift,
                                           bool with_clock) const {
         std::vector<double> value, slope, drift, second;

@@ -62,7 +62,7 @@ class NuisanceColumns {
     NuisanceColumns(const TraceView& log, std::optional<GearRatio> gear_ratio,
                     const AlignmentOptions& options, const Window& window);
 
-    /// An offset, and what is chosen of: friction (Coulomb of two widths, viscous), the acceleration, cosine
+    /// An offset, and the chosen ones of: friction (Coulomb of two widths, viscous), the acceleration, cosine
     /// and sine of the position, ripple of orders 1 and 2 whose amplitude is affine in the speed, friction
     /// that grows with the measured torque and hysteresis (Dahl's, of 2 deg).
     [[nodiscard]] std::vector<std::vector<double>> of(const NuisanceChoice& choice) const;

@@ -239,7 +239,7 @@ std::string MapCode::definitions() const {
     if (form.directions == 1) {
         code += side(0, "    ", "z[{0}] = {1};");
     } else {
-        // Each side by itself: a compiler that sees both in one expression looks both up.
+        // Each side in a statement of its own: with both in one expression a compiler looks both up.
         code += "    if (speed_deg_s >= @name@_limits[0]) {\n" + side(0, "        ", "z[{0}] = {1};") +
                 "    } else if (speed_deg_s <= -@name@_limits[0]) {\n" +
                 side(1, "        ", "z[{0}] = {1};") +

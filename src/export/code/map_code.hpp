@@ -16,12 +16,12 @@ class MapTables {
     std::vector<double> speeds;
     /// Between each speed and the next: 1 / gap, and less the middle times that.
     std::vector<double> slopes, offsets;
-    /// Speed below which the directions blend; of the joint in turns: less the middle of its range, from
-    /// which it is counted, and half of the range; least and greatest load; of the temperature the middle,
-    /// and least and greatest beyond it.
+    /// Speed below which the directions blend; for the joint in turns: the negative middle of its range, from
+    /// which it is counted, and half of the range; least and greatest load; for the temperature the middle,
+    /// and least and greatest relative to it.
     std::vector<double> limits;
-    /// By direction and column, in it by order, cosine before sine. In the place of the speeds' columns stand
-    /// for each gap the value in its middle and what it gains across.
+    /// By direction and column, in it by order, cosine before sine. Instead of the speeds' columns, for each
+    /// gap the value in its middle and the increment across it.
     std::vector<double> amplitudes;
 
     explicit MapTables(const RippleMap& map);
@@ -39,7 +39,8 @@ class MapTables {
 /// from where the joint's angle is counted in C. The map itself where it has no second comb.
 [[nodiscard]] RippleMap with_combs_apart(const RippleMap& map);
 
-/// The C of one map. Functions take what the form needs, so that a compiler has nothing to warn of.
+/// The C code of one map. Functions have only the parameters that the form needs, so that a compiler has
+/// nothing to warn of.
 class MapCode {
   public:
     MapCode(const RippleMap& map, const CodeStyle& style)

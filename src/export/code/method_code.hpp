@@ -88,7 +88,7 @@ namespace ripplenotch::c_code {
 // The fixed parts of the C header, with @fields@ to fill in. Its arithmetic is that of
 // export/run/structure.hpp, operation by operation.
 
-/// Declarations by which a reader knows the form of a header.
+/// Declarations that identify the form of a header to a reader.
 inline constexpr std::string_view svf_fields = "a1, a2, a3, m0, m1, m2;";
 inline constexpr std::string_view df1_memory = "x1, x2, y1, y2;";
 

@@ -81,7 +81,8 @@ namespace {
 // A joint as a file of MuJoCo's of its own.
 
 constexpr double gravity_m_s2 = 9.81;
-// MuJoCo needs some: what a model that states no inertia gets, and the body about its own centre.
+// MuJoCo needs some inertia: the value for a model that states none, and that of the body about its own
+// centre.
 constexpr double next_to_no_inertia_kgm2 = 1e-6, own_inertia_kgm2 = 1e-9;
 // tanh(v / width) as a sum of parts, each share * clip(v / (wider * width), -1, 1): by squares over all
 // speeds the nearest of two, 0.05 apart at most.
@@ -89,7 +90,7 @@ struct StepPart {
     double share, wider;
 };
 constexpr StepPart steep{0.5163, 0.8}, flat{0.4837, 1.95};
-// The least impedance that MuJoCo takes: the constraint is soft then, and its force goes with the speed
+// The least impedance that MuJoCo accepts: the constraint is soft then, and its force depends on the speed
 // alone.
 constexpr double softest = 1e-4;
 constexpr double longest_step_s = 0.002, shortest_step_s = 1e-5;

@@ -12,7 +12,7 @@ namespace ripplenotch {
 [[nodiscard]] std::string mjcf_comment(const JointMjcf& mjcf, std::span<const std::string> heading);
 /// "0.3 1e-05", or one number where there is no friction with the square of the speed.
 [[nodiscard]] std::string damping_words(const JointMjcf& mjcf);
-/// The dcmotors, a line each, whose names end in `ending`. The compiler asks for a motor constant and a
+/// The dcmotors, a line each, whose names end in `ending`. The compiler requires a motor constant and a
 /// resistance above 0.
 [[nodiscard]] std::string mjcf_motors(const JointMjcf& mjcf, std::string_view joint, std::string_view ending);
 /// For an attribute between double quotes.

@@ -60,7 +60,7 @@ XmlTag tag_at(std::string_view text, std::size_t at) {
     return tag;
 }
 
-// The first tag that is asked for, comments left aside.
+// The first tag that matches, ignoring comments.
 template <class IsIt>
 std::optional<XmlTag> first_tag(std::string_view text, const IsIt& is_it) {
     for (std::size_t at = text.find('<'); at != std::string_view::npos; at = text.find('<', at)) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The whole map as rows of n, a, b: the form that anybody can read.
+// The whole map as rows of n, a, b: the most widely readable form.
 #include <fmt/format.h>
 
 #include <cmath>

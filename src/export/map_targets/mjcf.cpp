@@ -37,7 +37,7 @@ Written write(const RippleMap& map, const Settings& settings, std::span<const st
     const RippleMap flat = flat_map(map, settings);
     std::string text;
     if (!heading.empty()) text += "<!--\n" + comment_lines(heading, "  ") + "-->\n";
-    // The compiler asks for a motor constant and a resistance above 0.
+    // The compiler requires a motor constant and a resistance above 0.
     text += "<mujoco>\n  <actuator>\n";
     for (std::size_t i = 0; i < flat.orders.size(); ++i) {
         const Cogging one = cogging_of(flat, i);

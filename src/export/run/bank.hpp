@@ -154,8 +154,8 @@ struct GoldenVector {
     std::vector<double> torque_nm, speed_deg_s, expected_nm;
 };
 
-/// Torque and speed that float holds exactly, going through the regions up and down, and what the bank puts
-/// out in its own arithmetic.
+/// Torque and speed that float holds exactly, going through the regions up and down, and the output of the
+/// bank in its own arithmetic.
 [[nodiscard]] GoldenVector golden_vector(const std::vector<BankRegion>& regions, const LoadedFilters& filters,
                                          Arithmetic arithmetic);
 

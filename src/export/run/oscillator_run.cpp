@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A sample of the oscillator in C, written out: a compiler keeps what it can in registers.
+// A sample of the oscillator in C, unrolled: a compiler keeps what it can in registers.
 
 #include "export/run/oscillator_run.hpp"
 
@@ -16,7 +16,7 @@ namespace ripplenotch {
 
 namespace {
 
-// Added up with what rounding took off before (Kahan): a phase that drifts is not forgotten at rest.
+// Compensated summation (Kahan): a phase that drifts is not lost at standstill.
 constexpr std::string_view slip_code =
     R"c(    const @real@ step = @name@_fma(moved, s->slip, moved), size = @abs@(step);
     const @real@ slip_added = @name@_fma(moved, s->slip, -s->lost), slipped = s->slipped + slip_added;
@@ -56,7 +56,7 @@ class StepCode {
   private:
     using Products = std::vector<std::pair<std::string, std::string>>;
 
-    // first + how each amplitude's showing changed, d2, times what `of` makes of its number.
+    // first + change of each amplitude's measurement weight, d2, times the value of `of` for its index.
     template <class Of>
     [[nodiscard]] std::string sum(const std::string& first, const Of& of) const {
         Products products;

@@ -18,10 +18,10 @@ namespace ripplenotch {
 // The oscillator as its C header computes it, in the header's precision.
 //
 // It is the filter of filter/ripple/ripple_kalman.hpp in other coordinates. There the first state is the
-// torque; here it is torque and ripple together, what the sensor shows. A sample then looks at one state
-// alone, and a cold start knows nothing of how the two share it: its covariance is diagonal, and no digits go
-// into cancelling large correlations. What is forgotten of the amplitudes is taken off how they show, one
-// number for all of them, and brought back into them where that has sunk to a half.
+// torque; here it is torque and ripple together, the measured value. A sample then measures one state alone,
+// and a cold start has no prior on how the two share it: its covariance is diagonal, and no digits are lost
+// to cancelling large correlations. The decay of the amplitudes is applied to their measurement weights, one
+// number for all of them, and to the amplitudes themselves where that has sunk to a half.
 
 /// Places in the header's array of values. The torque's rate is per sample.
 struct OscillatorValue {

@@ -102,7 +102,7 @@ std::string bands_text(const FilterSet& filters, const Writer& writer, Arithmeti
 std::string regions_text(const std::vector<BankRegion>& regions, const Writer& writer) {
     std::string text;
     for (const BankRegion& region : regions) {
-        // Nothing is faster than the last region, so its edge is never looked at.
+        // Nothing is faster than the last region, so its edge is never used.
         const double to = std::isinf(region.to_deg_s) ? 0.0 : region.to_deg_s;
         const std::string edge = std::isinf(region.to_deg_s)
                                      ? "and faster"

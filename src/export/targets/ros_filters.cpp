@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The ROS package `filters`: one transfer function a section, in a filter chain. It knows no joint speed.
+// The ROS package `filters`: one transfer function a section, in a filter chain. It does not depend on the
+// joint speed.
 #include <fmt/format.h>
 
 #include <array>

@@ -101,7 +101,7 @@ std::optional<double> seconds_of(const Calendar& when) {
     return static_cast<double>(days * 86400 + hour * 3600 + minute * 60 + second);
 }
 
-// So many digits at the front of the text, taken off it.
+// So many digits at the front of the text, which are removed from it.
 std::optional<int> take_digits(std::string_view& text, std::size_t count) {
     if (text.size() < count) return std::nullopt;
     int number = 0;
@@ -118,7 +118,7 @@ struct Matched {
     std::string robot;
 };
 
-// The rest of a pattern against the rest of a name. Stars try every length, so a pattern has few of them.
+// Matches the end of a pattern with the end of a name. Stars try every length, so a pattern has few of them.
 bool fits(std::string_view pattern, std::string_view name, Matched& found) {
     while (!pattern.empty()) {
         if (pattern.front() == '%') {

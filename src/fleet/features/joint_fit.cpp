@@ -64,8 +64,8 @@ JointFit::JointFit(const FittedSamples& samples, const MotionFacts& facts, std::
     refine();
 }
 
-// What needs a first guess of the rest: friction that grows with the load, which is of inertia and weight,
-// and friction that turns over within an angle after each reversal (Dahl). Samples far off do not count.
+// Terms that need a first guess of the others: friction that grows with the load, which is the torque of
+// inertia and weight, and friction that reverses within an angle (Dahl). Outliers do not count.
 void JointFit::refine() {
     Model guess = fit_.model;
     if (facts_.both_directions() && load_rms_nm().value_or(0.0) > least_load * facts_.mix.torque_rms_nm) {

@@ -9,7 +9,7 @@
 
 namespace ripplenotch {
 
-/// The change of every series at one place, with the errors and what they have in common.
+/// The change of every series at one position, with the errors and their correlation.
 struct ChangedSeries {
     std::size_t series = 0;
     Extra extra;

@@ -110,7 +110,7 @@ class Scan {
     [[nodiscard]] const std::string& name() const { return name_; }
     [[nodiscard]] double unit() const { return unit_; }  ///< unit_of(), 1 of all torques together
     [[nodiscard]] const Scatter& scatter() const { return scatter_; }  ///< scatter of its own lines
-    /// From here on a statistic is held against its own scatter and this one together.
+    /// From here on a statistic is compared with its own scatter and this one together.
     void lean_on(const Scatter& known);
 
     [[nodiscard]] double largest() const { return largest_; }  ///< t squared, in the order of time
@@ -121,7 +121,7 @@ class Scan {
     [[nodiscard]] double memory() const {
         return memory_;
     }  ///< autocorrelation from row to row, without the best change
-    /// The same of what chance makes of the series, in another order of the joint's rows.
+    /// The same for a permutation of the series, in another order of the joint's rows.
     [[nodiscard]] double largest_of(const std::vector<std::size_t>& order, std::vector<double>& room) const;
 
   private:
@@ -142,7 +142,8 @@ class Scan {
     std::vector<std::size_t> rows_;
     std::vector<std::size_t> place_of_row_;  ///< in rows_; rows without the series have rows_.size()
     Regression regression_;
-    std::vector<double> norm_;  ///< squares that are left of a step before each place; 0: it is not looked at
+    /// Squares of the remainder of a step before each position; 0: it is not tested.
+    std::vector<double> norm_;
     std::vector<double> chance_;  ///< weighted residual without the best change, if it is one
     std::vector<double> slope_;
     double slope_norm_ = 0.0, largest_ = 0.0, memory_ = 0.0;
@@ -249,8 +250,8 @@ double Scan::largest_of(const std::vector<std::size_t>& order, std::vector<doubl
     return look(room).t_squared;
 }
 
-// A change would spoil its own yardstick (Ter Braak, 1992), so it is taken out of what chance makes of this
-// series. What chance made itself has to stay, or the yardstick would be too short.
+// A change would bias its own null distribution (Ter Braak, 1992), so it is removed from the residuals that
+// are permuted. Random variation has to stay, or the null distribution would be too narrow.
 void Scan::leave_chance(const Found& found) {
     std::vector<double> column = slope_;
     const std::size_t n = column.size();
@@ -500,7 +501,7 @@ struct LogScatter {
     double value = 0.0, own_variance = 0.0;
 };
 
-// Sums over joints, from which one of them is easily taken out.
+// Sums over joints, from which one of them is easily subtracted.
 struct Sums {
     double count = 0.0, value = 0.0, squares = 0.0, own_variance = 0.0;
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // Internal: is there a change in a joint, of any descriptor, anywhere in time? The largest statistic of all
-// is held against what the same joint gives when its residuals are put in another order (Freedman and Lane,
-// 1983), so that one p stands for all of them.
+// is compared with its permutation distribution for the residuals of the same joint (Freedman and Lane,
+// 1983), so that one p covers all of them.
 
 #include <cstdint>
 #include <map>
@@ -15,8 +15,8 @@
 
 namespace ripplenotch {
 
-// Internal: weighted least squares of a series on a few columns, and what one more column would explain of
-// what they leave.
+// Internal: weighted least squares of a series on a few columns, and the reduction of their residual by one
+// more column.
 
 /// What one more column explains.
 struct Extra {

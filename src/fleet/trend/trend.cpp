@@ -94,8 +94,8 @@ std::vector<DescriptorTrend> told_descriptors(const JointHistory& history,
     return told;
 }
 
-// Each test spends most of the chance that the ones before it have left, so that all of them together have
-// that of the rate.
+// Each test spends most of the false-alarm probability that remains after those before it, so that all of
+// them together have that of the rate.
 std::vector<FoundChange> find_changes(const JointHistory& history, const ScatterOfSeries& scatter,
                                       const TrendOptions& options, std::vector<JointChange>& changes) {
     std::vector<FoundChange> found;
