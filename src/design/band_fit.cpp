@@ -341,7 +341,7 @@ std::optional<double> BandSearch::delay_s(double attenuation_db, std::size_t ban
     return high;
 }
 
-// What a further band adds falls with every band, so the last that is worth it can be closed in on.
+// The gain of a further band falls with every band, so the last that is worth it can be found by bisection.
 std::size_t BandSearch::bands_worth_it(const QRule& rule) const {
     double known_db = 0.0;  // held by the fewest bands that are still tried
     const auto worth = [&](std::size_t count) {

@@ -79,8 +79,8 @@ constexpr double for_rounding = 1.25;  // margin on the bound, which is good to 
 constexpr double least_band = 1e-6;
 constexpr double most_cancelling = 1e6;  // chosen, not derived: ten of a double's digits remain
 
-/// What is still to come of a step response at most. It is target + sum of residue p^k over the poles p: with
-/// their magnitudes for residues and poles that is a bound which no later sample passes.
+/// Upper bound of the remaining change of a step response. It is target + sum of residue p^k over the poles
+/// p: with their magnitudes for residues and poles that is a bound which no later sample passes.
 class Remainder {
   public:
     explicit Remainder(std::span<const Biquad> cascade) {

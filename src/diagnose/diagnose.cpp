@@ -143,7 +143,7 @@ Searched search_rest(Case& part, const Model& model, std::span<const Effect* con
     }
     for (std::size_t look = 0; look < rules.regions.most_asides; ++look) {
         const auto left = residual_regions(*found.bench, found.last.stated);
-        // What is set aside has to be searched once more from the start.
+        // Each exclusion of an interval requires a complete new search.
         if (confined_part(part, left) > rules.regions.most_aside_part || work.is_over() ||
             !set_aside(part, left, rules))
             break;

@@ -23,7 +23,7 @@ namespace ripplenotch {
 [[nodiscard]] std::vector<ResidualRegion> nameless(std::vector<Fault>& faults,
                                                    std::span<const std::string> without);
 
-/// What stands in spoiled samples, known when there is a model of the others.
+/// Measures the residual in invalidated samples, once there is a model of the others.
 void measure_at_samples(std::vector<ResidualRegion>& nameless, const Case& c, const Model& stated);
 
 }  // namespace ripplenotch

@@ -58,7 +58,7 @@ class TextReader {
 [[nodiscard]] double q_from_bandwidth(double center_hz, double bandwidth_hz);
 [[nodiscard]] double bandwidth_from_q(double center_hz, double q);
 
-/// What all notches of a set share where a target has one width and one depth for all.
+/// The common shape of all notches of a set where a target has one width and one depth for all.
 struct SharedShape {
     double q = 1.0;
     double gain = 0.0;  ///< at the centre; 0 for a full null

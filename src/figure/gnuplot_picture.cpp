@@ -76,7 +76,7 @@ void place(std::vector<LineLabel>& labels, const Panel& panel, const PanelLayout
     for (std::size_t k = 0; k < mine.size(); ++k) labels[mine[k]].at_px = placed[k];
 }
 
-// What the widest panel needs, so that the axes of panels one below the other line up.
+// The margin of the widest panel, so that the axes of panels one below the other line up.
 double needed_beside(const Figure& figure) {
     double most = 0.0;
     for (const Panel& panel : figure.panels) {

@@ -235,7 +235,7 @@ class Writer {
         put("</section>\n");
     }
 
-    // What few people open: ledgers, every value, how to make it again, the JSON.
+    // Collapsed sections: ledgers, every value, how to make it again, the JSON.
     void folded(const PageSection& one) {
         for (const PageTable& ledger : one.tables) {
             if (!ledger.folded) continue;

@@ -29,7 +29,7 @@ struct Spoken {
 /// reaches, else four for torques, levels, shares and milliseconds, else as value_text.
 [[nodiscard]] std::string field_text(const Json& owner, const std::string& name);
 
-/// What parameters were fitted to: {"level_nm": {"value": 1, "ci95": [0.9, 1.1]}} is "level 1.00 (0.90 to
+/// The fitted parameters as text: {"level_nm": {"value": 1, "ci95": [0.9, 1.1]}} is "level 1.00 (0.90 to
 /// 1.10) Nm".
 [[nodiscard]] std::string parameters_text(const Json& parameters);
 

@@ -494,7 +494,7 @@ Json drawn(const Figure& figure, double room_px) {
     return Json{{"data", std::move(data)}, {"layout", std::move(layout)}};
 }
 
-// What is different where a screen is narrow, so that names of curves take more rows: paths and their values.
+// Differences on a narrow screen, where names of curves take more rows: paths and their values.
 Json narrow_changes(const Figure& figure, const Json& wide) {
     Json changes = Json::array();
     const bool same = std::all_of(figure.panels.begin(), figure.panels.end(), [](const Panel& panel) {

@@ -139,7 +139,7 @@ std::vector<std::pair<std::string, std::string>> method_cells(const Json& method
     return cells;
 }
 
-// What a label stands for, and why a method is not recommended.
+// The meaning of a label, and why a method is not recommended.
 std::string legend_of(const Json& method, const std::string& spec) {
     std::string words = spec;
     if (const auto reasons = method.find("shortfalls"); reasons != method.end() && reasons->is_array())
@@ -514,7 +514,7 @@ std::string text_at(const Json& json, const char* name) {
     return found != json.end() && found->is_string() ? found->get<std::string>() : "";
 }
 
-// What a person reads first of a kind; its other tables are ledgers.
+// The main tables of a kind are shown first; its other tables are ledgers.
 bool is_ledger(const std::string& kind, const std::string& name) {
     struct Shown {
         std::string_view kind, name;

@@ -24,7 +24,7 @@ namespace ripplenotch {
 // from what was found. A finding under a doubt is no verdict: the sentence begins with "Cannot tell:" and the
 // doubts, in the order in which they came, and the identification is not conclusive.
 
-/// What the lines come to.
+/// The overall result from the lines.
 enum class RippleFinding {
     ratio,       ///< ripple that turns with the joint, and the gear ratio
     orders,      ///< ripple that turns with the joint; its gear ratio stays open

@@ -19,7 +19,7 @@ struct MotionLine {
     double order_output = 0.0, order_stderr = 0.0;  ///< for kinds order and unknown
     double hz = 0.0, hz_stderr = 0.0;               ///< for kind tone
     double amplitude_nm = 0.0;                      ///< zero to peak, rms over sweeps, noise subtracted
-    double floor_nm = 0.0;                          ///< what noise alone shows, rms over sweeps
+    double floor_nm = 0.0;                          ///< amplitude of noise alone, rms over sweeps
     double snr = 0.0;                               ///< amplitude_nm / floor_nm
     double false_alarm = 1.0;  ///< chance that noise shows such a line anywhere on this axis
     /// Improvement in log-likelihood by a line in angle, or in time (natural units).

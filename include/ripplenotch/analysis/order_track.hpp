@@ -12,7 +12,8 @@
 
 namespace ripplenotch {
 
-/// What repeats `order` times per turn of a shaft. With time in seconds as `turns`, a tone of `order` hertz.
+/// A line that repeats `order` times per turn of a shaft. With time in seconds as `turns`, a tone of `order`
+/// hertz.
 struct TrackedLine {
     double order = 1.0;
     std::span<const double> turns;  ///< angle of its shaft, one value a sample, signed, without jumps

@@ -52,15 +52,15 @@ struct RippleEstimate {
 /// 300,000 rows in segments, which overlap, every second segment is left out, or of longer ones every fourth,
 /// and so on. The noise is the median power of the residual 1.5 to 6.5 periods per window away from the
 /// order, so that noise of any colour counts as it is; a ripple smaller than 1e-4 of the torque's range does
-/// not count. One estimate per order asked for. Throws UsageError for a ratio or an order that is not above
+/// not count. One estimate per requested order. Throws UsageError for a ratio or an order that is not above
 /// 0. Cost O(n (trend + 2 orders)^2).
 [[nodiscard]] std::vector<RippleEstimate> estimate_ripple(std::span<const TraceView> logs, GearRatio ratio,
                                                           std::span<const Order> orders);
 
-/// What is there, or how small it is at most, order by order, with the speeds it was searched at.
+/// The ripple that is present, or its upper limit, order by order, with the speeds it was searched at.
 [[nodiscard]] std::string ripple_text(std::span<const RippleEstimate> estimates);
 
-/// What RippleMeter finds at one order.
+/// The result of RippleMeter for one order.
 struct OrderLevel {
     double order = 0.0;
     double mean_hz = 0.0;              ///< mean of n Kg |v| / 360 over the windows

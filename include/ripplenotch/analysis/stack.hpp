@@ -26,7 +26,7 @@ struct Stack {
     std::vector<double> ratio;          ///< power over noise, weighted mean over sweeps: 1 is noise
     std::vector<double> averages;       ///< independent averages behind each bin; 0 where no sweep reaches
     std::vector<double> amplitude_nm;   ///< zero to peak, rms over sweeps
-    std::vector<double> floor_nm;       ///< what noise alone shows, rms over sweeps
+    std::vector<double> floor_nm;       ///< amplitude of noise alone, rms over sweeps
     std::vector<double> sweep_weights;  ///< effective samples
     std::vector<std::vector<float>> floors;  ///< per sweep and bin: mean noise power |S|^2; 0 where not used
     std::vector<char>

@@ -108,9 +108,8 @@ struct Sweeps {
 [[nodiscard]] Sweep part_of(const Sweep& sweep, std::size_t first, std::size_t count);
 
 /// Angle from position (unwrapped at 360 deg) where there is one, else from integrated velocity, whose drift
-/// does not matter within one sweep. The trend, a line and
-/// cosines, is fitted in angle under the same weights. Where there is no position, `error` is taken off the
-/// velocity. Cost O(n terms^2).
+/// does not matter within one sweep. The trend, a line and cosines, is fitted in angle under the same
+/// weights. Where there is no position, the velocity is corrected by `error`. Cost O(n terms^2).
 [[nodiscard]] Sweeps cut_sweeps(std::span<const TraceView> logs, const SweepRule& rule,
                                 const VelocityError& error = {});
 

@@ -14,14 +14,14 @@
 namespace ripplenotch {
 
 enum class AmplitudeKind { peak, rms, peak_to_peak };
-/// What a cosine of amplitude 1, zero to peak, is in this kind.
+/// Amplitude in this kind of a cosine of amplitude 1, zero to peak.
 [[nodiscard]] double amplitude_factor(AmplitudeKind kind);
 /// "amplitude_nm", "rms_nm", "peak_to_peak_nm": in this project amplitude means zero to peak.
 [[nodiscard]] std::string_view amplitude_name(AmplitudeKind kind);
 /// "zero to peak", "rms", "peak to peak"
 [[nodiscard]] std::string_view amplitude_words(AmplitudeKind kind);
 
-/// What a line of the tracks is.
+/// The name of a line of the tracks.
 struct TrackLabel {
     enum class Kind { order, order_output, tone } kind = Kind::order;
     double value = 1.0;  ///< cycles per motor turn, per output turn, or hertz

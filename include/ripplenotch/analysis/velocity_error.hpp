@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// What a logged velocity is off by.
+// Gain error and delay of a logged velocity.
 
 #include "ripplenotch/core/quantity.hpp"
 

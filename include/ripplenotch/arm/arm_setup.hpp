@@ -14,7 +14,7 @@
 
 namespace ripplenotch {
 
-/// What a fault of an arm has to show.
+/// The limits that a fault of an arm has to reach.
 struct ArmSetupLimits {
     /// Error on held-out fifths, geometric mean over the joints, with a hypothesis to that without: half the
     /// squares. Measured on arms of six joints: corrected gravity reduces the error to 0.05, no other

@@ -54,7 +54,7 @@ class ComparedCourse {
 };
 
 /// Magnitude, phase and group delay of the linear filter that each method is at the comparison's speed, and
-/// what each puts out for a step and a ramp. Runs the filters on signals of its own, as Bench does.
+/// its output for a step and a ramp. Runs the filters on signals of its own, as Bench does.
 [[nodiscard]] Figure comparison_figure(const Comparison& comparison, std::span<const Contender> contenders);
 
 /// A cascade at these frequencies.

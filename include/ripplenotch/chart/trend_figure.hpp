@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// What changed in a fleet: joints by months, and the course of those that changed.
+// Changes in a fleet: joints by months, and the time series of those that changed.
 
 #include <optional>
 #include <span>

@@ -40,7 +40,7 @@ struct StepFigures {
 
 inline constexpr double infinite_depth_db = 1e300;  ///< stands for a gain of 0
 
-/// What Q means once the filter is sampled.
+/// The definition of Q once the filter is sampled.
 enum class WidthRule {
     analog,   ///< Q of the analogue prototype H(s); bilinear transform prewarped at the centre (the paper's
               ///< twin-T)

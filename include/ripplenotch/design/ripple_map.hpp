@@ -14,7 +14,7 @@
 
 namespace ripplenotch {
 
-/// What the amplitudes of a map are functions of. A wave generator turns gear ratio times in an output turn
+/// The variables of a map's amplitudes. A wave generator turns gear ratio times in an output turn
 /// against one spline and once more or less against the other: an order n of the map has lines at n Kg and,
 /// with a second comb, at n (Kg +/- 1). Each direction has its own columns, in this order: the amplitude at
 /// each speed (linear between them), then the same of the second comb, then a cosine and a sine of one, two,

@@ -75,7 +75,8 @@ struct Evidence {
     double raw_gain = 0.0;     ///< fall of the sum of squares of the residual, Nm^2
     double elsewhere = 0.0;    ///< part of the gain that is left without its best stretch of the log
     double t = 0.0;            ///< the gain in units of its own standard error over blocks of the log
-    std::size_t blocks = 0, blocks_positive = 0;  ///< of a second or more; those with a reduction of squares
+    std::size_t blocks = 0,
+                blocks_positive = 0;  ///< blocks of a second or more; those with a reduction of squares
 };
 
 struct RivalFinding {
@@ -92,7 +93,7 @@ struct Decision {
     bool against = false;  ///< it was a reason against; the last such decision is decisive
 };
 
-/// What the search did not add in its last step.
+/// A candidate that the search did not add in its last step.
 struct RefusedCandidate {
     Term term;  ///< with the values that were tried
     std::vector<Decision> decisions;
@@ -119,7 +120,7 @@ struct Tie {
     std::string advice;  ///< the experiment that would
 };
 
-/// What a region is confined to.
+/// The variable in which a region is confined.
 enum class RegionKind { time, tone, order, position, speed };
 [[nodiscard]] std::string_view region_kind_name(RegionKind kind);
 

@@ -11,7 +11,7 @@
 
 namespace ripplenotch {
 
-/// What the joint may do.
+/// The limits of the joint.
 struct MotionLimits {
     double speed_deg_s = 0.0, acceleration_deg_s2 = 0.0;
     double lowest_deg = 0.0, highest_deg = 0.0;  ///< positions
@@ -29,8 +29,9 @@ struct PlanOptions {
 
 /// Two effects that a planned motion is to distinguish.
 struct PlanQuestion {
-    std::string effect;        ///< a side of a tie, a finding in doubt, or one that has to be found again
-    std::string rival;         ///< what imitates it best along the planned motion; empty: all else together
+    std::string effect;  ///< a side of a tie, an uncertain finding, or one that has to be found again
+    /// The effect that imitates it best along the planned motion; empty: all else together.
+    std::string rival;
     bool open = true;          ///< whether the log left it open
     double gain_before = 0.0;  ///< along the log's own motion; 0 below 1
     double gain = 0.0;         ///< along the planned one: fall of the squares that only the effect brings, in

@@ -148,7 +148,7 @@ struct SetupContext {
 };
 
 struct SetupAnswer {
-    std::vector<SetupFault> faults;  ///< what makes the others void first
+    std::vector<SetupFault> faults;  ///< faults that invalidate the others first
     /// Both empty where simulation or log lack the required columns.
     std::optional<SimulationLag> motion_lag, torque_lag;
 

@@ -53,8 +53,8 @@ struct LowPassMatch {
     std::string clause;                   ///< "at equal ...", or a sentence with the reason why there is none
     int order = 1;
     std::optional<Hertz> cutoff;
-    std::optional<double> ripple_rms_nm;   ///< what was matched on a log ...
-    std::optional<double> attenuation_db;  ///< ... and without one: of all lines together
+    std::optional<double> ripple_rms_nm;   ///< the ripple that was matched on a log ...
+    std::optional<double> attenuation_db;  ///< ... and without one: attenuation of all lines together
 };
 
 struct Comparison {
@@ -73,8 +73,8 @@ struct Comparison {
     std::size_t rows = 0, windows = 0;  ///< rows of the log; windows that RippleMeter measured
     double measured_share = 0.0;
 
-    /// The method that the others are held against: the first contender, else the first rival. Null when only
-    /// the control runs.
+    /// The method that the others are compared with: the first contender, else the first rival. Null when
+    /// only the control runs.
     [[nodiscard]] const MethodFigures* subject() const;
     /// The matched low-pass, else the first of the rivals, else the first other method; null when there is no
     /// other.
@@ -112,8 +112,8 @@ struct ComparedLog {
 /// motion.
 [[nodiscard]] DegPerSec median_moving_speed(const TraceView& trace);
 
-/// What the methods leave of the log's ripple: all run over the log together, and are measured on the same
-/// windows.
+/// The remaining ripple of the log after each method: all run over the log together, and are measured on the
+/// same windows.
 struct LogLevels {
     std::vector<MethodFigures> methods;  ///< one per contender: attenuation, ripple, residual, switches
     std::size_t windows = 0;

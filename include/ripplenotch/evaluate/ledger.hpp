@@ -59,7 +59,7 @@ struct LongestDelay {
 [[nodiscard]] std::optional<DegPerSec> within_from(const Contender& contender, Hertz sample_rate,
                                                    Seconds limit);
 
-// What a filter did to one log, as figures.
+// Figures of a filter on one log.
 
 struct FilterMetrics {
     std::string source, joint, method;  ///< the method as it would be typed again

@@ -39,7 +39,7 @@ struct MjcfAccount {
     double before_nm = 0.0, after_nm = 0.0;
 };
 
-/// What a joint of MuJoCo 3.14 holds of a model, in its units: newton-metres, radians, seconds.
+/// The parts of a model that a joint of MuJoCo 3.14 holds, in its units: newton-metres, radians, seconds.
 struct JointMjcf {
     Model held;  ///< the terms that it holds, as it holds them, for their torque by predict_nm
     std::vector<MjcfPart> holds, not_held;
@@ -62,7 +62,7 @@ struct JointMjcf {
 /// A file of its own: one body on one hinge of the name `joint`. Friction is made soft so that MuJoCo's rises
 /// where the model's does: tanh(v / width) in two straight steps, frictionloss of the joint and of a tendon
 /// round it, whose sum is the friction.
-/// What a torque sensor shows is qfrc_inverse, plus the force of the actuators ripple_*, less that of
+/// The reading of a torque sensor is qfrc_inverse, plus the force of the actuators ripple_*, less that of
 /// friction_*. `heading` becomes a comment.
 [[nodiscard]] std::string write_mjcf(const JointMjcf& mjcf, std::string_view joint,
                                      std::span<const std::string> heading);

@@ -41,7 +41,7 @@ struct MapTarget {
 /// Throws UsageError with the nearest name.
 [[nodiscard]] const MapTarget& find_map_target(std::string_view name);
 
-/// What came through, over states within the range of the map.
+/// The accuracy of the written map, over states within the range of the map.
 struct MapCheck {
     std::size_t states = 0;
     double ripple_nm = 0.0;  ///< rms of the map

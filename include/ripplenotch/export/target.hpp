@@ -72,7 +72,7 @@ struct CodeInput {
     double temperature_degc = 0.0;  ///< for a map that depends on it
 };
 
-/// What was written, read back from the bytes alone and run in the target's arithmetic.
+/// The written file, read back from the bytes alone and run in the target's arithmetic.
 struct LoadedCode {
     std::string arithmetic;  ///< "float32"
     /// The next sample; gives the torque without ripple. Copies share their state.

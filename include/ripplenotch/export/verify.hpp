@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// What came through: every section that was read back, run in the target's arithmetic and measured against
-// its design.
+// Verification of an export: every section that was read back, run in the target's arithmetic and measured
+// against its design.
 
 #include <optional>
 #include <string>

@@ -117,7 +117,7 @@ struct Panel {
 struct Figure {
     std::string name;      ///< kebab-case, which figure this is: "spectrum", "candidate-table"
     std::string title;     ///< what is shown, from which file
-    std::string sentence;  ///< what can be seen in it, with numbers; may be empty
+    std::string sentence;  ///< the main observation, with numbers; may be empty
     std::vector<Panel> panels;
     int columns = 1;  ///< panels run left to right, then down
 };

@@ -88,7 +88,7 @@ struct TimedSwitch {
     double time_s = 0.0;
 };
 
-/// What a whole log turned out to be, for one of its joints.
+/// Properties of a whole log, for one of its joints.
 struct StreamReport {
     Recording recording;
     std::size_t held_bad_values = 0;    ///< cells replaced because the caller requested it
@@ -105,7 +105,7 @@ class RowValues {
     virtual std::span<const double> next(std::size_t count) = 0;
 };
 
-/// What one joint goes through. The meter may be null; it gets two signals, raw and filtered torque. So may
+/// The processing of one joint. The meter may be null; it gets two signals, raw and filtered torque. So may
 /// the joint's temperature, degC.
 struct JointRun {
     CausalFilter* filter = nullptr;
@@ -124,7 +124,7 @@ class LogStream {
     LogStream(LogStream&&) noexcept;
 
     [[nodiscard]] const LogReader& reader() const;
-    /// What filters are designed for: ClockFacts::nominal_rate.
+    /// The rate that filters are designed for: ClockFacts::nominal_rate.
     [[nodiscard]] Hertz design_rate() const;
     /// Most digits after the decimal mark in the torque cells of the first rows; empty for logs that are not
     /// text.

@@ -72,14 +72,14 @@ inline constexpr std::size_t fewest_map_windows = 12;
 
 /// "by speed (3) and direction, with 2 harmonics of the joint's turn"
 [[nodiscard]] std::string map_form_words(const MapForm& form);
-/// What `column` is of: "forward, 10 deg/s", "backward, cosine of 2 joint angles", "per Nm of load".
+/// The meaning of `column`: "forward, 10 deg/s", "backward, cosine of 2 joint angles", "per Nm of load".
 [[nodiscard]] std::string map_column_words(const MapForm& form, std::size_t column);
 
 /// One sentence with numbers.
 [[nodiscard]] std::string map_verdict(const MapFit& fit);
 
-/// What map=map.json stands for as the keys of a method: gear-ratio, orders, cosines, sines and what else the
-/// form needs, in the order of the page; angles count from position 0 then. The map has an order.
+/// The keys of a method that map=map.json abbreviates: gear-ratio, orders, cosines, sines and the others that
+/// the form needs, in the order of the page; angles count from position 0 then. The map has an order.
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> map_as_keys(const RippleMap& map);
 
 }  // namespace ripplenotch

@@ -72,14 +72,14 @@ struct FrozenFilter {
 class Learner : public CausalFilter {
   public:
     [[nodiscard]] virtual std::unique_ptr<CausalFilter> learned() = 0;
-    /// What was learned, one sentence each; after learned().
+    /// The results of learning, one sentence each; after learned().
     [[nodiscard]] virtual std::vector<std::string> notes() const { return {}; }
 };
 
 /// The part of a method in a comparison.
 enum class MethodPart {
     contender,
-    rival,    ///< what joints have without this tool: contenders are held against it
+    rival,    ///< the filter of joints without this tool: contenders are compared with it
     control,  ///< passes the torque; is in every comparison
 };
 

@@ -34,7 +34,7 @@ struct Descriptor {
     }
 };
 
-/// What the motion and the load were while the descriptors were measured.
+/// The motion and the load while the descriptors were measured.
 struct MotionMix {
     double moving_share = 0.0, forward_share = 0.0;  ///< shares of the samples; of the moving ones
     /// Percentiles of |v| while moving.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// What changed in a fleet: for each joint and descriptor a baseline, a slope and change points, after what
-// temperature, load and motion explain, under one rate of false alarms for all of it.
+// Changes in a fleet: for each joint and descriptor a baseline, a slope and change points, adjusted for
+// temperature, load and motion, under one rate of false alarms for all of it.
 
 #include <cstdint>
 #include <optional>

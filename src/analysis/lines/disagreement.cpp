@@ -249,7 +249,7 @@ std::vector<Hum> hums_beside(const MotionLines& motion, const std::vector<Line>&
         if (line.kind != LineKind::tone) ripple_nm = std::max(ripple_nm, line.amplitude_nm);
     }
     std::vector<Hum> hums;
-    // What lines leave of a sweep has no one speed: humps of theirs are smaller than the lines.
+    // The residual of lines in a sweep has no single speed: humps due to them are smaller than the lines.
     for (const SpectralHump& hump : motion.humps) add(hump, hums);
     // A sine of this amplitude has as much torque in it.
     std::erase_if(hums, [&](const Hum& hum) { return std::sqrt(2.0) * hum.rms_nm <= ripple_nm; });

@@ -349,7 +349,7 @@ void add_gears(std::span<const OrderLine> lines, const RatioQuestion& question,
     }
 }
 
-/// What the velocity may be in: the apparent ratio is the true one times the factor.
+/// A possible mistake in the velocity's unit: the apparent ratio is the true one times the factor.
 struct UnitMistake {
     double factor;
     std::string_view reason;

@@ -12,8 +12,8 @@
 
 namespace ripplenotch {
 
-/// What one line at each bin explains beyond noise: weighted sum over sweeps of power over noise, less one
-/// each.
+/// Improvement in log-likelihood by one line at each bin: weighted sum over sweeps of power over noise, less
+/// one each.
 double gain_at(const Stack& stack, std::size_t bin);
 
 /// Power over noise at a place, weighted mean over the sweeps, as Stack::ratio has it at its bins.

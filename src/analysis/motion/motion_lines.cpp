@@ -158,7 +158,7 @@ void add_line(Sweep& sweep, const KnownLine& line, std::complex<double> amplitud
     }
 }
 
-/// What least squares finds of a line in the sweep's torque as it is; 0 where the sweep is too short for it.
+/// Least-squares amplitude of a line in the sweep's torque as it is; 0 where the sweep is too short for it.
 std::complex<double> amplitude_of(const Sweep& sweep, const KnownLine& line) {
     const auto at = places(sweep, line.axis);
     std::array<double, Rows::length> angle{}, cosine{}, sine{};
@@ -515,7 +515,7 @@ class LineSearch {
     }
     /// The orders among the lines that lines() returned.
     [[nodiscard]] std::span<const double> orders() const { return orders_; }
-    /// What lines() left out, by order: nothing smaller is claimed to be absent there.
+    /// Lines that lines() left out, by order: nothing smaller is claimed to be absent there.
     [[nodiscard]] std::span<const SearchedOrders::Bound> unreported() const { return unreported_; }
 
     [[nodiscard]] Stacks& stacks() { return stacks_; }

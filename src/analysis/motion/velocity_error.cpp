@@ -240,7 +240,7 @@ void put_right(const TraceView& log, const VelocityError& error, std::vector<dou
     }
 }
 
-/// What lies between the runs of a log, in pieces of at most rule.longest_s, where the joint stands still.
+/// The standstill between the runs of a log, in pieces of at most rule.longest_s.
 std::vector<SampleRun> rests_of(const TraceView& log, std::span<const double> speed, double standstill_deg_s,
                                 const SweepRule& rule) {
     // Chosen, not derived: five cycles of the slowest tone that is reported.

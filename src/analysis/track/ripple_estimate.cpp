@@ -214,7 +214,7 @@ void RippleSegments::measure_residuals(const WindowFit& fit, std::span<const Win
     }
 }
 
-// What the fit of a segment sees is the mean of the filtered line's amplitude and phase under its window.
+// The fit of a segment gives the mean of the filtered line's amplitude and phase under its window.
 std::vector<double> RippleSegments::expected_gains(const Part& part, const SampleRun& window) const {
     std::vector<double> gains(orders_.size(), 0.0);
     if (!options_.gains) return gains;

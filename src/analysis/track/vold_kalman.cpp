@@ -46,7 +46,7 @@ struct Envelopes {
     [[nodiscard]] double at(std::size_t component, double time_s) const;
 };
 
-/// What the equations of an envelope do to a signal when one line is alone, the data at their mean.
+/// The response of the equations of an envelope to a signal of a single line, the data at their mean.
 struct EnvelopeResponse {
     Hertz bandwidth;  ///< -3 dB width in the middle of the run, both sides together
     /// Standard error of an amplitude per unit of rms noise on the samples, by the distance to an end of the

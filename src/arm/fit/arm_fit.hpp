@@ -9,7 +9,7 @@
 
 namespace ripplenotch {
 
-// What one unit of every value brings to the torque of one joint, sample by sample: links, rotor, friction.
+// The torque of one joint per unit of every value, sample by sample: links, rotor, friction.
 
 /// The number of values of a joint: rotor, then the nuisance parameters.
 inline constexpr std::size_t values_of_a_joint = 1 + values_beside_arm;

@@ -15,7 +15,7 @@ namespace ripplenotch {
 
 namespace {
 
-// What each value of a window counts for the parabola's middle: the same for every column.
+// The weight of each value of a window for the parabola's middle: the same for every column.
 class Kernels {
   public:
     Kernels(std::span<const double> time_s, Seconds window)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// What a diagnosis does about the angle of a log without position.
+// Treatment of the angle of a log without position in a diagnosis.
 
 #include "diagnose/case/case.hpp"
 #include "diagnose/search/model_bench.hpp"

@@ -173,7 +173,7 @@ Case blocks(const Case& whole, std::size_t count, const RecordingRules& rules) {
         for (std::size_t k = begin; k < begin + length; ++k) rows.push_back(k);
     }
     Case some = rows_of(whole, rows, whole.motion.sample_rate);
-    // What a delay brings into the ends of a stretch is of another one.
+    // At the ends of a stretch a delay refers to samples of another one.
     for (std::size_t k = 0; k < some.size(); ++k) {
         const std::size_t within = k % length;
         if (within < rules.block_begin || within + rules.block_end > length) some.use[k] = 0;

@@ -72,7 +72,7 @@ class Tones {
     LineSpectrum spectrum_;
 };
 
-// What follows each other without a gap.
+// Runs of samples without a gap.
 std::vector<LineSamples> pieces_of(const LineSamples& samples, double usual_step, const LineRules& rules) {
     std::vector<LineSamples> pieces(1);
     for (std::size_t k = 0; k < samples.where.size(); ++k) {

@@ -363,8 +363,8 @@ NoiseFloor noise_floor(const Case& looked_at, const Model& model, const Model& o
     covariance[0] = std::max(covariance[0], 1e-24);
     NoiseFloor floor = modelled(std::move(covariance), samples, rules.noise_floor.lag_price, spent);
     floor.material_nm = floor.rms_nm;
-    // What is loud in some stretches only is not noise but something that none of these columns can follow,
-    // such as a resonance. Its colour would hide it.
+    // A residual that is large in some stretches only is not noise but something that none of these columns
+    // can follow, such as a resonance. Its colour would mask it.
     const double quiet_nm = quiet_rms(left, c, rules.noise_floor);
     if (quiet_nm > 0.0 && quiet_nm < rules.noise_floor.unsteady * floor.rms_nm)
         floor = {quiet_nm, quiet_nm, {}, quiet_nm, {quiet_nm * quiet_nm}};

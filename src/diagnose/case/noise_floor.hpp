@@ -53,8 +53,9 @@ class NoiseColumns {
     std::vector<std::vector<double>> products_;  ///< products of each column with those up to it
 };
 
-// What a model of far too many terms has of a case, whatever the model in hand: ripple of orders about the
-// stated ones that swells with whatever the motion shows, and smooth shapes over position, speed and time.
+// The columns of a model of far too many terms for a case, whatever the current model: ripple of orders about
+// the stated ones whose amplitude varies with each variable of the motion, and smooth functions of position,
+// speed and time.
 
 /// Cosine and sine at every sample, of `cycles` for one of `where`.
 struct NoiseWave {

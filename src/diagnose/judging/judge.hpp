@@ -61,7 +61,7 @@ struct ToldOf {
 /// The advice of the catalogue for distinguishing two effects; a general one when it has none.
 [[nodiscard]] std::string what_would_tell(const Effect& one, const Effect& other);
 
-// Findings held against a log that nothing was fitted to.
+// Findings tested on a held-out log.
 
 /// `model` without those findings that predict `other` worse than it is predicted without them, the worst
 /// first, and without the newest until the whole predicts it no worse than `given`, the model without any of

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// What a residual still holds besides noise, and where: tests against time, tones, orders, position and
+// The content of a residual besides noise, and where it is: tests against time, tones, orders, position and
 // speed.
 
 #include <vector>

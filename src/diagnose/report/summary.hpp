@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// What a diagnosis comes to: names, gaps, verdict.
+// The results of a diagnosis: names, gaps, verdict.
 
 #include <span>
 #include <string>

@@ -20,7 +20,7 @@
 
 namespace ripplenotch {
 
-// What a search may cost, counted and not timed, so that the same log ends at the same place everywhere.
+// The budget of a search, counted and not timed, so that the same log ends at the same point everywhere.
 
 /// How often effects were run along a motion; the unit is unit_samples.
 class Work {
@@ -43,7 +43,7 @@ class Work {
     bool ended_ = false;
 };
 
-// What columns of samples explain of another one: bases at right angles, and the square of a projection.
+// Projections of a column of samples on others: orthogonal bases, and the square of a projection.
 
 /// One number a sample.
 using Column = std::vector<double>;
@@ -213,7 +213,8 @@ class ModelBench {
     [[nodiscard]] std::vector<double> whitened(std::span<const double> torque_nm) const;
     /// The same without what errors of the measured motion can explain; an entry per row().
     [[nodiscard]] std::vector<double> cleared_residual(const Model& stated) const;
-    /// What this term of the model adds to all its others, in Nm; an entry per sample, counted or not.
+    /// The torque of this term of the model in addition to all its others, in Nm; an entry per sample,
+    /// counted or not.
     [[nodiscard]] std::vector<double> torque_of(const Model& stated, std::size_t term) const;
 
     /// rms torque that `with` explains beyond `without`, in units of the noise's rms.
@@ -232,7 +233,7 @@ class ModelBench {
     [[nodiscard]] const std::vector<std::size_t>& rows() const { return weighing_.rows(); }
     [[nodiscard]] double samples() const { return static_cast<double>(weighing_.rows().size()); }
 
-    /// What screenings along this case found, whichever bench they were made on.
+    /// Results of screenings along this case, whichever bench they were made on.
     [[nodiscard]] const std::shared_ptr<KeptScreenings>& kept() const { return kept_; }
     /// Sum of squares by which two models may differ for the results of one to hold for the other.
     [[nodiscard]] double same_model_nm2() const;

@@ -90,7 +90,7 @@ bool worth_it(const ModelBench& bench, const Candidate& now, const Candidate& ne
         return false;
     const double gap = now.gain_left - samples;
     const SearchRules& rules = bench.rules().search;
-    // What changes the torque as a whole takes up errors of whatever makes it.
+    // An effect that changes the torque as a whole also fits errors of any other effect.
     if (bench.noise_holds_residual() && next.stated.terms.back().effect->side != Side::joint) {
         const double part = raw_part(bench, now, next);
         if (hearing.asked("search.fair_part", part, part < rules.fair_part)) return false;
@@ -260,7 +260,7 @@ Candidate one_ahead(const ModelBench& bench, const Candidate& candidate,
 
 namespace {
 
-// What changes a ripple or a torque as a whole.
+// Effects that change a ripple or a torque as a whole.
 bool transforms(const Term& term) { return term.effect->side != Side::joint; }
 
 // Two effects that change the same ripple in the place of one whose form is neither's: amplitude by speed and

@@ -15,7 +15,7 @@ namespace ripplenotch {
 [[nodiscard]] Candidate baseline(const ModelBench& bench, const Model& model);
 
 /// `start` with what should be added. `own_terms`: how many of its terms are the user's and stay. `refused`:
-/// what was not added in the last step, and why.
+/// the candidates that were not added in the last step, and why.
 [[nodiscard]] Candidate search(ModelBench& bench, const Candidate& start, std::size_t own_terms,
                                std::span<const Effect* const> effects,
                                std::vector<RefusedCandidate>& refused);

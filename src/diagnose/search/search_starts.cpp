@@ -177,7 +177,7 @@ bool is_neutral(const Parameter& parameter, double value) {
     return std::abs(value - parameter.neutral) <= 1e-6 * std::max(1.0, std::abs(parameter.neutral));
 }
 
-// What is lost when it is held within its bound; much, where the log wants it there.
+// Loss when the value is held within its bound; large, where the log requires a value beyond.
 double lost_within(const ModelBench& bench, const Candidate& model, const FittedValue& value) {
     const Parameter& parameter = model.stated.terms[value.term].effect->parameters[value.parameter];
     const bool at_lower = value.value - parameter.lower < parameter.upper - value.value;
@@ -391,7 +391,7 @@ Case seen_late(const Case& looked_at, Seconds late) {
     return seen;
 }
 
-// What the parameter has to be for the effect to make `stated` the ratio `wanted`.
+// The value of the parameter with which the effect makes `stated` the ratio `wanted`.
 double value_for_ratio(const Effect& effect, std::size_t parameter, GearRatio stated, double wanted) {
     // The ratio is affine in the parameter.
     std::vector<double> values;

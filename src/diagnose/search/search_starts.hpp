@@ -56,7 +56,7 @@ struct ChangeTimes {
 [[nodiscard]] ChangeTimes change_times(const Case& looked_at, const std::vector<double>& residual_nm,
                                        double noise_nm, const DiagnosisRules& rules);
 
-/// What the whole residual shows: lines finer than a thinned log resolves.
+/// Results from the whole residual: lines finer than a thinned log resolves.
 struct Hints {
     std::vector<double> tones_hz, orders;
     GearRatio ratio;

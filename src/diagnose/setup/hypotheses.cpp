@@ -168,7 +168,7 @@ std::vector<MistakenFactor> torque_factors(const std::optional<GearRatio>& gear_
     return factors;
 }
 
-// What the joint's own motion explains of a torque: an inertia, and a weight.
+// The part of a torque explained by the joint's own motion: an inertia, and a weight.
 struct OwnMotion {
     double inertia = 0.0, inertia_error = 0.0, cosine = 0.0, sine = 0.0;
     double explained = 0.0;

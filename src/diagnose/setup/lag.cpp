@@ -116,7 +116,8 @@ double product_of(const std::vector<double>& a, const std::vector<double>& b) {
     return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
 }
 
-// What columns cannot explain of others, by orthonormal combinations of them (modified Gram-Schmidt).
+// The residual of columns after projection on others, by orthonormal combinations of these (modified
+// Gram-Schmidt).
 class Complement {
   public:
     explicit Complement(const ShiftColumns& columns) {
@@ -387,7 +388,7 @@ Refined best_of(const ShiftSearch& search, const AlignmentOptions& options,
     std::vector<Refined> found;
     const std::vector<double> minima_s = search.minima_s();
     for (const double d : minima_s) {
-        if (found.size() == 4) break;  // the best, and enough to say that there is more than one
+        if (found.size() == 4) break;  // the best, and enough to show that there is more than one
         Refined one = search.refined({d, 0.0, 0.0}, false);
         const bool known = std::any_of(found.begin(), found.end(), [&](const Refined& other) {
             return std::abs(other.shift.delay_s - one.shift.delay_s) < search.step_s();

@@ -149,7 +149,7 @@ std::string MapCode::amplitudes_here(std::string_view torque) const {
                               arguments(false, torque));
 }
 
-// What the columns are multiplied by.
+// The factors of the columns.
 std::string MapCode::factors() const {
     const MapForm& form = map_.form;
     std::string text;

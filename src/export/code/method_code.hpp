@@ -52,7 +52,7 @@ struct OnCircle {
     const std::complex<double> at = portable::phasor(angle);
     return {at.real(), at.imag()};
 }
-/// What is beyond the nearest whole number.
+/// The difference from the nearest whole number.
 [[nodiscard]] inline double beside_whole(double value) { return value - std::floor(value + 0.5); }
 [[nodiscard]] inline float beside_whole(float value) {
     value -= static_cast<float>(static_cast<int>(value));

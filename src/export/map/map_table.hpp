@@ -37,7 +37,7 @@ inline constexpr Key flat_temperature_key{
 /// the stated temperature.
 [[nodiscard]] RippleMap flat_map(const RippleMap& map, const Settings& settings);
 
-/// What of the map is not in its flat form, one sentence each.
+/// The parts of the map that its flat form omits, one sentence each.
 [[nodiscard]] std::vector<std::string> flattened(const RippleMap& map, std::string_view target);
 
 /// Amplitude and phase of r cos(n theta + phase), degrees from 0 to 360.
@@ -52,7 +52,7 @@ struct AmplitudePhase {
 /// those of the turn that begins at 0.
 [[nodiscard]] std::vector<double> turn_table(const RippleMap& flat, std::size_t entries);
 
-/// What linear interpolation in such a table is wrong by at most: the second derivative's bound.
+/// The largest error of linear interpolation in such a table: the second derivative's bound.
 [[nodiscard]] double interpolation_bound_nm(const RippleMap& flat, std::size_t entries);
 
 /// The ripple by linear interpolation, in float.

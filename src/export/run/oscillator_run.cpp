@@ -24,7 +24,7 @@ constexpr std::string_view slip_code =
     s->slipped = slipped - (@real@)(int)slipped;
 )c";
 
-// What the model holds for next to impossible is a torque that jumped.
+// A sample that is nearly impossible under the model is a torque that jumped.
 constexpr std::string_view jump_code = R"c(    if (surprise * surprise > c[7] * c[7] * variance) {
         variance += surprise * surprise;
     }

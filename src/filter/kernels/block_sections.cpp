@@ -16,7 +16,7 @@ namespace ripplenotch {
 
 namespace {
 
-// What eight steps make of a memory and an input at one of the samples (or none: `at` beyond them).
+// The response over eight steps to a memory and an input at one of the samples (or none: `at` beyond them).
 struct Course {
     BlockForm::Memory memory{};
     std::array<double, BlockForm::samples> outputs{};

@@ -368,7 +368,7 @@ void choose_map(const MapData& data, MapFit& fit) {
         if (score.in_map) continue;
         const MapRegression alike(data, test.forms.front(), i);
         score.detectable_nm = detectable_amplitude(data, alike, test, i);
-        // What the log itself has and the test did not find bounds nothing.
+        // A ripple in the log itself that the test did not find gives no bound.
         if (std::norm(alike.values()(0)) > score.detectable_nm * score.detectable_nm)
             score.detectable_nm = std::numeric_limits<double>::infinity();
         // Amplitudes beyond the noise that follow no form tried may be a ripple of another form.

@@ -217,8 +217,8 @@ class OrderCourse {
     }
     [[nodiscard]] Amplitude value(std::size_t i) const { return windows_[i].amplitudes[order_]; }
 
-    /// What a course takes window i to be; without the window itself, and what shares samples with it, when
-    /// it is held out.
+    /// The estimate of a course for window i; without the window itself, and those that share samples with
+    /// it, when it is held out.
     [[nodiscard]] Amplitude taken(Course course, std::size_t i, bool held_out) const {
         switch (course) {
             case Course::nothing:

@@ -163,7 +163,8 @@ void RippleKalman::update(double measured) noexcept {
         variance += h_[i] * sum;
     }
     const double surprise = measured - expected;
-    // What the model holds for next to impossible is no ripple that grew overnight but a torque that jumped.
+    // A sample that is nearly impossible under the model is no sudden growth of the ripple but a torque that
+    // jumped.
     if (model_.jump > 0.0 && surprise * surprise > model_.jump * model_.jump * variance) {
         const double added = surprise * surprise;
         p_[0] += added;

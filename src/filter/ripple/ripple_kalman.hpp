@@ -21,7 +21,7 @@ struct RippleModel {
     double return_turns = 0.0;  ///< turns of the motor over which amplitudes decay towards 0; 0: never
 
     [[nodiscard]] std::size_t states() const { return 2 + 2 * orders.size(); }
-    /// What the torque's second derivative adds in one step: variances of torque and rate, and their
+    /// Increments by the torque's second derivative in one step: variances of torque and rate, and their
     /// covariance.
     struct TorqueNoise {
         double torque, cross, rate;
@@ -29,14 +29,14 @@ struct RippleModel {
     [[nodiscard]] TorqueNoise torque_noise() const noexcept;
     /// Variance of the torque's rate before the first sample.
     [[nodiscard]] double first_rate_variance() const noexcept;
-    /// What a step of this many motor turns adds to the variance of each amplitude.
+    /// Increment of the variance of each amplitude in a step of this many motor turns.
     [[nodiscard]] double amplitude_noise(double step_turns) const noexcept;
     /// Share of an order that is modelled: 1, and less where it nears half the sample rate, beyond which it
     /// would be taken for torque.
     [[nodiscard]] double share(double order, double step_turns) const noexcept;
 };
 
-/// What is known of an order at the start.
+/// The prior of an order at the start.
 struct AmplitudePrior {
     double cosine = 0.0, sine = 0.0;  ///< amplitudes in ripple = cosine cos(n theta) + sine sin(n theta)
     double deviation = 0.0;           ///< standard deviation of each

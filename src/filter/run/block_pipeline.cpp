@@ -46,7 +46,7 @@ class Convoy {
         while (const auto turn = fetch(item)) {
             if (!item.accepted) attempt(item, steps_.parse);
             filter_door_.pass(*turn, [&] {
-                // What comes after a failed block has no past to go on from.
+                // After a failed block the filter has no state to continue from.
                 if (!filter_failed_) attempt(item, steps_.filter);
                 filter_failed_ = filter_failed_ || item.error;
             });

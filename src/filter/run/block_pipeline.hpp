@@ -24,7 +24,7 @@ struct BlockItem {
     std::exception_ptr error;
 };
 
-/// What is done to each block. fetch, filter and put take the blocks in their order, one at a time; parse and
+/// The steps for each block. fetch, filter and put take the blocks in their order, one at a time; parse and
 /// prepare take any number at once. fetch returns false when there is no block left.
 struct BlockSteps {
     std::function<bool(BlockItem&)> fetch;

@@ -17,7 +17,7 @@ namespace ripplenotch {
 /// its noise or a fiftieth of the usual speed; else 0. `motion` is motion_along(log).
 [[nodiscard]] std::vector<unsigned char> rows_of_known_motion(const TraceView& log, const Motion& motion);
 
-/// What the acceleration in the rows of known motion determines.
+/// The identifiability of inertia from the acceleration in the rows of known motion.
 struct Accelerations {
     bool known = false;          ///< separable from direction and speed, and above the noise
     bool like_friction = false;  ///< known only along with direction and speed: inertia and friction alike
@@ -37,7 +37,7 @@ struct MotionFacts {
     [[nodiscard]] bool several_speeds() const;
 };
 
-/// What is fitted: a motion, its torque, and a 1 for each sample that counts.
+/// The input of a fit: a motion, its torque, and a 1 for each sample that counts.
 struct FittedSamples {
     Motion motion;
     std::vector<double> torque_nm;

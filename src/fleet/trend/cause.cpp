@@ -18,7 +18,7 @@ using Eigen::VectorXd;
 
 constexpr double took_part = 16.0;  // t squared of a descriptor that changed for certain
 
-/// What would change which series: a column a number that is open.
+/// A cause and the series that it would change: a column for each free number.
 struct Hypothesis {
     std::string name;
     std::vector<VectorXd> columns;

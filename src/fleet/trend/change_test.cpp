@@ -115,12 +115,10 @@ class Scan {
 
     [[nodiscard]] double largest() const { return largest_; }  ///< t squared, in the order of time
     [[nodiscard]] bool is_drift() const { return drift_; }
-    [[nodiscard]] std::size_t row() const {
-        return row_;
-    }  ///< index among the joint's lines: first after the step
-    [[nodiscard]] double memory() const {
-        return memory_;
-    }  ///< autocorrelation from row to row, without the best change
+    /// Index among the joint's lines: first after the step.
+    [[nodiscard]] std::size_t row() const { return row_; }
+    /// Autocorrelation from row to row, without the best change.
+    [[nodiscard]] double memory() const { return memory_; }
     /// The same for a permutation of the series, in another order of the joint's rows.
     [[nodiscard]] double largest_of(const std::vector<std::size_t>& order, std::vector<double>& room) const;
 

@@ -18,7 +18,7 @@ namespace ripplenotch {
 // Internal: weighted least squares of a series on a few columns, and the reduction of their residual by one
 // more column.
 
-/// What one more column explains.
+/// The contribution of one more column.
 struct Extra {
     double size = 0.0;   ///< coefficient of the column
     double error = 0.0;  ///< standard error of it
@@ -76,7 +76,7 @@ struct FoundChange {
     double p = 1.0, limit = 0.0;
 };
 
-/// What a change adds to a row: 0 and 1 of a step, 0 to 1 of a drift.
+/// The column of a change in a row: 0 and 1 of a step, 0 to 1 of a drift.
 [[nodiscard]] std::vector<double> change_column(const JointHistory& history, const FoundChange& change,
                                                 std::span<const std::size_t> rows);
 

@@ -87,8 +87,8 @@ void change_ripple(const Situation& situation, Order order, std::span<const doub
     }
 }
 
-// What the joint's torques go by is the link, which is ahead of the motor's angle by what its inertia twists
-// the spring. The acceleration stays the motor's: inertia passes the spring with all else.
+// The joint's torques depend on the angle of the link, which leads the motor's by the spring's twist under
+// its inertia. The acceleration stays the motor's: inertia passes the spring with all else.
 void change_motion(std::span<const double> values, Motion& motion, GearRatio&) {
     if (values[0] >= parameters[0].upper || values[5] < 0.5 || motion.size() < 2) return;
     const double radians_per_s = 2.0 * std::numbers::pi * values[0];

@@ -19,8 +19,8 @@ enum class CoordinateKind { plain, logarithm, cosine_part, sine_part };
 
 struct Coordinate {
     CoordinateKind kind;
-    std::size_t term, parameter;  ///< of a size and phase pair, the size
-    std::size_t phase;            ///< of a size and phase pair, the phase
+    std::size_t term, parameter;  ///< for a size and phase pair, the size
+    std::size_t phase;            ///< for a size and phase pair, the phase
     double start, lower, upper, step;
     bool linear;  ///< the torque is linear in all such coordinates together
 };

@@ -52,7 +52,7 @@ double product(const Row& a, const Row& b) {
     return sum;
 }
 
-// What least squares need of a window: sums of the powers of its times, alone, with the velocities, and with
+// The sums that least squares need for a window: powers of its times, alone, with the velocities, and with
 // the positions.
 struct PowerSums {
     std::array<double, 9> time{};

@@ -16,8 +16,8 @@
 
 namespace ripplenotch {
 
-// What a signal does between its samples, for delays that are not whole samples and for lags. A held value
-// (zero-order hold) would put half a sample of delay into both; here the signal between samples is the
+// The course of a signal between its samples, for delays that are not whole samples and for lags. A held
+// value (zero-order hold) would put half a sample of delay into both; here the signal between samples is the
 // polynomial through the nearest of them, centred, which delays nothing.
 
 /// values(k) becomes values(k - delay), delay in samples, of either sign. The polynomial goes through 16
@@ -32,8 +32,8 @@ void first_order_lag(std::span<double> values, double time_constant);
 
 // How a mass on a damped spring moves when nothing drives it.
 
-/// What becomes within a step of a free mass's displacement, and of its speed in displacements a radian of
-/// the undamped spring.
+/// Transition of a free mass's displacement within a step, and of its speed in displacements a radian of the
+/// undamped spring.
 struct FreeMove {
     double at_of_at, at_of_moving, moving_of_moving;  ///< and -at_of_moving from at to moving
 };
