@@ -196,42 +196,6 @@ const LogFormat& output_format(const std::string& path, std::optional<std::strin
 
 namespace {
 
-std::string clock_words(const Layout& layout) {
-    if (!layout.chosen.time) return "none";
-    const Column& column = layout.columns[*layout.chosen.time];
-    return fmt::format("'{}' {}{}", column.name, layout.time_as_text ? "as text" : "in " + column.unit,
-                       layout.time_fraction ? " and nanoseconds" : "");
-}
-
-// The range was put to the whole log; what is inside has to be read by the same clock.
-void check_clock(const Layout& whole, const Layout& inside) {
-    const std::string before = clock_words(whole), after = clock_words(inside);
-    if (before == after) return;
-    raise<DataError>(
-        "{}: --from and --to: the time is read as {} in the whole log, as {} in the rows inside; say "
-        "--columns time=NAME and --unit time=UNIT",
-        whole.source, before, after);
-}
-
-/// Rows outside the range are gone before anything is decided about the others.
-std::unique_ptr<LogReader> open_cut(const LogFormat& format, std::unique_ptr<ByteSource> source,
-                                    std::string first_bytes, const ReadOptions& options) {
-    if (format.cut == nullptr)
-        raise<UsageError>("{}: --from and --to: rows of a log in format {} are read all or none",
-                          source->name(), format.name);
-    LogCut cut = format.cut(std::move(source), std::move(first_bytes), options);
-    ReadOptions inside = options;
-    inside.outside = cut.outside;
-    auto reader = format.open(std::move(cut.bytes), {}, inside);
-    const Layout& layout = reader->layout();
-    check_clock(cut.whole, layout);
-    if (layout.time_origin != cut.whole.time_origin) {
-        cut.outside->zero_s =
-            since(layout.time_origin, cut.whole.time_origin) * layout.columns[*layout.chosen.time].factor;
-    }
-    return reader;
-}
-
 std::string first_bytes_of(ByteSource& source) {
     std::string first_bytes;
     first_bytes.resize(read_on(source, first_bytes, 0, first_bytes_size));
@@ -260,9 +224,11 @@ std::unique_ptr<LogReader> open_log(std::unique_ptr<ByteSource> source, const Re
     const LogFormat& format =
         options.format ? find_log_format(*options.format) : detect_format(first_bytes, source->name());
     require_built(format, source->name());
-    auto reader = options.range.given() ? open_cut(format, std::move(source), std::move(first_bytes), options)
-                                        : format.open(std::move(source), std::move(first_bytes), options);
+    auto reader = format.open(std::move(source), std::move(first_bytes), options);
     const Layout& layout = reader->layout();
+    if (options.range.given() && !layout.outside)
+        raise<UsageError>("{}: --from and --to: rows of a log in format {} are read all or none",
+                          layout.source, format.name);
     if (layout.velocity_from_position) return std::make_unique<DerivedVelocity>(std::move(reader));
     if (layout.constant_speed) {
         const DegPerSec speed = *layout.constant_speed;

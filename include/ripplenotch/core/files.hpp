@@ -38,9 +38,6 @@ class ByteSource {
     /// Reads up to `size` bytes, blocking until at least one is there; 0 means the end. Throws FileError; so
     /// does the end of a file that was written to, cut or made longer since it was opened.
     virtual std::size_t read(char* into, std::size_t size);
-    /// Of a source that leaves parts of a file out: the number in the file of its `number`th line or record,
-    /// for messages. Both count from 1.
-    [[nodiscard]] virtual std::size_t number_in_file(std::size_t number) const { return number; }
     /// As people should see it: the path, or "standard input".
     [[nodiscard]] const std::string& name() const { return name_; }
     /// Of a file in bytes when it was opened; 0 where nobody knows.

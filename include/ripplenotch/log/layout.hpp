@@ -123,11 +123,10 @@ struct ReadOptions {
     std::optional<double> gear_ratio;  ///< for what is measured before the gear
     /// Where the joints' gears differ: of a joint by its name. Asked for the joints that are read only.
     std::function<std::optional<double>(const std::string& joint)> gear_ratio_of;
-    bool takes_motor_units = false;              ///< motion before a gear of unknown ratio is not refused
-    bool needs_torque = true;                    ///< false for info
-    bool needs_velocity = true;                  ///< false: a log without motion has a velocity of nan
-    TimeRange range;                             ///< rows outside are as if they were not there
-    std::shared_ptr<const RowsOutside> outside;  ///< what open_log left out of the bytes, by `range`
+    bool takes_motor_units = false;  ///< motion before a gear of unknown ratio is not refused
+    bool needs_torque = true;        ///< false for info
+    bool needs_velocity = true;      ///< false: a log without motion has a velocity of nan
+    TimeRange range;                 ///< rows outside are ignored
 };
 
 /// One numeric thing in a container, as `info` lists it.

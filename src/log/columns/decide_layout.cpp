@@ -157,7 +157,6 @@ class Decision {
         layout_.source = source_;
         layout_.format = format;
         layout_.stated_rate = options_.sample_rate;
-        layout_.outside = options_.outside;
         name_columns();
         choose_time(facts_, forced_, options_, layout_);
         if (layout_.chosen.time) give_role(*layout_.chosen.time, Role::time, "");

@@ -115,7 +115,6 @@ const LogFormat formats::npz{
     .binary = true,
     .sniff = sniff,
     .open = open_as_records<make_npz>,
-    .cut = cut_as_records<make_npz>,
 };
 
 }  // namespace ripplenotch

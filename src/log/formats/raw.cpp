@@ -92,7 +92,6 @@ const LogFormat formats::raw{
     .told = true,
     .sniff = [](std::string_view) { return false; },
     .open = open_as_records<make_raw>,
-    .cut = cut_as_records<make_raw>,
 };
 
 }  // namespace ripplenotch

@@ -396,6 +396,10 @@ NpyHeader parse_npy_header(std::string_view bytes, const std::string& source) {
     return header;
 }
 
+std::string NpyHeader::shape(std::size_t more_columns) const {
+    return structured ? fmt::format("{},", rows) : fmt::format("{}, {}", rows, fields.size() + more_columns);
+}
+
 std::string make_npy_header(std::string_view descr, std::string_view shape, bool reserve_rows) {
     std::string text = fmt::format("{{'descr': {}, 'fortran_order': False, 'shape': ({}), }}", descr, shape);
     constexpr std::size_t digits_of_any_count = 20;

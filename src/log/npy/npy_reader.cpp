@@ -16,6 +16,7 @@
 #include "log/npy/npy_header.hpp"
 #include "log/read.hpp"
 #include "log/records/joined_records.hpp"
+#include "log/rows_in_range.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/reading.hpp"
@@ -71,6 +72,7 @@ void NpyReader::decide(const ReadOptions& options) {
         if (facts.columns == 4) with_default.columns.emplace_back("position");
     }
     layout_ = decide_layout(source_->name(), table_.format, facts, with_default);
+    layout_.outside = rows_outside(*source_);
     layout_.contents = table_.contents;
     layout_.warnings.insert(layout_.warnings.begin(), table_.warnings.begin(), table_.warnings.end());
     if (by_place) {
@@ -255,7 +257,7 @@ void NpyReader::complain(std::size_t column, const std::string& sentence) const 
     if (header_.structured) {
         for (const NpyField& field : header_.fields) names.push_back(field.name);
     }
-    raise<DataError>("{}: row {}, {}: {}", source_->name(), source_->number_in_file(rows_ + 1),
+    raise<DataError>("{}: row {}, {}: {}", source_->name(), number_in_file(*source_, rows_ + 1),
                      column_label(names, column), sentence);
 }
 
@@ -273,7 +275,7 @@ std::string npy_by_rows(std::string_view file, const NpyHeader& header, const st
             "{}: read {} bytes of numbers, expected {}; the file is cut off, save the array again", source,
             data.size(), header.rows * header.record_size);
     }
-    std::string rows = make_npy_header(header.descr, fmt::format("{}, {}", header.rows, columns), false);
+    std::string rows = make_npy_header(header.descr, header.shape(), false);
     const std::size_t start = rows.size();
     rows += data;
     if (!header.by_columns) return rows;
@@ -367,16 +369,34 @@ std::string left_out_of(const std::vector<ContentEntry>& contents) {
 
 }  // namespace
 
-NpyReader::NpyReader(std::unique_ptr<ByteSource> records, RecordTable table, const ReadOptions& options,
-                     bool keep_all)
+NpyReader::NpyReader(std::unique_ptr<ByteSource> records, RecordTable table, const ReadOptions& options)
     : source_(std::move(records)), table_(std::move(table)), hold_bad_values_(options.hold_bad_values) {
     header_.fields = table_.fields;
     header_.structured = table_.named;
     header_.record_size = table_.record_size;
     endless_ = !table_.rows;
     header_.rows = table_.rows.value_or(std::numeric_limits<std::size_t>::max());
+    begin_records(options);
+    if (auto* const selective = dynamic_cast<RecordSource*>(source_.get());
+        selective != nullptr && !options.range.given())
+        keep_wanted(*selective);
+}
+
+NpyReader::NpyReader(std::unique_ptr<ByteSource> records, const NpyReader& whole, std::size_t rows,
+                     const ReadOptions& options)
+    : source_(std::move(records)),
+      header_(whole.header_),
+      table_(whole.table_),
+      hold_bad_values_(options.hold_bad_values) {
+    header_.rows = rows;
+    if (!whole.head_.empty()) head_ = make_npy_header(header_.descr, header_.shape(), false);
+    begin_records(options);
+}
+
+void NpyReader::begin_records(const ReadOptions& options) {
     // Whole records: of one that was begun, the rest would not fit any more once columns are left out.
-    const std::size_t sample = std::max<std::size_t>(64, npy_sample_bytes / header_.record_size);
+    const std::size_t fewest = head_.empty() ? 64 : 1;
+    const std::size_t sample = std::max(fewest, npy_sample_bytes / header_.record_size);
     read_up_to(carry_, std::min(header_.rows, sample) * header_.record_size);
     if (carry_.size() < header_.record_size) {
         if (!carry_.empty()) complain_of_end(carry_.size());
@@ -385,8 +405,6 @@ NpyReader::NpyReader(std::unique_ptr<ByteSource> records, RecordTable table, con
     ReadOptions settled = options;
     if (!table_.columns.empty()) settled.columns = table_.columns;
     decide(settled);
-    if (auto* const selective = dynamic_cast<RecordSource*>(source_.get()); selective != nullptr && !keep_all)
-        keep_wanted(*selective);
 }
 
 // Of what was read ahead, too: from here on records hold nothing else.
@@ -416,7 +434,7 @@ void NpyReader::complain_of_end(std::size_t left_over) const {
     raise<DataError>(
         "{}: read {} rows and {} bytes of one more, expected records of {} bytes; the file is cut off, "
         "or its records are others than told",
-        source_->name(), source_->number_in_file(fetched_), left_over, header_.record_size);
+        source_->name(), number_in_file(*source_, fetched_), left_over, header_.record_size);
 }
 
 std::size_t NpyReader::sample_rows() const {

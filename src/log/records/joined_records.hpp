@@ -63,7 +63,7 @@ class RecordSource : public ByteSource {
     std::string bytes_;
 };
 
-// Formats that are read as records: how they are opened, and how rows outside a range are left out of them.
+// Formats that are read as records.
 
 /// A file as records.
 struct Records {
@@ -77,19 +77,11 @@ using MakeRecords = Records (*)(std::unique_ptr<ByteSource> source, std::string 
 [[nodiscard]] std::unique_ptr<LogReader> read_records(std::unique_ptr<ByteSource> source,
                                                       std::string first_bytes, const ReadOptions& options,
                                                       MakeRecords make);
-/// LogFormat::cut: the whole log is gone through first, and what is kept waits in a temporary file.
-[[nodiscard]] LogCut cut_records(std::unique_ptr<ByteSource> source, std::string first_bytes,
-                                 const ReadOptions& options, MakeRecords make);
 
 template <MakeRecords make>
 std::unique_ptr<LogReader> open_as_records(std::unique_ptr<ByteSource> source, std::string first_bytes,
                                            const ReadOptions& options) {
     return read_records(std::move(source), std::move(first_bytes), options, make);
-}
-template <MakeRecords make>
-LogCut cut_as_records(std::unique_ptr<ByteSource> source, std::string first_bytes,
-                      const ReadOptions& options) {
-    return cut_records(std::move(source), std::move(first_bytes), options, make);
 }
 
 // Numbers from equal distances to equal distances: how columns become records, and records columns.

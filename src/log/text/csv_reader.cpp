@@ -51,6 +51,7 @@ CsvReader::CsvReader(std::unique_ptr<ByteSource> source, std::string first_bytes
     }
     dialect_ = sniff_text(first_bytes, source_ended_, *source_, options);
     layout_ = decide_layout(source_->name(), "csv", facts_of(first_bytes), options);
+    layout_.outside = rows_outside(*source_);
     if (dialect_.head_lines > 0) {
         layout_.inferences.push_back({fmt::format("the first {} lines", dialect_.head_lines),
                                       "a head, passed on and not read",
