@@ -8,12 +8,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <filesystem>
 #include <iterator>
 #include <utility>
 #include <vector>
 
+#include "core/text/lower_case.hpp"
 #include "log/clock/stamp.hpp"
 #include "log/columns/motion_reading.hpp"
 #include "log/formats.hpp"
@@ -170,9 +170,7 @@ std::string written_extensions() {
 const LogFormat* told_format(const std::string& path, std::optional<std::string_view> asked) {
     if (asked) return &find_log_format(*asked);
     const std::size_t dot = path.rfind('.');
-    std::string extension = dot == std::string::npos ? "" : path.substr(dot);
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string extension = dot == std::string::npos ? "" : lower_case(path.substr(dot));
     for (const LogFormat* format : log_formats()) {
         const auto& known = format->extensions;
         if (std::find(known.begin(), known.end(), extension) != known.end()) return format;

@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/text/lower_case.hpp"
 #include "ripplenotch/analysis/identification.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/spec.hpp"
@@ -21,14 +22,7 @@
 
 namespace ripplenotch {
 
-namespace {
-
-std::string lower_case(std::string text) {
-    for (char& letter : text) letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
-    return text;
-}
-
-}  // namespace
+namespace {}  // namespace
 
 ArmLog ArmReading::view() const {
     ArmLog arm;

@@ -12,6 +12,7 @@
 #include <numbers>
 
 #include "core/functions/polynomials.hpp"
+#include "core/functions/powers_of_ten.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch::portable {
@@ -162,13 +163,6 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-// Powers of ten that are exact.
-constexpr std::array<double, 23> powers_of_ten = [] {
-    std::array<double, 23> powers{1.0};
-    for (std::size_t n = 1; n < powers.size(); ++n) powers[n] = 10.0 * powers[n - 1];
-    return powers;
-}();
 
 constexpr std::uint64_t exponent_bits = 0x7ff0000000000000U, fraction_bits = 0x000fffffffffffffU;
 constexpr int bias = 1023;

@@ -12,10 +12,7 @@ constexpr std::size_t end_size = 22, longest_comment = 65535, most_members = 100
 constexpr std::uint64_t most_for_one = 1100, unasked = std::uint64_t{1} << 26;  // deflate cannot do better
 
 std::uint64_t number_at(std::string_view bytes, std::size_t at, std::size_t size) {
-    std::uint64_t number = 0;
-    for (std::size_t i = size; i-- > 0;)
-        number = number << 8U | static_cast<unsigned char>(at + i < bytes.size() ? bytes[at + i] : '\0');
-    return number;
+    return little_endian(bytes.substr(std::min(at, bytes.size()), size));
 }
 
 struct Directory {

@@ -26,7 +26,6 @@ struct CdrStep {
         skip,      ///< `count` numbers of `size` bytes
         skip_any,  ///< as many as stand in front
         text,
-        texts,       ///< as many as stand in front
         text_is,     ///< `expected`
         length_is,   ///< `count` in front of a sequence
         repeat_any,  ///< `inner`, as many times as stand in front

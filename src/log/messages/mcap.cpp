@@ -81,12 +81,6 @@ constexpr std::string_view magic = "\x89MCAP0\r\n";
 constexpr std::size_t head_size = 9, ahead_size = std::size_t{1} << 18;
 constexpr std::uint64_t largest_record = std::uint64_t{1} << 28, largest_chunk = std::uint64_t{1} << 27;
 
-std::uint64_t little_endian(std::string_view bytes) {
-    std::uint64_t number = 0;
-    for (std::size_t i = bytes.size(); i-- > 0;) number = number << 8U | static_cast<unsigned char>(bytes[i]);
-    return number;
-}
-
 void unpack_chunk(std::string_view packed, const Packing& packing, const std::string& source,
                   std::string& into) {
     if (packing.make == nullptr) {

@@ -70,12 +70,7 @@ class WireCursor {
         raise<DataError>("a whole number of more than ten bytes in a message of Protobuf");
     }
     /// Little endian, of 4 or 8 bytes.
-    std::uint64_t fixed(std::size_t size) {
-        const std::string_view bytes = counted(size);
-        std::uint64_t value = 0;
-        for (std::size_t i = size; i-- > 0;) value = value << 8 | static_cast<unsigned char>(bytes[i]);
-        return value;
-    }
+    std::uint64_t fixed(std::size_t size) { return little_endian(counted(size)); }
 
   private:
     std::string_view counted(std::uint64_t size) {
