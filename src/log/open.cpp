@@ -9,9 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
-#include <iterator>
 #include <utility>
-#include <vector>
 
 #include "core/text/lower_case.hpp"
 #include "log/clock/stamp.hpp"
@@ -23,7 +21,6 @@
 #include "ripplenotch/core/files.hpp"
 #include "ripplenotch/core/spec.hpp"
 #include "ripplenotch/log/clock.hpp"
-#include "ripplenotch/log/format.hpp"
 #include "ripplenotch/log/log.hpp"
 
 namespace ripplenotch {

@@ -8,16 +8,13 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
-#include <memory>
 #include <new>
 #include <utility>
 
 #include "core/process/memory.hpp"
 #include "log/account/account.hpp"
 #include "log/clock/clock_check.hpp"
-#include "ripplenotch/log/log.hpp"
 
 namespace ripplenotch {
 

@@ -40,11 +40,11 @@ class ByteSource {
     virtual std::size_t read(char* into, std::size_t size);
     /// As people should see it: the path, or "standard input".
     [[nodiscard]] const std::string& name() const { return name_; }
-    /// Of a file in bytes when it was opened; 0 where nobody knows.
+    /// The bytes of a file when it was opened; 0 where that is not known.
     [[nodiscard]] std::uint64_t size() const { return size_; }
     /// A regular file, which can be read at any place; else bytes come once.
     [[nodiscard]] bool by_place() const;
-    /// Of a file that is by_place(), for readers that go back and forth in it. They pass read() by, so the
+    /// The file that is by_place(), for readers that go back and forth in it. They pass read() by, so the
     /// file is hashed when its hash is asked for, and refused if it is another by then (inputs_read.hpp).
     [[nodiscard]] int descriptor_by_place();
     /// For such readers, at their end: throws FileError if the file was written to since it was opened.
@@ -54,7 +54,7 @@ class ByteSource {
     struct Name {
         std::string name;
     };
-    /// Of bytes that an heir's read() gives.
+    /// For derived classes, whose read() gives the bytes.
     explicit ByteSource(Name name);
 
   private:

@@ -47,7 +47,8 @@ struct TimeRange {
 /// Rows that a range left out. The counts are complete when the log has been read to its end.
 struct RowsOutside {
     std::optional<double> from_s, to_s;  ///< the range, on the time axis of the whole log
-    /// Of the first row that was kept on that axis, where the times that are told count from it; else 0.
+    /// The time of the first row that was kept, on that axis, where the times that are told count from it;
+    /// else 0.
     double zero_s = 0.0;
     std::size_t before = 0, after = 0;  ///< a row without a time is counted with the row before it
     [[nodiscard]] std::size_t count() const { return before + after; }

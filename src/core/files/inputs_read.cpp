@@ -6,11 +6,9 @@
 #include <atomic>
 #include <map>
 #include <mutex>
-#include <string>
 
 #include "core/text/lower_case.hpp"
 #include "ripplenotch/core/error.hpp"
-#include "ripplenotch/core/files.hpp"
 
 namespace ripplenotch {
 

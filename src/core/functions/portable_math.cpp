@@ -5,11 +5,9 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <complex>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <numbers>
 
 #include "core/functions/polynomials.hpp"
 #include "core/functions/powers_of_ten.hpp"
@@ -89,7 +87,7 @@ double cosine_in(int quadrant, double x) {
 
 double degrees_to_radians(double angle_deg) { return angle_deg * (pi / 180.0); }
 
-// Of 0 <= x <= 1: from the nearest eighth on.
+// For 0 <= x <= 1, from the nearest eighth on.
 double atan_up_to_1(double x) {
     const double eighths = nearest_integer(8.0 * x);
     const double base = eighths / 8.0;
@@ -201,7 +199,7 @@ Logarithm logarithm(double x) {
 
 bool is_ordinary(double x) { return x > 0.0 && x < infinity; }
 double log_outside(double x) { return x == 0.0 ? -infinity : x > 0.0 ? infinity : nan; }
-// Of what exponentials cannot hold.
+// The exponential of what is too large or too small for a double.
 double exp_outside(double x) { return std::isnan(x) ? x : x > 0.0 ? infinity : 0.0; }
 
 double whole_power(double x, int p) {

@@ -3,16 +3,12 @@
 
 #include <fast_float/fast_float.h>
 #include <fmt/compile.h>
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <cstring>
-#include <iterator>
 
 #include "core/functions/powers_of_ten.hpp"
 #include "core/text/print_fixed.hpp"

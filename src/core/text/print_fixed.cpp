@@ -6,10 +6,6 @@
 #include "core/text/print_fixed.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <span>
 
 #include "core/functions/powers_of_ten.hpp"
 #include "core/vectors/bytes.hpp"

@@ -5,13 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "log/clock/clock_check.hpp"
 #include "ripplenotch/core/median.hpp"
 #include "ripplenotch/core/number.hpp"
-#include "ripplenotch/log/recording.hpp"
 
 namespace ripplenotch {
 

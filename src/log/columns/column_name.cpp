@@ -5,10 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <cctype>
-#include <span>
-#include <vector>
 
 #include "core/text/lower_case.hpp"
 #include "log/columns/units.hpp"
@@ -169,7 +166,7 @@ bool is_clock_name(const std::vector<Word>& left) {
 
 ColumnName read_column_name(std::string_view name) {
     ColumnName column;
-    // Of an element of a list, "tau_nm[2]", the unit stands in front of the number.
+    // In an element of a list, "tau_nm[2]", the unit stands in front of the number.
     const std::size_t bracket = name.ends_with(']') ? name.rfind('[') : std::string_view::npos;
     const bool element =
         bracket != std::string_view::npos && is_digits(name.substr(bracket + 1, name.size() - bracket - 2));

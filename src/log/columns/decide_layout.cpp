@@ -5,21 +5,14 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdint>
-#include <functional>
-#include <optional>
 #include <set>
-#include <string>
-#include <vector>
 
 #include "log/columns/column_name.hpp"
 #include "log/columns/infer_motion.hpp"
 #include "log/columns/units.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
-#include "ripplenotch/log/layout.hpp"
 
 namespace ripplenotch {
 

@@ -2,13 +2,7 @@
 #pragma once
 // The arrays of numbers in an HDF5 file, of MATLAB's version 7.3 too, by libhdf5.
 
-#define H5_USE_110_API
-#include <hdf5.h>
-
 #include <memory>
-#include <optional>
-#include <string_view>
-#include <utility>
 #include <vector>
 
 #include "core/files/byte_sink.hpp"

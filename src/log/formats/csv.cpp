@@ -11,7 +11,6 @@
 #include "log/text/csv_reader.hpp"
 #include "log/text/csv_writer.hpp"
 #include "log/text/text_dialect.hpp"
-#include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 
 namespace ripplenotch {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The way through the messages of a topic, written down while the first is gone through.
-
-#include "log/messages/cdr.hpp"
+// Messages in CDR (OMG's Common Data Representation, version 1, as ROS 2 writes it): which numbers are in the
+// first of a topic, and a short program that takes them out of the next million.
 
 #include <fmt/format.h>
 
@@ -11,6 +10,8 @@
 #include <cstring>
 #include <string_view>
 
+#include "log/messages/message_records.hpp"
+#include "log/messages/ros_schema.hpp"
 #include "ripplenotch/core/error.hpp"
 
 namespace ripplenotch {
@@ -18,6 +19,24 @@ namespace ripplenotch {
 namespace {
 
 // Where a message in CDR is read: numbers at multiples of their size, texts and lists behind their lengths.
+
+/// One step through a message.
+struct CdrStep {
+    enum class Kind {
+        number,    ///< of `size` bytes, kept
+        stamp,     ///< of eight bytes, kept
+        skip,      ///< `count` numbers of `size` bytes
+        skip_any,  ///< as many as stand in front
+        text,
+        text_is,     ///< `expected`
+        length_is,   ///< `count` in front of a sequence
+        repeat_any,  ///< `inner`, as many times as stand in front
+    };
+    Kind kind = Kind::skip;
+    std::size_t size = 0, count = 1, leaf = 0;
+    std::string path, expected;
+    std::vector<CdrStep> inner;
+};
 
 constexpr std::size_t cdr_head = 4;  // says the byte order
 
@@ -54,7 +73,7 @@ class CdrCursor {
         number(4, reinterpret_cast<char*>(&value));
         return value;
     }
-    // Of things that take a byte or more each.
+    // The length of a list whose elements take a byte or more each.
     std::uint32_t list_length() {
         const std::uint32_t count = length();
         if (count > bytes_.size() - at_)
@@ -160,26 +179,6 @@ class CdrReader final : public MessageReader {
     std::size_t count_;
     LeafOffsets offsets_;
 };
-
-class CdrProgram final : public MessageProgram {
-  public:
-    explicit CdrProgram(std::vector<CdrStep> steps)
-        : steps_(std::make_shared<const std::vector<CdrStep>>(std::move(steps))) {}
-    [[nodiscard]] std::unique_ptr<MessageReader> reader(const LeafOffsets& offsets) const override {
-        return std::make_unique<CdrReader>(steps_, offsets);
-    }
-
-  private:
-    std::shared_ptr<const std::vector<CdrStep>> steps_;
-};
-
-}  // namespace
-
-std::shared_ptr<const MessageProgram> cdr_program(std::vector<CdrStep> steps) {
-    return std::make_shared<CdrProgram>(std::move(steps));
-}
-
-namespace {
 
 constexpr std::size_t most_leaves = 4096, most_steps = 100000;
 
@@ -323,7 +322,10 @@ MessageLayout lay_out_cdr(const RosType& type, std::string_view message) {
     std::vector<CdrStep> steps;
     LayOut work(message);
     work.record(type, "", steps);
-    return {std::move(work.leaves), cdr_program(std::move(steps))};
+    const auto shared = std::make_shared<const std::vector<CdrStep>>(std::move(steps));
+    return {std::move(work.leaves), [shared](const LeafOffsets& offsets) -> std::unique_ptr<MessageReader> {
+                return std::make_unique<CdrReader>(shared, offsets);
+            }};
 }
 
 }  // namespace ripplenotch

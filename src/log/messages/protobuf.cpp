@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "log/messages/protobuf.hpp"
+// Messages in Protobuf and the definitions of their types.
 
 #include <fmt/format.h>
 
@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "log/messages/field_tree.hpp"
 #include "ripplenotch/core/error.hpp"
 
 namespace ripplenotch {

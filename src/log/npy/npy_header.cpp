@@ -8,9 +8,7 @@
 #include <bit>
 #include <cctype>
 #include <cmath>
-#include <cstdint>
 #include <cstring>
-#include <optional>
 
 #include "log/clock/stamp.hpp"
 #include "ripplenotch/core/error.hpp"

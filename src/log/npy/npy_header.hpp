@@ -59,7 +59,7 @@ struct NpyHeader {
 };
 
 inline constexpr std::size_t largest_npy_header = std::size_t{1} << 20;
-/// Of records, that are looked at before columns are chosen.
+/// So many bytes of records are looked at before columns are chosen.
 inline constexpr std::size_t npy_sample_bytes = std::size_t{1} << 16;
 inline constexpr std::string_view npy_magic = "\x93NUMPY";
 

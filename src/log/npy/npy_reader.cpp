@@ -7,15 +7,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <memory>
-#include <string>
-#include <string_view>
 
 #include "log/clock/choose_time.hpp"
 #include "log/containers/stored_array.hpp"
-#include "log/npy/npy_header.hpp"
 #include "log/read.hpp"
-#include "log/records/joined_records.hpp"
 #include "log/rows_in_range.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
@@ -53,12 +48,7 @@ NpyReader::NpyReader(std::unique_ptr<ByteSource> source, std::string first_bytes
 }
 
 void NpyReader::read_up_to(std::string& bytes, std::size_t size) {
-    bytes.resize(read_behind(bytes, bytes.size(), size));
-}
-
-// Behind the first `have` bytes, until there are `size`; returns how many there are.
-std::size_t NpyReader::read_behind(std::string& bytes, std::size_t have, std::size_t size) {
-    return read_on(*source_, bytes, have, size);
+    bytes.resize(read_on(*source_, bytes, bytes.size(), size));
 }
 
 void NpyReader::decide(const ReadOptions& options) {
@@ -110,7 +100,7 @@ bool NpyReader::next(RowBlock& block) {
     return true;
 }
 
-// Of what was read ahead, no more than `most`: how the log is written may have been looked for in 8 MiB.
+// Moves what was read ahead, no more than `most`: how the log is written may have been looked for in 8 MiB.
 std::size_t NpyReader::unload(std::string& bytes, std::size_t most) {
     const std::size_t count = std::min(carry_.size() - carried_, most);
     if (bytes.size() < count) bytes.resize(count);
@@ -132,7 +122,7 @@ bool NpyReader::fetch(RowBlock& block) {
     const std::size_t wanted = std::min(left, std::max<std::size_t>(1, npy_piece / size));
     std::size_t have = unload(bytes, std::max<std::size_t>(1, wanted * size));
     if (left == 0) {
-        if (have == 0) have = read_behind(bytes, have, 1);
+        if (have == 0) have = read_on(*source_, bytes, have, 1);
         if (have > 0) {
             raise<DataError>(
                 "{}: read more bytes after the {} rows of the array, expected the end; save one array a file",
@@ -141,7 +131,7 @@ bool NpyReader::fetch(RowBlock& block) {
         block.clear();
         return false;
     }
-    if (have < size) have = read_behind(bytes, have, wanted * size);
+    if (have < size) have = read_on(*source_, bytes, have, wanted * size);
     const std::size_t rows = std::min(left, have / size);
     if (rows == 0 && endless_) {
         if (have > 0) complain_of_end(have);
@@ -293,12 +283,7 @@ std::string npy_by_rows(std::string_view file, const NpyHeader& header, const st
 
 // An array that is not stored row by row cannot be read a row at a time.
 void NpyReader::read_whole(std::string& first_bytes) {
-    constexpr std::size_t piece = std::size_t{1} << 20;
-    for (std::size_t have = first_bytes.size(), got = 1; got > 0; have += got) {
-        first_bytes.resize(have + piece);
-        got = source_->read(first_bytes.data() + have, piece);
-        first_bytes.resize(have + got);
-    }
+    read_up_to(first_bytes, std::numeric_limits<std::size_t>::max());
     const std::string name = source_->name();
     const auto rows = std::make_shared<const std::string>(npy_by_rows(first_bytes, header_, name));
     source_ = std::make_unique<ByteSource>(name, rows);
@@ -407,7 +392,7 @@ void NpyReader::begin_records(const ReadOptions& options) {
     decide(settled);
 }
 
-// Of what was read ahead, too: from here on records hold nothing else.
+// From here on records hold the wanted fields only, those that were read ahead included.
 void NpyReader::keep_wanted(RecordSource& records) {
     std::vector<std::size_t> wanted;
     for (const WantedColumn& one : wanted_) wanted.push_back(one.column);

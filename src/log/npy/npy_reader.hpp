@@ -29,7 +29,7 @@ class NpyReader : public LogReader {
 
     [[nodiscard]] const Layout& layout() const override { return layout_; }
     [[nodiscard]] std::string_view head() const override { return head_; }
-    /// Of the whole log; 0 where nobody knows.
+    /// The size of the whole log; 0 where it is not known.
     [[nodiscard]] std::uint64_t source_bytes() const { return source_->size(); }
     bool next(RowBlock& block) override;
     bool fetch(RowBlock& block) override;
@@ -53,7 +53,6 @@ class NpyReader : public LogReader {
     [[nodiscard]] MotionSample motion_sample(const MotionPlaces& places) const;
     bool read_column(const char* records, const WantedColumn& wanted, std::span<double> numbers) const;
     void read_up_to(std::string& bytes, std::size_t size);
-    std::size_t read_behind(std::string& bytes, std::size_t have, std::size_t size);
     std::size_t unload(std::string& bytes, std::size_t most);
     void plan_columns(const std::vector<std::string>& names);
     bool read_columns(RowBlock& block) const;

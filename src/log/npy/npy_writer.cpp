@@ -6,8 +6,6 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <optional>
-#include <vector>
 
 #include "core/files/byte_sink.hpp"
 #include "log/text/csv_writer.hpp"

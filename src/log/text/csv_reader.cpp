@@ -8,9 +8,7 @@
 #include <cstring>
 
 #include "log/clock/choose_time.hpp"
-#include "log/columns/decide_layout.hpp"
 #include "log/read.hpp"
-#include "log/text/text_dialect.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/reading.hpp"

@@ -20,7 +20,7 @@ class CsvReader : public LogReader {
 
     [[nodiscard]] const Layout& layout() const override { return layout_; }
     [[nodiscard]] std::string_view head() const override { return head_; }
-    /// Of the whole log; 0 where nobody knows.
+    /// The size of the whole log; 0 where it is not known.
     [[nodiscard]] std::uint64_t source_bytes() const { return source_->size(); }
     bool next(RowBlock& block) override;
     bool fetch(RowBlock& block) override;

@@ -3,10 +3,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <string_view>
 #include <utility>
 
 #include "core/functions/powers_of_ten.hpp"
@@ -14,7 +12,6 @@
 #include "core/vectors/dispatch.hpp"
 #include "log/table_writer.hpp"
 #include "log/text/row_edges.hpp"
-#include "log/text/text_cells.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/reading.hpp"
 

@@ -6,12 +6,11 @@
 #include <limits>
 #include <span>
 #include <utility>
-#include <vector>
 
 #include "log/clock/stamp.hpp"
 #include "log/columns/infer_motion.hpp"
-#include "log/text/text_header.hpp"
 #include "log/rows_in_range.hpp"
+#include "log/text/text_header.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/reading.hpp"
