@@ -42,9 +42,14 @@ struct McapRecord {
 class McapFields {
   public:
     explicit McapFields(std::string_view content) : rest_(content) {}
-    [[nodiscard]] std::uint64_t number(std::size_t size);
-    [[nodiscard]] std::string_view text();  ///< behind its length in four bytes
-    [[nodiscard]] std::string_view bytes(std::uint64_t size);
+    [[nodiscard]] std::uint64_t number(std::size_t size) { return little_endian(bytes(size)); }
+    [[nodiscard]] std::string_view text() { return bytes(number(4)); }  ///< behind its length in four bytes
+    [[nodiscard]] std::string_view bytes(std::uint64_t size) {
+        if (size > rest_.size()) raise<DataError>("a record that ends {} bytes early", size - rest_.size());
+        const std::string_view taken = rest_.substr(0, static_cast<std::size_t>(size));
+        rest_.remove_prefix(taken.size());
+        return taken;
+    }
     [[nodiscard]] std::string_view rest() const { return rest_; }
 
   private:
@@ -100,17 +105,6 @@ void unpack_chunk(std::string_view packed, const Packing& packing, const std::st
     }
     if (have < into.size())
         raise<DataError>("a chunk of {} bytes when unpacked, expected {}", have, into.size());
-}
-
-std::uint64_t McapFields::number(std::size_t size) { return little_endian(bytes(size)); }
-
-std::string_view McapFields::text() { return bytes(number(4)); }
-
-std::string_view McapFields::bytes(std::uint64_t size) {
-    if (size > rest_.size()) raise<DataError>("a record that ends {} bytes early", size - rest_.size());
-    const std::string_view taken = rest_.substr(0, static_cast<std::size_t>(size));
-    rest_.remove_prefix(taken.size());
-    return taken;
 }
 
 McapRecords::McapRecords(std::shared_ptr<StoredBytes> file) : file_(std::move(file)) { restart(); }

@@ -119,9 +119,7 @@ struct ProtobufField {
 
 using ProtobufType = std::vector<ProtobufField>;
 
-struct ProtobufTypes {
-    std::vector<ProtobufType> types;  ///< the first is the one that was asked for
-};
+using ProtobufTypes = std::vector<ProtobufType>;  ///< the first is the one that was asked for
 
 constexpr std::size_t most_declared_types = 10000, most_declared_fields = 10000, deepest_type = 32;
 
@@ -145,6 +143,7 @@ struct Declared {
     bool proto3 = false;
 };
 
+/// Throws DataError, without a source's name, on bytes that are no such set, and where a type is not in it.
 class Schema {
   public:
     explicit Schema(std::string_view descriptor_set) {
@@ -156,7 +155,7 @@ class Schema {
         // Grows while types name others.
         for (std::size_t i = 0; i < asked_.size(); ++i) {
             ProtobufType type = fields_of(asked_[i]);
-            types_.types.push_back(std::move(type));
+            types_.push_back(std::move(type));
         }
         return std::move(types_);
     }
@@ -235,11 +234,6 @@ class Schema {
     ProtobufTypes types_;
 };
 
-// Throws DataError, without a source's name, on bytes that are no such set, and where a type is not in it.
-ProtobufTypes parse_protobuf_schema(std::string_view descriptor_set, const std::string& type) {
-    return Schema(descriptor_set).types_of(type);
-}
-
 using Type = ProtobufField::Type;
 using Size = WireField::Size;
 
@@ -298,7 +292,7 @@ class ProtobufWalk final : public FieldWalk {
   public:
     explicit ProtobufWalk(ProtobufTypes types) : types_(std::move(types)) {}
     void walk(std::string_view message, FieldVisitor& visitor) const override {
-        record(types_.types.front(), message, visitor, 0);
+        record(types_.front(), message, visitor, 0);
     }
 
   private:
@@ -339,7 +333,7 @@ class ProtobufWalk final : public FieldWalk {
             raise<DataError>("the field {} in bytes of another type than the recording defines", field.name);
         if (field.repeated) visitor.element();
         if (field.type == Type::message)
-            record(types_.types[field.inner], one.bytes, visitor, depth + 1);
+            record(types_[field.inner], one.bytes, visitor, depth + 1);
         else if (field.type == Type::text)
             visitor.text(one.bytes);
         else if (holds_number(field.type))
@@ -357,7 +351,7 @@ class ProtobufWalk final : public FieldWalk {
 }  // namespace
 
 std::shared_ptr<const FieldWalk> protobuf_walk(std::string_view descriptor_set, const std::string& type) {
-    return std::make_shared<ProtobufWalk>(parse_protobuf_schema(descriptor_set, type));
+    return std::make_shared<ProtobufWalk>(Schema(descriptor_set).types_of(type));
 }
 
 }  // namespace ripplenotch
