@@ -31,17 +31,17 @@ ripplenotch_container(SQLITE sqlite3)
 # The files that know a library, and they alone: what is here and what is missing compiles nothing else anew. Called in the
 # folder that compiles them.
 function(ripplenotch_container_sources)
-    set(sources_ZLIB log/unpack/gzip_unpacker.cpp)
-    set(sources_ZSTD log/unpack/zstd_unpacker.cpp)
-    set(sources_LZ4 log/unpack/lz4_unpacker.cpp)
-    set(sources_LZMA log/unpack/xz_unpacker.cpp)
+    foreach(name ZLIB ZSTD LZ4 LZMA)
+        set(sources_${name} log/unpack/unpackers.cpp)
+    endforeach()
     set(sources_HDF5 log/formats/hdf5.cpp log/containers/hdf5.cpp)
     set(sources_SQLITE log/formats/rosbag2.cpp log/messages/rosbag2_messages.cpp)
     foreach(name IN LISTS RIPPLENOTCH_CONTAINERS_FOUND)
         # A folder that the compiler knows by itself must keep its place among the others: <cmath> looks behind its own.
         list(REMOVE_ITEM ${name}_INCLUDE_DIRS ${CMAKE_CXX_IMPLICIT_INCLUDE_DIRECTORIES})
-        set_source_files_properties(${sources_${name}} PROPERTIES COMPILE_DEFINITIONS RIPPLENOTCH_HAS_${name}
-            INCLUDE_DIRECTORIES "${${name}_INCLUDE_DIRS}" COMPILE_OPTIONS "${${name}_CFLAGS_OTHER}")
+        set_property(SOURCE ${sources_${name}} APPEND PROPERTY COMPILE_DEFINITIONS RIPPLENOTCH_HAS_${name})
+        set_property(SOURCE ${sources_${name}} APPEND PROPERTY INCLUDE_DIRECTORIES ${${name}_INCLUDE_DIRS})
+        set_property(SOURCE ${sources_${name}} APPEND PROPERTY COMPILE_OPTIONS ${${name}_CFLAGS_OTHER})
     endforeach()
 endfunction()
 

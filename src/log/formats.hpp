@@ -10,12 +10,6 @@ namespace ripplenotch {
 
 // What the entries are made of: a format is its reader, its writer and its writer of tables.
 
-template <class Reader>
-std::unique_ptr<LogReader> open_with(std::unique_ptr<ByteSource> source, std::string first_bytes,
-                                     const ReadOptions& options) {
-    return std::make_unique<Reader>(std::move(source), std::move(first_bytes), options);
-}
-
 template <class Writer, class Reader>
 std::unique_ptr<LogWriter> rewrite_with(std::unique_ptr<ByteSink> sink, const LogReader& reader,
                                         const WriteOptions& options) {

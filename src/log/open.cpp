@@ -8,12 +8,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <filesystem>
-#include <iterator>
 #include <utility>
-#include <vector>
 
+#include "core/text/lower_case.hpp"
 #include "log/clock/stamp.hpp"
 #include "log/columns/motion_reading.hpp"
 #include "log/formats.hpp"
@@ -23,7 +21,6 @@
 #include "ripplenotch/core/files.hpp"
 #include "ripplenotch/core/spec.hpp"
 #include "ripplenotch/log/clock.hpp"
-#include "ripplenotch/log/format.hpp"
 #include "ripplenotch/log/log.hpp"
 
 namespace ripplenotch {
@@ -170,9 +167,7 @@ std::string written_extensions() {
 const LogFormat* told_format(const std::string& path, std::optional<std::string_view> asked) {
     if (asked) return &find_log_format(*asked);
     const std::size_t dot = path.rfind('.');
-    std::string extension = dot == std::string::npos ? "" : path.substr(dot);
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string extension = dot == std::string::npos ? "" : lower_case(path.substr(dot));
     for (const LogFormat* format : log_formats()) {
         const auto& known = format->extensions;
         if (std::find(known.begin(), known.end(), extension) != known.end()) return format;
@@ -195,42 +190,6 @@ const LogFormat& output_format(const std::string& path, std::optional<std::strin
 }
 
 namespace {
-
-std::string clock_words(const Layout& layout) {
-    if (!layout.chosen.time) return "none";
-    const Column& column = layout.columns[*layout.chosen.time];
-    return fmt::format("'{}' {}{}", column.name, layout.time_as_text ? "as text" : "in " + column.unit,
-                       layout.time_fraction ? " and nanoseconds" : "");
-}
-
-// The range was put to the whole log; what is inside has to be read by the same clock.
-void check_clock(const Layout& whole, const Layout& inside) {
-    const std::string before = clock_words(whole), after = clock_words(inside);
-    if (before == after) return;
-    raise<DataError>(
-        "{}: --from and --to: the time is read as {} in the whole log, as {} in the rows inside; say "
-        "--columns time=NAME and --unit time=UNIT",
-        whole.source, before, after);
-}
-
-/// Rows outside the range are gone before anything is decided about the others.
-std::unique_ptr<LogReader> open_cut(const LogFormat& format, std::unique_ptr<ByteSource> source,
-                                    std::string first_bytes, const ReadOptions& options) {
-    if (format.cut == nullptr)
-        raise<UsageError>("{}: --from and --to: rows of a log in format {} are read all or none",
-                          source->name(), format.name);
-    LogCut cut = format.cut(std::move(source), std::move(first_bytes), options);
-    ReadOptions inside = options;
-    inside.outside = cut.outside;
-    auto reader = format.open(std::move(cut.bytes), {}, inside);
-    const Layout& layout = reader->layout();
-    check_clock(cut.whole, layout);
-    if (layout.time_origin != cut.whole.time_origin) {
-        cut.outside->zero_s =
-            since(layout.time_origin, cut.whole.time_origin) * layout.columns[*layout.chosen.time].factor;
-    }
-    return reader;
-}
 
 std::string first_bytes_of(ByteSource& source) {
     std::string first_bytes;
@@ -260,9 +219,11 @@ std::unique_ptr<LogReader> open_log(std::unique_ptr<ByteSource> source, const Re
     const LogFormat& format =
         options.format ? find_log_format(*options.format) : detect_format(first_bytes, source->name());
     require_built(format, source->name());
-    auto reader = options.range.given() ? open_cut(format, std::move(source), std::move(first_bytes), options)
-                                        : format.open(std::move(source), std::move(first_bytes), options);
+    auto reader = format.open(std::move(source), std::move(first_bytes), options);
     const Layout& layout = reader->layout();
+    if (options.range.given() && !layout.outside)
+        raise<UsageError>("{}: --from and --to: rows of a log in format {} are read all or none",
+                          layout.source, format.name);
     if (layout.velocity_from_position) return std::make_unique<DerivedVelocity>(std::move(reader));
     if (layout.constant_speed) {
         const DegPerSec speed = *layout.constant_speed;

@@ -4,19 +4,17 @@
 #include "log/read.hpp"
 
 #include <fmt/format.h>
+#include <sys/mman.h>
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
-#include <memory>
+#include <new>
 #include <utility>
 
 #include "core/process/memory.hpp"
 #include "log/account/account.hpp"
 #include "log/clock/clock_check.hpp"
-#include "log/row_cut.hpp"
-#include "ripplenotch/log/log.hpp"
 
 namespace ripplenotch {
 
@@ -30,6 +28,69 @@ std::size_t read_on(ByteSource& source, std::string& bytes, std::size_t have, st
 }
 
 namespace {
+
+/// Gives mapped memory back.
+struct Unmapped {
+    std::size_t bytes = 0;
+    void operator()(double* numbers) const { ::munmap(numbers, bytes); }
+};
+
+/// The rows of a pass, kept for the next one as long as they are not too many.
+class KeptParts {
+  public:
+    /// Nothing is kept of more than so many numbers.
+    explicit KeptParts(std::size_t most_numbers) : most_numbers_(most_numbers) {}
+
+    void add(const TraceView& rows) {
+        numbers_ += 4 * rows.size();
+        if (numbers_ > most_numbers_) {
+            parts_.clear();
+            room_.reset();
+            return;
+        }
+        parts_.push_back({kept(rows.time_s), kept(rows.velocity_deg_s), kept(rows.torque_nm),
+                          kept(rows.position_deg), !rows.run_starts.empty()});
+    }
+
+    [[nodiscard]] bool whole() const { return numbers_ <= most_numbers_ && !parts_.empty(); }
+
+    /// The parts as they were added, but for the rate.
+    template <class Use>
+    void replay(Hertz sample_rate, const Use& use) const {
+        static constexpr std::array<std::size_t, 1> at_first_row = {0};
+        for (const Part& part : parts_) {
+            TraceView rows{sample_rate, part.time_s, part.velocity_deg_s, part.torque_nm, part.position_deg};
+            if (part.begins_run) rows.run_starts = at_first_row;
+            use(rows);
+        }
+    }
+
+  private:
+    struct Part {
+        std::span<const double> time_s, velocity_deg_s, torque_nm, position_deg;
+        bool begins_run;
+    };
+    /// A copy that stays where it is.
+    [[nodiscard]] std::span<const double> kept(std::span<const double> numbers) {
+        if (room_ == nullptr) {
+            const std::size_t bytes = most_numbers_ * sizeof(double);
+            void* const mapped = ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE,
+                                        MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+            if (mapped == MAP_FAILED) throw std::bad_alloc();
+            ask_for_large_pages(mapped, bytes);
+            room_ = std::unique_ptr<double, Unmapped>(static_cast<double*>(mapped), Unmapped{bytes});
+        }
+        double* const to = room_.get() + used_;
+        std::copy(numbers.begin(), numbers.end(), to);
+        used_ += numbers.size();
+        return {to, numbers.size()};
+    }
+
+    std::size_t most_numbers_, numbers_ = 0;
+    std::vector<Part> parts_;
+    std::unique_ptr<double, Unmapped> room_;  ///< for all that may be kept, made when it is needed
+    std::size_t used_ = 0;
+};
 
 // Few and long: half a minute at 1 kHz, in which a slow joint still turns and lines stand apart.
 constexpr std::size_t most_pieces = 16;

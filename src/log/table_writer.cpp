@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "log/table_writer.hpp"
 
-#include <algorithm>
 #include <stdexcept>
 #include <utility>
 

@@ -37,7 +37,7 @@ class RowSink {
         for (auto& numbers : numbers_) numbers.resize(rows, std::numeric_limits<double>::quiet_NaN());
         for (auto& places : places_) places.resize(rows);
     }
-    /// Of the rows in the making; as in the file.
+    /// The numbers of the rows in the making, as in the file.
     [[nodiscard]] double* numbers(std::size_t slot) { return numbers_[slot].data(); }
     /// Offsets from the block's first byte.
     [[nodiscard]] std::uint32_t* torque_begins(std::size_t joint) { return places_[2 * joint].data(); }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Which rows a range keeps: times as they are typed, times on the axis of a log, and the cut of every format.
 #include "log/clock/choose_time.hpp"
-#include "log/row_cut.hpp"
+#include "log/rows_in_range.hpp"
 #include "log_support.hpp"
 #include "support/catch.hpp"
 

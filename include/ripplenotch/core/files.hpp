@@ -38,16 +38,13 @@ class ByteSource {
     /// Reads up to `size` bytes, blocking until at least one is there; 0 means the end. Throws FileError; so
     /// does the end of a file that was written to, cut or made longer since it was opened.
     virtual std::size_t read(char* into, std::size_t size);
-    /// Of a source that leaves parts of a file out: the number in the file of its `number`th line or record,
-    /// for messages. Both count from 1.
-    [[nodiscard]] virtual std::size_t number_in_file(std::size_t number) const { return number; }
     /// As people should see it: the path, or "standard input".
     [[nodiscard]] const std::string& name() const { return name_; }
-    /// Of a file in bytes when it was opened; 0 where nobody knows.
+    /// The bytes of a file when it was opened; 0 where that is not known.
     [[nodiscard]] std::uint64_t size() const { return size_; }
     /// A regular file, which can be read at any place; else bytes come once.
     [[nodiscard]] bool by_place() const;
-    /// Of a file that is by_place(), for readers that go back and forth in it. They pass read() by, so the
+    /// The file that is by_place(), for readers that go back and forth in it. They pass read() by, so the
     /// file is hashed when its hash is asked for, and refused if it is another by then (inputs_read.hpp).
     [[nodiscard]] int descriptor_by_place();
     /// For such readers, at their end: throws FileError if the file was written to since it was opened.
@@ -57,7 +54,7 @@ class ByteSource {
     struct Name {
         std::string name;
     };
-    /// Of bytes that an heir's read() gives.
+    /// For derived classes, whose read() gives the bytes.
     explicit ByteSource(Name name);
 
   private:

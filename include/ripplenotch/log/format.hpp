@@ -91,13 +91,6 @@ struct WriteOptions {
 /// Filtered torque of a block, in newton-metres: one vector of block.size() entries for each of its joints.
 using Torques = std::span<const std::vector<double>>;
 
-/// The part of a log that a range asks for, as a log of its own: its head and the rows inside.
-struct LogCut {
-    std::unique_ptr<ByteSource> bytes;
-    Layout whole;  ///< how the times of the whole log were read
-    std::shared_ptr<RowsOutside> outside;
-};
-
 /// Writes rows that a reader gave, with other torque values, in the units of their columns.
 class LogWriter {
   public:
@@ -139,14 +132,12 @@ struct LogFormat {
     /// True when these first bytes of a file are surely this format. Null for CSV, which is what a file is
     /// that no other format knows.
     bool (*sniff)(std::string_view first_bytes) = nullptr;
-    /// `first_bytes` have been read from `source` already and come before what it still holds.
+    /// `first_bytes` have been read from `source` already and come before what it still holds. Where
+    /// options.range is given, the rows outside are as if they were not there, and the layout has `outside`;
+    /// a format that cannot leave rows out opens the whole log, and the range is then refused. Throws
+    /// UsageError where the range is none or keeps fewer than two rows.
     std::unique_ptr<LogReader> (*open)(std::unique_ptr<ByteSource> source, std::string first_bytes,
                                        const ReadOptions& options) = nullptr;
-    /// The rows inside options.range, which is given; `first_bytes` as for open. Throws what open throws, and
-    /// UsageError where the range is none or keeps fewer than two rows. Null where rows cannot be left out:
-    /// a range is then refused.
-    LogCut (*cut)(std::unique_ptr<ByteSource> source, std::string first_bytes,
-                  const ReadOptions& options) = nullptr;
     /// A writer for rows of a log that was read in this same format: other columns pass byte for byte. Null
     /// where convert does it.
     std::unique_ptr<LogWriter> (*rewrite)(std::unique_ptr<ByteSink> sink, const LogReader& reader,

@@ -47,7 +47,8 @@ struct TimeRange {
 /// Rows that a range left out. The counts are complete when the log has been read to its end.
 struct RowsOutside {
     std::optional<double> from_s, to_s;  ///< the range, on the time axis of the whole log
-    /// Of the first row that was kept on that axis, where the times that are told count from it; else 0.
+    /// The time of the first row that was kept, on that axis, where the times that are told count from it;
+    /// else 0.
     double zero_s = 0.0;
     std::size_t before = 0, after = 0;  ///< a row without a time is counted with the row before it
     [[nodiscard]] std::size_t count() const { return before + after; }
@@ -123,11 +124,10 @@ struct ReadOptions {
     std::optional<double> gear_ratio;  ///< for what is measured before the gear
     /// Where the joints' gears differ: of a joint by its name. Asked for the joints that are read only.
     std::function<std::optional<double>(const std::string& joint)> gear_ratio_of;
-    bool takes_motor_units = false;              ///< motion before a gear of unknown ratio is not refused
-    bool needs_torque = true;                    ///< false for info
-    bool needs_velocity = true;                  ///< false: a log without motion has a velocity of nan
-    TimeRange range;                             ///< rows outside are as if they were not there
-    std::shared_ptr<const RowsOutside> outside;  ///< what open_log left out of the bytes, by `range`
+    bool takes_motor_units = false;  ///< motion before a gear of unknown ratio is not refused
+    bool needs_torque = true;        ///< false for info
+    bool needs_velocity = true;      ///< false: a log without motion has a velocity of nan
+    TimeRange range;                 ///< rows outside are ignored
 };
 
 /// One numeric thing in a container, as `info` lists it.

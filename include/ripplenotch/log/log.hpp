@@ -22,7 +22,7 @@ namespace ripplenotch {
 // A log of any length, gone through several times instead of held: what read_log finds out about a log in
 // memory, found out in passing.
 
-/// Of the joint that is read, known after the first pass.
+/// What is known of the joint that is read after the first pass.
 struct LogFacts {
     std::size_t rows = 0;  ///< without those left out
     Hertz sample_rate;     ///< ClockFacts::mean_rate
@@ -101,11 +101,11 @@ struct Log {
 
 /// Rows that commands hold which look at pieces of a log anyway.
 inline constexpr std::size_t most_rows_held = 320'000;
-/// Of a log that is held whole.
+/// No limit: the log is held whole.
 inline constexpr std::size_t all_rows = std::numeric_limits<std::size_t>::max();
 
-/// Of a log with more than `most_rows`, the trace holds sixteen pieces, evenly spread, each a run of its own;
-/// all else is of the whole log, which is read twice then (a pipe waits in a temporary file), and
+/// Where a log has more than `most_rows`, the trace holds sixteen pieces, evenly spread, each a run of its
+/// own; all else is of the whole log, which is read twice then (a pipe waits in a temporary file), and
 /// recording.looked_at says so. Throws what read_log throws. O(most_rows) memory.
 [[nodiscard]] Log read_log_in_part(const std::string& path, const ReadOptions& options,
                                    std::size_t most_rows = most_rows_held);

@@ -11,6 +11,7 @@
 #include <optional>
 #include <set>
 
+#include "core/text/lower_case.hpp"
 #include "ripplenotch/arm/arm_fit.hpp"
 #include "ripplenotch/arm/joint_matching.hpp"
 #include "ripplenotch/core/error.hpp"
@@ -80,11 +81,8 @@ constexpr std::array<std::string_view, 4> empty_words = {"joint", "axis", "link"
 
 // "Panda_Joint-1" is "panda1".
 std::string bare_name(std::string_view name) {
-    std::string bare;
-    for (const char letter : name) {
-        if (letter != '_' && letter != '-' && letter != ' ')
-            bare += static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
-    }
+    std::string bare = lower_case(name);
+    std::erase_if(bare, [](char letter) { return letter == '_' || letter == '-' || letter == ' '; });
     for (const std::string_view word : empty_words) {
         for (std::size_t at = bare.find(word); at != std::string::npos; at = bare.find(word))
             bare.erase(at, word.size());

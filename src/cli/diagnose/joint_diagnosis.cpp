@@ -15,6 +15,7 @@
 #include "cli/readings/readings.hpp"
 #include "cli/talk.hpp"
 #include "core/rows/row_facts.hpp"
+#include "core/text/lower_case.hpp"
 #include "ripplenotch/arm/chain.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/files.hpp"
@@ -84,9 +85,7 @@ std::vector<std::string> mjcf_heading(const JointDiagnosis& one, const MjcfAccou
 }  // namespace
 
 bool names_mjcf(std::string_view path) {
-    std::string name(path);
-    std::transform(name.begin(), name.end(), name.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string name = lower_case(path);
     return name.ends_with(".xml") || name.ends_with(".mjcf");
 }
 

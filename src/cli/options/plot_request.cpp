@@ -6,9 +6,9 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
 
+#include "core/text/lower_case.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/files.hpp"
 #include "ripplenotch/document/figure_json.hpp"
@@ -19,10 +19,7 @@ namespace ripplenotch {
 namespace {
 
 std::string extension_of(const std::string& path) {
-    std::string extension = std::filesystem::path(path).extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return extension;
+    return lower_case(std::filesystem::path(path).extension().string());
 }
 
 std::optional<PictureKind> picture_kind(const std::string& path) {

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "cli/gear/gear_choice.hpp"
+#include "core/text/lower_case.hpp"
 #include "ripplenotch/analysis/identification.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
@@ -171,11 +172,6 @@ std::vector<double> followed_values(const Contender& method, const std::string& 
 }
 
 namespace {
-
-std::string lower_case(std::string text) {
-    for (char& letter : text) letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
-    return text;
-}
 
 }  // namespace
 

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "core/files/byte_sink.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/stat.h>
 #include <sys/uio.h>
 #include <unistd.h>
 
@@ -14,10 +12,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
-#include <memory>
-#include <optional>
 #include <random>
-#include <string>
 #include <utility>
 
 #include "core/files/byte_source.hpp"

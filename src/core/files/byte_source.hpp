@@ -2,7 +2,6 @@
 #pragma once
 #include <sys/stat.h>
 
-#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -22,7 +21,7 @@ struct FileState {
     timespec written = {}, touched = {};  ///< its bytes; its bytes, rights, names or times
     bool regular = false;
 
-    /// Of an open file; all zero where the system does not tell.
+    /// The state of an open file; all zero where the system does not tell.
     [[nodiscard]] static FileState of(int descriptor);
     [[nodiscard]] bool same_bytes(const FileState& other) const;
 };
@@ -44,7 +43,7 @@ class OpenFile {
     [[nodiscard]] bool by_place() const { return owns_ && state_.regular; }
     /// Where reading begins: standard input may have been read by somebody before.
     [[nodiscard]] off_t begin() const { return begin_; }
-    /// Of files whose size is known (not those of /proc): throws FileError unless the source ends at `end`
+    /// Where the size of the file is known (not in /proc): throws FileError unless the source ends at `end`
     /// and nothing was written since the file was opened.
     void require_unchanged(off_t end, std::string_view name) const;
 

@@ -4,13 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <cctype>
 #include <map>
 #include <mutex>
-#include <string>
 
+#include "core/text/lower_case.hpp"
 #include "ripplenotch/core/error.hpp"
-#include "ripplenotch/core/files.hpp"
 
 namespace ripplenotch {
 
@@ -39,10 +37,7 @@ std::string ending_of(std::string_view path) {
         path.substr(path.rfind('/') == std::string_view::npos ? 0 : path.rfind('/') + 1);
     const std::size_t dot = name.rfind('.');
     if (dot == std::string_view::npos || dot == 0) return "";
-    std::string ending(name.substr(dot));
-    std::transform(ending.begin(), ending.end(), ending.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return ending;
+    return lower_case(name.substr(dot));
 }
 
 bool fits(std::string_view ending, std::string_view endings) {

@@ -13,7 +13,6 @@
 
 #include "core/process/two_cores.hpp"
 #include "ripplenotch/core/error.hpp"
-#include "ripplenotch/core/files.hpp"
 
 namespace ripplenotch {
 

@@ -26,7 +26,7 @@ class HashBeside {
     HashBeside& operator=(const HashBeside&) = delete;
 
     void update(std::string_view bytes);
-    /// Of all bytes so far; the last call. Throws FileError where they cannot be read once more.
+    /// The digest of all bytes so far; the last call. Throws FileError where they cannot be read once more.
     [[nodiscard]] std::string hex();
 
   private:

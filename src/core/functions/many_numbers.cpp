@@ -22,7 +22,7 @@ RIPPLENOTCH_INLINED void sum_series(Lanes& sum, const std::array<double, n>& ter
     for (std::size_t i = n - 1; i > 0; --i) sum = sum * z + terms[i - 1];
 }
 
-// Of numbers within 700 of 0, each becomes its exponential.
+// Numbers within 700 of 0 become their exponentials.
 template <class Lanes>
 RIPPLENOTCH_INLINED void to_exponential(Lanes& x) {
     const Lanes rounding = x / std::numbers::ln2 + round_by_adding;
@@ -36,7 +36,7 @@ RIPPLENOTCH_INLINED void to_exponential(Lanes& x) {
     x = x * scale;
 }
 
-// Of ordinary numbers above 0, each becomes its logarithm.
+// Ordinary numbers above 0 become their logarithms.
 template <class Lanes>
 RIPPLENOTCH_INLINED void to_logarithm(Lanes& x) {
     constexpr double two_to_52 = 0x1p52;
@@ -101,7 +101,7 @@ struct HyperbolicTangents {
     }
 };
 
-// Of numbers that are 0, or ordinary; p is above 0.
+// Powers of numbers that are 0, or ordinary; p is above 0.
 struct Powers {
     template <class Lanes>
     RIPPLENOTCH_INLINED static void run(const double* from, std::size_t fours, double p, double* to) {

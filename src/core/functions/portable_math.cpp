@@ -5,13 +5,12 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <complex>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <numbers>
 
 #include "core/functions/polynomials.hpp"
+#include "core/functions/powers_of_ten.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch::portable {
@@ -88,7 +87,7 @@ double cosine_in(int quadrant, double x) {
 
 double degrees_to_radians(double angle_deg) { return angle_deg * (pi / 180.0); }
 
-// Of 0 <= x <= 1: from the nearest eighth on.
+// For 0 <= x <= 1, from the nearest eighth on.
 double atan_up_to_1(double x) {
     const double eighths = nearest_integer(8.0 * x);
     const double base = eighths / 8.0;
@@ -163,13 +162,6 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-// Powers of ten that are exact.
-constexpr std::array<double, 23> powers_of_ten = [] {
-    std::array<double, 23> powers{1.0};
-    for (std::size_t n = 1; n < powers.size(); ++n) powers[n] = 10.0 * powers[n - 1];
-    return powers;
-}();
-
 constexpr std::uint64_t exponent_bits = 0x7ff0000000000000U, fraction_bits = 0x000fffffffffffffU;
 constexpr int bias = 1023;
 
@@ -207,7 +199,7 @@ Logarithm logarithm(double x) {
 
 bool is_ordinary(double x) { return x > 0.0 && x < infinity; }
 double log_outside(double x) { return x == 0.0 ? -infinity : x > 0.0 ? infinity : nan; }
-// Of what exponentials cannot hold.
+// The exponential of what is too large or too small for a double.
 double exp_outside(double x) { return std::isnan(x) ? x : x > 0.0 ? infinity : 0.0; }
 
 double whole_power(double x, int p) {

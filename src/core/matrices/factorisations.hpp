@@ -109,7 +109,7 @@ struct SingularDirections {
 };
 [[nodiscard]] SingularDirections singular_directions(const Eigen::MatrixXd& square);
 
-/// Of a square matrix; conjugates next to each other.
+/// The eigenvalues of a square matrix, conjugates next to each other.
 [[nodiscard]] Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& matrix);
 
 }  // namespace ripplenotch

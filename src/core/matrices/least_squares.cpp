@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <vector>
 
 #include "core/matrices/factorisations.hpp"
 #include "core/vectors/dot.hpp"
@@ -13,7 +12,7 @@ namespace ripplenotch {
 
 namespace {
 
-// Of which some twenty columns stay in a processor's second cache.
+// Some twenty columns of so many rows stay in a processor's second cache.
 constexpr std::size_t block_rows = 256;
 
 // Columns of `rows` numbers, one after another; the right side is the last.

@@ -43,7 +43,8 @@ void grow_heap_in_large_pages() {
 }
 
 void ask_for_large_pages(void* begin, std::size_t bytes) {
-    // Of x86-64, and of ARM with pages of 4 KiB; where they are larger the system refuses, or takes its own.
+    // The large pages of x86-64, and of ARM with pages of 4 KiB; where they are larger the system refuses, or
+    // takes its own.
     constexpr std::uintptr_t large = 2 * mebibyte;
     const auto from = reinterpret_cast<std::uintptr_t>(begin);
     const std::uintptr_t first = (from + large - 1) / large * large, end = (from + bytes) / large * large;

@@ -19,7 +19,7 @@ namespace ripplenotch {
 /// Root mean square; 0 of no values.
 [[nodiscard]] double rms(std::span<const double> values);
 
-/// Of |velocity|.
+/// The range of |velocity|.
 struct SpeedExtent {
     double slowest_deg_s, fastest_deg_s;
 };
@@ -40,7 +40,7 @@ struct RowChannels {
     const double* torque_nm;
     const double* position_deg;  ///< or null; then no position repeats
 };
-/// Of `pairs` + 1 rows. Faster than `moving_deg_s` is moving.
+/// Counts the repeats in `pairs` + 1 rows. Faster than `moving_deg_s` is moving.
 [[nodiscard]] RepeatCounts count_repeats(const RowChannels& rows, std::size_t pairs,
                                          double moving_deg_s) noexcept;
 

@@ -3,17 +3,14 @@
 
 #include <fast_float/fast_float.h>
 #include <fmt/compile.h>
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <cstring>
-#include <iterator>
 
+#include "core/functions/powers_of_ten.hpp"
 #include "core/text/print_fixed.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
@@ -139,12 +136,12 @@ char* put_usual_shortest(char* into, double value) {
 
 namespace {
 
-constexpr std::array<double, 10> powers_of_ten = {1.0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9};
+constexpr int most_decimals_scaled = 9;
 
 // magnitude * 10^decimals rounded to a whole number; false where that is not certain in spite of the
 // product's own rounding.
 bool scaled_surely(double magnitude, int decimals, std::uint64_t& scaled) {
-    if (decimals < 0 || decimals >= static_cast<int>(powers_of_ten.size())) return false;
+    if (decimals < 0 || decimals > most_decimals_scaled) return false;
     const double product = magnitude * powers_of_ten[static_cast<std::size_t>(decimals)];
     if (!(product < 1e15)) return false;
     const auto whole = static_cast<std::int64_t>(product);

@@ -6,11 +6,8 @@
 #include "core/text/print_fixed.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <span>
 
+#include "core/functions/powers_of_ten.hpp"
 #include "core/vectors/bytes.hpp"
 #include "ripplenotch/core/number.hpp"
 
@@ -28,9 +25,6 @@ namespace {
 
 constexpr double two_to_52 = 4503599627370496.0;
 constexpr double most_short = 99999999.0, most_long = 99999999999999.0;  // eight digits, fourteen
-
-constexpr std::array<double, most_decimals_side_by_side + 1> powers_of_ten = {
-    1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13};
 
 using Half = std::array<std::uint8_t, 16>;
 

@@ -53,7 +53,7 @@ class FixedTexts {
     int decimals_ = 0;
     double divisor_ = 1.0;
     std::span<const double> values_;
-    /// Of the text in slot i, which ends where the slot ends; 0 where there is none.
+    /// The length of the text in slot i, which ends where the slot ends; 0 where there is none.
     alignas(32) std::array<std::uint64_t, most> lengths_;
     alignas(32) std::array<char, slot_bytes*(most + 1)> slots_;
 };

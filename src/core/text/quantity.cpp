@@ -6,8 +6,6 @@
 
 #include <array>
 #include <cctype>
-#include <cmath>
-#include <numbers>
 
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"

@@ -5,12 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "log/clock/clock_check.hpp"
 #include "ripplenotch/core/number.hpp"
-#include "ripplenotch/log/recording.hpp"
 
 namespace ripplenotch {
 

@@ -47,7 +47,7 @@ class WrapWatch {
 
     /// Empty when nothing jumps, or when jumps are no full turn.
     [[nodiscard]] std::optional<double> period() const;
-    /// Of the angles made continuous, one after another.
+    /// The sum of the angles made continuous.
     [[nodiscard]] double sum() const { return made().sum; }
     [[nodiscard]] double largest() const { return made().largest; }  ///< magnitude
 
@@ -92,7 +92,7 @@ class Account {
     std::span<const RunPart> add(const RowBlock& block);
 
     [[nodiscard]] const Clock& clock() const { return clock_; }
-    /// Of the rows so far; by joint, as Layout::all_chosen().
+    /// What the rows so far say of the angle; by joint, as Layout::all_chosen().
     [[nodiscard]] const AngleFacts& angle(std::size_t joint) const { return joints_[joint].angle.facts(); }
     /// `layout` as it stands now.
     [[nodiscard]] Recording recording(const Layout& layout, std::size_t joint) const;

@@ -3,7 +3,6 @@
 // Rows that repeat the row before because nothing new had been measured: the one count of them.
 
 #include <array>
-#include <limits>
 #include <vector>
 
 #include "core/rows/row_facts.hpp"

@@ -15,6 +15,7 @@
 #include <span>
 #include <vector>
 
+#include "core/text/lower_case.hpp"
 #include "log/columns/column_name.hpp"
 #include "log/columns/decide_layout.hpp"
 #include "ripplenotch/core/error.hpp"
@@ -211,12 +212,6 @@ std::string labels(const ColumnFacts& facts, const std::vector<std::size_t>& col
     std::vector<std::string> texts;
     for (const std::size_t c : columns) texts.push_back(column_label(facts.names, c));
     return fmt::format("{}", fmt::join(texts, " and "));
-}
-
-std::string lower_case(std::string_view text) {
-    std::string out;
-    for (const char c : text) out += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return out;
 }
 
 // "header.stamp." of "header.stamp.nanosec", when the name ends in one of the words.

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <vector>
 
 #include "core/vectors/lanes.hpp"
 #include "ripplenotch/core/number.hpp"

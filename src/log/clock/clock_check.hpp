@@ -22,7 +22,7 @@ struct StepSums {
     double squares;  ///< of the steps about the usual one
 };
 
-/// Of two times or more.
+/// Sums up the steps between two times or more.
 [[nodiscard]] StepSums sum_up_steps(std::span<const double> time_s, double usual_s) noexcept;
 
 struct ClockCheck {

@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "log/clock/stamp.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cctype>
 #include <charconv>
-#include <cmath>
-#include <optional>
 
 #include "log/clock/choose_time.hpp"
 #include "ripplenotch/core/error.hpp"
@@ -183,7 +179,7 @@ std::int64_t of_day(const TimePoint& point, std::string_view label) {
     return time_s;
 }
 
-/// Of the day of `first` as it was written, where dates are.
+/// The midnight before `first`, of its day as it was written where it is a date.
 std::int64_t midnight_s(const ClockTime& first) {
     if (!first.dated) return 0;
     const std::int64_t zone = first.zone_s.value_or(0), local = first.whole_s + zone;

@@ -5,11 +5,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <cctype>
-#include <span>
-#include <vector>
 
+#include "core/text/lower_case.hpp"
 #include "log/columns/units.hpp"
 #include "ripplenotch/core/error.hpp"
 
@@ -168,7 +166,7 @@ bool is_clock_name(const std::vector<Word>& left) {
 
 ColumnName read_column_name(std::string_view name) {
     ColumnName column;
-    // Of an element of a list, "tau_nm[2]", the unit stands in front of the number.
+    // In an element of a list, "tau_nm[2]", the unit stands in front of the number.
     const std::size_t bracket = name.ends_with(']') ? name.rfind('[') : std::string_view::npos;
     const bool element =
         bracket != std::string_view::npos && is_digits(name.substr(bracket + 1, name.size() - bracket - 2));
@@ -221,8 +219,7 @@ ColumnName read_column_name(std::string_view name) {
 }
 
 std::string joint_key(std::string_view joint) {
-    std::string key;
-    for (const char c : joint) key += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    std::string key = lower_case(joint);
     for (const std::string_view prefix : {"joint_", "joint", "axis", "ax", "j", "a"}) {
         if (key.size() > prefix.size() && key.compare(0, prefix.size(), prefix) == 0 &&
             is_digits(std::string_view(key).substr(prefix.size()))) {
@@ -384,9 +381,9 @@ bool is_decimal_digit(char c) { return std::isdigit(static_cast<unsigned char>(c
 // ".joint.states.j1.velocity." of "/joint_states/j1/velocity"
 std::string in_words(std::string_view name) {
     std::string words = ".";
-    for (const char c : name) {
+    for (const char c : lower_case(name)) {
         if (std::isalnum(static_cast<unsigned char>(c)) != 0)
-            words += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+            words += c;
         else if (words.back() != '.')
             words += '.';
     }

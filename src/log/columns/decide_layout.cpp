@@ -5,21 +5,14 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdint>
-#include <functional>
-#include <optional>
 #include <set>
-#include <string>
-#include <vector>
 
 #include "log/columns/column_name.hpp"
 #include "log/columns/infer_motion.hpp"
 #include "log/columns/units.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
-#include "ripplenotch/log/layout.hpp"
 
 namespace ripplenotch {
 
@@ -157,7 +150,6 @@ class Decision {
         layout_.source = source_;
         layout_.format = format;
         layout_.stated_rate = options_.sample_rate;
-        layout_.outside = options_.outside;
         name_columns();
         choose_time(facts_, forced_, options_, layout_);
         if (layout_.chosen.time) give_role(*layout_.chosen.time, Role::time, "");

@@ -63,7 +63,8 @@ struct MotionColumns {
     bool chosen = false;
 };
 
-/// Of the joints that are read, and of the file's others whose columns nobody has to choose between.
+/// The motions of the joints that are read, and of the file's others whose columns nobody has to choose
+/// between.
 [[nodiscard]] std::vector<MotionColumns> motions_of(const KnownColumns& known,
                                                     const std::vector<JointGroup>& groups,
                                                     const std::vector<bool>& unit_is_stated,

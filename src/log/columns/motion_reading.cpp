@@ -223,7 +223,8 @@ class Scoring {
         if (!scale_) return true;
         const double faster = *scale_ * reading.position.unit_factor / reading.velocity.unit_factor;
         if (reading.velocity.side == reading.position.side) {
-            // Of one family, neither a unit nor a gear makes a small factor: a clock does, or a short log.
+            // Within one family of units, neither a unit nor a gear makes a small factor: a clock does, or a
+            // short log.
             const bool alike = family_of(reading.velocity) == family_of(reading.position);
             return std::abs(faster - 1.0) < (alike ? within_family : scale_agreement);
         }

@@ -9,6 +9,7 @@
 #include <cctype>
 #include <utility>
 
+#include "core/text/lower_case.hpp"
 #include "ripplenotch/core/error.hpp"
 
 namespace ripplenotch {
@@ -106,10 +107,8 @@ constexpr std::array<std::string_view, 18> unread_units = {
     "in_ozf", "oz_in",  "in_oz", "percent", "pct",    "percents", "permille", "volts", "kgf_cm"};
 
 std::string lower_without_blanks(std::string_view text) {
-    std::string lower;
-    for (const char c : text) {
-        if (c != ' ') lower += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    }
+    std::string lower = lower_case(text);
+    std::erase(lower, ' ');
     return lower;
 }
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A log made of arrays: which of them belong together.
 
-#include "log/containers/array_records.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,6 +9,7 @@
 #include <cmath>
 #include <cstring>
 #include <deque>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -26,6 +25,26 @@
 namespace ripplenotch {
 
 namespace {
+
+// Which arrays of a container were recorded at the same moments. Simulink's structs have a time beside each
+// signal (tau.Time, tau.Data), HDF5 files a group for each device, dSPACE an axis for all.
+
+/// Arrays of one clock, or of one length where nothing says whose clock they have.
+struct ArrayGroup {
+    std::size_t rows = 0;
+    std::vector<const StoredArray*> arrays;  ///< in the order of the file; of equal clocks only the first
+    const StoredArray* clock = nullptr;      ///< one of them
+};
+
+// Columns of arrays side by side: what they are called, and their numbers as records.
+
+/// One column of an array under its own path.
+struct ArrayColumn {
+    std::string path;     ///< "log.q_dot(:,3)"
+    std::string read_as;  ///< what it means beside the others: "q_dot[3]"
+    const StoredArray* array;
+    std::size_t number;
+};
 
 constexpr std::size_t compared_at_once = std::size_t{1} << 15;  // rows
 
@@ -76,6 +95,9 @@ bool same_numbers(const StoredArray& one, const StoredArray& other) {
     return true;
 }
 
+/// The clock of an array is the vector named as a time in its own folder or in the nearest one around it, if
+/// it has as many rows; clocks that hold the same numbers are one. Reads clocks where several have the same
+/// length.
 class FoundClocks {
   public:
     explicit FoundClocks(const std::vector<StoredArray>& arrays) : arrays_(arrays), clock_(arrays.size()) {
@@ -88,6 +110,7 @@ class FoundClocks {
             if (clock) clock = first_of_equals(*clock);
         share();
     }
+    /// In order of their rows.
     [[nodiscard]] std::vector<ArrayGroup> groups() const {
         std::map<std::pair<std::size_t, std::size_t>, ArrayGroup> groups;
         for (std::size_t a = 0; a < arrays_.size(); ++a) {
@@ -138,7 +161,7 @@ class FoundClocks {
             if (fitting.size() == 1) clock_[a] = fitting.front();
         }
     }
-    // Of a clock that stands in another folder.
+    // Whether this clock has the numbers of one in another folder.
     [[nodiscard]] bool is_copy(std::size_t a) const {
         const auto known = equal_to_.find(a);
         return known != equal_to_.end() && known->second != a;
@@ -150,13 +173,6 @@ class FoundClocks {
     std::vector<std::size_t> distinct_;
     std::map<std::size_t, std::size_t> equal_to_;
 };
-
-// In order of their rows. The clock of an array is the vector named as a time in its own folder or in the
-// nearest one around it, if it has as many rows; clocks that hold the same numbers are one. Reads clocks
-// where several have the same length.
-std::vector<ArrayGroup> groups_by_clock(const std::vector<StoredArray>& arrays) {
-    return FoundClocks(arrays).groups();
-}
 
 constexpr std::size_t buffered = std::size_t{1} << 18;
 
@@ -211,7 +227,7 @@ std::string column_path(const StoredArray& array, std::size_t number, PathStyle 
                                      : fmt::format("{}[{},:]", array.path, number);
 }
 
-// Of the names, up to a separator: "log.q" and "log.dq" are q and dq.
+// What the names have in front in common, up to a separator: "log.q" and "log.dq" are q and dq.
 std::size_t common_prefix(const std::vector<std::string>& names) {
     if (names.empty()) return 0;
     const std::string& first = names.front();
@@ -247,8 +263,7 @@ std::vector<std::string> names_of(const ArrayGroup& group) {
     return names;
 }
 
-}  // namespace
-
+// The columns of all arrays of a group, without what their names have in front in common.
 std::vector<ArrayColumn> columns_of(const ArrayGroup& group, PathStyle style) {
     const std::vector<std::string> names = names_of(group);
     std::vector<ArrayColumn> columns;
@@ -265,26 +280,11 @@ std::vector<ArrayColumn> columns_of(const ArrayGroup& group, PathStyle style) {
 }
 
 void add_fields(const std::vector<ArrayColumn>& columns, RecordTable& table) {
-    bool units = false;
-    for (const ArrayColumn& column : columns) {
-        NpyField field = column.array->type;
-        field.name = column.path;
-        field.offset = table.record_size;
-        table.record_size += field.size;
-        table.fields.push_back(field);
-        table.read_as.push_back(column.read_as);
-        table.units.push_back(column.array->unit);
-        units = units || !column.array->unit.empty();
-    }
-    if (!units) table.units.clear();
-}
-
-namespace {
-
-// The numbers of columns of one length as records, row by row.
-std::unique_ptr<RecordSource> array_records(std::shared_ptr<StoredBytes> file,
-                                            const std::vector<ArrayColumn>& columns) {
-    return std::make_unique<ArrayRecords>(std::move(file), columns);
+    for (const ArrayColumn& column : columns)
+        table.add(column.array->type, column.path, column.read_as, column.array->unit);
+    const auto& units = table.units;
+    if (std::all_of(units.begin(), units.end(), [](const std::string& unit) { return unit.empty(); }))
+        table.units.clear();
 }
 
 constexpr double ns_per_s = 1e9, largest_ns = 9.2e18;
@@ -351,8 +351,8 @@ double period_ns(const StoredArray& clock_ns) {
            static_cast<double>(rows - 1);
 }
 
-}  // namespace
-
+// The rows of `base` with its clock in nanoseconds, and behind them what `asked` takes of the columns of
+// `others`, by `how` ("linear"). All groups have a clock. Fills the fields of the table.
 std::unique_ptr<RecordSource> joined_arrays(const std::shared_ptr<StoredBytes>& file, const ArrayGroup& base,
                                             const std::vector<const ArrayGroup*>& others, PathStyle style,
                                             const std::function<bool(const std::string& path)>& asked,
@@ -380,17 +380,13 @@ std::unique_ptr<RecordSource> joined_arrays(const std::shared_ptr<StoredBytes>& 
                     "array is joined by its own",
                     column.path);
             const std::vector<ArrayColumn> pair = {{clock->path, "", clock, 0}, column};
-            sides.push_back({column.path, column.read_as, array_records(file, pair), column.array->type,
-                             join_limit_ns(period_ns(*clock)), column.array->unit, "value"});
+            sides.push_back({column.path, column.read_as, std::make_unique<ArrayRecords>(file, pair),
+                             column.array->type, join_limit_ns(period_ns(*clock)), column.array->unit,
+                             "value"});
         }
     }
-    std::vector<std::size_t> sizes;
-    for (const NpyField& field : table.fields) sizes.push_back(field.size);
-    add_sides(sides, how, table);
-    return join_records(array_records(file, columns), std::move(sizes), std::move(sides), join_named(how));
+    return join_records(std::make_unique<ArrayRecords>(file, columns), std::move(sides), how, table);
 }
-
-namespace {
 
 int column_names_tell(const std::vector<ArrayColumn>& columns) {
     std::vector<std::string> names;
@@ -497,7 +493,7 @@ Records records_of_arrays(const std::shared_ptr<StoredBytes>& file, const std::s
                           const std::vector<ContentEntry>& extra, const ReadOptions& options) {
     RecordTable table;
     table.format = format;
-    const std::vector<ArrayGroup> groups = groups_by_clock(arrays);
+    const std::vector<ArrayGroup> groups = FoundClocks(arrays).groups();
     const AskedPaths asked(options);
     std::vector<const ArrayGroup*> chosen = asked_groups(file->name(), groups, style, asked);
     if (chosen.empty())
@@ -531,7 +527,7 @@ Records records_of_arrays(const std::shared_ptr<StoredBytes>& file, const std::s
     const std::vector<ArrayColumn> columns = columns_of(*chosen.front(), style);
     add_fields(columns, table);
     table.rows = chosen.front()->rows;
-    return {array_records(file, columns), std::move(table)};
+    return {std::make_unique<ArrayRecords>(file, columns), std::move(table)};
 }
 
 }  // namespace ripplenotch

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
+#include "log/containers/hdf5.hpp"
+
+#include "ripplenotch/core/error.hpp"
+
 #if defined(RIPPLENOTCH_HAS_HDF5)
 
 #define H5_USE_110_API
-#include "log/containers/hdf5.hpp"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <hdf5.h>
@@ -14,17 +16,10 @@
 #include <bit>
 #include <cerrno>
 #include <exception>
-#include <memory>
-#include <optional>
 #include <string>
-#include <utility>
-#include <vector>
 
-#include "core/files/byte_sink.hpp"
 #include "core/files/byte_source.hpp"
-#include "log/containers/stored_array.hpp"
 #include "log/records/joined_records.hpp"
-#include "ripplenotch/core/error.hpp"
 
 namespace ripplenotch {
 
@@ -164,6 +159,7 @@ std::optional<NpyField> hdf5_number(hid_t type) {
     return field;
 }
 
+/// A column of a dataset of one dimension or two, or one number of an array in every row.
 class DatasetCursor final : public ColumnCursor {
   public:
     DatasetCursor(std::shared_ptr<Hdf5File> file, std::shared_ptr<Hdf5Handle> dataset, Hdf5Memory memory,
@@ -213,14 +209,6 @@ class DatasetCursor final : public ColumnCursor {
     std::uint64_t at_ = 0;
     std::string whole_;
 };
-
-// A column of a dataset of one dimension or two, or one number of an array in every row.
-std::unique_ptr<ColumnCursor> hdf5_column(std::shared_ptr<Hdf5File> file, std::shared_ptr<Hdf5Handle> dataset,
-                                          Hdf5Memory memory, std::size_t dimensions,
-                                          std::size_t time_dimension, std::size_t column) {
-    return std::make_unique<DatasetCursor>(std::move(file), std::move(dataset), std::move(memory), dimensions,
-                                           time_dimension, column);
-}
 
 constexpr std::size_t rows_of_a_chunk = 16384;  // rows
 
@@ -453,7 +441,7 @@ class Hdf5Walk {
         StoredArray array{path, shape, memory.field, unit, {}, ""};
         array.open = [file = file_, dataset, memory, rank = dimensions.size(),
                       time_dimension](std::size_t column) {
-            return hdf5_column(file, dataset, memory, rank, time_dimension, column);
+            return std::make_unique<DatasetCursor>(file, dataset, memory, rank, time_dimension, column);
         };
         // MATLAB counts dimensions from the other end.
         if (matlab_) array.shape.time_is_first = !array.shape.time_is_first;
@@ -518,9 +506,6 @@ namespace ripplenotch {
 std::unique_ptr<TableWriter> make_hdf5_table(ByteSink& /*sink*/, const WriteOptions& /*options*/) {
     raise<UsageError>("this build was made without libhdf5; install it and build again, or write .npy");
 }
-
-}  // namespace ripplenotch
-namespace ripplenotch {
 
 Hdf5Contents find_hdf5_arrays(const std::shared_ptr<StoredBytes>& file, bool /*matlab*/) {
     raise<UsageError>("{}: this build was made without libhdf5; install it and build again", file->name());

@@ -122,44 +122,30 @@ struct Storage {
     std::size_t size;
 };
 std::optional<Storage> storage_of(std::uint32_t type) {
-    constexpr std::array<Storage, 14> known = {{{0, 0},
-                                                {'i', 1},
-                                                {'u', 1},
-                                                {'i', 2},
-                                                {'u', 2},
-                                                {'i', 4},
-                                                {'u', 4},
-                                                {'f', 4},
-                                                {0, 0},
-                                                {'f', 8},
-                                                {0, 0},
-                                                {0, 0},
-                                                {'i', 8},
-                                                {'u', 8}}};
-    if (type >= known.size() || known[type].kind == 0) return std::nullopt;
-    return known[type];
+    constexpr std::string_view kinds = " iuiuiuf f  iu", sizes = "01122444080088";
+    if (type >= kinds.size() || kinds[type] == ' ') return std::nullopt;
+    return Storage{kinds[type], static_cast<std::size_t>(sizes[type] - '0')};
 }
 
 std::string_view class_name(unsigned code) {
-    constexpr std::array<std::string_view, 18> names = {"unknown",
-                                                        "a cell array",
-                                                        "a struct",
-                                                        "an object",
-                                                        "text",
-                                                        "a sparse matrix",
-                                                        "",
-                                                        "",
-                                                        "",
-                                                        "",
-                                                        "",
-                                                        "",
-                                                        "",
-                                                        "",
-                                                        "",
-                                                        "",
-                                                        "a function handle",
-                                                        "an object (a table, a timeseries, a string)"};
-    return code < names.size() ? names[code] : names[0];
+    switch (code) {
+        case cell:
+            return "a cell array";
+        case structure:
+            return "a struct";
+        case object:
+            return "an object";
+        case text:
+            return "text";
+        case sparse:
+            return "a sparse matrix";
+        case function:
+            return "a function handle";
+        case opaque:
+            return "an object (a table, a timeseries, a string)";
+        default:
+            return code < first_number || code > opaque ? "unknown" : "";
+    }
 }
 
 struct Element {

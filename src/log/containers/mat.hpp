@@ -62,8 +62,8 @@ struct MatContents {
     std::vector<ContentEntry> others;  ///< what is no log: "a function handle", "complex"
 };
 
-/// Of a whole file. Reads the heads of its elements only. Throws DataError, beginning with the file's name,
-/// where it is damaged or nested deeper than 16.
+/// The arrays of a whole file, of which only the heads of its elements are read. Throws DataError, beginning
+/// with the file's name, where it is damaged or nested deeper than 16.
 [[nodiscard]] MatContents find_mat_arrays(const std::shared_ptr<StoredBytes>& file);
 
 }  // namespace ripplenotch

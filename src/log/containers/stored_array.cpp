@@ -13,7 +13,6 @@
 #include "log/columns/column_name.hpp"
 #include "log/npy/npy_writer.hpp"
 #include "log/read.hpp"
-#include "log/records/joined_records.hpp"
 #include "ripplenotch/core/error.hpp"
 
 namespace ripplenotch {

@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "log/npy/npy_header.hpp"
@@ -45,6 +46,13 @@ class StoredBytes {
   private:
     std::string name_;
 };
+
+/// A whole number of at most eight bytes, the least significant first.
+[[nodiscard]] inline std::uint64_t little_endian(std::string_view bytes) {
+    std::uint64_t number = 0;
+    for (std::size_t i = bytes.size(); i-- > 0;) number = number << 8U | static_cast<unsigned char>(bytes[i]);
+    return number;
+}
 
 /// A file is read where it lies; a pipe is kept in a temporary file. `first_bytes` have been read from it.
 [[nodiscard]] std::shared_ptr<StoredBytes> store_bytes(std::unique_ptr<ByteSource> source,

@@ -6,12 +6,11 @@
 #include <vector>
 
 #include "log/formats.hpp"
-#include "log/row_cut.hpp"
+#include "log/rows_in_range.hpp"
 #include "log/table_writer.hpp"
 #include "log/text/csv_reader.hpp"
 #include "log/text/csv_writer.hpp"
 #include "log/text/text_dialect.hpp"
-#include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 
 namespace ripplenotch {
@@ -75,7 +74,6 @@ const LogFormat formats::csv{
     .binary = false,
     .sniff = nullptr,  // any text may be a text log
     .open = open_with<CsvReader>,
-    .cut = cut_text,
     .rewrite = rewrite_with<CsvWriter, CsvReader>,
     .convert = convert_with<CsvTableWriter>,
     .write_columns = write_columns_with<CsvTableWriter>,

@@ -46,7 +46,7 @@ const LogFormat formats::hdf5 {
 #else
         "libhdf5",
 #endif
-    .sniff = sniff, .open = open_as_records<make_hdf5>, .cut = cut_as_records<make_hdf5>,
+    .sniff = sniff, .open = open_as_records<make_hdf5>,
 #if defined(RIPPLENOTCH_HAS_HDF5)
     .convert = convert, .write_columns = write_columns,
 #endif

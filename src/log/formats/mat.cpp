@@ -39,7 +39,6 @@ const LogFormat formats::mat{
     .binary = true,
     .sniff = sniff,
     .open = open_as_records<make_mat>,
-    .cut = cut_as_records<make_mat>,
     .convert = convert_with<MatTableWriter>,
     .write_columns = write_columns_with<MatTableWriter>,
 };

@@ -26,7 +26,6 @@ const LogFormat formats::mcap{
     .binary = true,
     .sniff = [](std::string_view bytes) { return bytes.starts_with("\x89MCAP"); },
     .open = open_as_records<make_mcap>,
-    .cut = cut_as_records<make_mcap>,
 };
 
 }  // namespace ripplenotch

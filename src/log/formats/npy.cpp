@@ -6,7 +6,7 @@
 #include "log/formats.hpp"
 #include "log/npy/npy_reader.hpp"
 #include "log/npy/npy_writer.hpp"
-#include "log/row_cut.hpp"
+#include "log/rows_in_range.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -24,7 +24,6 @@ const LogFormat formats::npy{
     .binary = true,
     .sniff = sniff,
     .open = open_with<NpyReader>,
-    .cut = cut_npy,
     .rewrite = rewrite_with<NpyWriter, NpyReader>,
     .convert = convert_with<NpyTableWriter>,
     .write_columns = write_columns_with<NpyTableWriter>,

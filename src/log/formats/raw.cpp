@@ -4,17 +4,152 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <array>
+#include <string>
+#include <vector>
 
 #include "log/formats.hpp"
+#include "log/npy/npy_header.hpp"
 #include "log/records/joined_records.hpp"
-#include "log/records/raw_layout.hpp"
 #include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/number.hpp"
 
 namespace ripplenotch {
 namespace {
 
 constexpr std::array<std::string_view, 3> extensions = {".raw", ".bin", ".f64"};
+constexpr std::size_t largest_raw_record = std::size_t{1} << 16;
+
+struct RawType {
+    std::string_view name;
+    char kind;
+    std::size_t size;
+};
+constexpr std::array types = {
+    RawType{"f4", 'f', 4},     RawType{"f8", 'f', 8},      RawType{"i1", 'i', 1},
+    RawType{"i2", 'i', 2},     RawType{"i4", 'i', 4},      RawType{"i8", 'i', 8},
+    RawType{"u1", 'u', 1},     RawType{"u2", 'u', 2},      RawType{"u4", 'u', 4},
+    RawType{"u8", 'u', 8},     RawType{"float", 'f', 4},   RawType{"float32", 'f', 4},
+    RawType{"double", 'f', 8}, RawType{"float64", 'f', 8}, RawType{"int8", 'i', 1},
+    RawType{"int16", 'i', 2},  RawType{"int32", 'i', 4},   RawType{"int64", 'i', 8},
+    RawType{"uint8", 'u', 1},  RawType{"uint16", 'u', 2},  RawType{"uint32", 'u', 4},
+    RawType{"uint64", 'u', 8},
+};
+
+[[noreturn]] void complain(std::string_view field, std::string_view why) {
+    raise<UsageError>(
+        "--layout: '{}': {}; write fields as f8,f4,i2*0.01:torque_nm, with f4 f8 i1 i2 i4 i8 u1 u2 u4 u8, "
+        "x4 for 4 bytes to skip, and < or > in front for the byte order",
+        field, why);
+}
+
+double number_in(std::string_view field, std::string_view text) {
+    const auto number = parse_number(text);
+    if (!number) complain(field, fmt::format("'{}' is no number", text));
+    return *number;
+}
+
+// "*0.01+3", "*-0.5-1e-3", "+3": the last sign that is not of an exponent begins the shift.
+void read_scale(std::string_view field, std::string_view text, NpyField& into) {
+    std::size_t shift = std::string_view::npos;
+    for (std::size_t i = text.size(); i-- > 0;) {
+        const bool sign = text[i] == '+' || text[i] == '-';
+        const bool of_number = i > 0 && (text[i - 1] == 'e' || text[i - 1] == 'E' || text[i - 1] == '*');
+        if (sign && !of_number) {
+            shift = i;
+            break;
+        }
+    }
+    const std::string_view scale = text.substr(0, std::min(shift, text.size()));
+    if (!scale.empty()) into.scale = number_in(field, scale.substr(1));
+    if (shift != std::string_view::npos) {
+        const std::string_view number = text.substr(text[shift] == '+' ? shift + 1 : shift);
+        into.shift = number_in(field, number);
+    }
+}
+
+/// --layout: what stands in a record of a raw dump, in the words of C and NumPy.
+struct RawLayout {
+    std::vector<NpyField> fields;
+    std::size_t record_size = 0;
+    bool named = false;  ///< one field at least says its name
+    std::string text;    ///< as it was given
+};
+
+// "f8,f4,f4", "<i2*0.01:torque_nm", ">u4*1e-6:time_s,x4,f8:q". Fields follow each other without room between;
+// x4 is four bytes that are no number. '<' (the default) and '>' hold until the next one. Throws UsageError.
+RawLayout parse_raw_layout(const std::string& text) {
+    RawLayout layout;
+    layout.text = text;
+    bool big_endian = false;
+    for (std::size_t at = 0; at <= text.size();) {
+        const std::size_t comma = std::min(text.find(',', at), text.size());
+        const std::string_view whole = std::string_view(text).substr(at, comma - at);
+        at = comma + 1;
+        std::string_view rest = whole;
+        if (!rest.empty() && (rest.front() == '<' || rest.front() == '>')) {
+            big_endian = rest.front() == '>';
+            rest.remove_prefix(1);
+        }
+        NpyField field;
+        if (const std::size_t colon = rest.find(':'); colon != std::string_view::npos) {
+            field.name = rest.substr(colon + 1);
+            rest = rest.substr(0, colon);
+            layout.named = true;
+        }
+        const std::string_view word = rest.substr(0, rest.find_first_of("*+-"));
+        if (word.starts_with('x')) {
+            const double bytes = word.size() == 1 ? 1.0 : number_in(whole, word.substr(1));
+            if (!(bytes >= 1.0 && bytes <= static_cast<double>(largest_raw_record)))
+                complain(whole, "skips no bytes");
+            layout.record_size += static_cast<std::size_t>(bytes);
+            continue;
+        }
+        const auto type =
+            std::find_if(types.begin(), types.end(), [&](const RawType& one) { return one.name == word; });
+        if (type == types.end()) complain(whole, fmt::format("'{}' is no type of numbers", word));
+        field.kind = type->kind;
+        field.size = type->size;
+        field.big_endian = big_endian;
+        read_scale(whole, rest.substr(word.size()), field);
+        field.offset = layout.record_size;
+        layout.record_size += field.size;
+        layout.fields.push_back(field);
+        if (layout.record_size > largest_raw_record) complain(whole, "a record of more than 64 KiB");
+    }
+    if (layout.fields.empty()) complain(text, "names no numbers");
+    return layout;
+}
+
+// Layouts like this one whose records fit into `bytes` without remainder, the nearest first, two at most:
+// with bytes to be skipped added, or fields left out at the end.
+std::vector<std::string> layouts_that_fit(const RawLayout& layout, std::uint64_t bytes) {
+    struct Candidate {
+        std::size_t distance;
+        std::string text;
+    };
+    constexpr std::size_t most_skipped = 64;
+    std::vector<Candidate> candidates;
+    for (std::size_t more = 1; more <= most_skipped; ++more) {
+        if (bytes % (layout.record_size + more) == 0)
+            candidates.push_back({more, fmt::format("{},x{}", layout.text, more)});
+    }
+    std::string shorter = layout.text;
+    for (std::size_t left = layout.fields.size(); left > 1; --left) {
+        const std::size_t comma = shorter.rfind(',');
+        if (comma == std::string::npos) break;
+        shorter.resize(comma);
+        const std::size_t size = parse_raw_layout(shorter).record_size;
+        if (bytes % size == 0) candidates.push_back({layout.record_size - size, shorter});
+    }
+    std::stable_sort(candidates.begin(), candidates.end(),
+                     [](const Candidate& a, const Candidate& b) { return a.distance < b.distance; });
+    std::vector<std::string> texts;
+    for (std::size_t i = 0; i < std::min<std::size_t>(2, candidates.size()); ++i)
+        texts.push_back(candidates[i].text);
+    return texts;
+}
 
 /// A source whose first bytes have been read already, without those to be skipped.
 class Behind final : public ByteSource {
@@ -92,7 +227,6 @@ const LogFormat formats::raw{
     .told = true,
     .sniff = [](std::string_view) { return false; },
     .open = open_as_records<make_raw>,
-    .cut = cut_as_records<make_raw>,
 };
 
 }  // namespace ripplenotch

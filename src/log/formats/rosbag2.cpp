@@ -30,7 +30,7 @@ const LogFormat formats::rosbag2 {
         "libsqlite3",
 #endif
     .sniff = [](std::string_view bytes) { return bytes.starts_with("SQLite format 3"); },
-    .open = open_as_records<make_rosbag2>, .cut = cut_as_records<make_rosbag2>,
+    .open = open_as_records<make_rosbag2>,
 };
 
 }  // namespace ripplenotch

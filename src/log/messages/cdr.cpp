@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The way through the messages of a topic, written down while the first is gone through.
-
-#include "log/messages/cdr.hpp"
+// Messages in CDR (OMG's Common Data Representation, version 1, as ROS 2 writes it): which numbers are in the
+// first of a topic, and a short program that takes them out of the next million.
 
 #include <fmt/format.h>
 
@@ -11,6 +10,8 @@
 #include <cstring>
 #include <string_view>
 
+#include "log/messages/message_records.hpp"
+#include "log/messages/ros_schema.hpp"
 #include "ripplenotch/core/error.hpp"
 
 namespace ripplenotch {
@@ -18,6 +19,24 @@ namespace ripplenotch {
 namespace {
 
 // Where a message in CDR is read: numbers at multiples of their size, texts and lists behind their lengths.
+
+/// One step through a message.
+struct CdrStep {
+    enum class Kind {
+        number,    ///< of `size` bytes, kept
+        stamp,     ///< of eight bytes, kept
+        skip,      ///< `count` numbers of `size` bytes
+        skip_any,  ///< as many as stand in front
+        text,
+        text_is,     ///< `expected`
+        length_is,   ///< `count` in front of a sequence
+        repeat_any,  ///< `inner`, as many times as stand in front
+    };
+    Kind kind = Kind::skip;
+    std::size_t size = 0, count = 1, leaf = 0;
+    std::string path, expected;
+    std::vector<CdrStep> inner;
+};
 
 constexpr std::size_t cdr_head = 4;  // says the byte order
 
@@ -54,7 +73,7 @@ class CdrCursor {
         number(4, reinterpret_cast<char*>(&value));
         return value;
     }
-    // Of things that take a byte or more each.
+    // The length of a list whose elements take a byte or more each.
     std::uint32_t list_length() {
         const std::uint32_t count = length();
         if (count > bytes_.size() - at_)
@@ -105,9 +124,6 @@ void pass_cdr(CdrCursor& cursor, const CdrStep& step) {
             break;
         case CdrStep::Kind::text:
             cursor.text();
-            break;
-        case CdrStep::Kind::texts:
-            for (std::uint32_t left = cursor.list_length(); left > 0; --left) cursor.text();
             break;
         case CdrStep::Kind::text_is:
             if (const std::string_view text = cursor.text(); text != step.expected)
@@ -164,26 +180,6 @@ class CdrReader final : public MessageReader {
     LeafOffsets offsets_;
 };
 
-class CdrProgram final : public MessageProgram {
-  public:
-    explicit CdrProgram(std::vector<CdrStep> steps)
-        : steps_(std::make_shared<const std::vector<CdrStep>>(std::move(steps))) {}
-    [[nodiscard]] std::unique_ptr<MessageReader> reader(const LeafOffsets& offsets) const override {
-        return std::make_unique<CdrReader>(steps_, offsets);
-    }
-
-  private:
-    std::shared_ptr<const std::vector<CdrStep>> steps_;
-};
-
-}  // namespace
-
-std::shared_ptr<const MessageProgram> cdr_program(std::vector<CdrStep> steps) {
-    return std::make_shared<CdrProgram>(std::move(steps));
-}
-
-namespace {
-
 constexpr std::size_t most_leaves = 4096, most_steps = 100000;
 
 /// Goes through the first message and writes down the way.
@@ -227,7 +223,7 @@ class LayOut {
         const std::size_t count = any ? ahead.length() : field.fixed;
         const bool listed =
             count > 0 && count <= most_listed_elements && field.type.kind != RosType::Kind::text;
-        if (!listed) return pass_over(field, count, steps);
+        if (!listed) return pass_over(field, steps);
         if (any) {
             cursor_.length();
             steps.push_back({CdrStep::Kind::length_is, 0, count, 0, path, {}, {}});
@@ -271,68 +267,49 @@ class LayOut {
         steps.push_back(std::move(step));
     }
     // Without leaves, whatever its length in the next message.
-    void pass_over(const RosField& field, std::size_t count, std::vector<CdrStep>& steps) {
-        const bool any = field.count == RosField::Count::any;
-        CdrStep step;
-        if (field.type.kind == RosType::Kind::number) {
-            step = {any ? CdrStep::Kind::skip_any : CdrStep::Kind::skip,
-                    field.type.size,
-                    count,
-                    0,
-                    field.name,
-                    {},
-                    {}};
-        } else if (field.type.kind == RosType::Kind::text && any) {
-            step.kind = CdrStep::Kind::texts;
-        } else {
-            RosField one = field;
-            one.count = RosField::Count::one;
-            std::vector<CdrStep> inner = steps_without_leaves(one);
-            if (!any) {
-                for (std::size_t i = 0; i < count; ++i) {
-                    pass_cdr(cursor_, inner);
-                    if (steps.size() > most_steps)
-                        raise<DataError>("messages of more than {} fields", most_steps);
-                    steps.insert(steps.end(), inner.begin(), inner.end());
-                }
-                return;
-            }
-            step.kind = CdrStep::Kind::repeat_any;
-            step.inner = std::move(inner);
-        }
-        pass_cdr(cursor_, step);
-        steps.push_back(std::move(step));
+    void pass_over(const RosField& field, std::vector<CdrStep>& steps) {
+        const std::vector<CdrStep> passing = steps_without_leaves(field);
+        pass_cdr(cursor_, passing);
+        append(passing, steps);
+    }
+    static void append(const std::vector<CdrStep>& more, std::vector<CdrStep>& steps) {
+        steps.insert(steps.end(), more.begin(), more.end());
+        if (steps.size() > most_steps) raise<DataError>("messages of more than {} fields", most_steps);
     }
     static std::vector<CdrStep> steps_without_leaves(const RosField& field) {
-        std::vector<CdrStep> steps;
         const bool any = field.count == RosField::Count::any;
-        for (std::size_t i = 0; i < (any ? 1 : field.fixed); ++i) {
-            CdrStep step;
-            if (field.type.kind == RosType::Kind::number) {
-                step = {CdrStep::Kind::skip, field.type.size, 1, 0, field.name, {}, {}};
-            } else if (field.type.kind == RosType::Kind::stamp) {
-                step = {CdrStep::Kind::skip, 4, 2, 0, field.name, {}, {}};
-            } else if (field.type.kind == RosType::Kind::text) {
-                step.kind = CdrStep::Kind::text;
-            } else if (field.type.kind == RosType::Kind::wide_text) {
+        const std::size_t count = field.count == RosField::Count::fixed ? field.fixed : 1;
+        CdrStep step;
+        std::vector<CdrStep> one;
+        switch (field.type.kind) {
+            case RosType::Kind::number:
+                step.kind = any ? CdrStep::Kind::skip_any : CdrStep::Kind::skip;
+                step.size = field.type.size;
+                step.count = count;
+                return {step};
+            case RosType::Kind::wide_text:
                 raise<DataError>("the field {} of wide text, which is not read", field.name);
-            } else {
-                for (const RosField& inner : field.type.fields) {
-                    const auto more = steps_without_leaves(inner);
-                    steps.insert(steps.end(), more.begin(), more.end());
-                    if (steps.size() > most_steps)
-                        raise<DataError>("messages of more than {} fields", most_steps);
-                }
-                continue;
-            }
-            steps.push_back(step);
-            if (steps.size() > most_steps) raise<DataError>("messages of more than {} fields", most_steps);
+            case RosType::Kind::text:
+                step.kind = CdrStep::Kind::text;
+                one = {step};
+                break;
+            case RosType::Kind::stamp:
+                step.size = 4;
+                step.count = 2;
+                one = {step};
+                break;
+            case RosType::Kind::record:
+                for (const RosField& inner : field.type.fields) append(steps_without_leaves(inner), one);
+                break;
         }
-        if (!any) return steps;
-        CdrStep loop;
-        loop.kind = CdrStep::Kind::repeat_any;
-        loop.inner = std::move(steps);
-        return {loop};
+        if (any) {
+            step.kind = CdrStep::Kind::repeat_any;
+            step.inner = std::move(one);
+            return {step};
+        }
+        std::vector<CdrStep> steps;
+        for (std::size_t i = 0; i < count; ++i) append(one, steps);
+        return steps;
     }
 
     CdrCursor cursor_;
@@ -345,7 +322,10 @@ MessageLayout lay_out_cdr(const RosType& type, std::string_view message) {
     std::vector<CdrStep> steps;
     LayOut work(message);
     work.record(type, "", steps);
-    return {std::move(work.leaves), cdr_program(std::move(steps))};
+    const auto shared = std::make_shared<const std::vector<CdrStep>>(std::move(steps));
+    return {std::move(work.leaves), [shared](const LeafOffsets& offsets) -> std::unique_ptr<MessageReader> {
+                return std::make_unique<CdrReader>(shared, offsets);
+            }};
 }
 
 }  // namespace ripplenotch

@@ -261,17 +261,6 @@ class Reader final : public MessageReader, private FieldVisitor {
     char* into_ = nullptr;
 };
 
-class FieldProgram final : public MessageProgram {
-  public:
-    explicit FieldProgram(std::shared_ptr<const Program> program) : program_(std::move(program)) {}
-    [[nodiscard]] std::unique_ptr<MessageReader> reader(const LeafOffsets& offsets) const override {
-        return std::make_unique<Reader>(program_, offsets);
-    }
-
-  private:
-    std::shared_ptr<const Program> program_;
-};
-
 }  // namespace
 
 MessageLayout lay_out_fields(std::shared_ptr<const FieldWalk> walk, std::string_view first) {
@@ -281,7 +270,9 @@ MessageLayout lay_out_fields(std::shared_ptr<const FieldWalk> walk, std::string_
     program->walk = std::move(walk);
     program->nodes = std::move(grow.nodes);
     program->leaves = Choose(program->nodes).leaves;
-    return {program->leaves, std::make_shared<FieldProgram>(program)};
+    return {program->leaves, [program](const LeafOffsets& offsets) -> std::unique_ptr<MessageReader> {
+                return std::make_unique<Reader>(program, offsets);
+            }};
 }
 
 }  // namespace ripplenotch

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <string_view>
 
 #include "log/messages/message_records.hpp"
@@ -39,6 +40,14 @@ class FieldWalk {
     /// Throws DataError, without a source's name, where the bytes are no such message.
     virtual void walk(std::string_view message, FieldVisitor& visitor) const = 0;
 };
+
+/// Messages in JSON, an object each. Whether a schema says more about them makes no difference: numbers say
+/// that they are.
+[[nodiscard]] std::shared_ptr<const FieldWalk> json_walk();
+/// Messages in Protobuf, of a type that `descriptor_set` defines. Fields of proto3 that are not written are
+/// 0, others are not there. Throws DataError, without a source's name, where the type is not defined.
+[[nodiscard]] std::shared_ptr<const FieldWalk> protobuf_walk(std::string_view descriptor_set,
+                                                             const std::string& type);
 
 /// lay_out_message() of encodings with a walk. Numbers are 64-bit floats, but for whole ones beyond 2^53.
 [[nodiscard]] MessageLayout lay_out_fields(std::shared_ptr<const FieldWalk> walk, std::string_view first);

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "log/messages/json_message.hpp"
+// Messages in JSON, by nlohmann's event parser.
 
 #include <nlohmann/json.hpp>
 
 #include <string>
 #include <vector>
 
+#include "log/messages/field_tree.hpp"
 #include "ripplenotch/core/error.hpp"
 
 namespace ripplenotch {

@@ -42,9 +42,14 @@ struct McapRecord {
 class McapFields {
   public:
     explicit McapFields(std::string_view content) : rest_(content) {}
-    [[nodiscard]] std::uint64_t number(std::size_t size);
-    [[nodiscard]] std::string_view text();  ///< behind its length in four bytes
-    [[nodiscard]] std::string_view bytes(std::uint64_t size);
+    [[nodiscard]] std::uint64_t number(std::size_t size) { return little_endian(bytes(size)); }
+    [[nodiscard]] std::string_view text() { return bytes(number(4)); }  ///< behind its length in four bytes
+    [[nodiscard]] std::string_view bytes(std::uint64_t size) {
+        if (size > rest_.size()) raise<DataError>("a record that ends {} bytes early", size - rest_.size());
+        const std::string_view taken = rest_.substr(0, static_cast<std::size_t>(size));
+        rest_.remove_prefix(taken.size());
+        return taken;
+    }
     [[nodiscard]] std::string_view rest() const { return rest_; }
 
   private:
@@ -81,12 +86,6 @@ constexpr std::string_view magic = "\x89MCAP0\r\n";
 constexpr std::size_t head_size = 9, ahead_size = std::size_t{1} << 18;
 constexpr std::uint64_t largest_record = std::uint64_t{1} << 28, largest_chunk = std::uint64_t{1} << 27;
 
-std::uint64_t little_endian(std::string_view bytes) {
-    std::uint64_t number = 0;
-    for (std::size_t i = bytes.size(); i-- > 0;) number = number << 8U | static_cast<unsigned char>(bytes[i]);
-    return number;
-}
-
 void unpack_chunk(std::string_view packed, const Packing& packing, const std::string& source,
                   std::string& into) {
     if (packing.make == nullptr) {
@@ -106,17 +105,6 @@ void unpack_chunk(std::string_view packed, const Packing& packing, const std::st
     }
     if (have < into.size())
         raise<DataError>("a chunk of {} bytes when unpacked, expected {}", have, into.size());
-}
-
-std::uint64_t McapFields::number(std::size_t size) { return little_endian(bytes(size)); }
-
-std::string_view McapFields::text() { return bytes(number(4)); }
-
-std::string_view McapFields::bytes(std::uint64_t size) {
-    if (size > rest_.size()) raise<DataError>("a record that ends {} bytes early", size - rest_.size());
-    const std::string_view taken = rest_.substr(0, static_cast<std::size_t>(size));
-    rest_.remove_prefix(taken.size());
-    return taken;
 }
 
 McapRecords::McapRecords(std::shared_ptr<StoredBytes> file) : file_(std::move(file)) { restart(); }

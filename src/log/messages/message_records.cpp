@@ -7,23 +7,9 @@
 
 #include <algorithm>
 #include <bit>
-#include <cstddef>
-#include <cstdint>
-#include <cstring>
-#include <functional>
-#include <memory>
-#include <string>
-#include <string_view>
-#include <vector>
 
-#include "log/containers/stored_array.hpp"
-#include "log/messages/cdr.hpp"
 #include "log/messages/field_tree.hpp"
-#include "log/messages/json_message.hpp"
-#include "log/messages/protobuf.hpp"
 #include "log/messages/ros_schema.hpp"
-#include "log/npy/npy_header.hpp"
-#include "log/records/joined_records.hpp"
 #include "ripplenotch/core/error.hpp"
 
 namespace ripplenotch {
@@ -109,7 +95,7 @@ class MessageRecords final : public RecordSource {
                 if (layout_.leaves[l].clock) offsets_[l] = at;
             at += sizeof(std::int64_t);
         }
-        reader_ = layout_.program->reader(offsets_);
+        reader_ = layout_.program(offsets_);
     }
     void refill(std::string& bytes) override {
         RecordedMessage message;
@@ -239,7 +225,9 @@ class TopicChoice {
         std::vector<SideSignal> sides = sides_of(chosen, header_clock);
         auto bytes = std::make_unique<MessageRecords>(std::move(source_), chosen, layout, header_clock);
         if (sides.empty()) return {std::move(bytes), std::move(table)};
-        return {joined(std::move(bytes), std::move(sides), table), std::move(table)};
+        auto joined =
+            join_records(std::move(bytes), std::move(sides), options_.join.value_or("linear"), table);
+        return {std::move(joined), std::move(table)};
     }
 
   private:
@@ -272,24 +260,11 @@ class TopicChoice {
         }
         return sides;
     }
-    std::unique_ptr<RecordSource> joined(std::unique_ptr<MessageRecords> base, std::vector<SideSignal> sides,
-                                         RecordTable& table) const {
-        const std::string how = options_.join.value_or("linear");
-        std::vector<std::size_t> sizes;
-        for (const NpyField& field : table.fields) sizes.push_back(field.size);
-        add_sides(sides, how, table);
-        return join_records(std::move(base), std::move(sizes), std::move(sides), join_named(how));
-    }
     static void add_field(const std::string& topic, const MessageLeaf& leaf, RecordTable& table) {
-        NpyField field = leaf.type;
-        field.name = fmt::format("{}.{}", topic, leaf.path);
-        field.offset = table.record_size;
-        table.record_size += field.size;
-        table.fields.push_back(field);
-        const bool clock = table.fields.size() == 1;
+        const bool clock = table.fields.empty();
         // The stamp of something else is no clock of the messages.
-        table.read_as.push_back(leaf.stamp && !clock ? "other" : leaf.read_as);
-        table.units.emplace_back(clock ? "ns" : "");
+        table.add(leaf.type, fmt::format("{}.{}", topic, leaf.path),
+                  leaf.stamp && !clock ? "other" : leaf.read_as, clock ? "ns" : "");
     }
     // Until a part of the recording has been seen, and a message of each topic that was asked for.
     void look() {
@@ -384,7 +359,7 @@ class TopicChoice {
         std::int64_t first = 0;  // who does not stamp leaves it at 0
         LeafOffsets offsets(topic.layout.leaves.size(), -1);
         offsets[static_cast<std::size_t>(stamp - topic.layout.leaves.begin())] = 0;
-        topic.layout.program->reader(offsets)->read(topic.first, reinterpret_cast<char*>(&first));
+        topic.layout.program(offsets)->read(topic.first, reinterpret_cast<char*>(&first));
         return first != 0;
     }
 

@@ -13,7 +13,6 @@
 #include "log/containers/stored_array.hpp"
 #include "log/npy/npy_header.hpp"
 #include "log/records/joined_records.hpp"
-#include "ripplenotch/core/error.hpp"
 
 namespace ripplenotch {
 
@@ -90,20 +89,16 @@ class MessageReader {
 };
 
 /// How to read the messages of a topic.
-class MessageProgram {
-  public:
-    virtual ~MessageProgram() = default;
-    [[nodiscard]] virtual std::unique_ptr<MessageReader> reader(const LeafOffsets& offsets) const = 0;
-};
+using MessageProgram = std::function<std::unique_ptr<MessageReader>(const LeafOffsets& offsets)>;
 
 struct MessageLayout {
     std::vector<MessageLeaf> leaves;
-    std::shared_ptr<const MessageProgram> program;
+    MessageProgram program;
 };
 
-/// Of the first message of a channel: lists of numbers have the lengths that they have in it, and keep them.
-/// Lists longer than 64 and what is empty give no leaves. Throws DataError, without a source's name, where
-/// the message does not fit its type.
+/// Lays the messages of a channel out by its first: lists of numbers have the lengths that they have in it,
+/// and keep them. Lists longer than 64 and what is empty give no leaves. Throws DataError, without a source's
+/// name, where the message does not fit its type.
 [[nodiscard]] MessageLayout lay_out_message(const MessageChannel& channel, std::string_view first);
 
 }  // namespace ripplenotch

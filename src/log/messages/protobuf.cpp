@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "log/messages/protobuf.hpp"
+// Messages in Protobuf and the definitions of their types.
 
 #include <fmt/format.h>
 
@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "log/messages/field_tree.hpp"
 #include "ripplenotch/core/error.hpp"
 
 namespace ripplenotch {
@@ -70,12 +71,7 @@ class WireCursor {
         raise<DataError>("a whole number of more than ten bytes in a message of Protobuf");
     }
     /// Little endian, of 4 or 8 bytes.
-    std::uint64_t fixed(std::size_t size) {
-        const std::string_view bytes = counted(size);
-        std::uint64_t value = 0;
-        for (std::size_t i = size; i-- > 0;) value = value << 8 | static_cast<unsigned char>(bytes[i]);
-        return value;
-    }
+    std::uint64_t fixed(std::size_t size) { return little_endian(counted(size)); }
 
   private:
     std::string_view counted(std::uint64_t size) {
@@ -123,9 +119,7 @@ struct ProtobufField {
 
 using ProtobufType = std::vector<ProtobufField>;
 
-struct ProtobufTypes {
-    std::vector<ProtobufType> types;  ///< the first is the one that was asked for
-};
+using ProtobufTypes = std::vector<ProtobufType>;  ///< the first is the one that was asked for
 
 constexpr std::size_t most_declared_types = 10000, most_declared_fields = 10000, deepest_type = 32;
 
@@ -149,6 +143,7 @@ struct Declared {
     bool proto3 = false;
 };
 
+/// Throws DataError, without a source's name, on bytes that are no such set, and where a type is not in it.
 class Schema {
   public:
     explicit Schema(std::string_view descriptor_set) {
@@ -160,7 +155,7 @@ class Schema {
         // Grows while types name others.
         for (std::size_t i = 0; i < asked_.size(); ++i) {
             ProtobufType type = fields_of(asked_[i]);
-            types_.types.push_back(std::move(type));
+            types_.push_back(std::move(type));
         }
         return std::move(types_);
     }
@@ -239,11 +234,6 @@ class Schema {
     ProtobufTypes types_;
 };
 
-// Throws DataError, without a source's name, on bytes that are no such set, and where a type is not in it.
-ProtobufTypes parse_protobuf_schema(std::string_view descriptor_set, const std::string& type) {
-    return Schema(descriptor_set).types_of(type);
-}
-
 using Type = ProtobufField::Type;
 using Size = WireField::Size;
 
@@ -302,7 +292,7 @@ class ProtobufWalk final : public FieldWalk {
   public:
     explicit ProtobufWalk(ProtobufTypes types) : types_(std::move(types)) {}
     void walk(std::string_view message, FieldVisitor& visitor) const override {
-        record(types_.types.front(), message, visitor, 0);
+        record(types_.front(), message, visitor, 0);
     }
 
   private:
@@ -343,7 +333,7 @@ class ProtobufWalk final : public FieldWalk {
             raise<DataError>("the field {} in bytes of another type than the recording defines", field.name);
         if (field.repeated) visitor.element();
         if (field.type == Type::message)
-            record(types_.types[field.inner], one.bytes, visitor, depth + 1);
+            record(types_[field.inner], one.bytes, visitor, depth + 1);
         else if (field.type == Type::text)
             visitor.text(one.bytes);
         else if (holds_number(field.type))
@@ -361,7 +351,7 @@ class ProtobufWalk final : public FieldWalk {
 }  // namespace
 
 std::shared_ptr<const FieldWalk> protobuf_walk(std::string_view descriptor_set, const std::string& type) {
-    return std::make_shared<ProtobufWalk>(parse_protobuf_schema(descriptor_set, type));
+    return std::make_shared<ProtobufWalk>(Schema(descriptor_set).types_of(type));
 }
 
 }  // namespace ripplenotch

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "log/messages/ros_schema.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <map>

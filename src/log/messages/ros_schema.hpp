@@ -2,11 +2,11 @@
 #pragma once
 // Definitions of ROS 2 messages in the language of .msg files, as recordings carry them (encoding ros2msg).
 
-#include <memory>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "log/messages/message_records.hpp"
 
 namespace ripplenotch {
 
@@ -33,6 +33,9 @@ struct RosField {
 /// DataError, without a source's name, on a type that is not defined, on one that holds itself, and on lines
 /// that are no fields.
 [[nodiscard]] RosType parse_ros_schema(std::string_view schema, const std::string& type);
+
+/// lay_out_message() of messages in CDR.
+[[nodiscard]] MessageLayout lay_out_cdr(const RosType& type, std::string_view message);
 
 /// The definition of a common type, for recordings that carry none; empty where it is not known here.
 [[nodiscard]] std::string_view known_ros_schema(std::string_view type);

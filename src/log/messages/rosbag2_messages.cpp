@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <sqlite3.h>
 
+#include <algorithm>
 #include <map>
 #include <tuple>
 
@@ -105,10 +106,9 @@ class Rosbag2Messages final : public MessageSource {
         constexpr std::uint64_t head_size = 100, largest_page = 65536;
         const std::string head = file_->text_at(0, head_size);
         const auto number = [&](std::size_t at, std::size_t size) {
-            std::uint64_t value = 0;
-            for (std::size_t i = 0; i < size; ++i)
-                value = value << 8U | static_cast<unsigned char>(head[at + i]);
-            return value;
+            std::string bytes = head.substr(at, size);
+            std::reverse(bytes.begin(), bytes.end());  // the most significant byte first
+            return little_endian(bytes);
         };
         const std::uint64_t page = number(16, 2) == 1 ? largest_page : number(16, 2), pages = number(28, 4);
         const bool counted = pages > 0 && number(24, 4) == number(92, 4);

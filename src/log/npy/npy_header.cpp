@@ -8,9 +8,7 @@
 #include <bit>
 #include <cctype>
 #include <cmath>
-#include <cstdint>
 #include <cstring>
-#include <optional>
 
 #include "log/clock/stamp.hpp"
 #include "ripplenotch/core/error.hpp"
@@ -394,6 +392,10 @@ NpyHeader parse_npy_header(std::string_view bytes, const std::string& source) {
     header.data_offset = size;
     header.version = version;
     return header;
+}
+
+std::string NpyHeader::shape(std::size_t more_columns) const {
+    return structured ? fmt::format("{},", rows) : fmt::format("{}, {}", rows, fields.size() + more_columns);
 }
 
 std::string make_npy_header(std::string_view descr, std::string_view shape, bool reserve_rows) {

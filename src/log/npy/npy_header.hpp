@@ -54,10 +54,12 @@ struct NpyHeader {
     int version = 1;
     bool by_columns = false;  ///< the bytes of a column stand together: Fortran order, or one row a signal
     bool transposed = false;  ///< the file has one row a signal
+    /// As make_npy_header() takes it, of an array that is stored row by row.
+    [[nodiscard]] std::string shape(std::size_t more_columns = 0) const;
 };
 
 inline constexpr std::size_t largest_npy_header = std::size_t{1} << 20;
-/// Of records, that are looked at before columns are chosen.
+/// So many bytes of records are looked at before columns are chosen.
 inline constexpr std::size_t npy_sample_bytes = std::size_t{1} << 16;
 inline constexpr std::string_view npy_magic = "\x93NUMPY";
 

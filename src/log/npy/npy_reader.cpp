@@ -7,15 +7,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <memory>
-#include <string>
-#include <string_view>
 
 #include "log/clock/choose_time.hpp"
 #include "log/containers/stored_array.hpp"
-#include "log/npy/npy_header.hpp"
 #include "log/read.hpp"
-#include "log/records/joined_records.hpp"
+#include "log/rows_in_range.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/trace.hpp"
@@ -52,12 +48,7 @@ NpyReader::NpyReader(std::unique_ptr<ByteSource> source, std::string first_bytes
 }
 
 void NpyReader::read_up_to(std::string& bytes, std::size_t size) {
-    bytes.resize(read_behind(bytes, bytes.size(), size));
-}
-
-// Behind the first `have` bytes, until there are `size`; returns how many there are.
-std::size_t NpyReader::read_behind(std::string& bytes, std::size_t have, std::size_t size) {
-    return read_on(*source_, bytes, have, size);
+    bytes.resize(read_on(*source_, bytes, bytes.size(), size));
 }
 
 void NpyReader::decide(const ReadOptions& options) {
@@ -71,6 +62,7 @@ void NpyReader::decide(const ReadOptions& options) {
         if (facts.columns == 4) with_default.columns.emplace_back("position");
     }
     layout_ = decide_layout(source_->name(), table_.format, facts, with_default);
+    layout_.outside = rows_outside(*source_);
     layout_.contents = table_.contents;
     layout_.warnings.insert(layout_.warnings.begin(), table_.warnings.begin(), table_.warnings.end());
     if (by_place) {
@@ -108,7 +100,7 @@ bool NpyReader::next(RowBlock& block) {
     return true;
 }
 
-// Of what was read ahead, no more than `most`: how the log is written may have been looked for in 8 MiB.
+// Moves what was read ahead, no more than `most`: how the log is written may have been looked for in 8 MiB.
 std::size_t NpyReader::unload(std::string& bytes, std::size_t most) {
     const std::size_t count = std::min(carry_.size() - carried_, most);
     if (bytes.size() < count) bytes.resize(count);
@@ -130,7 +122,7 @@ bool NpyReader::fetch(RowBlock& block) {
     const std::size_t wanted = std::min(left, std::max<std::size_t>(1, npy_piece / size));
     std::size_t have = unload(bytes, std::max<std::size_t>(1, wanted * size));
     if (left == 0) {
-        if (have == 0) have = read_behind(bytes, have, 1);
+        if (have == 0) have = read_on(*source_, bytes, have, 1);
         if (have > 0) {
             raise<DataError>(
                 "{}: read more bytes after the {} rows of the array, expected the end; save one array a file",
@@ -139,7 +131,7 @@ bool NpyReader::fetch(RowBlock& block) {
         block.clear();
         return false;
     }
-    if (have < size) have = read_behind(bytes, have, wanted * size);
+    if (have < size) have = read_on(*source_, bytes, have, wanted * size);
     const std::size_t rows = std::min(left, have / size);
     if (rows == 0 && endless_) {
         if (have > 0) complain_of_end(have);
@@ -255,7 +247,7 @@ void NpyReader::complain(std::size_t column, const std::string& sentence) const 
     if (header_.structured) {
         for (const NpyField& field : header_.fields) names.push_back(field.name);
     }
-    raise<DataError>("{}: row {}, {}: {}", source_->name(), source_->number_in_file(rows_ + 1),
+    raise<DataError>("{}: row {}, {}: {}", source_->name(), number_in_file(*source_, rows_ + 1),
                      column_label(names, column), sentence);
 }
 
@@ -273,7 +265,7 @@ std::string npy_by_rows(std::string_view file, const NpyHeader& header, const st
             "{}: read {} bytes of numbers, expected {}; the file is cut off, save the array again", source,
             data.size(), header.rows * header.record_size);
     }
-    std::string rows = make_npy_header(header.descr, fmt::format("{}, {}", header.rows, columns), false);
+    std::string rows = make_npy_header(header.descr, header.shape(), false);
     const std::size_t start = rows.size();
     rows += data;
     if (!header.by_columns) return rows;
@@ -291,12 +283,7 @@ std::string npy_by_rows(std::string_view file, const NpyHeader& header, const st
 
 // An array that is not stored row by row cannot be read a row at a time.
 void NpyReader::read_whole(std::string& first_bytes) {
-    constexpr std::size_t piece = std::size_t{1} << 20;
-    for (std::size_t have = first_bytes.size(), got = 1; got > 0; have += got) {
-        first_bytes.resize(have + piece);
-        got = source_->read(first_bytes.data() + have, piece);
-        first_bytes.resize(have + got);
-    }
+    read_up_to(first_bytes, std::numeric_limits<std::size_t>::max());
     const std::string name = source_->name();
     const auto rows = std::make_shared<const std::string>(npy_by_rows(first_bytes, header_, name));
     source_ = std::make_unique<ByteSource>(name, rows);
@@ -367,16 +354,34 @@ std::string left_out_of(const std::vector<ContentEntry>& contents) {
 
 }  // namespace
 
-NpyReader::NpyReader(std::unique_ptr<ByteSource> records, RecordTable table, const ReadOptions& options,
-                     bool keep_all)
+NpyReader::NpyReader(std::unique_ptr<ByteSource> records, RecordTable table, const ReadOptions& options)
     : source_(std::move(records)), table_(std::move(table)), hold_bad_values_(options.hold_bad_values) {
     header_.fields = table_.fields;
     header_.structured = table_.named;
     header_.record_size = table_.record_size;
     endless_ = !table_.rows;
     header_.rows = table_.rows.value_or(std::numeric_limits<std::size_t>::max());
+    begin_records(options);
+    if (auto* const selective = dynamic_cast<RecordSource*>(source_.get());
+        selective != nullptr && !options.range.given())
+        keep_wanted(*selective);
+}
+
+NpyReader::NpyReader(std::unique_ptr<ByteSource> records, const NpyReader& whole, std::size_t rows,
+                     const ReadOptions& options)
+    : source_(std::move(records)),
+      header_(whole.header_),
+      table_(whole.table_),
+      hold_bad_values_(options.hold_bad_values) {
+    header_.rows = rows;
+    if (!whole.head_.empty()) head_ = make_npy_header(header_.descr, header_.shape(), false);
+    begin_records(options);
+}
+
+void NpyReader::begin_records(const ReadOptions& options) {
     // Whole records: of one that was begun, the rest would not fit any more once columns are left out.
-    const std::size_t sample = std::max<std::size_t>(64, npy_sample_bytes / header_.record_size);
+    const std::size_t fewest = head_.empty() ? 64 : 1;
+    const std::size_t sample = std::max(fewest, npy_sample_bytes / header_.record_size);
     read_up_to(carry_, std::min(header_.rows, sample) * header_.record_size);
     if (carry_.size() < header_.record_size) {
         if (!carry_.empty()) complain_of_end(carry_.size());
@@ -385,11 +390,9 @@ NpyReader::NpyReader(std::unique_ptr<ByteSource> records, RecordTable table, con
     ReadOptions settled = options;
     if (!table_.columns.empty()) settled.columns = table_.columns;
     decide(settled);
-    if (auto* const selective = dynamic_cast<RecordSource*>(source_.get()); selective != nullptr && !keep_all)
-        keep_wanted(*selective);
 }
 
-// Of what was read ahead, too: from here on records hold nothing else.
+// From here on records hold the wanted fields only, those that were read ahead included.
 void NpyReader::keep_wanted(RecordSource& records) {
     std::vector<std::size_t> wanted;
     for (const WantedColumn& one : wanted_) wanted.push_back(one.column);
@@ -416,7 +419,7 @@ void NpyReader::complain_of_end(std::size_t left_over) const {
     raise<DataError>(
         "{}: read {} rows and {} bytes of one more, expected records of {} bytes; the file is cut off, "
         "or its records are others than told",
-        source_->name(), source_->number_in_file(fetched_), left_over, header_.record_size);
+        source_->name(), number_in_file(*source_, fetched_), left_over, header_.record_size);
 }
 
 std::size_t NpyReader::sample_rows() const {

@@ -20,13 +20,16 @@ class NpyReader : public LogReader {
     NpyReader(std::unique_ptr<ByteSource> source, std::string first_bytes, const ReadOptions& options);
 
     /// Records of a dump or a container: bytes without a head, that fields say how to read.
-    /// Only those that are wanted are asked for, unless `keep_all`.
-    NpyReader(std::unique_ptr<ByteSource> records, RecordTable table, const ReadOptions& options,
-              bool keep_all = false);
+    /// Only those that are wanted are asked for, unless a range is still to choose among the rows.
+    NpyReader(std::unique_ptr<ByteSource> records, RecordTable table, const ReadOptions& options);
+
+    /// Some `rows` of another reader's records, none of which has been read.
+    NpyReader(std::unique_ptr<ByteSource> records, const NpyReader& whole, std::size_t rows,
+              const ReadOptions& options);
 
     [[nodiscard]] const Layout& layout() const override { return layout_; }
     [[nodiscard]] std::string_view head() const override { return head_; }
-    /// Of the whole log; 0 where nobody knows.
+    /// The size of the whole log; 0 where it is not known.
     [[nodiscard]] std::uint64_t source_bytes() const { return source_->size(); }
     bool next(RowBlock& block) override;
     bool fetch(RowBlock& block) override;
@@ -34,11 +37,11 @@ class NpyReader : public LogReader {
     void accept(RowBlock& block) override;
 
     [[nodiscard]] const NpyHeader& header() const { return header_; }
-    [[nodiscard]] const RecordTable& table() const { return table_; }
     /// What a record says, in the unit of its column, less the origin; only where there is a time column.
     [[nodiscard]] double time_of(const char* record) const { return time_at(record, layout_); }
 
   private:
+    void begin_records(const ReadOptions& options);
     void read_whole(std::string& first_bytes);
     void decide(const ReadOptions& options);
     [[nodiscard]] ColumnFacts column_facts();
@@ -50,7 +53,6 @@ class NpyReader : public LogReader {
     [[nodiscard]] MotionSample motion_sample(const MotionPlaces& places) const;
     bool read_column(const char* records, const WantedColumn& wanted, std::span<double> numbers) const;
     void read_up_to(std::string& bytes, std::size_t size);
-    std::size_t read_behind(std::string& bytes, std::size_t have, std::size_t size);
     std::size_t unload(std::string& bytes, std::size_t most);
     void plan_columns(const std::vector<std::string>& names);
     bool read_columns(RowBlock& block) const;

@@ -6,8 +6,6 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <optional>
-#include <vector>
 
 #include "core/files/byte_sink.hpp"
 #include "log/text/csv_writer.hpp"
@@ -105,13 +103,12 @@ void NpyWriter::append_head(const NpyReader& reader, const WriteOptions& options
             fmt::format(", ({}, '{}f{}')", python_string(names[j]), field.big_endian ? '>' : '<', field.size);
     }
     if (!header.structured) {
-        const auto shape = fmt::format("{}, {}", header.rows, header.fields.size() + fields_.size());
-        sink_->write(make_npy_header(header.descr, shape, false));
+        sink_->write(make_npy_header(header.descr, header.shape(fields_.size()), false));
         return;
     }
     std::string_view before = std::string_view(header.descr).substr(0, header.descr.rfind(']'));
     while (before.back() == ' ' || before.back() == ',') before.remove_suffix(1);
-    sink_->write(make_npy_header(fmt::format("{}{}]", before, fields), shape_of_rows(header.rows), false));
+    sink_->write(make_npy_header(fmt::format("{}{}]", before, fields), header.shape(), false));
 }
 
 std::string_view NpyWriter::prepare(RowBlock& block, Torques torque_nm, std::string& room) const {

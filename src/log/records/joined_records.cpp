@@ -6,15 +6,23 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cstring>
-#include <optional>
 
 #include "log/npy/npy_reader.hpp"
-#include "log/row_cut.hpp"
+#include "log/read.hpp"
+#include "log/rows_in_range.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 
 namespace ripplenotch {
+
+void RecordTable::add(NpyField field, std::string name, std::string meaning, std::string unit) {
+    field.name = std::move(name);
+    field.offset = record_size;
+    record_size += field.size;
+    fields.push_back(std::move(field));
+    read_as.push_back(std::move(meaning));
+    units.push_back(std::move(unit));
+}
 
 RecordSource::RecordSource(Name name, std::vector<std::size_t> sizes)
     : ByteSource(std::move(name)), sizes_(std::move(sizes)) {
@@ -53,46 +61,12 @@ std::size_t RecordSource::read(char* into, std::size_t size) {
     return taken;
 }
 
-namespace {
-
-/// Records that a range kept, with what is needed to read them again.
-class KeptRecords final : public ByteSource {
-  public:
-    KeptRecords(NpyReader& whole, const ReadOptions& options)
-        : ByteSource(Name{whole.layout().source}), rows_(whole, options), table_(whole.table()) {
-        table_.rows = rows_.cut().kept();
-    }
-    std::size_t read(char* into, std::size_t size) override { return rows_.read(into, size); }
-    [[nodiscard]] std::size_t number_in_file(std::size_t number) const override {
-        return rows_.number_in_file(number);
-    }
-    [[nodiscard]] const RowCut& cut() const { return rows_.cut(); }
-    [[nodiscard]] const RecordTable& table() const { return table_; }
-
-  private:
-    KeptRows rows_;
-    RecordTable table_;
-};
-
-}  // namespace
-
 std::unique_ptr<LogReader> read_records(std::unique_ptr<ByteSource> source, std::string first_bytes,
                                         const ReadOptions& options, MakeRecords make) {
-    if (const auto* const kept = dynamic_cast<const KeptRecords*>(source.get())) {
-        RecordTable table = kept->table();
-        return std::make_unique<NpyReader>(std::move(source), std::move(table), options);
-    }
     Records records = make(std::move(source), std::move(first_bytes), options);
-    return std::make_unique<NpyReader>(std::move(records.bytes), std::move(records.table), options);
-}
-
-LogCut cut_records(std::unique_ptr<ByteSource> source, std::string first_bytes, const ReadOptions& options,
-                   MakeRecords make) {
-    Records records = make(std::move(source), std::move(first_bytes), options);
-    NpyReader whole(std::move(records.bytes), std::move(records.table), clock_only(options), true);
-    auto bytes = std::make_unique<KeptRecords>(whole, options);
-    auto outside = bytes->cut().outside();
-    return {std::move(bytes), whole.layout(), std::move(outside)};
+    return rows_in_range(std::make_unique<NpyReader>(std::move(records.bytes), std::move(records.table),
+                                                     options_of_whole(options)),
+                         options);
 }
 
 namespace {
@@ -100,10 +74,24 @@ namespace {
 constexpr std::size_t clock_size = sizeof(std::int64_t), joined_buffer = std::size_t{1} << 18;
 constexpr double periods_apart = 3.0, least_ns = 1e6;
 
+enum class Join { nearest, hold, linear };
+
+Join join_named(std::string_view word) {
+    if (word == "nearest") return Join::nearest;
+    if (word == "hold") return Join::hold;
+    if (word == "linear") return Join::linear;
+    raise<UsageError>("--join: '{}' is none of nearest, hold, linear", word);
+}
+
 std::int64_t clock_of(const char* record) {
     std::int64_t clock = 0;
     std::memcpy(&clock, record, clock_size);
     return clock;
+}
+
+// False where fewer bytes come than the record has.
+bool read_record(ByteSource& source, std::string& record) {
+    return read_on(source, record, 0, record.size()) == record.size();
 }
 
 /// A signal as its last message and the next.
@@ -148,12 +136,7 @@ class Side {
     void advance() {
         before_ = after_;
         after_.reset();
-        std::size_t have = 0;
-        while (have < record_.size()) {
-            const std::size_t got = signal_.records->read(record_.data() + have, record_.size() - have);
-            if (got == 0) return;
-            have += got;
-        }
+        if (!read_record(*signal_.records, record_)) return;
         after_ = Point{clock_of(record_.data()), load_field(record_.data(), signal_.type)};
         if (before_ && after_->time_ns < before_->time_ns)
             raise<DataError>(
@@ -169,14 +152,14 @@ class Side {
 
 class JoinedRecords final : public RecordSource {
   public:
-    JoinedRecords(std::unique_ptr<RecordSource> base, const std::vector<std::size_t>& base_sizes,
-                  std::vector<SideSignal> sides, Join how)
-        : RecordSource(Name{base->name()}, with_sides(base_sizes, sides.size())), base_(std::move(base)) {
-        for (const std::size_t size : base_sizes) {
-            offsets_.push_back(base_record_);
-            sizes_.push_back(size);
-            base_record_ += size;
+    JoinedRecords(std::unique_ptr<RecordSource> base, std::vector<SideSignal> sides, Join how)
+        : RecordSource(Name{base->name()}, with_sides(base->sizes(), sides.size())), base_(std::move(base)) {
+        std::size_t base_size = 0;
+        for (const std::size_t size : base_->sizes()) {
+            offsets_.push_back(base_size);
+            base_size += size;
         }
+        record_.resize(base_size);
         for (SideSignal& side : sides) sides_.emplace_back(std::move(side), how);
     }
 
@@ -187,7 +170,7 @@ class JoinedRecords final : public RecordSource {
     }
     void refill(std::string& bytes) override {
         std::vector<double> values(sides_.size());
-        while (bytes.size() < joined_buffer && next_base()) {
+        while (bytes.size() < joined_buffer && read_record(*base_, record_)) {
             bool all = true;
             for (std::size_t s = 0; s < sides_.size(); ++s) {
                 const auto value = sides_[s].at(clock_of(record_.data()));
@@ -196,57 +179,35 @@ class JoinedRecords final : public RecordSource {
             }
             if (!all) continue;
             for (const std::size_t field : kept()) {
-                if (field < sizes_.size()) {
-                    bytes.append(record_, offsets_[field], sizes_[field]);
+                if (field < offsets_.size()) {
+                    bytes.append(record_, offsets_[field], sizes()[field]);
                 } else {
                     std::array<char, sizeof(double)> raw{};
-                    std::memcpy(raw.data(), &values[field - sizes_.size()], raw.size());
+                    std::memcpy(raw.data(), &values[field - offsets_.size()], raw.size());
                     bytes.append(raw.data(), raw.size());
                 }
             }
         }
     }
-    bool next_base() {
-        record_.resize(base_record_);
-        std::size_t have = 0;
-        while (have < record_.size()) {
-            const std::size_t got = base_->read(record_.data() + have, record_.size() - have);
-            if (got == 0) return false;
-            have += got;
-        }
-        return true;
-    }
 
     std::unique_ptr<RecordSource> base_;
-    std::vector<std::size_t> offsets_, sizes_;  ///< of its fields
-    std::size_t base_record_ = 0;
+    std::vector<std::size_t> offsets_;  ///< of its fields
     std::vector<Side> sides_;
     std::string record_;
 };
 
 }  // namespace
 
-Join join_named(std::string_view word) {
-    if (word == "nearest") return Join::nearest;
-    if (word == "hold") return Join::hold;
-    if (word == "linear") return Join::linear;
-    raise<UsageError>("--join: '{}' is none of nearest, hold, linear", word);
-}
-
 std::int64_t join_limit_ns(double period_ns) {
     return static_cast<std::int64_t>(periods_apart * std::max(period_ns, least_ns));
 }
 
-void add_sides(const std::vector<SideSignal>& sides, std::string_view how, RecordTable& table) {
+std::unique_ptr<RecordSource> join_records(std::unique_ptr<RecordSource> base, std::vector<SideSignal> sides,
+                                           std::string_view how, RecordTable& table) {
+    NpyField number;
+    number.big_endian = std::endian::native == std::endian::big;
     for (const SideSignal& side : sides) {
-        NpyField field;
-        field.name = side.path;
-        field.big_endian = std::endian::native == std::endian::big;
-        field.offset = table.record_size;
-        table.record_size += field.size;
-        table.fields.push_back(field);
-        table.read_as.push_back(side.read_as);
-        table.units.push_back(side.unit);
+        table.add(number, side.path, side.read_as, side.unit);
         table.warnings.push_back(
             {"joined by time",
              fmt::format("{} has a clock of its own: joined to the rows by --join {}, from {}s that "
@@ -255,12 +216,7 @@ void add_sides(const std::vector<SideSignal>& sides, std::string_view how, Recor
              true});
     }
     table.options += fmt::format(" --join {}", how);
-}
-
-std::unique_ptr<RecordSource> join_records(std::unique_ptr<RecordSource> base,
-                                           std::vector<std::size_t> base_sizes, std::vector<SideSignal> sides,
-                                           Join how) {
-    return std::make_unique<JoinedRecords>(std::move(base), base_sizes, std::move(sides), how);
+    return std::make_unique<JoinedRecords>(std::move(base), std::move(sides), join_named(how));
 }
 
 }  // namespace ripplenotch

@@ -35,6 +35,9 @@ struct RecordTable {
     std::vector<std::string>
         columns;  ///< in place of ReadOptions::columns, where paths had to be settled; else empty
     std::vector<LogWarning> warnings;
+
+    /// One more number at the end of a record.
+    void add(NpyField field, std::string name, std::string meaning, std::string unit);
 };
 
 /// The records as bytes, made some rows at a time.
@@ -44,6 +47,8 @@ class RecordSource : public ByteSource {
     /// other. Whole records have been read until now. `fields` in ascending order.
     void keep(const std::vector<std::size_t>& fields);
     std::size_t read(char* into, std::size_t size) final;
+    /// The bytes of each field, whether it is kept or not.
+    [[nodiscard]] const std::vector<std::size_t>& sizes() const { return sizes_; }
 
   protected:
     /// `sizes`: of the fields in bytes, in their order.
@@ -63,33 +68,26 @@ class RecordSource : public ByteSource {
     std::string bytes_;
 };
 
-// Formats that are read as records: how they are opened, and how rows outside a range are left out of them.
+// Formats that are read as records.
 
 /// A file as records.
 struct Records {
     std::unique_ptr<ByteSource> bytes;
     RecordTable table;
 };
-/// Of a format. Throws DataError and UsageError, beginning with the source's name or the option.
+/// Makes them from a file of one format. Throws DataError and UsageError, beginning with the source's name or
+/// the option.
 using MakeRecords = Records (*)(std::unique_ptr<ByteSource> source, std::string first_bytes,
                                 const ReadOptions& options);
 
 [[nodiscard]] std::unique_ptr<LogReader> read_records(std::unique_ptr<ByteSource> source,
                                                       std::string first_bytes, const ReadOptions& options,
                                                       MakeRecords make);
-/// LogFormat::cut: the whole log is gone through first, and what is kept waits in a temporary file.
-[[nodiscard]] LogCut cut_records(std::unique_ptr<ByteSource> source, std::string first_bytes,
-                                 const ReadOptions& options, MakeRecords make);
 
 template <MakeRecords make>
 std::unique_ptr<LogReader> open_as_records(std::unique_ptr<ByteSource> source, std::string first_bytes,
                                            const ReadOptions& options) {
     return read_records(std::move(source), std::move(first_bytes), options, make);
-}
-template <MakeRecords make>
-LogCut cut_as_records(std::unique_ptr<ByteSource> source, std::string first_bytes,
-                      const ReadOptions& options) {
-    return cut_records(std::move(source), std::move(first_bytes), options, make);
 }
 
 // Numbers from equal distances to equal distances: how columns become records, and records columns.
@@ -127,15 +125,6 @@ inline void copy_numbers(Stride<const char> from, Stride<char> into, std::size_t
     }
 }
 
-/// What a row gets of a signal that was not recorded in the same moment.
-enum class Join {
-    nearest,  ///< the value of the message nearest in time
-    hold,     ///< of the last one before
-    linear    ///< between the two around it
-};
-/// "linear" and the like. Throws UsageError.
-[[nodiscard]] Join join_named(std::string_view word);
-
 /// One number with a clock of its own.
 struct SideSignal {
     std::string path;                       ///< "/ft.wrench.torque.z", "q_dot.Data"
@@ -149,14 +138,13 @@ struct SideSignal {
 /// The farthest in time that is taken of a signal with this usual step.
 [[nodiscard]] std::int64_t join_limit_ns(double period_ns);
 
-/// What the table of a base, and its user, are told of the sides behind it.
-void add_sides(const std::vector<SideSignal>& sides, std::string_view how, RecordTable& table);
-
-/// The rows of `base`, which gives all its fields, its clock first; behind them the sides, in 8 bytes each.
-/// Rows before the first message of a side and behind its last are left out. read() throws DataError where a
-/// side is farther than its limit.
+/// The rows of `base`, which gives all its fields, its clock first; behind them the sides, in 8 bytes each,
+/// which `table` gets too. `how`: "nearest" takes the value of the message nearest in time, "hold" that of
+/// the last one before, "linear" goes between the two around it; throws UsageError for others. Rows before
+/// the first message of a side and behind its last are left out. read() throws DataError where a side is
+/// farther than its limit.
 [[nodiscard]] std::unique_ptr<RecordSource> join_records(std::unique_ptr<RecordSource> base,
-                                                         std::vector<std::size_t> base_sizes,
-                                                         std::vector<SideSignal> sides, Join how);
+                                                         std::vector<SideSignal> sides, std::string_view how,
+                                                         RecordTable& table);
 
 }  // namespace ripplenotch

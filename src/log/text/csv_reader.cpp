@@ -8,9 +8,7 @@
 #include <cstring>
 
 #include "log/clock/choose_time.hpp"
-#include "log/columns/decide_layout.hpp"
 #include "log/read.hpp"
-#include "log/text/text_dialect.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/trace.hpp"
@@ -51,6 +49,7 @@ CsvReader::CsvReader(std::unique_ptr<ByteSource> source, std::string first_bytes
     }
     dialect_ = sniff_text(first_bytes, source_ended_, *source_, options);
     layout_ = decide_layout(source_->name(), "csv", facts_of(first_bytes), options);
+    layout_.outside = rows_outside(*source_);
     if (dialect_.head_lines > 0) {
         layout_.inferences.push_back({fmt::format("the first {} lines", dialect_.head_lines),
                                       "a head, passed on and not read",

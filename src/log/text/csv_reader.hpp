@@ -7,6 +7,7 @@
 #include <string>
 
 #include "log/columns/decide_layout.hpp"
+#include "log/rows_in_range.hpp"
 #include "log/text/quick_rows.hpp"
 #include "log/text/text_dialect.hpp"
 #include "ripplenotch/log/format.hpp"
@@ -19,7 +20,7 @@ class CsvReader : public LogReader {
 
     [[nodiscard]] const Layout& layout() const override { return layout_; }
     [[nodiscard]] std::string_view head() const override { return head_; }
-    /// Of the whole log; 0 where nobody knows.
+    /// The size of the whole log; 0 where it is not known.
     [[nodiscard]] std::uint64_t source_bytes() const { return source_->size(); }
     bool next(RowBlock& block) override;
     bool fetch(RowBlock& block) override;
@@ -41,7 +42,7 @@ class CsvReader : public LogReader {
     void parse_carefully(std::string_view line, RowBlock& block, ParsedRow& row);
     double read_cell(std::string_view line, const Cell& cell, const WantedColumn& wanted, RowBlock& block);
     void append_row(RowBlock& block, ParsedRow& row);
-    [[nodiscard]] std::size_t line_in_file() const { return source_->number_in_file(line_); }
+    [[nodiscard]] std::size_t line_in_file() const { return number_in_file(*source_, line_); }
     [[noreturn]] void complain(std::size_t column, const std::string& sentence) const;
 
     std::unique_ptr<ByteSource> source_;

@@ -3,20 +3,8 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
-#include <memory>
-#include <span>
-#include <string>
-#include <vector>
-
 #include "log/columns/units.hpp"
-#include "log/text/csv_reader.hpp"
-#include "log/text/quick_rows.hpp"
-#include "log/text/text_dialect.hpp"
 #include "ripplenotch/core/error.hpp"
-#include "ripplenotch/log/format.hpp"
 
 namespace ripplenotch {
 

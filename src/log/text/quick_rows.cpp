@@ -3,17 +3,15 @@
 
 #include <algorithm>
 #include <array>
-#include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <string_view>
 #include <utility>
 
+#include "core/functions/powers_of_ten.hpp"
 #include "core/vectors/bytes.hpp"
 #include "core/vectors/dispatch.hpp"
 #include "log/table_writer.hpp"
 #include "log/text/row_edges.hpp"
-#include "log/text/text_cells.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/trace.hpp"
 
@@ -54,10 +52,6 @@ std::vector<double> slot_factors(const Layout& layout, const std::vector<WantedC
 }
 
 namespace {
-
-constexpr std::array<double, 23> powers_of_ten = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
-                                                  1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
-                                                  1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
 
 // Reads [-]digits[.digits] with at most 15 digits: mantissa and power of ten are then both exact doubles, so
 // one division rounds correctly (W. D. Clinger, How to read floating point numbers accurately, 1990). Null

@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "log/text/row_edges.hpp"
 
-#include <algorithm>
-#include <array>
-#include <cstddef>
-#include <cstdint>
-
 #include "core/vectors/bytes.hpp"
 #include "log/text/text_cells.hpp"
 
@@ -78,7 +73,7 @@ class EdgeFinder {
     RIPPLENOTCH_WIDE explicit EdgeFinder(Separators separators)
         : delimiters_(all(byte(separators.delimiter))), line_ends_(all(byte(separators.line_end))) {}
 
-    /// Of 64 bytes.
+    /// The separators among 64 bytes, a bit each.
     RIPPLENOTCH_WIDE EdgeBits look_at(const char* text) {
         const EdgeBits low = look_at_half(text), high = look_at_half(text + 32);
         return {low.any | high.any << 32, low.line_ends | high.line_ends << 32};
@@ -155,7 +150,7 @@ struct CellCursor {
         before += rows * before_stride;
         end += rows * end_stride;
     }
-    /// Of the cell, with its sign.
+    /// How many characters the cell has, with its sign.
     [[nodiscard]] std::size_t length() const { return static_cast<std::size_t>(*end - *before - 1); }
 
     const char* text;
@@ -285,7 +280,7 @@ class Pairs {
     Places places_;
 };
 
-/// Of one cell with up to 32 characters and 19 digits; false where it is not sure.
+/// Reads one cell with up to 32 characters and 19 digits; false where it is not sure.
 RIPPLENOTCH_WIDE bool read_long_cell(const CellCursor& at, char decimal_mark, double& value) {
     const char* const begin = at.text + at.before[0] + 1;
     const char* const end = at.text + at.end[0];

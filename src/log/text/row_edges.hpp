@@ -29,7 +29,7 @@ struct Edges {
 /// Fills `found` from the first `size` (at most stretch_bytes) bytes of `text`.
 void find_edges(const char* text, std::size_t size, Separators separators, Edges& found);
 
-/// Of the cells between `count` + 1 places, in bytes.
+/// The length in bytes of the longest cell between `count` + 1 places.
 [[nodiscard]] std::int32_t longest_cell(const std::int32_t* place, std::size_t count);
 
 /// How many rows from the first on have each separator where it belongs.

@@ -6,10 +6,10 @@
 #include <limits>
 #include <span>
 #include <utility>
-#include <vector>
 
 #include "log/clock/stamp.hpp"
 #include "log/columns/infer_motion.hpp"
+#include "log/rows_in_range.hpp"
 #include "log/text/text_header.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
@@ -50,7 +50,7 @@ GuessedRules rules_of(std::string_view bytes, const std::vector<TextLine>& conte
     raise<DataError>(
         "{}:{}:1: read '{}', expected numbers separated by comma, semicolon, tab or blanks; say how it "
         "is written with --delimiter and --decimal",
-        source.name(), source.number_in_file(content[aside].number), content[aside].of(bytes).substr(0, 40));
+        source.name(), number_in_file(source, content[aside].number), content[aside].of(bytes).substr(0, 40));
 }
 
 void look_at_sample(std::string_view bytes, std::span<const TextLine> rows, TextDialect& dialect) {
@@ -152,7 +152,7 @@ void refuse_binary(std::string_view bytes, const ByteSource& source) {
         raise<DataError>(
             "{}:{}:{}: read the byte 0x{:02x}, expected text; this is not a text log, say which format it "
             "has with --format, or export it as CSV",
-            source.name(), source.number_in_file(place.line), place.column, byte);
+            source.name(), number_in_file(source, place.line), place.column, byte);
     }
 }
 
@@ -199,7 +199,7 @@ TextLines opening_lines(std::string_view bytes, bool whole, const ByteSource& so
     if (!whole && bytes.size() - (lines.empty() ? start : lines.back().next) > longest_line) {
         raise<DataError>(
             "{}:{}: read a line of more than 1 MiB, expected rows of numbers; check that this is a text log",
-            source.name(), source.number_in_file(lines.size() + 1));
+            source.name(), number_in_file(source, lines.size() + 1));
     }
     std::size_t kept = 0;
     for (const TextLine& line : lines) {

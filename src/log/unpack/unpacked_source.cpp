@@ -4,21 +4,13 @@
 #include <algorithm>
 #include <array>
 #include <condition_variable>
-#include <cstddef>
-#include <cstdint>
 #include <cstring>
 #include <exception>
-#include <memory>
 #include <mutex>
-#include <optional>
-#include <span>
-#include <string>
-#include <string_view>
 #include <thread>
 #include <vector>
 
 #include "ripplenotch/core/error.hpp"
-#include "ripplenotch/core/files.hpp"
 
 namespace ripplenotch {
 

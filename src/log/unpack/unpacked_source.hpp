@@ -2,7 +2,6 @@
 #pragma once
 // A compressed file as the bytes inside it, in bounded memory.
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -20,7 +19,10 @@ namespace ripplenotch {
 /// Unpacks one stream of bytes; streams that follow each other are one, as their own programs have it.
 class Unpacker {
   public:
+    Unpacker() = default;
     virtual ~Unpacker() = default;
+    Unpacker(const Unpacker&) = delete;
+    Unpacker& operator=(const Unpacker&) = delete;
     struct Step {
         std::size_t taken = 0;  ///< of the packed bytes
         std::size_t given = 0;  ///< put into the room
@@ -34,7 +36,7 @@ class Unpacker {
     [[nodiscard]] virtual bool complete() const = 0;
 };
 
-/// Of the deflate method, as containers have it inside: zlib's own wrapping (RFC 1950) or none (RFC 1951).
+/// How containers wrap the deflate method: as zlib does (RFC 1950), or not at all (RFC 1951).
 enum class Deflate { wrapped, bare };
 
 /// Throws UsageError, beginning with `source`, where this build lacks zlib.
@@ -61,41 +63,6 @@ extern const Packing gzip, zstd, lz4, xz;
 
 /// The kind that begins with these bytes; null where it is none.
 [[nodiscard]] const Packing* packing_of(std::string_view first_bytes);
-
-// Internal: packed bytes in whole units, as a library asks for them, however they arrive. A call that meets
-// damage does not say what it has given before; with whole units it has given nothing, and what was given
-// before it does not depend on the pieces.
-
-class WholeUnits {
-  public:
-    /// The next unit, whole or empty; takes from `packed` what it keeps for later and says how much.
-    [[nodiscard]] std::string_view next(std::string_view packed, std::size_t& taken) {
-        taken = 0;
-        from_kept_ = !kept_.empty() || packed.size() < wanted_;
-        if (!from_kept_) return packed.substr(0, wanted_);
-        if (kept_.size() < wanted_) {
-            taken = std::min(packed.size(), wanted_ - kept_.size());
-            kept_.append(packed.substr(0, taken));
-        }
-        return std::string_view(kept_).substr(0, kept_.size() < wanted_ ? 0 : wanted_);
-    }
-
-    /// What the library used of the unit, and the size of the one that it wants next.
-    void used(std::size_t size, std::size_t wanted, std::size_t& taken) {
-        if (from_kept_)
-            kept_.erase(0, size);
-        else
-            taken = size;
-        wanted_ = std::max<std::size_t>(1, wanted);
-    }
-
-    [[nodiscard]] bool keeps_some() const { return !kept_.empty(); }
-
-  private:
-    std::string kept_;
-    std::size_t wanted_ = 1;
-    bool from_kept_ = false;
-};
 
 /// What `packed` holds behind its `first_bytes`, which have been read from it already, under its name. A file
 /// is unpacked by a thread of its own, ahead of who reads; a pipe in read() itself, since waiting for it must

@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: MIT
+#include "log/rows_in_range.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "log/npy/npy_reader.hpp"
+#include "log/npy/npy_writer.hpp"
+#include "log/text/csv_reader.hpp"
+#include "log/text/text_dialect.hpp"
+#include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/number.hpp"
+
+namespace ripplenotch {
+
+void KeptNumbers::add(bool kept) {
+    ++seen_;
+    if (!kept) return;
+    const std::size_t left_out = seen_ - ++kept_;
+    const std::size_t before = holes_.empty() ? 0 : holes_.back().left_out;
+    if (left_out == before) return;
+    const std::lock_guard lock(mutex_);
+    holes_.push_back({kept_ - 1, left_out});
+}
+
+std::size_t KeptNumbers::in_file(std::size_t number) const {
+    const std::lock_guard lock(mutex_);
+    for (auto hole = holes_.rbegin(); hole != holes_.rend(); ++hole) {
+        if (number > hole->kept) return number + hole->left_out;
+    }
+    return number;
+}
+
+std::size_t number_in_file(const ByteSource& source, std::size_t number) {
+    const auto* const rows = dynamic_cast<const RowsInRange*>(&source);
+    return rows == nullptr ? number : rows->number_in_file(number);
+}
+
+std::shared_ptr<const RowsOutside> rows_outside(const ByteSource& source) {
+    const auto* const rows = dynamic_cast<const RowsInRange*>(&source);
+    return rows == nullptr ? nullptr : rows->outside();
+}
+
+RowsInRange::RowsInRange(const ReadOptions& options, const Layout& whole, std::size_t head)
+    : ByteSource(Name{whole.source}), range_(options.range), numbers_(head) {
+    if (whole.stated_rate) {
+        rate_hz_ = whole.stated_rate->value();
+    } else if (whole.chosen.time) {
+        factor_ = whole.columns[*whole.chosen.time].factor;
+        axis_.origin_s = whole.time_origin;
+    } else {
+        raise<DataError>("{}: {}: no column is the time; say --columns time=NAME, or --sample-rate 1kHz",
+                         name(), asked());
+    }
+}
+
+bool RowsInRange::keeps(std::optional<double> time) {
+    if (rate_hz_) time = static_cast<double>(rows_) / *rate_hz_;
+    ++rows_;
+    if (time) {
+        const double time_s = rate_hz_ ? *time : *time * factor_;
+        if (!first_s_) begin(time_s);
+        last_s_ = time_s;
+        place_ = place_of(time_s);
+        if (rate_hz_ && kept_ == 0 && inside()) outside_->zero_s = time_s;
+    }
+    if (inside())
+        ++kept_;
+    else
+        ++(place_ == Place::before ? outside_->before : outside_->after);
+    return keeps_line();
+}
+
+bool RowsInRange::keeps_line() {
+    numbers_.add(inside());
+    return inside();
+}
+
+RowsInRange::Place RowsInRange::place_of(double time_s) const {
+    // Stamps in ms times 0.001 are not always the nearest numbers to what people type in seconds.
+    const auto slack = [time_s](double bound_s) {
+        constexpr double some_ulps = 4.0 * std::numeric_limits<double>::epsilon();
+        return some_ulps * std::max(std::abs(time_s), std::abs(bound_s));
+    };
+    if (range_.from && time_s < from_s_ - slack(from_s_)) return Place::before;
+    if (range_.to && time_s > to_s_ + slack(to_s_)) return Place::after;
+    return Place::inside;
+}
+
+void RowsInRange::begin(double first_s) {
+    first_s_ = first_s;
+    const auto bound = [&](const std::optional<TimePoint>& point, std::string_view option, double& bound_s) {
+        if (!point) return std::optional<double>();
+        const std::string label = fmt::format("{}: {}", name(), option);
+        bound_s = on_axis(*point, axis_, label);
+        if (bound_s < 0.0 && first_s >= 0.0)
+            raise<UsageError>("{} {} is below 0 s, and the log begins at {} s; write a time from there on",
+                              label, point->text, shortest(first_s));
+        return std::optional<double>(bound_s);
+    };
+    outside_->from_s = bound(range_.from, "--from", from_s_);
+    outside_->to_s = bound(range_.to, "--to", to_s_);
+    if (from_s_ > to_s_)
+        raise<UsageError>("{}: {}: the range ends at {} s, before it begins at {} s; swap the two", name(),
+                          asked(), shortest(to_s_), shortest(from_s_));
+}
+
+std::string RowsInRange::asked() const {
+    std::string words;
+    if (range_.from) words += "--from " + range_.from->text;
+    if (range_.to) words += (words.empty() ? "--to " : " --to ") + range_.to->text;
+    return words;
+}
+
+void RowsInRange::require_rows() const {
+    if (has_enough()) return;
+    const std::string what = kept_ == 0 ? "no row" : "one row only";
+    if (!first_s_)
+        raise<DataError>("{}: {} keeps {}: no row has a time; check the time column", name(), asked(), what);
+    raise<UsageError>("{}: {} keeps {}: the log covers {} s to {} s in {} rows; ask for two of them or more",
+                      name(), asked(), what, shortest(*first_s_), shortest(last_s_), rows_);
+}
+
+std::string range_in_words(const RowsOutside& outside) {
+    std::string words = "only rows";
+    if (outside.from_s) words += fmt::format(" from {} s", shortest(*outside.from_s));
+    if (outside.to_s) words += fmt::format(" to {} s", shortest(*outside.to_s));
+    if (outside.zero_s != 0.0) words += fmt::format("; times count from {} s", shortest(outside.zero_s));
+    return words;
+}
+
+ReadOptions options_of_whole(ReadOptions options) {
+    if (!options.range.given()) return options;
+    options.joint.reset();
+    options.every_joint = false;
+    options.needs_torque = false;
+    return options;
+}
+
+namespace {
+
+class LinesInRange final : public RowsInRange {
+  public:
+    /// Reads ahead until enough rows are kept.
+    LinesInRange(std::unique_ptr<CsvReader> whole, const ReadOptions& options)
+        : RowsInRange(options, whole->layout(), whole->dialect().data_line - 1),
+          whole_(std::move(whole)),
+          row_(whole_->dialect(), time_columns(whole_->layout()),
+               stamp_rule(whole_->layout(), whole_->dialect().rules.decimal_mark)),
+          lines_(whole_->head()) {
+        while (!has_enough() && add_lines()) {
+        }
+        require_rows();
+    }
+
+    std::size_t read(char* into, std::size_t size) override {
+        while (given_ == lines_.size()) {
+            lines_.clear();
+            given_ = 0;
+            if (!add_lines()) return 0;
+        }
+        const std::size_t given = lines_.copy(into, size, given_);
+        given_ += given;
+        return given;
+    }
+
+  private:
+    /// The next of the log, as far as they are inside; false when there are none left.
+    bool add_lines() {
+        if (!whole_->fetch(block_)) return false;
+        const std::string_view bytes = block_.bytes;
+        const char line_end = whole_->dialect().line_end;
+        for (std::size_t begin = 0, end = 0; begin < bytes.size(); begin = end) {
+            end = std::min(bytes.find(line_end, begin), bytes.size() - 1) + 1;
+            const std::string_view line = bytes.substr(begin, end - begin);
+            // What is longer than any line comes in pieces, which go where its beginning goes.
+            const bool goes_on = std::exchange(unended_, line.back() != line_end);
+            if (goes_on ? inside() : keeps_text(line.substr(0, line.size() - (unended_ ? 0 : 1))))
+                lines_ += line;
+        }
+        return true;
+    }
+
+    bool keeps_text(std::string_view line) {
+        line = line_content(line);
+        std::optional<double> time;
+        if (row_.parse(line)) {
+            time = row_.value(time_slot);
+            if (whole_->layout().time_as_text && !std::exchange(stamped_, true))
+                first_stamp(clock_text(row_.cell(line, *whole_->layout().chosen.time)));
+        } else if (is_no_row(line)) {
+            return keeps_line();
+        }
+        return keeps(time);
+    }
+
+    std::unique_ptr<CsvReader> whole_;
+    TextRow row_;
+    RowBlock block_;
+    std::string lines_;
+    std::size_t given_ = 0;  ///< of lines_
+    bool stamped_ = false;   ///< the first row has been seen
+    bool unended_ = false;   ///< the bytes before ended within a line
+};
+
+class RecordsInRange final : public RowsInRange {
+  public:
+    RecordsInRange(NpyReader& whole, const ReadOptions& options) : RowsInRange(options, whole.layout(), 0) {
+        const std::size_t size = whole.header().record_size;
+        const bool timed = whole.layout().chosen.time.has_value();
+        RowBlock block;
+        while (whole.fetch(block)) {
+            const std::string_view bytes = block.bytes;
+            for (std::size_t at = 0; at < bytes.size(); at += size) {
+                std::optional<double> time;
+                if (timed) time = whole.time_of(bytes.data() + at);
+                if (keeps(time && std::isfinite(*time) ? time : std::nullopt))
+                    records_.put(bytes.substr(at, size));
+            }
+        }
+        require_rows();
+        records_.rewind();
+    }
+    std::size_t read(char* into, std::size_t size) override { return records_.read(into, size); }
+
+  private:
+    TemporaryBytes records_;
+};
+
+std::string clock_words(const Layout& layout) {
+    if (!layout.chosen.time) return "none";
+    const Column& column = layout.columns[*layout.chosen.time];
+    return fmt::format("'{}' {}{}", column.name, layout.time_as_text ? "as text" : "in " + column.unit,
+                       layout.time_fraction ? " and nanoseconds" : "");
+}
+
+// The range was put to the whole log; what is inside has to be read by the same clock.
+std::unique_ptr<LogReader> with_clock_of(const Layout& whole, const std::shared_ptr<RowsOutside>& outside,
+                                         std::unique_ptr<LogReader> reader) {
+    const Layout& inside = reader->layout();
+    const std::string before = clock_words(whole), after = clock_words(inside);
+    if (before != after)
+        raise<DataError>(
+            "{}: --from and --to: the time is read as {} in the whole log, as {} in the rows inside; say "
+            "--columns time=NAME and --unit time=UNIT",
+            whole.source, before, after);
+    if (inside.time_origin != whole.time_origin)
+        outside->zero_s =
+            since(inside.time_origin, whole.time_origin) * inside.columns[*inside.chosen.time].factor;
+    return reader;
+}
+
+}  // namespace
+
+std::unique_ptr<LogReader> rows_in_range(std::unique_ptr<CsvReader> whole, const ReadOptions& options) {
+    if (!options.range.given()) return whole;
+    const Layout layout = whole->layout();
+    auto lines = std::make_unique<LinesInRange>(std::move(whole), options);
+    const auto outside = lines->outside();
+    return with_clock_of(layout, outside,
+                         std::make_unique<CsvReader>(std::move(lines), std::string(), options));
+}
+
+std::unique_ptr<LogReader> rows_in_range(std::unique_ptr<NpyReader> whole, const ReadOptions& options) {
+    if (!options.range.given()) return whole;
+    auto records = std::make_unique<RecordsInRange>(*whole, options);
+    const auto outside = records->outside();
+    const std::size_t rows = records->kept();
+    return with_clock_of(whole->layout(), outside,
+                         std::make_unique<NpyReader>(std::move(records), *whole, rows, options));
+}
+
+}  // namespace ripplenotch

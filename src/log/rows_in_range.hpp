@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Internal to the log room: the rows that --from and --to keep. Names, units, dialect and clock are decided
+// from the rows inside alone, as in a log that holds no others (docs/decisions/0014-one-account.md). So the
+// others are left out of the bytes, before the reader of the rows inside sees them; a reader of the whole log
+// is asked only how it writes its times.
+
+#include <cstddef>
+#include <limits>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "log/clock/choose_time.hpp"
+#include "ripplenotch/core/files.hpp"
+#include "ripplenotch/log/layout.hpp"
+
+namespace ripplenotch {
+
+/// Numbers in the file of what was kept of its lines or records. One thread may ask while another adds.
+class KeptNumbers {
+  public:
+    explicit KeptNumbers(std::size_t head = 0) : seen_(head), kept_(head) {}
+    /// The next line or record.
+    void add(bool kept);
+    /// Both count from 1.
+    [[nodiscard]] std::size_t in_file(std::size_t number) const;
+
+  private:
+    struct Hole {
+        std::size_t kept, left_out;  ///< before what is behind it
+    };
+    mutable std::mutex mutex_;
+    std::vector<Hole> holes_;
+    std::size_t seen_, kept_;
+};
+
+/// The bytes of a log without the rows outside a range. Formats say how rows are cut out of theirs.
+class RowsInRange : public ByteSource {
+  public:
+    [[nodiscard]] std::size_t number_in_file(std::size_t number) const { return numbers_.in_file(number); }
+    [[nodiscard]] const std::shared_ptr<RowsOutside>& outside() const { return outside_; }
+    [[nodiscard]] std::size_t kept() const { return kept_; }
+
+  protected:
+    /// `whole`: how the times of the log are read. Throws DataError when there are none. `head`: lines before
+    /// the first row.
+    RowsInRange(const ReadOptions& options, const Layout& whole, std::size_t head);
+
+    /// A log of dates or times of day says its first before its rows are judged.
+    void first_stamp(std::optional<ClockTime> first) { axis_.first = first; }
+    /// Whether the next row is inside. One whose time cannot be read goes with the row before. `time`: as in
+    /// the file, less the origin; ignored where a rate was stated, for then rows count the time. Throws
+    /// UsageError at the first row where no range can hold.
+    bool keeps(std::optional<double> time);
+    /// The same of a line that is no row: it goes with the row before.
+    bool keeps_line();
+    [[nodiscard]] bool inside() const { return place_ == Place::inside; }
+    /// A log of one row has no rate.
+    [[nodiscard]] bool has_enough() const { return kept_ >= 2; }
+    /// At the end of the log, or as soon as it has_enough(). Throws UsageError where it does not.
+    void require_rows() const;
+
+  private:
+    enum class Place { before, inside, after };
+    void begin(double first_s);
+    [[nodiscard]] Place place_of(double time_s) const;
+    [[nodiscard]] std::string asked() const;
+
+    TimeRange range_;
+    std::optional<double> rate_hz_;
+    double factor_ = 1.0;  ///< times in the file to seconds
+    TimeAxis axis_;
+    KeptNumbers numbers_;
+    std::shared_ptr<RowsOutside> outside_ = std::make_shared<RowsOutside>();
+    double from_s_ = -std::numeric_limits<double>::infinity(),
+           to_s_ = std::numeric_limits<double>::infinity();
+    Place place_ = Place::before;
+    std::size_t rows_ = 0, kept_ = 0;
+    std::optional<double> first_s_;
+    double last_s_ = 0.0;
+};
+
+/// The number in the file of the `number`th line or record of what `source` gives. Both count from 1.
+[[nodiscard]] std::size_t number_in_file(const ByteSource& source, std::size_t number);
+/// What a range left out of `source`; null where none was asked for.
+[[nodiscard]] std::shared_ptr<const RowsOutside> rows_outside(const ByteSource& source);
+
+class LogReader;
+class CsvReader;
+class NpyReader;
+
+/// For the reader of the whole log: where a range is given, whatever it lacks but a clock is not its affair.
+[[nodiscard]] ReadOptions options_of_whole(ReadOptions options);
+/// `whole`, read by options_of_whole(), or a reader of its rows inside options.range, where one is given.
+/// Lines pass as they stand; comments and blank lines go with the row before them.
+[[nodiscard]] std::unique_ptr<LogReader> rows_in_range(std::unique_ptr<CsvReader> whole,
+                                                       const ReadOptions& options);
+/// The same of records. An array's head says how many follow, so all of it is read first, and what is kept
+/// waits in a temporary file.
+[[nodiscard]] std::unique_ptr<LogReader> rows_in_range(std::unique_ptr<NpyReader> whole,
+                                                       const ReadOptions& options);
+
+/// LogFormat::open of a format whose reader gives its rows by rows_in_range().
+template <class Reader>
+std::unique_ptr<LogReader> open_with(std::unique_ptr<ByteSource> source, std::string first_bytes,
+                                     const ReadOptions& options) {
+    return rows_in_range(
+        std::make_unique<Reader>(std::move(source), std::move(first_bytes), options_of_whole(options)),
+        options);
+}
+
+}  // namespace ripplenotch
