@@ -13,7 +13,7 @@ import subprocess
 import time
 
 import commands
-from commands import TOOL, run
+from commands import SHORT, TOOL, run
 
 GEAR = ["--gear-ratio", "100", "--orders", "1,2"]
 JOINT = ["--gear-ratio", "100", "--inertia", "1.2", "--ripple", "1:0.5Nm:30deg", "--ripple", "2:0.8Nm:10deg",
@@ -294,7 +294,7 @@ class Shards(Case):
         self.small_fleet(24)
         whole = self.whole()
         draw = random.Random(21)
-        kills = int(os.environ.get("RIPPLENOTCH_KILLS", "12"))
+        kills = int(os.environ.get("RIPPLENOTCH_KILLS", "3" if SHORT else "12"))
         begin = time.perf_counter()
         self.shard(1, 4, "timed")
         once = time.perf_counter() - begin

@@ -4,8 +4,8 @@
 import csv
 import json
 
-from commands import DATA, TAKES_A_GEAR
-from commands import DATA
+from commands import DATA, TAKES_A_GEAR, asked
+from commands import asked, DATA
 from test_gear_methods import MOVE, Case, joint
 
 PAPER_60, PAPER_90 = DATA / "paper_60deg_s.csv", DATA / "paper_90deg_s.csv"
@@ -23,7 +23,7 @@ class Commands(Case):
         done = self.run_tool("compare", MOVE, "--method", method, *words, "--json")
         return done, lambda: json.loads(done.stdout)["gear"]
 
-    def asked(self, name, words):
+    def json_said(self, name, words):
         done = self.run_tool(*asked(name, MOVE, words), "--json")
         return done, lambda: json.loads(done.stdout)["gear"]
 
@@ -34,7 +34,7 @@ class Commands(Case):
             yield f"compare {method}", *self.compared_by(method, words)
         for name in TAKES_A_GEAR:
             if name not in ("filter", "compare", "map", "recommend", "features"):
-                yield name, *self.asked(name, words)
+                yield name, *self.json_said(name, words)
 
 
 class SameSources(Commands):
@@ -72,7 +72,7 @@ class SameSources(Commands):
                 (["--joint-file", "joint.json"], "joint.json"),
                 (["--joint-file", "joint.json", "--orders", "1"], "joint.json, orders from --orders"),
                 (["--gear-ratio", 50, "--joint-file", "joint.json"], "--gear-ratio, orders from joint.json")):
-            self.assertEqual(self.asked("track", words)[1]()["source"], source)
+            self.assertEqual(self.json_said("track", words)[1]()["source"], source)
         _, gear = self.filtered_by("tracking,gear-ratio=100", ["--joint-file", "joint.json"])
         self.assertEqual(gear()["source"], "method tracking, orders from joint.json")
 
@@ -85,7 +85,7 @@ class SameSources(Commands):
             for words in ([], ["-q"]):
                 done, gear = ask("lowpass,cutoff=13rad/s", words)
                 self.assertEqual((done.returncode, gear()), (0, None))
-        self.assertIsNone(self.asked("spectrum --map order", [])[1]())
+        self.assertIsNone(self.json_said("spectrum --map order", [])[1]())
 
     def test_every_command_has_all_three_options_and_tells_the_default(self):
         for command in ("filter", "compare", "track", "spectrum", "design"):
@@ -234,7 +234,7 @@ class BeforeTheGear(Commands):
             (self.folder / f"model_{ratio}.json").write_text(MODEL.read_text().replace(": 100,", f": {ratio},"))
             self.good("design", "--gear-ratio", ratio, "--sample-rate", "1kHz", "--speed", "18:90:18", "-o", f"table_{ratio}.json")
 
-    def asked(self, log, ratio):
+    def json_said(self, log, ratio):
         """Each command with each source of the ratio."""
         out = ["-o", "out.csv", "--json", "--force"]
         for source in (["--gear-ratio", ratio], ["--joint-file", f"joint_{ratio}.json"]):
@@ -254,7 +254,7 @@ class BeforeTheGear(Commands):
         yield ["diagnose", log, "--model", f"model_{ratio}.json", "--json", *untried]
 
     def recordings(self, name, ratio):
-        for words in self.asked(f"{name}.csv", ratio):
+        for words in self.json_said(f"{name}.csv", ratio):
             with self.subTest(words=words):
                 yield json.loads(self.good(*words, "-q").stdout)["recording"]
 
