@@ -26,7 +26,7 @@ class NamesOfJson(Told):
         (self.folder / "t.json").write_text(self.good(
             "design", "--gear-ratio", 100, "--sample-rate", "1kHz", "--speed", "18:90:18", "--json").stdout)
         for name in COMMANDS:
-            if name in (*WRITES_A_LOG, "export", "merge", "report", "features"):  # what these write with -o is another thing
+            if name in (*WRITES_A_LOG, "diagnose", "export", "merge", "report", "features"):  # what these write with -o is another thing
                 continue
             words = asked(name)
             with self.subTest(words=words):

@@ -11,7 +11,7 @@ import struct
 import subprocess
 import unittest
 
-from commands import DATA, SOURCE, TOOL, Case
+from commands import DATA, SOURCE, TOOL, Case, run
 
 JOINT = ["--gear-ratio", "100", "--ripple", "1:0.8Nm:30deg", "--inertia", "0.5kgm2"]
 MOVE = ["--motion", "poly6,to=90deg,duration=1s", "--motion", "constant,speed=60deg/s,duration=0.5s",
@@ -56,19 +56,19 @@ class Data(Case):
 
         self.assertLess(peak_to_peak(log("paper_rest")["torque_nm"]), 0.3)
         for speed in (60, 90, 120, 180):
-            run = log(f"paper_{speed}deg_s")
-            self.assertEqual(set(run["velocity_deg_s"]), {float(speed)})
-            self.assertEqual(len(run["time_s"]), 4000)
+            logged = log(f"paper_{speed}deg_s")
+            self.assertEqual(set(logged["velocity_deg_s"]), {float(speed)})
+            self.assertEqual(len(logged["time_s"]), 4000)
             # 1.96 Nm of ripple, widened by less than the noise's own span.
-            self.assertGreater(peak_to_peak(run["torque_nm"]), 1.96)
-            self.assertLess(peak_to_peak(run["torque_nm"]), 1.96 + 0.3)
+            self.assertGreater(peak_to_peak(logged["torque_nm"]), 1.96)
+            self.assertLess(peak_to_peak(logged["torque_nm"]), 1.96 + 0.3)
             # The share of order 1 at f = 100 v / 360, from a plain Fourier sum over whole cycles.
             cycles = int(4 * 100 * speed / 360)
             n = round(1000 * cycles / (100 * speed / 360))
-            turns = [2 * math.pi * 100 * speed / 360 * t for t in run["time_s"][:n]]
+            turns = [2 * math.pi * 100 * speed / 360 * t for t in logged["time_s"][:n]]
             for order, amplitude in ((1, 0.8), (2, 0.5), (3, 0.0)):
-                real = sum(x * math.cos(order * a) for x, a in zip(run["torque_nm"], turns)) * 2 / n
-                imaginary = sum(x * math.sin(order * a) for x, a in zip(run["torque_nm"], turns)) * 2 / n
+                real = sum(x * math.cos(order * a) for x, a in zip(logged["torque_nm"], turns)) * 2 / n
+                imaginary = sum(x * math.sin(order * a) for x, a in zip(logged["torque_nm"], turns)) * 2 / n
                 self.assertAlmostEqual(math.hypot(real, imaginary), amplitude, delta=0.006)
         move = log("paper_move_2s")
         self.assertEqual((move["position_deg"][0], move["position_deg"][-1]), (90.0, -90.0))

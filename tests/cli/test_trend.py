@@ -8,10 +8,9 @@ import subprocess
 import sys
 import unittest
 
-from prove_trend import fleet
-
 import commands
 from commands import SOURCE, TOOL, good, run, sanitized
+from prove_trend import fleet
 
 
 def trend(*words, text=None):
