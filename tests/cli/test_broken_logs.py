@@ -2,12 +2,9 @@
 """Ways to break a log: one clear message with file, line and remedy, exit code 3, and no output left behind."""
 
 import os
-import pathlib
-import subprocess
-import tempfile
-import unittest
 
-TOOL = os.environ["RIPPLENOTCH"]
+from commands import Case
+
 HEAD = b"time_s,velocity_deg_s,torque_nm\n"
 GOOD = HEAD + b"".join(b"%.3f,60,%.2f\n" % (k / 1000, k % 7) for k in range(50))
 
@@ -30,20 +27,12 @@ WAYS = {
 }
 
 
-class Ways(unittest.TestCase):
-    def setUp(self):
-        self.folder = tempfile.TemporaryDirectory()
-        self.path = pathlib.Path(self.folder.name, "log.csv")
-
-    def tearDown(self):
-        self.folder.cleanup()
-
-    def run_tool(self, *words, stdin=subprocess.DEVNULL):
-        return subprocess.run([TOOL, *words], capture_output=True, cwd=self.folder.name, timeout=60, stdin=stdin)
+class Ways(Case):
+    bytes_out = True
 
     def check(self, name, *words):
         bytes_, wanted = WAYS[name]
-        self.path.write_bytes(bytes_)
+        (self.folder / "log.csv").write_bytes(bytes_)
         done = self.run_tool(*words)
         message = done.stderr.decode("utf-8", "replace")
         self.assertEqual(done.returncode, 3, f"{name}: {message}")
@@ -63,27 +52,23 @@ class Ways(unittest.TestCase):
             for output in ("out.csv", "out.npy"):
                 with self.subTest(name, output=output):
                     self.check(name, "filter", "log.csv", "--method", "none", "-o", output)
-                    self.assertEqual(sorted(os.listdir(self.folder.name)), ["log.csv"])
+                    self.assertEqual(sorted(os.listdir(self.folder)), ["log.csv"])
 
     def test_a_pipe_is_called_standard_input(self):
-        self.path.write_bytes(WAYS["text in a number"][0])
-        with open(self.path, "rb") as pipe:
+        (self.folder / "log.csv").write_bytes(WAYS["text in a number"][0])
+        with open(self.folder / "log.csv", "rb") as pipe:
             done = self.run_tool("info", "-", stdin=pipe)
         self.assertEqual(done.returncode, 3)
         self.assertIn(b"standard input:12:7", done.stderr)
 
     def test_damage_far_behind_the_part_that_was_sniffed(self):
         rows = b"".join(b"%.3f,60,%.2f\n" % (k / 1000, k % 7) for k in range(200000))
-        self.path.write_bytes(HEAD + rows + b"200.0,60\n")
+        (self.folder / "log.csv").write_bytes(HEAD + rows + b"200.0,60\n")
         done = self.run_tool("filter", "log.csv", "--method", "none", "-o", "out.csv")
         self.assertEqual(done.returncode, 3)
         self.assertIn(b"log.csv:200002:", done.stderr)
-        self.assertEqual(sorted(os.listdir(self.folder.name)), ["log.csv"])
+        self.assertEqual(sorted(os.listdir(self.folder)), ["log.csv"])
 
     def test_the_good_log_reads(self):
-        self.path.write_bytes(GOOD)
+        (self.folder / "log.csv").write_bytes(GOOD)
         self.assertEqual(self.run_tool("info", "log.csv").returncode, 0)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -3,40 +3,20 @@
 
 import json
 import math
-import os
-import pathlib
-import subprocess
-import tempfile
-import unittest
 
-TOOL = os.environ["RIPPLENOTCH"]
+from commands import SharedCase, good, run
+
 RIPPLE_NM = (0.8, 0.5)
 
 
-def run(*words, folder=None):
-    return subprocess.run([TOOL, *words], capture_output=True, text=True, timeout=120, cwd=folder,
-                          stdin=subprocess.DEVNULL)
-
-
-class Case(unittest.TestCase):
+class Budget(SharedCase):
     @classmethod
     def setUpClass(cls):
-        cls.temporary = tempfile.TemporaryDirectory()
-        cls.folder = pathlib.Path(cls.temporary.name)
-        cls.ok("design", "--gear-ratio", "100", "--orders", "1,2", "--sample-rate", "1kHz", "--speed", "18:180",
-               "--min-attenuation", "20dB", "--max-delay", "40ms", "--amplitudes", "0.8,0.5", "-o", "table.json")
+        super().setUpClass()
+        good("design", "--gear-ratio", "100", "--orders", "1,2", "--sample-rate", "1kHz", "--speed", "18:180",
+             "--min-attenuation", "20dB", "--max-delay", "40ms", "--amplitudes", "0.8,0.5", "-o", "table.json",
+             cwd=cls.folder)
         cls.table = json.loads((cls.folder / "table.json").read_text())
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.temporary.cleanup()
-
-    @classmethod
-    def ok(cls, *words):
-        done = run(*words, folder=cls.folder)
-        if done.returncode != 0:
-            raise AssertionError(done.stderr)
-        return done
 
     @classmethod
     def log(cls, name, speed, seconds=8.0, noise=0.0):
@@ -54,11 +34,11 @@ class Case(unittest.TestCase):
         (cls.folder / name).write_text("\n".join(rows) + "\n")
 
     def metrics(self, log, *words):
-        self.ok("filter", log, "-o", "out.csv", "--metrics", "metrics.json", "--force", *words)
+        self.good("filter", log, "-o", "out.csv", "--metrics", "metrics.json", "--force", *words)
         return json.loads((self.folder / "metrics.json").read_text())
 
 
-class PredictedAndMeasured(Case):
+class PredictedAndMeasured(Budget):
     def test_at_constant_speed_every_order_is_left_as_predicted(self):
         # Steady state, no noise. What differs is the start of the filter: its transient has the size of the raw ripple,
         # 0.8 Nm, lives for a twentieth of the first window (eight motor turns), and counts as one window in twenty:
@@ -100,7 +80,7 @@ class PredictedAndMeasured(Case):
 
     def test_a_ripple_unlike_the_joints_is_seen_beside_the_prediction(self):
         self.log("steady.csv", 90.0)
-        self.ok("design", "--gear-ratio", "100", "--orders", "1,2", "--sample-rate", "1kHz", "--bands", "80:110",
+        self.good("design", "--gear-ratio", "100", "--orders", "1,2", "--sample-rate", "1kHz", "--bands", "80:110",
                 "--amplitudes", "0.4,0.5", "-o", "half.json", "--force")
         orders = self.metrics("steady.csv", "--table", "half.json")["orders"]
         self.assertAlmostEqual(orders[0]["filtered_nm"] / orders[0]["predicted_nm"], 2.0, delta=0.1)
@@ -111,11 +91,11 @@ class PredictedAndMeasured(Case):
         for order in found["orders"]:
             self.assertEqual(order["predicted_from"], "log")
             self.assertAlmostEqual(order["predicted_nm"], order["filtered_nm"], delta=0.012)
-        done = self.ok("filter", "steady.csv", "--table", "table.json", "-o", "out.csv", "--force", "-v")
+        done = self.good("filter", "steady.csv", "--table", "table.json", "-o", "out.csv", "--force", "-v")
         self.assertIn("; predicted ", done.stderr)
 
 
-class Ledger(Case):
+class Ledger(Budget):
     def test_metrics_have_the_whole_ledger_of_every_band(self):
         self.log("steady.csv", 90.0, seconds=4.0)
         found = self.metrics("steady.csv", "--table", "table.json", "--crossover", "12Hz")
@@ -133,11 +113,11 @@ class Ledger(Case):
         words = ["compare", "--step", "10Nm", "--ramp", "20Nm/s", "--speed", "90deg/s", "--sample-rate", "1kHz",
                  "--gear-ratio", "100", "--orders", "1,2", "--method", "switching,table=table.json",
                  "--method", "tracking", "--crossover", "12Hz", "--ledger"]
-        found = json.loads(self.ok(*words, "--json").stdout)
+        found = json.loads(self.good(*words, "--json").stdout)
         self.assertEqual([len(m["ledger"]) for m in found["methods"]], [1, len(self.table["bands"]), 6])
         self.assertEqual(found["methods"][0]["phase_lag_deg"], 0)
         self.assertGreater(found["methods"][1]["phase_lag_deg"], 20)
-        text = self.ok(*words).stdout
+        text = self.good(*words).stdout
         self.assertIn("lag at 12 Hz", text)
         starts = [line.split()[0] for line in text.split("\n") if line.strip()]
         for band in self.table["bands"]:
@@ -158,15 +138,15 @@ class Ledger(Case):
         self.assertAlmostEqual(entry["crossover_db"], 20 * math.log10(math.hypot(a, b)), places=6)
 
 
-class Gates(Case):
+class Gates(Budget):
     def setUp(self):
         self.log("steady.csv", 90.0, seconds=4.0)
-        self.ok("design", "--gear-ratio", "100", "--orders", "1,2", "--sample-rate", "1kHz", "--speed", "18:180:18",
+        self.good("design", "--gear-ratio", "100", "--orders", "1,2", "--sample-rate", "1kHz", "--speed", "18:180:18",
                 "-o", "paper.json", "--force")
 
     def test_filter_writes_its_output_and_says_which_band_breaks_the_limit_by_how_much(self):
         done = run("filter", "steady.csv", "--table", "paper.json", "-o", "gate.csv", "--force", "--max-delay", "30ms",
-                   folder=self.folder)
+                   cwd=self.folder)
         self.assertEqual(done.returncode, 1, done.stderr)
         self.assertEqual(len((self.folder / "gate.csv").read_text().split("\n")), 4002)
         self.assertIn("band 4 (72-90 deg/s) delays by 42.3 ms, 12.3 ms more than --max-delay 30ms", done.stderr)
@@ -174,12 +154,12 @@ class Gates(Case):
 
     def test_filter_within_its_limits_is_exit_code_0(self):
         done = run("filter", "steady.csv", "--table", "paper.json", "-o", "gate.csv", "--force", "--max-delay", "43ms",
-                   "--min-attenuation", "30dB", folder=self.folder)
+                   "--min-attenuation", "30dB", cwd=self.folder)
         self.assertEqual((done.returncode, done.stderr), (0, ""))
 
     def test_filter_holds_the_measured_attenuation_against_the_limit(self):
         done = run("filter", "steady.csv", "--method", "lowpass,cutoff=13rad/s", "--gear-ratio", "100", "-o", "gate.csv",
-                   "--force", "--min-attenuation", "25dB", folder=self.folder)
+                   "--force", "--min-attenuation", "25dB", cwd=self.folder)
         self.assertEqual(done.returncode, 1)
         self.assertRegex(done.stderr, r"lowpass,cutoff=13rad/s: it takes 21\.\d dB off order 1, 3\.\d dB less than")
         self.assertNotIn("order 2", done.stderr)
@@ -188,7 +168,7 @@ class Gates(Case):
         words = ["compare", "--ramp", "20Nm/s", "--speed", "20deg/s", "--sample-rate", "1kHz", "--gear-ratio", "100",
                  "--orders", "1,2", "--method", "tracking,q=2", "--method", "lowpass,cutoff=13Hz", "--max-delay", "15ms",
                  "--min-attenuation", "3dB"]
-        done = run(*words, folder=self.folder)
+        done = run(*words, cwd=self.folder)
         self.assertEqual(done.returncode, 1)
         self.assertIn("lowpass", done.stdout)
         self.assertRegex(done.stderr, r"tracking,\S+: it delays by 2\d\.\d ms, \d+\.\d ms more than --max-delay 15ms at 20 deg/s")
@@ -197,27 +177,27 @@ class Gates(Case):
 
     def test_a_limit_on_attenuation_without_a_gear_is_a_usage_error(self):
         done = run("filter", "steady.csv", "--method", "lowpass,cutoff=13Hz", "-o", "gate.csv", "--force",
-                   "--min-attenuation", "25dB", folder=self.folder)
+                   "--min-attenuation", "25dB", cwd=self.folder)
         self.assertEqual(done.returncode, 2)
         self.assertIn("--min-attenuation needs to know the gear", done.stderr)
 
 
-class NoisySpeed(Case):
+class NoisySpeed(Budget):
     def test_many_switches_straight_back_bring_a_hint_to_hysteresis(self):
         edge = self.table["bands"][2]["speed_to_deg_s"]
         self.log("chatter.csv", lambda t: edge + 0.3 * math.sin(2 * math.pi * 40 * t), seconds=4.0)
-        done = self.ok("filter", "chatter.csv", "--table", "table.json", "-o", "out.csv", "--force", "-v")
+        done = self.good("filter", "chatter.csv", "--table", "table.json", "-o", "out.csv", "--force", "-v")
         self.assertIn("straight back: the speed is noisy at a band's edge; try hysteresis=1deg/s", done.stderr)
-        done = self.ok("filter", "chatter.csv", "--method", "switching,table=table.json,hysteresis=1deg/s", "-o", "out.csv",
+        done = self.good("filter", "chatter.csv", "--method", "switching,table=table.json,hysteresis=1deg/s", "-o", "out.csv",
                        "--force", "-v")
         self.assertNotIn("straight back", done.stderr)
 
 
-class LowSpeed(Case):
+class LowSpeed(Budget):
     """Each method's rule below its lowest speed, as its page states it, and what it leaves of the torque."""
 
     def filtered(self, log, method):
-        self.ok("filter", log, "--method", method, "-o", "out.csv", "--force")
+        self.good("filter", log, "--method", method, "-o", "out.csv", "--force")
         raw = [float(l.split(",")[2]) for l in (self.folder / log).read_text().split("\n")[1:-1]]
         out = [float(l.split(",")[2]) for l in (self.folder / "out.csv").read_text().split("\n")[1:-1]]
         return raw, out
@@ -263,12 +243,8 @@ class LowSpeed(Case):
 
     def test_design_names_the_speed_below_which_no_notch_keeps_the_delay(self):
         words = ["design", "--gear-ratio", "100", "--orders", "1,2", "--sample-rate", "1kHz", "--max-delay", "20ms"]
-        text = self.ok(*words, "--speed", "18:180").stdout
+        text = self.good(*words, "--speed", "18:180").stdout
         speed = float(text.split("Below ")[1].split(" deg/s")[0])
         self.assertAlmostEqual(speed, 3.6 * 1.5 / (2 * math.pi * 5 * 0.020), delta=0.01)
-        self.assertEqual(run(*words, "--speed", f"{0.98 * speed:.4f}:180", folder=self.folder).returncode, 1)
-        self.assertEqual(run(*words, "--speed", f"{1.02 * speed:.4f}:180", folder=self.folder).returncode, 0)
-
-
-if __name__ == "__main__":
-    unittest.main()
+        self.assertEqual(run(*words, "--speed", f"{0.98 * speed:.4f}:180", cwd=self.folder).returncode, 1)
+        self.assertEqual(run(*words, "--speed", f"{1.02 * speed:.4f}:180", cwd=self.folder).returncode, 0)

@@ -5,12 +5,10 @@ import json
 import math
 import os
 import pathlib
-import subprocess
-import tempfile
 import unittest
 
-TOOL = os.environ["RIPPLENOTCH"]
-DATA = pathlib.Path(os.environ["RIPPLENOTCH_SOURCE"]) / "data"
+from commands import DATA, Case, run
+
 LOG = str(DATA / "paper_90deg_s.csv")
 
 SIGNALS = ["--step", "10Nm", "--ramp", "20Nm/s", "--speed", "90deg/s", "--sample-rate", "1kHz"]
@@ -18,11 +16,6 @@ RIPPLE = ["--gear-ratio", "100", "--orders", "1,2"]
 NOTCHES = "fixed,centers=25Hz:50Hz,q=0.25"
 MISLABELLED = "lowpass,cutoff=13rad/s,order=1"
 AS_PRINTED = "lowpass,cutoff=13Hz,order=1"
-
-
-def run(*words, stdin=None, folder=None):
-    return subprocess.run([TOOL, *words], capture_output=True, text=True, timeout=60, cwd=folder, input=stdin,
-                          stdin=None if stdin is not None else subprocess.DEVNULL)
 
 
 def methods(*names):
@@ -38,7 +31,7 @@ def synthetic_log(seconds=20, speed=80.0, rate=1000, ratio=100.0):
     return "\n".join(rows) + "\n"
 
 
-class Case(unittest.TestCase):
+class Comparison(Case):
     def compare(self, *words, **more):
         done = run("compare", *words, "--json", **more)
         self.assertEqual(done.returncode, 0, done.stderr)
@@ -47,7 +40,7 @@ class Case(unittest.TestCase):
         return result, {row["method"]: row for row in result["methods"]}
 
 
-class Signals(Case):
+class Signals(Comparison):
     def test_the_papers_figures_hold(self):
         result, rows = self.compare(*SIGNALS, *RIPPLE, *methods(NOTCHES, MISLABELLED, AS_PRINTED))
         self.assertEqual([row["method"] for row in result["methods"]], ["none", NOTCHES, MISLABELLED, AS_PRINTED])
@@ -116,11 +109,10 @@ class Signals(Case):
             self.assertIn(figure, text)
 
     def test_switching_uses_the_band_of_the_speed(self):
-        with tempfile.TemporaryDirectory() as folder:
-            run("design", *RIPPLE, "--sample-rate", "1kHz", "--speed", "18:180:18", "-o", "table.json", folder=folder)
-            name = "switching,table=table.json"
-            result, rows = self.compare(*SIGNALS, *methods(name), folder=folder)
-            band = json.loads(pathlib.Path(folder, "table.json").read_text())["bands"][3]
+        run("design", *RIPPLE, "--sample-rate", "1kHz", "--speed", "18:180:18", "-o", "table.json", cwd=self.folder)
+        name = "switching,table=table.json"
+        result, rows = self.compare(*SIGNALS, *methods(name), cwd=self.folder)
+        band = json.loads((self.folder / "table.json").read_text())["bands"][3]
         self.assertEqual(result["orders"], [1, 2])
         self.assertEqual(result["inputs"][0]["name"], "table.json")
         self.assertAlmostEqual(rows[name]["dc_delay_ms"], band["dc_delay_ms"], places=6)  # nine digits
@@ -128,7 +120,7 @@ class Signals(Case):
         self.assertIn("band 4", rows[name]["note"])
 
 
-class Matching(Case):
+class Matching(Comparison):
     def test_no_low_pass_equals_a_complete_null_and_that_is_said(self):
         result, rows = self.compare(*SIGNALS, *RIPPLE, *methods(NOTCHES), "--match-lowpass")
         self.assertIsNone(result["match"]["low_pass"])
@@ -168,7 +160,7 @@ class Matching(Case):
             self.assertEqual((done.returncode, done.stdout), (2, ""))
 
 
-class Logs(Case):
+class Logs(Comparison):
     def test_attenuation_is_measured_on_the_log_itself(self):
         _, rows = self.compare("-", *RIPPLE, *methods(MISLABELLED), stdin=synthetic_log())
         for entry, hz in zip(rows[MISLABELLED]["attenuation_db"], (80 / 3.6, 2 * 80 / 3.6)):
@@ -193,20 +185,18 @@ class Logs(Case):
         self.assertEqual(from_file["verdict"], from_pipe["verdict"])
 
     def test_switches_are_counted_where_a_method_switches(self):
-        with tempfile.TemporaryDirectory() as folder:
-            table = os.path.join(folder, "table.json")
-            run("design", *RIPPLE, "--sample-rate", "1kHz", "--speed", "18:180:18", "-o", table)
-            name = f"switching,table={table}"
-            _, rows = self.compare(str(DATA / "paper_move_2s.csv"), *methods(name, MISLABELLED))
+        table = os.path.join(self.folder, "table.json")
+        run("design", *RIPPLE, "--sample-rate", "1kHz", "--speed", "18:180:18", "-o", table)
+        name = f"switching,table={table}"
+        _, rows = self.compare(str(DATA / "paper_move_2s.csv"), *methods(name, MISLABELLED))
         self.assertGreaterEqual(rows[name]["switches"], 16)
         self.assertIsNone(rows["none"]["switches"])
         self.assertIsNone(rows[MISLABELLED]["switches"])
 
     def test_a_table_for_another_rate_is_refused(self):
-        with tempfile.TemporaryDirectory() as folder:
-            table = os.path.join(folder, "table.json")
-            run("design", *RIPPLE, "--sample-rate", "500Hz", "--speed", "18:180:18", "-o", table)
-            done = run("compare", LOG, *methods(f"switching,table={table}"))
+        table = os.path.join(self.folder, "table.json")
+        run("design", *RIPPLE, "--sample-rate", "500Hz", "--speed", "18:180:18", "-o", table)
+        done = run("compare", LOG, *methods(f"switching,table={table}"))
         self.assertEqual(done.returncode, 3)
         self.assertIn("the log runs at 1000 Hz, the table was designed for 500 Hz", done.stderr)
 
@@ -231,7 +221,7 @@ REAL = pathlib.Path(os.environ.get("RIPPLENOTCH_LOGS", "")) / "gpl3"
 
 
 @unittest.skipUnless(REAL.is_dir(), "the real logs are not here")
-class RealLogs(Case):
+class RealLogs(Comparison):
     def test_a_slow_low_pass_takes_the_ripple_of_a_franka_panda_and_the_matched_one_leaves_the_same(self):
         for name in ("panda_gaz_j1.csv", "panda_gaz_j4.csv"):
             result, rows = self.compare(str(REAL / name), "--gear-ratio", "120", "--orders", "1,2",
@@ -273,30 +263,28 @@ class Refusals(unittest.TestCase):
         self.refused([*SIGNALS, *methods("switching,table=no-such.json")], "no-such.json", code=4)
 
 
-class Truth(Case):
+class Truth(Comparison):
     JOINT = ["--gear-ratio", "100", "--motion", "ramp,to-speed=170deg/s,duration=3s", "--sample-rate", "1kHz"]
 
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = folder.name
+        super().setUp()
         for name, more in (("true.csv", []), ("log.csv", ["--ripple", "1:0.8Nm:0deg", "--noise", "0.05Nm"])):
-            done = run("simulate", *self.JOINT, "--effect", "offset,torque_nm=4", *more, "-o", name, folder=self.folder)
+            done = run("simulate", *self.JOINT, "--effect", "offset,torque_nm=4", *more, "-o", name, cwd=self.folder)
             self.assertEqual(done.returncode, 0, done.stderr)
         done = run("design", *RIPPLE, "--sample-rate", "1kHz", "--speed", "18:180:18", "-o", "table.json",
-                   folder=self.folder)
+                   cwd=self.folder)
         self.assertEqual(done.returncode, 0, done.stderr)
 
     def torque(self, name):
-        lines = (pathlib.Path(self.folder) / name).read_text().splitlines()[1:]
+        lines = (self.folder / name).read_text().splitlines()[1:]
         return [float(line.split(",")[2]) for line in lines]
 
     def test_the_error_is_the_rms_difference_from_the_true_torque(self):
         reset = "switching,table=table.json,transition=reset"
-        _, rows = self.compare("log.csv", "--truth", "true.csv", *RIPPLE, *methods(reset), folder=self.folder)
+        _, rows = self.compare("log.csv", "--truth", "true.csv", *RIPPLE, *methods(reset), cwd=self.folder)
         for method, row in rows.items():
             done = run("filter", "--method", method, "log.csv", "-o", "out.csv", "--force", "--json",
-                       folder=self.folder)
+                       cwd=self.folder)
             out, truth = self.torque("out.csv"), self.torque("true.csv")
             expected = math.sqrt(sum((a - b) ** 2 for a, b in zip(out, truth)) / len(out))
             self.assertAlmostEqual(row["error_rms_nm"], expected, places=9)
@@ -306,8 +294,8 @@ class Truth(Case):
     def test_each_switch_has_its_own_peak_error_and_settling_in_the_ledger(self):
         method = "switching,table=table.json,transition=keep"
         words = ["log.csv", *RIPPLE, *methods(method)]
-        _, rows = self.compare(*words, "--truth", "true.csv", "--ledger", folder=self.folder)
-        done = run("filter", "--method", method, "log.csv", "-o", "out.csv", "--force", "--json", folder=self.folder)
+        _, rows = self.compare(*words, "--truth", "true.csv", "--ledger", cwd=self.folder)
+        done = run("filter", "--method", method, "log.csv", "-o", "out.csv", "--force", "--json", cwd=self.folder)
         out, truth = self.torque("out.csv"), self.torque("true.csv")
         errors = [abs(a - b) for a, b in zip(out, truth)]
         scale = max(truth) - min(truth)
@@ -330,9 +318,9 @@ class Truth(Case):
                 else:
                     self.assertAlmostEqual(settled, after, places=6)
         self.assertEqual(rows["none"]["switch_ledger"], [])
-        _, plain = self.compare(*words, "--truth", "true.csv", folder=self.folder)
+        _, plain = self.compare(*words, "--truth", "true.csv", cwd=self.folder)
         self.assertEqual(plain[method]["switch_ledger"], [])
-        _, unknown = self.compare(*words, "--ledger", folder=self.folder)
+        _, unknown = self.compare(*words, "--ledger", cwd=self.folder)
         for entry, switch in zip(unknown[method]["switch_ledger"], switches, strict=True):
             self.assertEqual(entry["jump_nm"], switch["jump_nm"])
             self.assertIsNone(entry["peak_error_nm"])
@@ -340,19 +328,15 @@ class Truth(Case):
 
     def test_a_truth_that_cannot_be_held_against_the_log_is_refused(self):
         words = ["compare", "log.csv", *methods("none")]
-        short = self.folder + "/short.csv"
-        lines = (pathlib.Path(self.folder) / "true.csv").read_text().splitlines()
+        short = self.folder / "short.csv"
+        lines = (self.folder / "true.csv").read_text().splitlines()
         pathlib.Path(short).write_text("\n".join(lines[:-5]) + "\n")
-        done = run(*words, *RIPPLE, "--truth", "short.csv", folder=self.folder)
+        done = run(*words, *RIPPLE, "--truth", "short.csv", cwd=self.folder)
         self.assertEqual(done.returncode, 3)
         self.assertIn("short.csv has 2995 rows, log.csv has 3000", done.stderr)
-        done = run(*words, "--truth", "true.csv", folder=self.folder)
+        done = run(*words, "--truth", "true.csv", cwd=self.folder)
         self.assertEqual(done.returncode, 2)
         self.assertIn("--gear-ratio", done.stderr)
-        done = run("compare", *SIGNALS, *methods("none"), "--truth", "true.csv", folder=self.folder)
+        done = run("compare", *SIGNALS, *methods("none"), "--truth", "true.csv", cwd=self.folder)
         self.assertEqual(done.returncode, 2)
         self.assertIn("--truth goes with a LOG", done.stderr)
-
-
-if __name__ == "__main__":
-    unittest.main()

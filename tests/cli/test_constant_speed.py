@@ -5,7 +5,8 @@ import json
 import math
 import random
 
-from test_gear_methods import DATA, Case
+from commands import DATA
+from test_gear_methods import Case
 
 STATED = ["--constant-speed", "10rpm"]  # 60 deg/s: order 1 of a gear of 100 at 16.67 Hz
 

@@ -5,13 +5,10 @@ import csv
 import functools
 import io
 import json
-import os
-import pathlib
-import subprocess
-import tempfile
 import unittest
 
-TOOL = os.environ["RIPPLENOTCH"]
+from commands import DATA, Case, run
+
 
 PAPER = ["--gear-ratio", "100", "--orders", "1,2", "--sample-rate", "1kHz", "--speed", "18:180:18", "--q", "0.25"]
 TABLE_1 = [
@@ -28,9 +25,8 @@ TABLE_1 = [
 ]
 
 
-def design(*words, stdin=None, folder=None):
-    return subprocess.run([TOOL, "design", *words], capture_output=True, text=True, timeout=60, cwd=folder,
-                          input=stdin, stdin=None if stdin is not None else subprocess.DEVNULL)
+def design(*words, **more):
+    return run("design", *words, **more)
 
 
 def with_option(words, name, *values):
@@ -39,7 +35,7 @@ def with_option(words, name, *values):
     return words[:at] + ([name, *values] if values else []) + words[at + 2:]
 
 
-class Table1(unittest.TestCase):
+class Table1(Case):
     def test_text_has_the_papers_bands_and_centres(self):
         done = design(*PAPER)
         self.assertEqual((done.returncode, done.stderr), (0, ""))
@@ -87,11 +83,10 @@ class Table1(unittest.TestCase):
         self.assertEqual(design(*words[2:], "--json").stdout, first)
 
     def test_the_name_of_the_output_file_chooses_the_form(self):
-        with tempfile.TemporaryDirectory() as folder:
-            for name in ("table.json", "table.csv", "table.txt"):
-                done = design(*PAPER, "-o", name, folder=folder)
-                self.assertEqual((done.returncode, done.stdout), (0, ""))
-            read = {p.suffix: p.read_text() for p in pathlib.Path(folder).iterdir()}
+        for name in ("table.json", "table.csv", "table.txt"):
+            done = design(*PAPER, "-o", name, cwd=self.folder)
+            self.assertEqual((done.returncode, done.stdout), (0, ""))
+        read = {p.suffix: p.read_text() for p in self.folder.iterdir()}
         self.assertEqual(read[".json"], design(*PAPER, "--json").stdout)
         self.assertEqual(read[".csv"], design(*PAPER, "--format", "csv").stdout)
         self.assertEqual(read[".txt"], design(*PAPER).stdout)
@@ -113,7 +108,7 @@ def joint(ratio=100.0, orders=(1.0, 2.0), speeds=(58.6, 179.2), rate=1000.0):
         "lines": lines, "notes": []})
 
 
-class FromJoint(unittest.TestCase):
+class FromJoint(Case):
     def table(self, text, *words, stderr=""):
         done = design("-", *words, "--json", stdin=text)
         self.assertEqual(done.returncode, 0, done.stderr)
@@ -154,9 +149,8 @@ class FromJoint(unittest.TestCase):
         self.assertLess(max(centers), 62.5)
 
     def test_the_file_is_recorded_with_its_hash(self):
-        with tempfile.TemporaryDirectory() as folder:
-            pathlib.Path(folder, "joint.json").write_text(joint())
-            table = json.loads(design("joint.json", "--json", folder=folder).stdout)
+        (self.folder / "joint.json").write_text(joint())
+        table = json.loads(design("joint.json", "--json", cwd=self.folder).stdout)
         self.assertEqual(table["inputs"][0]["name"], "joint.json")
         self.assertRegex(table["inputs"][0]["sha256"], "^[0-9a-f]{64}$")
 
@@ -197,9 +191,8 @@ class FromJoint(unittest.TestCase):
 
 class PapersChain(unittest.TestCase):
     def test_from_the_papers_logs_to_its_table(self):
-        data = pathlib.Path(os.environ["RIPPLENOTCH_SOURCE"]) / "data"
-        logs = [str(data / f"paper_{speed}deg_s.csv") for speed in (60, 120, 180)]
-        found = subprocess.run([TOOL, "identify", *logs, "--json"], capture_output=True, text=True, timeout=60)
+        logs = [str(DATA / f"paper_{speed}deg_s.csv") for speed in (60, 120, 180)]
+        found = run("identify", *logs, "--json")
         done = design("-", "--speed", "18:180:18", stdin=found.stdout)
         self.assertEqual(done.returncode, 0, done.stderr)
         rows = [line.split() for line in done.stdout.split("\n") if line.strip()[:1].isdigit()]
@@ -314,7 +307,7 @@ class Limits(unittest.TestCase):
 GOAL = with_option(with_option(PAPER, "--q"), "--speed", "18:180")
 
 
-class Goals(unittest.TestCase):
+class Goals(Case):
     """--min-attenuation and --max-delay: what is left open is chosen to hold them."""
 
     def table(self, *words, stdin=None):
@@ -374,11 +367,8 @@ class Goals(unittest.TestCase):
                 self.assertAlmostEqual(left, amplitude * 10 ** (-db / 20), places=9)
 
     def test_a_designed_table_is_one_that_filter_takes(self):
-        with tempfile.TemporaryDirectory() as folder:
-            design(*GOAL, "--min-attenuation", "20dB", "--max-delay", "20ms", "-o", "table.json", folder=folder)
-            log = pathlib.Path(os.environ["RIPPLENOTCH_SOURCE"]) / "data" / "paper_move_2s.csv"
-            done = subprocess.run([TOOL, "filter", str(log), "--table", "table.json", "-o", "out.csv"], cwd=folder,
-                                  capture_output=True, text=True, timeout=60)
+        design(*GOAL, "--min-attenuation", "20dB", "--max-delay", "20ms", "-o", "table.json", cwd=self.folder)
+        done = self.run_tool("filter", DATA / "paper_move_2s.csv", "--table", "table.json", "-o", "out.csv")
         self.assertEqual((done.returncode, done.stderr), (0, ""))
 
     def test_the_same_goal_gives_the_same_bytes(self):
@@ -456,7 +446,3 @@ class Warnings(unittest.TestCase):
         done = design(*with_option(PAPER, "--sample-rate", "191Hz"))
         self.assertEqual(done.returncode, 0)
         self.assertIn("warning: band 9 (162-180 deg/s): order 2 passes half the sample rate at 171.9 deg/s", done.stderr)
-
-
-if __name__ == "__main__":
-    unittest.main()

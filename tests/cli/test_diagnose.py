@@ -2,13 +2,9 @@
 """ripplenotch diagnose as users meet it: the story, diagnosis.json, the improved model, refusals."""
 
 import json
-import os
-import pathlib
-import subprocess
-import tempfile
-import unittest
 
-TOOL = os.environ["RIPPLENOTCH"]
+from commands import Case
+
 MODEL = {"schema": "ripplenotch/model/1", "gear_ratio": 100,
          "effects": [{"effect": "inertia"}, {"effect": "ripple", "order": 1}, {"effect": "ripple", "order": 2}]}
 JOINT = ["--gear-ratio", "100", "--inertia", "0.4", "--ripple", "1:0.7Nm:30deg", "--ripple", "2:0.4Nm:-60deg"]
@@ -21,15 +17,10 @@ def move(first, *targets):
     return words
 
 
-class Diagnose(unittest.TestCase):
+class Diagnose(Case):
     def setUp(self):
-        self.folder = tempfile.TemporaryDirectory()
-        self.addCleanup(self.folder.cleanup)
-        (pathlib.Path(self.folder.name) / "model.json").write_text(json.dumps(MODEL))
-
-    def run_tool(self, *words):
-        return subprocess.run([TOOL, *words], cwd=self.folder.name, capture_output=True, text=True, timeout=300,
-                              stdin=subprocess.DEVNULL)
+        super().setUp()
+        (self.folder / "model.json").write_text(json.dumps(MODEL))
 
     def log(self, name, motion, *hidden, seed=1):
         words = [word for effect in hidden for word in ("--effect", effect)]
@@ -56,7 +47,7 @@ class Diagnose(unittest.TestCase):
         summary = json.loads(self.run_tool("simulate", "--model", "improved.json", "other.csv", "-o", "expected.csv",
                                            "--json").stdout)
         self.assertAlmostEqual(summary["along_log"]["residual_rms_nm"], gap["validation_after_nm"], delta=1e-6)
-        self.assertEqual(json.loads((pathlib.Path(self.folder.name) / "improved.json").read_text())["effects"],
+        self.assertEqual(json.loads((self.folder / "improved.json").read_text())["effects"],
                          found["model"]["effects"])
 
     def test_a_torque_of_the_output_angle_over_less_than_its_cycle_is_not_confirmed(self):
@@ -107,7 +98,7 @@ class Diagnose(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("the model is made of the log: gear ratio ", done.stderr)
         self.assertIn("named: coulomb-friction", done.stdout)
-        made = json.loads((pathlib.Path(self.folder.name) / "made.json").read_text())
+        made = json.loads((self.folder / "made.json").read_text())
         self.assertAlmostEqual(made["gear_ratio"], MODEL["gear_ratio"], delta=0.1)
         told = self.run_tool("diagnose", "log.csv")
         self.assertIn("--model auto", told.stderr)
@@ -120,7 +111,7 @@ class Diagnose(unittest.TestCase):
 
     def test_wrong_requests_get_one_message(self):
         self.log("log.csv", move(0, 120))
-        (pathlib.Path(self.folder.name) / "open.json").write_text(
+        (self.folder / "open.json").write_text(
             json.dumps({**MODEL, "effects": [{"effect": "ripple"}]}))
         for words, code, message in (
                 ((), 2, "--model is missing"),
@@ -132,7 +123,3 @@ class Diagnose(unittest.TestCase):
             self.assertEqual((done.returncode, done.stdout), (code, ""), done.stderr)
             self.assertIn(message, done.stderr)
             self.assertEqual(done.stderr.count("\n"), 1)
-
-
-if __name__ == "__main__":
-    unittest.main()

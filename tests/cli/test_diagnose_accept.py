@@ -2,13 +2,9 @@
 """What diagnose leaves to its user: --accept, and what to do next."""
 
 import json
-import os
-import pathlib
-import subprocess
-import tempfile
-import unittest
 
-TOOL = os.environ["RIPPLENOTCH"]
+from commands import Case
+
 MODEL = {"schema": "ripplenotch/model/1", "gear_ratio": 100, "effects": [
     {"effect": "inertia"}, {"effect": "ripple", "order": 1}, {"effect": "ripple", "order": 2}]}
 TRUTH = ["--gear-ratio", "100", "--inertia", "0.4", "--ripple", "1:0.7Nm:30deg", "--ripple", "2:0.4Nm:-60deg",
@@ -19,24 +15,19 @@ BLIND = [word for name in ("coulomb-friction", "stribeck-friction", "hysteresis"
          for word in ("--without", name)]
 
 
-class Accept(unittest.TestCase):
+class Accept(Case):
     def setUp(self):
-        scratch = tempfile.TemporaryDirectory()
-        self.addCleanup(scratch.cleanup)
-        self.folder = pathlib.Path(scratch.name)
+        super().setUp()
         (self.folder / "model.json").write_text(json.dumps(MODEL))
 
-    def tool(self, *words):
-        return subprocess.run([TOOL, *words], cwd=self.folder, capture_output=True, text=True, timeout=300)
-
     def json_of(self, *words):
-        done = self.tool(*words, "--json", "-q", "--force")
+        done = self.run_tool(*words, "--json", "-q", "--force")
         self.assertEqual(done.returncode, 0, done.stderr)
         return json.loads(done.stdout)
 
     def log(self, name, motions):
         words = [word for motion in motions for word in ("--motion", motion)]
-        done = self.tool("simulate", *TRUTH, *words, "--sample-rate", "500Hz", "--noise", "0.05Nm", "--velocity-noise",
+        done = self.run_tool("simulate", *TRUTH, *words, "--sample-rate", "500Hz", "--noise", "0.05Nm", "--velocity-noise",
                          "0.1deg/s", "--seed", "1", "-o", name)
         self.assertEqual(done.returncode, 0, done.stderr)
 
@@ -65,7 +56,7 @@ class Accept(unittest.TestCase):
         by_hand = self.json_of("diagnose", "log.csv", "--model", "stated.json", *BLIND)
         self.assertEqual(by_hand["gap"]["after_nm"], after["gap"]["after_nm"])
         self.assertEqual(by_hand["rounds"], after["rounds"])
-        story = self.tool(*words, "--accept", "load-friction").stdout
+        story = self.run_tool(*words, "--accept", "load-friction").stdout
         self.assertRegex(story, r"accepted by you and not confirmed by this log \(tentative\): load-friction, torque_nm = ")
 
     def test_what_is_not_in_doubt_is_refused_with_what_is(self):
@@ -73,7 +64,7 @@ class Accept(unittest.TestCase):
         for words, part in (((*BLIND, "--accept", "gravity"), "no finding of that name; in doubt is load-friction"),
                             (("--accept", "coulomb-friction"), "it is confirmed, and in the model already; in doubt is nothing"),
                             (("--accept", "coulomb"), "there is no effect 'coulomb'")):
-            done = self.tool("diagnose", "log.csv", "--model", "model.json", *words)
+            done = self.run_tool("diagnose", "log.csv", "--model", "model.json", *words)
             self.assertEqual(done.returncode, 2, done.stderr)
             self.assertIn(part, done.stderr)
 
@@ -92,10 +83,6 @@ class Accept(unittest.TestCase):
         self.assertEqual([one["effect"] for one in taken["accepted"]], [sides[1]])
         # What a user accepts is no verdict.
         self.assertEqual(taken["verdict"], "partly-explained")
-        done = self.tool("diagnose", "log.csv", "--model", "model.json", "--accept", sides[1], "--require-conclusive")
+        done = self.run_tool("diagnose", "log.csv", "--model", "model.json", "--accept", sides[1], "--require-conclusive")
         self.assertEqual(done.returncode, 5)
         self.assertIn("this log does not confirm what you accepted", done.stdout)
-
-
-if __name__ == "__main__":
-    unittest.main()

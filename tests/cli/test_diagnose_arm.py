@@ -3,15 +3,11 @@
 
 import json
 import math
-import os
-import pathlib
 import random
-import subprocess
-import tempfile
 import unittest
 
-TOOL = os.environ["RIPPLENOTCH"]
-LOGS = pathlib.Path(os.environ.get("RIPPLENOTCH_LOGS", ""))
+from commands import LOGS, Case
+
 # Two links that hang in a plane: lengths, masses at their ends (m, kg).
 LENGTH, MASS, G = (0.5, 0.4), (4.0, 2.5), 9.81
 DH = "a_m,alpha_deg,d_m,theta_deg\n0.5,0,0,0\n0.4,0,0,0\n"
@@ -60,18 +56,13 @@ def write_log(path, seed, coulomb_nm=0.0, seconds=30.0, rate=250.0, sign=(1, 1),
             log.write(",".join(cells) + "\n")
 
 
-class Arm(unittest.TestCase):
+class Arm(Case):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
+        super().setUp()
         (self.folder / "dh.csv").write_text(DH)
 
-    def tool(self, *words):
-        return subprocess.run([TOOL, *map(str, words)], cwd=self.folder, capture_output=True, text=True, timeout=300)
-
     def diagnosed(self, *words):
-        done = self.tool("diagnose", *words, "--gear-ratio", "100", "--json", "-q")
+        done = self.run_tool("diagnose", *words, "--gear-ratio", "100", "--json", "-q")
         self.assertEqual(done.returncode, 0, done.stderr)
         return json.loads(done.stdout)
 
@@ -112,7 +103,7 @@ class Arm(unittest.TestCase):
                 self.assertEqual([(one["fault"], one["option"]) for one in found["setup"]], [(fault, option)])
                 self.assertEqual((found["named"], found["verdict"]), ([], "unexplained"))
                 self.assertIn("correct the set-up", found["next"][0])
-        done = self.tool("diagnose", "log.csv", "--joint", "j2", "--arm", f"dh,file=dh.csv,{DOWN}", "--gear-ratio", "100", "-q")
+        done = self.run_tool("diagnose", "log.csv", "--joint", "j2", "--arm", f"dh,file=dh.csv,{DOWN}", "--gear-ratio", "100", "-q")
         self.assertEqual(done.stdout.splitlines()[2], "Check the set-up: the torque of joints j1, j2 has its sign reversed: "
                                                       "friction would drive the arm.")
 
@@ -139,7 +130,7 @@ class Arm(unittest.TestCase):
     def test_without_the_arm_the_next_step_says_that_other_joints_move(self):
         write_log(self.folder / "log.csv", 1, coulomb_nm=1.2)
         (self.folder / "own.json").write_text('{"schema": "ripplenotch/model/1", "gear_ratio": 100, "effects": [{"effect": "inertia"}]}')
-        done = self.tool("diagnose", "log.csv", "--joint", "j1", "--model", "own.json", "--json", "-q")
+        done = self.run_tool("diagnose", "log.csv", "--joint", "j1", "--model", "own.json", "--json", "-q")
         self.assertEqual(done.returncode, 0, done.stderr)
         found = json.loads(done.stdout)
         self.assertIn("the log has 2 joints", found["next"][0])
@@ -167,7 +158,7 @@ class Arm(unittest.TestCase):
 
     def test_the_story_tells_the_arm_and_verbose_the_pairs(self):
         write_log(self.folder / "log.csv", 5, coulomb_nm=1.2, seconds=12.0)
-        done = self.tool("diagnose", "log.csv", "--joint", "j1", "--arm", f"dh,file=dh.csv,{DOWN}", "--gear-ratio", "100", "-v")
+        done = self.run_tool("diagnose", "log.csv", "--joint", "j1", "--arm", f"dh,file=dh.csv,{DOWN}", "--gear-ratio", "100", "-v")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertRegex(done.stdout, r"^arm: 2 joints of dh.csv matched by \w+ \(-v shows them\); ")
         self.assertIn("with friction beside it, on fifths of the log left out", done.stdout)
@@ -190,7 +181,7 @@ class Arm(unittest.TestCase):
                 (["diagnose", "-", "--joint", "j1", "--gear-ratio", "100", "--arm", arm], 2, "file")):
             with self.subTest(words=words):
                 text = (self.folder / "log.csv").read_text()
-                done = subprocess.run([TOOL, *words], cwd=self.folder, input=text, capture_output=True, text=True, timeout=60)
+                done = self.run_tool(*words, stdin=text)
                 self.assertEqual(done.returncode, code, done.stderr)
                 self.assertIn(message, done.stderr)
                 self.assertEqual(len(done.stderr.strip().splitlines()), 1, done.stderr)
@@ -208,13 +199,9 @@ class Arm(unittest.TestCase):
                                        ("shoulder_lift_joint", {"coulomb-friction"}, 3.0),
                                        ("wrist_2_joint", {"coulomb-friction"}, 0.7)):
             with self.subTest(joint=joint):
-                done = self.tool("diagnose", "first.csv", "--joint", joint, "--arm", "dh,file=ur10.csv", "--gear-ratio", "101",
+                done = self.run_tool("diagnose", "first.csv", "--joint", joint, "--arm", "dh,file=ur10.csv", "--gear-ratio", "101",
                                  "--validate", "last.csv", "--json", "-q")
                 self.assertEqual(done.returncode, 0, done.stderr)
                 found = json.loads(done.stdout)
                 self.assertLessEqual(names, set(found["named"]))
                 self.assertLess(found["gap"]["validation_after_nm"], after_nm)
-
-
-if __name__ == "__main__":
-    unittest.main()

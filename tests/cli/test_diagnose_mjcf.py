@@ -8,12 +8,11 @@ import pathlib
 import random
 import shutil
 import subprocess
-import tempfile
 import unittest
 import xml.etree.ElementTree
 
-TOOL = os.environ["RIPPLENOTCH"]
-SOURCE = pathlib.Path(os.environ["RIPPLENOTCH_SOURCE"])
+from commands import SOURCE, Case
+
 # A folder with node_modules/@mujoco/mujoco: RIPPLENOTCH_MUJOCO, or that of the repository.
 NODE = pathlib.Path(os.environ.get("RIPPLENOTCH_MUJOCO", SOURCE))
 MUJOCO = shutil.which("node") and (NODE / "node_modules/@mujoco/mujoco").is_dir()
@@ -32,16 +31,11 @@ BODY = """<?xml version="1.0"?>
 """
 
 
-class Joint(unittest.TestCase):
+class Joint(Case):
     RATE = "500Hz"
 
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
-
     def run_tool(self, *words, code=0):
-        done = subprocess.run([TOOL, *map(str, words)], cwd=self.folder, capture_output=True, text=True)
+        done = super().run_tool(*words)
         self.assertEqual(done.returncode, code, done.stderr)
         return done
 
@@ -225,7 +219,3 @@ class Arm(Joint):
         done = self.run_tool("diagnose", "log.csv", "--joint", "elbow", "--arm", "mjcf,file=arm.xml", "--gear-ratio", 100, "-o", "b.xml",
                              code=2)
         self.assertIn('no joint with name="elbow"', done.stderr)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -2,29 +2,23 @@
 """diagnose --plan: what is written and told, and what is refused."""
 
 import json
-import os
-import pathlib
-import subprocess
-import tempfile
-import unittest
 
-TOOL = os.environ["RIPPLENOTCH"]
+from commands import Case
+
 JOINT = "--gear-ratio 100 --inertia 0.4 --ripple 1:0.7Nm:30deg --effect coulomb-friction,torque_nm=0.5,width_deg_s=0.2".split()
 ONE_WAY = ("--motion constant,speed=40deg/s,duration=3s --motion ramp,from-speed=40deg/s,to-speed=90deg/s,duration=1s "
            "--motion constant,speed=90deg/s,duration=3s").split()
 LIMITS = "speed=2rad/s,acceleration=6rad/s^2,range=-100deg:1rad"
 
 
-class Plan(unittest.TestCase):
+class Plan(Case):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
+        super().setUp()
         (self.folder / "model.json").write_text(json.dumps({
             "schema": "ripplenotch/model/1", "gear_ratio": 100, "effects": [{"effect": "inertia"}, {"effect": "ripple", "order": 1}]}))
 
     def run_tool(self, *words, code=0):
-        done = subprocess.run([TOOL, *map(str, words)], cwd=self.folder, capture_output=True, text=True)
+        done = super().run_tool(*words)
         self.assertEqual(done.returncode, code, done.stderr)
         return done
 
@@ -75,7 +69,3 @@ class Plan(unittest.TestCase):
         self.assertIn("--plan is missing", self.run_tool("diagnose", "none.csv", "--model", "model.json", "--limits", LIMITS, code=2).stderr)
         self.assertIn("beside --arm or --simulated", self.planned("none.csv", "--simulated", "column,name=tau", code=2).stderr)
         self.assertIn("put {joint} into the name", self.planned("none.csv", "--joint", "all", code=2).stderr)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -2,27 +2,19 @@
 """ripplenotch diagnose on logs of real robots, whose truth nobody knows: what must hold all the same."""
 
 import json
-import os
-import pathlib
-import subprocess
-import tempfile
 import unittest
 
-TOOL = os.environ["RIPPLENOTCH"]
-LOGS = pathlib.Path(os.environ.get("RIPPLENOTCH_LOGS", "/nonexistent"))
+from commands import LOGS, Case
+
 INERTIA = {"effect": "inertia"}
 PAPER = [INERTIA, {"effect": "ripple", "order": 1}, {"effect": "ripple", "order": 2}]
 KUKA_J6 = 206793 / 1340
 
 
 @unittest.skipUnless(LOGS.is_dir(), "no logs of real robots here (RIPPLENOTCH_LOGS)")
-class Robots(unittest.TestCase):
-    def setUp(self):
-        self.folder = tempfile.TemporaryDirectory()
-        self.addCleanup(self.folder.cleanup)
-
+class Robots(Case):
     def path(self, name):
-        return pathlib.Path(self.folder.name) / name
+        return self.folder / name
 
     def part(self, log, name, first, last, columns=None, step=1):
         """Rows of a log from the share `first` to the share `last`, in a file of their own; of `step` rows one."""
@@ -34,10 +26,7 @@ class Robots(unittest.TestCase):
     def diagnosed(self, log, validation, ratio, effects, *words):
         self.path("model.json").write_text(
             json.dumps({"schema": "ripplenotch/model/1", "gear_ratio": ratio, "effects": effects}))
-        done = subprocess.run([TOOL, "diagnose", log, "--model", self.path("model.json"), "--validate", validation, "--json",
-                               *words], capture_output=True, text=True, timeout=300, stdin=subprocess.DEVNULL)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        return json.loads(done.stdout)
+        return json.loads(self.good("diagnose", log, "--model", self.path("model.json"), "--validate", validation, "--json", *words).stdout)
 
     def halves(self, log, columns=None, step=1):
         return (self.part(log, "train.csv", 0.0, 0.6, columns, step),
@@ -83,7 +72,3 @@ class Robots(unittest.TestCase):
         for entry in friction:
             self.assertTrue(entry["status"] == "confirmed" or entry["reason"])
         self.check_no_false_story(found)
-
-
-if __name__ == "__main__":
-    unittest.main()

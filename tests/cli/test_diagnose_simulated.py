@@ -5,14 +5,12 @@ import csv
 import functools
 import json
 import math
-import os
 import pathlib
 import struct
-import subprocess
 import tempfile
-import unittest
 
-TOOL = os.environ["RIPPLENOTCH"]
+from commands import Case, good
+
 NAMES = ["coulomb-friction", "simulation-scale", "viscous-friction"]
 
 
@@ -33,32 +31,25 @@ def made(friction="coulomb-friction,torque_nm=0.9,width_deg_s=1", laps=2):
         motion = [word for lap in range(laps) for to, s in ((150, 2.2), (-60, 3), (100, 1.6), (60, 1.7), (-20, 1.2))
                   for word in ("--motion", f"poly6,to={to}deg,duration={s}s")]
         plain = pathlib.Path(folder) / "plain.csv"
-        subprocess.run([TOOL, "simulate", "--gear-ratio", "100", "--effect", friction,
-                        "--effect", "viscous-friction,coefficient_nm_per_deg_s=0.012", *motion, "--sample-rate", "500Hz",
-                        "--noise", "0.05Nm", "--seed", "1", "-o", plain], check=True, capture_output=True, timeout=300)
+        good("simulate", "--gear-ratio", "100", "--effect", friction, "--effect", "viscous-friction,coefficient_nm_per_deg_s=0.012",
+             *motion, "--sample-rate", "500Hz", "--noise", "0.05Nm", "--seed", "1", "-o", plain)
         with open(plain) as file:
             rows = list(csv.DictReader(file))
     names = {key.split("_")[0]: key for key in rows[0]}
     return [[float(row[names[key]]) for key in ("time", "velocity", "torque", "position")] for row in rows]
 
 
-class Simulated(unittest.TestCase):
+class Simulated(Case):
     def setUp(self):
-        self.folder = tempfile.TemporaryDirectory()
-        self.addCleanup(self.folder.cleanup)
-        self.path = pathlib.Path(self.folder.name)
+        super().setUp()
         self.rows = made()
         log = [[t, v, tau + arm_nm(t, q, 1.03), q, arm_nm(t, q, 1.0)] for t, v, tau, q in self.rows]
-        written(self.path / "log.csv", ["time_s", "velocity_deg_s", "torque_nm", "position_deg", "tau_model_nm"], log)
-
-    def run_tool(self, *words):
-        return subprocess.run([TOOL, *words], cwd=self.folder.name, capture_output=True, text=True, timeout=300,
-                              stdin=subprocess.DEVNULL)
+        written(self.folder / "log.csv", ["time_s", "velocity_deg_s", "torque_nm", "position_deg", "tau_model_nm"], log)
 
     def test_a_log_that_cannot_be_held_is_refused_before_it_is_read(self):
         names = ("time_s", "velocity_deg_s", "torque_nm", "tau_model")
         header = str({"descr": [(name, "<f8") for name in names], "fortran_order": False, "shape": (10**10,)}).ljust(250) + "\n"
-        with open(self.path / "long.npy", "wb") as log:
+        with open(self.folder / "long.npy", "wb") as log:
             log.write(b"\x93NUMPY\x01\x00" + len(header).to_bytes(2, "little") + header.encode())
             log.write(b"".join(struct.pack("<4d", 0.001 * k, 60.0, 1.0, 2.0) for k in range(100_000)))
             log.truncate(10 + len(header) + 32 * 10**10)  # zeros that take no room
@@ -66,7 +57,7 @@ class Simulated(unittest.TestCase):
         self.assertEqual(done.returncode, 6, done.stderr)
         self.assertIn("the whole log is held", done.stderr)
         self.assertIn("--from and --to", done.stderr)
-        self.assertFalse((self.path / "model.json").exists())
+        self.assertFalse((self.folder / "model.json").exists())
 
     def test_a_column_without_a_model_names_both_frictions_and_becomes_part_of_the_improved_model(self):
         done = self.run_tool("diagnose", "log.csv", "--simulated", "column,name=tau_model_nm", "--gear-ratio", "100",
@@ -82,7 +73,7 @@ class Simulated(unittest.TestCase):
             evidence = entry["evidence"]
             self.assertGreater(evidence["t"], 0)
             self.assertGreaterEqual(evidence["blocks"], evidence["blocks_positive"])
-        improved = json.loads((self.path / "improved.json").read_text())
+        improved = json.loads((self.folder / "improved.json").read_text())
         self.assertEqual(improved["simulated"], {"column": "tau_model_nm", "scale": 1, "delay_s": 0})
         again = self.run_tool("diagnose", "log.csv", "--model", "improved.json")
         self.assertEqual(again.returncode, 0, again.stderr)
@@ -113,7 +104,7 @@ class Simulated(unittest.TestCase):
         """The log beside a simulation that has this friction, and the viscous one as it is."""
         simulated = [arm_nm(t, q, 1.0) + friction_nm * math.tanh(v) + 0.012 * v for t, v, _, q in self.rows]
         log = [[t, v, tau + arm_nm(t, q, payload), q, nm] for (t, v, tau, q), nm in zip(self.rows, simulated, strict=True)]
-        written(self.path / "rubs.csv", ["time_s", "velocity_deg_s", "torque_nm", "position_deg", "tau_model_nm"], log)
+        written(self.folder / "rubs.csv", ["time_s", "velocity_deg_s", "torque_nm", "position_deg", "tau_model_nm"], log)
 
     def size_of(self, found, effect, parameter):
         (entry,) = [entry for entry in found["rounds"] if entry["effect"] == effect and entry["status"] == "confirmed"]
@@ -127,13 +118,13 @@ class Simulated(unittest.TestCase):
         self.assertRegex(done.stdout.splitlines()[0],
                          r"^Missing: .*coulomb-friction -0\.4\d* \+/- [\d.]+ Nm \(the simulation has too much of it\).*; residual ")
         self.assertEqual(done.stdout.splitlines()[1:3], ["verdict: explained", "named: simulation-scale, coulomb-friction"])
-        improved = json.loads((self.path / "improved.json").read_text())
+        improved = json.loads((self.folder / "improved.json").read_text())
         friction = next(effect for effect in improved["effects"] if effect["effect"] == "coulomb-friction")
         self.assertAlmostEqual(friction["torque_nm"], -(1.3 * 1.01875 - 0.9), delta=0.01)
         self.assertLess(self.residual_nm("--model", "improved.json", "rubs.csv"), 0.051)  # the noise is 0.05 Nm
         improved["effects"] = [friction]
         del improved["simulated"]
-        (self.path / "alone.json").write_text(json.dumps(improved))
+        (self.folder / "alone.json").write_text(json.dumps(improved))
         done = self.run_tool("simulate", "--model", "alone.json", "rubs.csv")
         self.assertEqual(done.returncode, 3)
         self.assertIn("torque_nm is -0.", done.stderr)
@@ -158,7 +149,7 @@ class Simulated(unittest.TestCase):
         for t, v, tau, q in self.rows:
             weight = 30 * math.cos(math.radians(q))
             rows.append([t, v, tau + weight, q, weight + 1.3 * math.tanh(v)])
-        written(self.path / "alone.csv", ["time_s", "velocity_deg_s", "torque_nm", "position_deg", "tau_model_nm"], rows)
+        written(self.folder / "alone.csv", ["time_s", "velocity_deg_s", "torque_nm", "position_deg", "tau_model_nm"], rows)
         for scale in ("", ",scale=1"):
             done = self.run_tool("diagnose", "alone.csv", "--gear-ratio", "100", "--json", "--simulated", f"tau_model_nm{scale}")
             self.assertEqual(done.returncode, 0, done.stderr)
@@ -187,7 +178,7 @@ class Simulated(unittest.TestCase):
         self.assertEqual(done.returncode, 2)
 
     def test_a_simulation_in_a_file_of_its_own_is_named_again_beside_the_model(self):
-        written(self.path / "sim.csv", ["time_s", "velocity_deg_s", "torque_nm"], [[t, v, arm_nm(t, q, 1.0)] for t, v, _, q in self.rows])
+        written(self.folder / "sim.csv", ["time_s", "velocity_deg_s", "torque_nm"], [[t, v, arm_nm(t, q, 1.0)] for t, v, _, q in self.rows])
         own = "log,file=sim.csv,column=torque_nm"
         done = self.run_tool("diagnose", "log.csv", "--simulated", own, "--gear-ratio", "100", "--json", "-o", "own.json")
         self.assertEqual(done.returncode, 0, done.stderr)
@@ -203,16 +194,16 @@ class Simulated(unittest.TestCase):
         done = self.run_tool("simulate", "--gear-ratio", "100", "--ripple", "1:0.3Nm:20deg", "--ripple", "2:0.4Nm:50deg", *motion,
                              "--sample-rate", "1kHz", "--noise", "0.05Nm", "--seed", "1", "-o", "ripple.csv")
         self.assertEqual(done.returncode, 0, done.stderr)
-        with open(self.path / "ripple.csv") as file:
+        with open(self.folder / "ripple.csv") as file:
             rows = [[float(cell) for cell in row] for row in list(csv.reader(file))[1:]]
         # A simulation that knows of the ripple's neighbours: teeth that mesh 231 times a turn, 8 Nm.
         def teeth(t, q):
             return arm_nm(t, q, 1.0) + 8 * math.cos(math.radians(231 * q))
-        written(self.path / "log.csv", ["time_s", "velocity_deg_s", "torque_nm", "position_deg", "tau_model_nm"],
+        written(self.folder / "log.csv", ["time_s", "velocity_deg_s", "torque_nm", "position_deg", "tau_model_nm"],
                 [[t, v, tau + 1.1 * teeth(t, q), q, teeth(t, q)] for t, v, tau, q in rows], )
         # A scale that is fitted is a thousandth off, and so is what is left of the teeth.
         for words, left_nm in ((["--simulated", "column,name=tau_model_nm"], 0.02), (["--residual", "with.json"], 0.0)):
-            (self.path / "with.json").write_text(json.dumps({"schema": "ripplenotch/model/1", "gear_ratio": 100, "effects": [],
+            (self.folder / "with.json").write_text(json.dumps({"schema": "ripplenotch/model/1", "gear_ratio": 100, "effects": [],
                                                              "simulated": {"column": "tau_model_nm", "scale": 1.1}}))
             done = self.run_tool("identify", "log.csv", *words, "--json", "-q")
             self.assertEqual(done.returncode, 0, done.stderr)
@@ -225,7 +216,7 @@ class Simulated(unittest.TestCase):
 
     def test_a_file_of_its_own_on_the_same_clock_gives_the_same_names_and_rows_outside_it_do_not_count(self):
         simulation = [[t, v, arm_nm(t, q, 1.0)] for t, v, _, q in self.rows[100:-100:2]]
-        written(self.path / "sim.csv", ["time_s", "velocity_deg_s", "torque_nm"], simulation)
+        written(self.folder / "sim.csv", ["time_s", "velocity_deg_s", "torque_nm"], simulation)
         done = self.run_tool("diagnose", "log.csv", "--simulated", "log,file=sim.csv,column=torque_nm", "--gear-ratio", "100",
                              "--json")
         self.assertEqual(done.returncode, 0, done.stderr)
@@ -272,31 +263,22 @@ def moved(words, noise):
               for word in ("--motion", f"poly6,to={to}deg,duration={s}s")]
     with tempfile.TemporaryDirectory() as folder:
         path = pathlib.Path(folder) / "rows.csv"
-        subprocess.run([TOOL, "simulate", "--gear-ratio", "100", *words, *motion, "--sample-rate", "500Hz", "--noise",
-                        f"{0.05 * noise}Nm", "--velocity-noise", f"{0.05 * noise}deg/s", "--seed", "1", "-q", "-o", path],
-                       check=True, capture_output=True, timeout=300)
+        good("simulate", "--gear-ratio", "100", *words, *motion, "--sample-rate", "500Hz", "--noise", f"{0.05 * noise}Nm",
+             "--velocity-noise", f"{0.05 * noise}deg/s", "--seed", "1", "-q", "-o", path)
         with open(path) as file:
             return [[float(cell) for cell in row] for row in list(csv.reader(file))[1:]]
 
 
-class Known(unittest.TestCase):
+class Known(Case):
     """Logs with a known truth beside a simulation that lacks a part of it."""
 
-    def setUp(self):
-        self.folder = tempfile.TemporaryDirectory()
-        self.addCleanup(self.folder.cleanup)
-        self.path = pathlib.Path(self.folder.name)
-
     def json_of(self, *words):
-        done = subprocess.run([TOOL, *words, "--json", "-q", "--force"], cwd=self.folder.name, capture_output=True, text=True,
-                              timeout=300, stdin=subprocess.DEVNULL)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        return json.loads(done.stdout)
+        return json.loads(self.good(*words, "--json", "-q", "--force").stdout)
 
     def diagnosed(self, real, simulation, more="", times=1.0):
         """What is said of a real joint beside a simulated one; its improved model has to leave just that."""
         rows = [[*row, times * twin[2]] for row, twin in zip(moved(real, 1), moved(simulation, 0), strict=True)]
-        written(self.path / "log.csv", ["time_s", "velocity_deg_s", "torque_nm", "position_deg", "tau_sim_nm"], rows)
+        written(self.folder / "log.csv", ["time_s", "velocity_deg_s", "torque_nm", "position_deg", "tau_sim_nm"], rows)
         return self.checked("tau_sim_nm" + more, ())
 
     def checked(self, simulated, beside):
@@ -372,16 +354,12 @@ class Known(unittest.TestCase):
 
     def test_a_simulation_in_a_file_of_its_own_that_is_early_is_aligned_by_the_motions(self):
         head = ["time_s", "velocity_deg_s", "torque_nm", "position_deg"]
-        written(self.path / "log.csv", head, [[t + 1, v, tau, q] for t, v, tau, q in moved(WHOLE, 1)])
-        written(self.path / "sim.csv", head, [[t + 0.83, v, tau, q] for t, v, tau, q in moved((*RIGID, *FRICTION), 0)])
+        written(self.folder / "log.csv", head, [[t + 1, v, tau, q] for t, v, tau, q in moved(WHOLE, 1)])
+        written(self.folder / "sim.csv", head, [[t + 0.83, v, tau, q] for t, v, tau, q in moved((*RIGID, *FRICTION), 0)])
         own = "log,file=sim.csv,column=torque_nm"
         found = self.checked(own, ("--simulated", own))
         self.assertAlmostEqual(found["alignment"]["delay_s"], 0.17, delta=1e-4)
         self.assertGreater(found["alignment"]["correlation"], 0.999)
         self.assertIsNone(found["alignment"]["clock_error_ppm"])
         self.check_explained(found, "ripple")
-        self.assertAlmostEqual(json.loads((self.path / "improved.json").read_text())["simulated"]["delay_s"], -0.17, delta=1e-4)
-
-
-if __name__ == "__main__":
-    unittest.main()
+        self.assertAlmostEqual(json.loads((self.folder / "improved.json").read_text())["simulated"]["delay_s"], -0.17, delta=1e-4)

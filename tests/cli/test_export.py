@@ -4,15 +4,14 @@
 import json
 import math
 import os
-import pathlib
 import shutil
 import struct
 import subprocess
-import tempfile
 import unittest
 
-TOOL = os.environ["RIPPLENOTCH"]
-DATA = pathlib.Path(os.environ["RIPPLENOTCH_SOURCE"]) / "data"
+import commands
+from commands import DATA
+
 COMPILER = shutil.which(os.environ.get("CC", "cc"))
 STRICT = ["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-Wdouble-promotion", "-Wconversion", "-Wshadow"]
 SWITCHING = ("c-header", "cmsis-dsp", "scipy", "matlab", "json")
@@ -39,19 +38,8 @@ static void cascade(const float32_t *c, int stages, float32_t *state, const floa
 """
 
 
-class Case(unittest.TestCase):
-    def setUp(self):
-        self.folder = pathlib.Path(tempfile.mkdtemp())
-        self.addCleanup(shutil.rmtree, self.folder)
-
-    def run_tool(self, *words, stdin=None):
-        return subprocess.run([TOOL, *map(str, words)], capture_output=True, cwd=self.folder, timeout=120,
-                              input=stdin, stdin=None if stdin is not None else subprocess.DEVNULL)
-
-    def good(self, *words, stdin=None):
-        done = self.run_tool(*words, stdin=stdin)
-        self.assertEqual(done.returncode, 0, done.stderr.decode())
-        return done
+class Case(commands.Case):
+    bytes_out = True
 
     def refused(self, code, *words, stdin=None):
         done = self.run_tool(*words, stdin=stdin)
@@ -380,7 +368,3 @@ class Refusals(Case):
         self.good("export", "table.json", "--to", "json", "-o", "out.json", "--force")
         self.assertIn("ripplenotch/table/1", self.refused(3, "export", "out.json", "--to", "json"))
         self.refused(4, "export", "no-such.json", "--to", "json")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -10,12 +10,11 @@ import pathlib
 import random
 import signal
 import subprocess
-import tempfile
 import time
-import unittest
 
-TOOL = os.environ["RIPPLENOTCH"]
-SOURCE = pathlib.Path(os.environ["RIPPLENOTCH_SOURCE"])
+import commands
+from commands import SHORT, TOOL, run
+
 GEAR = ["--gear-ratio", "100", "--orders", "1,2"]
 JOINT = ["--gear-ratio", "100", "--inertia", "1.2", "--ripple", "1:0.5Nm:30deg", "--ripple", "2:0.8Nm:10deg",
          "--effect", "gravity,amplitude_nm=8,phase_deg=20", "--effect", "offset,torque_nm=0.3",
@@ -25,16 +24,7 @@ SHARP = ["--effect", "coulomb-friction,torque_nm=2,width_deg_s=0.2"]
 MOTION = ["--motion", "multisine,frequency=0.15Hz,amplitude=60deg,duration=8s"]
 
 
-def run(*words, cwd=None):
-    return subprocess.run([TOOL, *map(str, words)], capture_output=True, text=True, timeout=120, stdin=subprocess.DEVNULL, cwd=cwd)
-
-
-class Case(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
-
+class Case(commands.Case):
     def log(self, name="log.csv", joint=JOINT, friction=WINDING, motion=MOTION, seed=1, rate="500Hz"):
         path = self.folder / name
         done = run("simulate", *joint, *friction, *motion, "--sample-rate", rate, "--noise", "0.05Nm", "--seed", seed, "-o", path)
@@ -304,7 +294,7 @@ class Shards(Case):
         self.small_fleet(24)
         whole = self.whole()
         draw = random.Random(21)
-        kills = int(os.environ.get("RIPPLENOTCH_KILLS", "12"))
+        kills = int(os.environ.get("RIPPLENOTCH_KILLS", "3" if SHORT else "12"))
         begin = time.perf_counter()
         self.shard(1, 4, "timed")
         once = time.perf_counter() - begin
@@ -336,7 +326,3 @@ class Shards(Case):
             done = run("features", *words, cwd=self.folder)
             self.assertEqual(done.returncode, 2, words)
             self.assertIn(said, done.stderr)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -4,14 +4,11 @@
 import json
 import math
 import os
-import pathlib
 import re
 import subprocess
-import tempfile
-import unittest
 
-SOURCE = pathlib.Path(os.environ["RIPPLENOTCH_SOURCE"])
-TOOL = os.environ["RIPPLENOTCH"]
+from commands import SOURCE, Case, run
+
 FIGURES = SOURCE / "docs" / "figures"
 
 
@@ -31,13 +28,12 @@ def alike(kept, made, path=""):
     return None if kept == made else f"{path}: {kept!r} and {made!r}"
 
 
-class Figures(unittest.TestCase):
+class Figures(Case):
     def test_every_picture_shows_what_its_command_shows_today(self):
-        with tempfile.TemporaryDirectory() as folder:
-            done = subprocess.run([SOURCE / "scripts" / "make-figures", folder], capture_output=True, timeout=120,
-                                  env=dict(os.environ, ONLY_DATA="1"))
-            self.assertEqual(done.returncode, 0, done.stderr)
-            made = {path.name: json.loads(path.read_text()) for path in pathlib.Path(folder).glob("*.json")}
+        done = subprocess.run([SOURCE / "scripts" / "make-figures", self.folder], capture_output=True, timeout=120,
+                              env=dict(os.environ, ONLY_DATA="1"))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        made = {path.name: json.loads(path.read_text()) for path in self.folder.glob("*.json")}
         kept = {path.name: json.loads(path.read_text()) for path in FIGURES.glob("*.json")}
         self.assertEqual(sorted(kept), sorted(made))
         for name in kept:
@@ -59,14 +55,10 @@ class Figures(unittest.TestCase):
         names = [json.loads((FIGURES / f"{name}.json").read_text())["name"] for name in shown]
         for name, command in listed:
             self.assertIn(name, names, f"docs/figures/README.md has no picture of figure {name}")
-            help_text = subprocess.run([TOOL, command, "--help"], capture_output=True, text=True, timeout=60).stdout
+            help_text = run(command, "--help").stdout
             self.assertRegex(help_text, rf"as a picture \([^)]*\b{name}\b", command)
         self.assertEqual(set(names), {name for name, _ in listed}, "src/figure/figures.def")
 
     def test_pictures_are_small(self):
         for path in FIGURES.glob("*.png"):
             self.assertLess(path.stat().st_size, 300_000, path.name)
-
-
-if __name__ == "__main__":
-    unittest.main()

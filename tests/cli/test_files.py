@@ -10,29 +10,21 @@ import shutil
 import signal
 import stat
 import subprocess
-import tempfile
 import threading
 import time
 import unittest
 
-from sanitizers import sanitized
+from commands import DATA, TOOL, Case, sanitized
 
-TOOL = os.environ["RIPPLENOTCH"]
-DATA = pathlib.Path(os.environ["RIPPLENOTCH_SOURCE"]) / "data"
+
 LOWPASS = ("--method", "lowpass,cutoff=13rad/s,order=1")
 GEAR = ("--gear-ratio", "100", "--orders", "1,2")
 
 
-class InFolder(unittest.TestCase):
+class InFolder(Case):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
+        super().setUp()
         shutil.copy(DATA / "paper_90deg_s.csv", self.folder / "log.csv")
-
-    def run_tool(self, *words, **more):
-        return subprocess.run([TOOL, *words], cwd=self.folder, capture_output=True, text=True, timeout=120,
-                              stdin=subprocess.DEVNULL, **more)
 
     def hash_of(self, name):
         return hashlib.sha256((self.folder / name).read_bytes()).hexdigest()
@@ -290,7 +282,3 @@ class Memory(InFolder):
         for ratio in ("1e308", "1e30", "0", "-1"):
             done = self.run_tool("track", "log.csv", "--gear-ratio", ratio)
             self.assertEqual(done.returncode, 2, done.stderr)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -3,32 +3,17 @@
 
 import json
 import math
-import os
-import pathlib
 import re
-import shutil
-import subprocess
-import tempfile
 import unittest
 
-TOOL = os.environ["RIPPLENOTCH"]
-DATA = pathlib.Path(os.environ["RIPPLENOTCH_SOURCE"]) / "data"
-LOGS = pathlib.Path(os.environ.get("RIPPLENOTCH_LOGS", "/nonexistent"))
+import commands
+from commands import DATA, LOGS
+
 LOWPASS = "lowpass,cutoff=13rad/s"
 
 
-class Case(unittest.TestCase):
-    def setUp(self):
-        self.folder = pathlib.Path(tempfile.mkdtemp())
-        self.addCleanup(shutil.rmtree, self.folder)
-
-    def run_tool(self, *words, stdin=None):
-        return subprocess.run([TOOL, *map(str, words)], capture_output=True, cwd=self.folder, timeout=120, input=stdin)
-
-    def good(self, *words, stdin=None):
-        done = self.run_tool(*words, stdin=stdin)
-        self.assertEqual(done.returncode, 0, done.stderr.decode())
-        return done
+class Case(commands.Case):
+    bytes_out = True
 
     def refused(self, code, *words, stdin=None):
         done = self.run_tool(*words, stdin=stdin)
@@ -366,7 +351,3 @@ class Threads(Case):
                 done = self.run_tool("filter", "-", "--method", LOWPASS, "--threads", threads, "-q", stdin=text)
                 self.assertEqual(done.returncode, 3)
                 self.assertIn(f"standard input:{line + 1}:1: read the time 0.001 after", done.stderr.decode())
-
-
-if __name__ == "__main__":
-    unittest.main()

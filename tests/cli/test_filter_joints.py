@@ -3,7 +3,6 @@
 
 import json
 import math
-import unittest
 
 from test_filter import Case
 
@@ -127,7 +126,3 @@ class Joints(Case):
         one = self.write("one.csv", "time_s,velocity_deg_s,torque_nm\n0,1,2\n0.001,1,3\n0.002,1,2\n")
         self.assertIn("{joint}", self.refused(2, "filter", one, "--joint", "all", "--table", "{joint}.json"))
         self.assertEqual(self.good("filter", one, "--joint", "all", "--method", "none").stdout, one.read_bytes())
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -6,20 +6,17 @@ printed: seconds of a core, the part of both cores that this is (an idle machine
 """
 
 import os
-import pathlib
 import re
 import shutil
 import socket
 import subprocess
 import sys
-import tempfile
 import time
-import unittest
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
-from test_features import GEAR, MOTION, SHARP, TOOL, Case as FeatureCase  # noqa: E402,F401
+from commands import GEAR, SOURCE, TOOL, new_folder
+from commands import SOURCE, TOOL, new_folder
+from test_features import Case as FeatureCase
 
-SOURCE = pathlib.Path(os.environ["RIPPLENOTCH_SOURCE"])
 LOGS = int(os.environ.get("RIPPLENOTCH_FLEET_LOGS", "20"))
 MANY = LOGS > 100
 SHARDS = 40 if MANY else 8
@@ -45,7 +42,7 @@ class Engine(FeatureCase):
     def whole(self):
         if Engine.one_process is None:
             before = os.times()
-            text = subprocess.run([TOOL, "features", "--manifest", "list.txt", *OPTIONS], cwd=self.folder, capture_output=True).stdout
+            text = self.run_tool("features", "--manifest", "list.txt", *OPTIONS, text=False).stdout
             Engine.one_process = text, spent(before)
         return Engine.one_process[0]
 
@@ -164,9 +161,7 @@ class Slurm(Engine):
         if os.geteuid() != 0:
             self.skipTest("a cluster is started by root alone")
         super().setUp()
-        folder = tempfile.TemporaryDirectory(prefix="fleet")
-        self.addCleanup(folder.cleanup)
-        self.cluster = pathlib.Path(folder.name)
+        self.cluster = new_folder(self)
         self.cluster.chmod(0o755)
         for name in ("state", "spool"):
             (self.cluster / name).mkdir()
@@ -212,7 +207,3 @@ class Slurm(Engine):
         self.assertGreaterEqual(len(set(re.findall(r"ArrayJobId=(\d+)", jobs))), 2, "eight shards are two windows of five at most")
         before = self.lose_a_shard()
         self.check_resumed(self.call(*words), before)
-
-
-if __name__ == "__main__":
-    unittest.main()

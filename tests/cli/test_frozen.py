@@ -3,12 +3,9 @@
 
 import json
 import os
-import sys
 import unittest
-from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).parent))
-import frozen  # noqa: E402
+import frozen
 
 
 class Frozen(unittest.TestCase):
@@ -17,7 +14,3 @@ class Frozen(unittest.TestCase):
         expected = json.loads(frozen.HASHES.read_text())
         self.assertGreater(len(expected), 55)
         self.assertEqual(sorted(name for name in {*found, *expected} if found.get(name) != expected.get(name)), [])
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -2,15 +2,10 @@
 """Methods that follow the gear: where they get it from, on the command line."""
 
 import json
-import os
-import pathlib
-import shutil
-import subprocess
-import tempfile
-import unittest
 
-TOOL = os.environ["RIPPLENOTCH"]
-DATA = pathlib.Path(os.environ["RIPPLENOTCH_SOURCE"]) / "data"
+import commands
+from commands import DATA
+
 MOVE = DATA / "paper_move_2s.csv"
 
 
@@ -31,19 +26,10 @@ def joint(ratio=100.0, orders=(1.0, 2.0), amplitudes=(0.8, 0.5), phases=(0.0, 0.
         "lines": lines, "notes": []})
 
 
-class Case(unittest.TestCase):
+class Case(commands.Case):
     def setUp(self):
-        self.folder = pathlib.Path(tempfile.mkdtemp())
-        self.addCleanup(shutil.rmtree, self.folder)
+        super().setUp()
         (self.folder / "joint.json").write_text(joint())
-
-    def run_tool(self, *words):
-        return subprocess.run([TOOL, *map(str, words)], capture_output=True, text=True, cwd=self.folder, timeout=120)
-
-    def good(self, *words):
-        done = self.run_tool(*words)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        return done
 
     def filtered(self, *words):
         self.good("filter", MOVE, *words, "-o", "out.csv", "--metrics", "out.json", "--force")
@@ -120,8 +106,7 @@ class TwoPasses(Case):
         expected, _ = self.filtered("--method", method)
         temporary = self.folder / "tmp"
         temporary.mkdir()
-        done = subprocess.run([TOOL, "filter", "-", "--method", method], input=MOVE.read_bytes(), capture_output=True,
-                              env={**os.environ, "TMPDIR": str(temporary)}, cwd=self.folder, timeout=120)
+        done = self.run_tool("filter", "-", "--method", method, stdin=MOVE.read_bytes(), text=False, environment={"TMPDIR": str(temporary)})
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual(done.stdout, expected)
         self.assertEqual(list(temporary.iterdir()), [])
@@ -129,8 +114,7 @@ class TwoPasses(Case):
     def test_a_log_that_is_broken_halfway_is_refused_under_the_users_name_for_it(self):
         lines = MOVE.read_text().splitlines()
         lines[1500] = lines[1500].replace(",", ",x", 1)
-        done = subprocess.run([TOOL, "filter", "-", "--method", "subtract,gear-ratio=100,orders=1:2"], text=True,
-                              input="\n".join(lines) + "\n", capture_output=True, cwd=self.folder, timeout=120)
+        done = self.run_tool("filter", "-", "--method", "subtract,gear-ratio=100,orders=1:2", stdin="\n".join(lines) + "\n")
         self.assertEqual(done.returncode, 3)
         self.assertIn("standard input:1501", done.stderr)
 
@@ -154,7 +138,3 @@ class Delay(Case):
         delays = [entry["dc_delay_ms"] for entry in metrics["delays"]]
         self.assertLess(max(delays), 2 * 4.5 + 0.05)
         self.assertAlmostEqual(delays[2], 9.0, delta=0.05)
-
-
-if __name__ == "__main__":
-    unittest.main()

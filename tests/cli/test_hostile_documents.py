@@ -2,20 +2,10 @@
 """JSON that no command writes: refused with its place, exit code 3, within two seconds, whatever it is."""
 
 import json
-import os
-import pathlib
-import subprocess
-import sys
-import tempfile
-import unittest
 
-TOOL = os.environ["RIPPLENOTCH"]
-SOURCE = pathlib.Path(os.environ["RIPPLENOTCH_SOURCE"])
-sys.path.insert(0, str(SOURCE / "scripts"))
-sys.dont_write_bytecode = True
-
-from prove_trust import documents  # noqa: E402
-from sanitizers import sanitized  # noqa: E402
+from commands import SOURCE, TOOL, Case, good, sanitized
+from commands import SOURCE, TOOL, Case, sanitized
+from prove_trust import documents
 
 LONGEST_S = 10.0 if sanitized(TOOL) else 2.0  # a sanitizer takes time of its own: 2.1 s were seen
 
@@ -28,22 +18,20 @@ def head(kind):
 
 
 def table():
-    done = subprocess.run([TOOL, "design", "--gear-ratio", "100", "--orders", "1,2", "--sample-rate", "1kHz", "--speed", "18:180:54",
-                           "--q", "0.25", "--json"], capture_output=True, check=True)
-    return json.loads(done.stdout)
+    return json.loads(good("design", "--gear-ratio", "100", "--orders", "1,2", "--sample-rate", "1kHz", "--speed", "18:180:54",
+                           "--q", "0.25", "--json").stdout)
 
 
-class Documents(unittest.TestCase):
+class Documents(Case):
     def setUp(self):
-        self.folder = tempfile.TemporaryDirectory()
-        self.addCleanup(self.folder.cleanup)
-        pathlib.Path(self.folder.name, "log.csv").write_text(
+        super().setUp()
+        (self.folder / "log.csv").write_text(
             "time_s,velocity_deg_s,torque_nm\n" + "".join(f"{k / 1000},60,{k % 7}\n" for k in range(500)))
 
     def read(self, text, *words):
-        pathlib.Path(self.folder.name, "x.json").write_text(text)
+        (self.folder / "x.json").write_text(text)
         before = documents.processor_s()
-        done = subprocess.run([TOOL, *words], cwd=self.folder.name, capture_output=True, text=True, timeout=60)
+        done = self.run_tool(*words)
         self.assertLess(documents.processor_s() - before, LONGEST_S, words)
         return done
 
@@ -110,23 +98,21 @@ class Documents(unittest.TestCase):
                 self.assertEqual(done.returncode, 0, f"{name}: {value}: {done.stderr}")
 
     def test_tables_are_bounded_before_they_are_measured(self):
-        good = table()
-        notch = good["bands"][0]["notches"][0]
-        band = good["bands"][0]
+        whole = table()
+        notch = whole["bands"][0]["notches"][0]
+        band = whole["bands"][0]
         for count in (65, 800, 4000):
-            many = {**good, "bands": [{**band, "notches": [{**notch, "order": i + 1} for i in range(count)]}]}
+            many = {**whole, "bands": [{**band, "notches": [{**notch, "order": i + 1} for i in range(count)]}]}
             self.refused(json.dumps(many), "expected at most 64", words=("export", "x.json", "--to", "c-header"))
         for count in (10001, 20000):
-            self.refused(json.dumps({**good, "bands": [band] * count}), "expected at most 10000", words=("export", "x.json", "--to", "c-header"))
-        wide = {**good, "orders": list(range(1, 65)), "bands": [
+            self.refused(json.dumps({**whole, "bands": [band] * count}), "expected at most 10000", words=("export", "x.json", "--to", "c-header"))
+        wide = {**whole, "orders": list(range(1, 65)), "bands": [
             {**band, "number": i + 1, "notches": [{**notch, "order": n + 1} for n in range(64)]} for i in range(100)]}
         self.refused(json.dumps(wide), words=("export", "x.json", "--to", "c-header"))
 
     def test_what_design_can_make_can_be_read(self):
-        path = pathlib.Path(self.folder.name, "x.json")
-        done = subprocess.run([TOOL, "design", "--gear-ratio", "100", "--orders", "1,2", "--sample-rate", "1kHz", "--speed", "20:200:0.2",
-                               "--json", "-o", path], capture_output=True, text=True)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        path = self.folder / "x.json"
+        self.good("design", "--gear-ratio", "100", "--orders", "1,2", "--sample-rate", "1kHz", "--speed", "20:200:0.2", "--json", "-o", path)
         done = self.read(path.read_text(), "export", "x.json", "--to", "json")
         self.assertEqual(done.returncode, 0, done.stderr)
 
@@ -137,13 +123,8 @@ class Documents(unittest.TestCase):
         self.refused(json.dumps(figure), "panels has 17 entries")
 
 
-class Mutated(unittest.TestCase):
+class Mutated(Case):
     def test_no_mutant_ends_in_a_fault_a_signal_or_in_two_seconds(self):
-        with tempfile.TemporaryDirectory() as folder:
-            count, findings = documents.round_of(TOOL, SOURCE, folder, seed=7, runs=250)
+        count, findings = documents.round_of(TOOL, SOURCE, self.folder, seed=7, runs=250)
         self.assertGreaterEqual(count, 250)
         self.assertEqual(findings, [])
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -3,22 +3,13 @@
 
 import json
 import math
-import os
 import pathlib
 import random
-import subprocess
-import tempfile
 import unittest
 
-TOOL = os.environ["RIPPLENOTCH"]
-DATA = pathlib.Path(os.environ["RIPPLENOTCH_SOURCE"]) / "data"
-LOGS = pathlib.Path(os.environ.get("RIPPLENOTCH_LOGS", ""))
+from commands import DATA, LOGS, Case, run
+
 PAPER = [str(DATA / f"paper_{name}.csv") for name in ("rest", "60deg_s", "120deg_s", "180deg_s")]
-
-
-def run(*words, stdin=None, folder=None):
-    return subprocess.run([TOOL, *words], capture_output=True, text=True, timeout=120, cwd=folder, input=stdin,
-                          stdin=subprocess.DEVNULL if stdin is None else None)
 
 
 def identified(*words):
@@ -41,7 +32,7 @@ def log_text(speed, ripple_nm, seconds=4.0, rate=500.0, seed=1):
     return "\n".join(rows) + "\n"
 
 
-class ThePapersLogs(unittest.TestCase):
+class ThePapersLogs(Case):
     def test_ratio_orders_and_silence_at_rest(self):
         found = identified(*PAPER)
         self.assertEqual(found["schema"], "ripplenotch/joint/1")
@@ -74,30 +65,28 @@ class ThePapersLogs(unittest.TestCase):
         self.assertEqual(run("identify", "--json", *PAPER).stdout, run("identify", "--json", *PAPER).stdout)
 
     def test_the_file_is_json_and_the_terminal_gets_the_report(self):
-        with tempfile.TemporaryDirectory() as folder:
-            done = run("identify", *PAPER, "-o", "joint.json", folder=folder)
-            self.assertEqual(done.returncode, 0, done.stderr)
-            self.assertEqual(done.stderr, "")
-            stored = json.loads((pathlib.Path(folder) / "joint.json").read_text())
-            self.assertEqual(done.stdout.splitlines()[0], stored["verdict"])
-            again = run("identify", *PAPER, "-o", "joint.json", folder=folder)
-            self.assertEqual(again.returncode, 4)
-            self.assertEqual(run("design", "joint.json", "-q", folder=folder).returncode, 0)
+        done = run("identify", *PAPER, "-o", "joint.json", cwd=self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(done.stderr, "")
+        stored = json.loads((self.folder / "joint.json").read_text())
+        self.assertEqual(done.stdout.splitlines()[0], stored["verdict"])
+        again = run("identify", *PAPER, "-o", "joint.json", cwd=self.folder)
+        self.assertEqual(again.returncode, 4)
+        self.assertEqual(run("design", "joint.json", "-q", cwd=self.folder).returncode, 0)
 
 
-class Answers(unittest.TestCase):
+class Answers(Case):
     def write(self, folder, name, text):
         path = pathlib.Path(folder) / name
         path.write_text(text)
         return str(path)
 
     def test_one_speed_is_not_conclusive_and_exits_5_on_request(self):
-        with tempfile.TemporaryDirectory() as folder:
-            path = self.write(folder, "one.csv", log_text(83.0, 0.5))
-            self.assertEqual(run("identify", path).returncode, 0)
-            done = run("identify", path, "--require-conclusive")
-            self.assertEqual(done.returncode, 5)
-            self.assertIn("record another speed to decide", done.stdout)
+        path = self.write(self.folder, "one.csv", log_text(83.0, 0.5))
+        self.assertEqual(run("identify", path).returncode, 0)
+        done = run("identify", path, "--require-conclusive")
+        self.assertEqual(done.returncode, 5)
+        self.assertIn("record another speed to decide", done.stdout)
 
     def test_the_sentence_is_as_sure_as_the_table(self):
         several, one = identified(*PAPER), identified(str(DATA / "paper_90deg_s.csv"))
@@ -107,11 +96,10 @@ class Answers(unittest.TestCase):
         self.assertTrue(one["verdict"].startswith("Lines that may be ripple at orders 1 and 2 of the motor: "))
 
     def test_no_ripple_is_a_conclusive_answer(self):
-        with tempfile.TemporaryDirectory() as folder:
-            paths = [self.write(folder, f"{v}.csv", log_text(v, 0.0, seed=v)) for v in (40, 80)]
-            done = run("identify", *paths, "--require-conclusive")
-            self.assertEqual(done.returncode, 0)
-            self.assertTrue(done.stdout.startswith("No ripple: no line above"), done.stdout)
+        paths = [self.write(self.folder, f"{v}.csv", log_text(v, 0.0, seed=v)) for v in (40, 80)]
+        done = run("identify", *paths, "--require-conclusive")
+        self.assertEqual(done.returncode, 0)
+        self.assertTrue(done.stdout.startswith("No ripple: no line above"), done.stdout)
 
     def test_a_hint_that_no_line_supports_is_not_believed(self):
         found = identified(*PAPER, "--gear-ratio", "130")
@@ -127,13 +115,12 @@ class Answers(unittest.TestCase):
                 out.append(f"{t},{float(v) * factor!r},{x}")
             return "\n".join(out) + "\n"
 
-        with tempfile.TemporaryDirectory() as folder:
-            values = []
-            for unit, factor in (("deg_s", 1.0), ("rad_s", math.pi / 180), ("rpm", 1 / 6)):
-                paths = [self.write(folder, f"{unit}{v}.csv", in_unit(log_text(v, 0.5), unit, factor)) for v in (30, 60)]
-                values.append(identified(*paths)["gear_ratio"]["value"])
-            self.assertAlmostEqual(values[0], values[1], places=6)
-            self.assertAlmostEqual(values[0], values[2], places=6)
+        values = []
+        for unit, factor in (("deg_s", 1.0), ("rad_s", math.pi / 180), ("rpm", 1 / 6)):
+            paths = [self.write(self.folder, f"{unit}{v}.csv", in_unit(log_text(v, 0.5), unit, factor)) for v in (30, 60)]
+            values.append(identified(*paths)["gear_ratio"]["value"])
+        self.assertAlmostEqual(values[0], values[1], places=6)
+        self.assertAlmostEqual(values[0], values[2], places=6)
 
     def test_bad_requests_exit_2_and_short_logs_exit_3(self):
         self.assertEqual(run("identify", *PAPER, "--evidence", "magic").returncode, 2)
@@ -144,7 +131,7 @@ class Answers(unittest.TestCase):
         self.assertIn("at least 64", short.stderr)
 
 
-class Doubts(unittest.TestCase):
+class Doubts(Case):
     """Logs that a sure answer would be wrong about."""
 
     def log(self, folder, name, seconds=6.0, rate=500.0, speed=36.0, ripple_nm=0.0, tones=(), clock=1.0, position=True,
@@ -164,30 +151,28 @@ class Doubts(unittest.TestCase):
     TONES = [(hz / 1.475, 0.3) for hz in (20.06, 30.0, 40.05, 50.02)]
 
     def test_a_wrong_clock_comes_first_and_no_order_is_named(self):
-        with tempfile.TemporaryDirectory() as folder:
-            logs = [self.log(folder, f"{v}.csv", speed=v, tones=self.TONES, clock=1.475, seed=v) for v in (36, 48)]
-            done = run("identify", *logs, "--require-conclusive", "-q")
-            self.assertEqual(done.returncode, 5, done.stdout)
-            self.assertTrue(done.stdout.startswith("Cannot tell: "), done.stdout)
-            self.assertIn("the position changes 1.475 times as much as velocity and time say", done.stdout)
-            self.assertIn("multiples 2 to 5 of 10.0", done.stdout)
-            self.assertEqual(run("identify", *logs, "-q").returncode, 0)
-            found = identified(*logs)
-            self.assertEqual([doubt["reason"] for doubt in found["doubts"]], ["clock", "clock"])
-            self.assertIsNone(found["gear_ratio"]["value"])
-            self.assertEqual(orders(found, ("order", "unknown")), [])
+        logs = [self.log(self.folder, f"{v}.csv", speed=v, tones=self.TONES, clock=1.475, seed=v) for v in (36, 48)]
+        done = run("identify", *logs, "--require-conclusive", "-q")
+        self.assertEqual(done.returncode, 5, done.stdout)
+        self.assertTrue(done.stdout.startswith("Cannot tell: "), done.stdout)
+        self.assertIn("the position changes 1.475 times as much as velocity and time say", done.stdout)
+        self.assertIn("multiples 2 to 5 of 10.0", done.stdout)
+        self.assertEqual(run("identify", *logs, "-q").returncode, 0)
+        found = identified(*logs)
+        self.assertEqual([doubt["reason"] for doubt in found["doubts"]], ["clock", "clock"])
+        self.assertIsNone(found["gear_ratio"]["value"])
+        self.assertEqual(orders(found, ("order", "unknown")), [])
 
     def test_two_ratios_that_explain_the_lines_as_well(self):
-        with tempfile.TemporaryDirectory() as folder:
-            run("simulate", "--gear-ratio", "100", "--ripple", "2:0.8Nm", "--ripple", "4:0.5Nm", "--motion",
-                "constant,speed=40deg/s,duration=5s", "--motion", "constant,speed=70deg/s,duration=5s", "--sample-rate", "1kHz",
-                "--noise", "0.05Nm", "-o", "log.csv", folder=folder)
-            done = run("identify", "log.csv", "-o", "joint.json", "--require-conclusive", "-q", folder=folder)
-            self.assertEqual(done.returncode, 5, done.stdout)
-            self.assertIn("cannot tell which of 100 and 200 is the gear ratio", done.stdout)
-            refused = run("design", "joint.json", "-q", folder=folder)
-            self.assertEqual(refused.returncode, 3)
-            self.assertIn("identify could not decide between 100 or 200; give --gear-ratio", refused.stderr)
+        run("simulate", "--gear-ratio", "100", "--ripple", "2:0.8Nm", "--ripple", "4:0.5Nm", "--motion",
+            "constant,speed=40deg/s,duration=5s", "--motion", "constant,speed=70deg/s,duration=5s", "--sample-rate", "1kHz",
+            "--noise", "0.05Nm", "-o", "log.csv", cwd=self.folder)
+        done = run("identify", "log.csv", "-o", "joint.json", "--require-conclusive", "-q", cwd=self.folder)
+        self.assertEqual(done.returncode, 5, done.stdout)
+        self.assertIn("cannot tell which of 100 and 200 is the gear ratio", done.stdout)
+        refused = run("design", "joint.json", "-q", cwd=self.folder)
+        self.assertEqual(refused.returncode, 3)
+        self.assertIn("identify could not decide between 100 or 200; give --gear-ratio", refused.stderr)
 
     def test_a_motor_in_radians_without_a_unit_is_asked_for_its_unit(self):
         noise = random.Random(5)
@@ -197,106 +182,99 @@ class Doubts(unittest.TestCase):
             angle += speed / 1000
             current = 0.4 * math.sin(12 * angle) + 0.3 * math.sin(18 * angle) + noise.gauss(0, 0.02)
             rows.append(f"{k / 1000:.3f},{angle:.5f},{speed},{current:.5f}")
-        with tempfile.TemporaryDirectory() as folder:
-            path = pathlib.Path(folder) / "motor.csv"
-            path.write_text("\n".join(rows) + "\n")
-            done = run("identify", str(path), "--require-conclusive", "-q")
-            self.assertEqual(done.returncode, 5, done.stdout)
-            self.assertTrue(done.stdout.startswith("Cannot tell: if it is deg/s and deg, as assumed, "), done.stdout)
-            self.assertIn("Ripple at 12 (0.4 Nm), 18 (0.3 Nm) cycles per turn of the motor", done.stdout)
-            self.assertIn("--unit velocity=rad/s --side motor settles it", done.stdout)
-            found = identified(str(path))
-            self.assertEqual([doubt["reason"] for doubt in found["doubts"]], ["unit"])
-            self.assertIsNone(found["gear_ratio"]["value"])
+        path = self.folder / "motor.csv"
+        path.write_text("\n".join(rows) + "\n")
+        done = run("identify", str(path), "--require-conclusive", "-q")
+        self.assertEqual(done.returncode, 5, done.stdout)
+        self.assertTrue(done.stdout.startswith("Cannot tell: if it is deg/s and deg, as assumed, "), done.stdout)
+        self.assertIn("Ripple at 12 (0.4 Nm), 18 (0.3 Nm) cycles per turn of the motor", done.stdout)
+        self.assertIn("--unit velocity=rad/s --side motor settles it", done.stdout)
+        found = identified(str(path))
+        self.assertEqual([doubt["reason"] for doubt in found["doubts"]], ["unit"])
+        self.assertIsNone(found["gear_ratio"]["value"])
 
     def test_a_unit_that_nobody_states_is_asked_for_by_every_command_about_orders(self):
-        with tempfile.TemporaryDirectory() as folder:
-            rows = ["time,velocity,torque,position"]
-            noise = random.Random(3)
-            for k in range(6000):
-                t = k / 1000
-                angle = 150 / 0.9 * (1 - math.cos(0.9 * t))
-                torque = 0.8 * math.sin(math.radians(100 * angle)) + 0.5 * math.sin(math.radians(200 * angle)) + noise.gauss(0, 0.05)
-                rows.append(f"{t:.3f},{150 * math.sin(0.9 * t):.5f},{torque:.5f},{angle:.5f}")
-            path = pathlib.Path(folder) / "log.csv"
-            path.write_text("\n".join(rows) + "\n")
-            asked = "--unit velocity=deg/s,position=deg or --unit velocity=rad/s --side motor settles it"
-            done = run("identify", str(path), "--require-conclusive", "-q")
-            self.assertEqual(done.returncode, 5, done.stdout)
-            self.assertIn(asked, done.stdout)
-            spectrum = run("spectrum", str(path), "--domain", "order", "--json", "-q")
-            self.assertIn(asked, json.loads(spectrum.stdout)["doubt"])
-            self.assertIn(asked, run("features", str(path), "-q").stdout)
-            self.assertIn(asked, " ".join(run("recommend", str(path), "-q").stdout.split()))
-            # Of other orders nothing says under which reading they are; 1 and 2 of this ratio show in degrees alone.
-            track = ["track", str(path), "--gear-ratio", "100", "--json", "-q"]
-            self.assertIn(asked, json.loads(run(*track, "--orders", "3").stdout)["verdict"])
-            self.assertNotIn("Cannot tell", json.loads(run(*track, "--orders", "1,2").stdout)["verdict"])
-            stated = run("identify", str(path), "--unit", "velocity=deg/s,position=deg", "--require-conclusive", "-q")
-            self.assertEqual(stated.returncode, 0, stated.stdout)
-            joint = run("identify", str(path), "--unit", "velocity=deg/s,position=deg", "--side", "joint", "--gear-ratio", "1", "-q")
-            self.assertNotIn("--gear-ratio settles", joint.stdout)
+        rows = ["time,velocity,torque,position"]
+        noise = random.Random(3)
+        for k in range(6000):
+            t = k / 1000
+            angle = 150 / 0.9 * (1 - math.cos(0.9 * t))
+            torque = 0.8 * math.sin(math.radians(100 * angle)) + 0.5 * math.sin(math.radians(200 * angle)) + noise.gauss(0, 0.05)
+            rows.append(f"{t:.3f},{150 * math.sin(0.9 * t):.5f},{torque:.5f},{angle:.5f}")
+        path = self.folder / "log.csv"
+        path.write_text("\n".join(rows) + "\n")
+        asked = "--unit velocity=deg/s,position=deg or --unit velocity=rad/s --side motor settles it"
+        done = run("identify", str(path), "--require-conclusive", "-q")
+        self.assertEqual(done.returncode, 5, done.stdout)
+        self.assertIn(asked, done.stdout)
+        spectrum = run("spectrum", str(path), "--domain", "order", "--json", "-q")
+        self.assertIn(asked, json.loads(spectrum.stdout)["doubt"])
+        self.assertIn(asked, run("features", str(path), "-q").stdout)
+        self.assertIn(asked, " ".join(run("recommend", str(path), "-q").stdout.split()))
+        # Of other orders nothing says under which reading they are; 1 and 2 of this ratio show in degrees alone.
+        track = ["track", str(path), "--gear-ratio", "100", "--json", "-q"]
+        self.assertIn(asked, json.loads(run(*track, "--orders", "3").stdout)["verdict"])
+        self.assertNotIn("Cannot tell", json.loads(run(*track, "--orders", "1,2").stdout)["verdict"])
+        stated = run("identify", str(path), "--unit", "velocity=deg/s,position=deg", "--require-conclusive", "-q")
+        self.assertEqual(stated.returncode, 0, stated.stdout)
+        joint = run("identify", str(path), "--unit", "velocity=deg/s,position=deg", "--side", "joint", "--gear-ratio", "1", "-q")
+        self.assertNotIn("--gear-ratio settles", joint.stdout)
 
     def test_speeds_of_a_motor_are_those_of_its_log(self):
-        with tempfile.TemporaryDirectory() as folder:
-            logs = [self.log(folder, f"{v}.csv", speed=v, ripple_nm=0.0, tones=[(2 * v / 360, 0.4)], seed=v) for v in (2400, 3600)]
-            found = identified(*logs, "--side", "motor")
-            fastest = max(line["speed_range_deg_s"][1] for line in found["lines"])
-            self.assertAlmostEqual(fastest, 3600, delta=1)
+        logs = [self.log(self.folder, f"{v}.csv", speed=v, ripple_nm=0.0, tones=[(2 * v / 360, 0.4)], seed=v) for v in (2400, 3600)]
+        found = identified(*logs, "--side", "motor")
+        fastest = max(line["speed_range_deg_s"][1] for line in found["lines"])
+        self.assertAlmostEqual(fastest, 3600, delta=1)
 
     def test_mains_have_one_frequency(self):
-        with tempfile.TemporaryDirectory() as folder:
-            logs = [self.log(folder, f"{v}.csv", speed=v, tones=[(50, 0.3), (100, 0.3), (180, 0.2)], seed=v) for v in (36, 47)]
-            notes = " ".join(line["note"] for line in identified(*logs)["lines"])
-            self.assertIn("mains 50 Hz", notes)
-            self.assertIn("2 times mains 50 Hz", notes)
-            self.assertNotIn("mains 60 Hz", notes)
+        logs = [self.log(self.folder, f"{v}.csv", speed=v, tones=[(50, 0.3), (100, 0.3), (180, 0.2)], seed=v) for v in (36, 47)]
+        notes = " ".join(line["note"] for line in identified(*logs)["lines"])
+        self.assertIn("mains 50 Hz", notes)
+        self.assertIn("2 times mains 50 Hz", notes)
+        self.assertNotIn("mains 60 Hz", notes)
 
     def test_the_family_without_the_position(self):
-        with tempfile.TemporaryDirectory() as folder:
-            logs = [self.log(folder, f"{v}.csv", speed=v, tones=self.TONES, clock=1.475, position=False, seed=v)
-                    for v in (36, 48)]
-            found = identified(*logs)
-            # Tones of one size at 30 Hz, and at 40 Hz at a speed higher by a third, are as much one order as they are two tones.
-            self.assertEqual(orders(found), [])
-            self.assertIsNone(found["gear_ratio"]["value"])
-            self.assertFalse(found["conclusive"])
-            self.assertEqual(sorted(round(line["hz"], -1) for line in found["lines"]), [20, 30, 40, 50])
+        logs = [self.log(self.folder, f"{v}.csv", speed=v, tones=self.TONES, clock=1.475, position=False, seed=v)
+                for v in (36, 48)]
+        found = identified(*logs)
+        # Tones of one size at 30 Hz, and at 40 Hz at a speed higher by a third, are as much one order as they are two tones.
+        self.assertEqual(orders(found), [])
+        self.assertIsNone(found["gear_ratio"]["value"])
+        self.assertFalse(found["conclusive"])
+        self.assertEqual(sorted(round(line["hz"], -1) for line in found["lines"]), [20, 30, 40, 50])
 
     def test_a_joint_that_wears_is_told_log_by_log(self):
-        with tempfile.TemporaryDirectory() as folder:
-            wear = (0.38, 0.52, 0.74, 0.96)
-            logs = [self.log(folder, f"{i}_{v}.csv", speed=v, ripple_nm=nm, seed=10 * i + v)
-                    for i, nm in enumerate(wear) for v in (40, 70)]
-            done = run("identify", *logs, "-q")
-            self.assertIn("the recordings disagree", done.stdout.splitlines()[0])
-            self.assertIn("0_40.csv", done.stdout)
-            one = identified(*logs)["disagreements"][0]
-            self.assertEqual(one["about"], "amplitude")
-            values = [value["value"] for value in one["values"]]
-            self.assertEqual(len(values), len(wear))
-            for value, nm in zip(values, wear):
-                self.assertAlmostEqual(value, nm, delta=0.05 * nm)
+        wear = (0.38, 0.52, 0.74, 0.96)
+        logs = [self.log(self.folder, f"{i}_{v}.csv", speed=v, ripple_nm=nm, seed=10 * i + v)
+                for i, nm in enumerate(wear) for v in (40, 70)]
+        done = run("identify", *logs, "-q")
+        self.assertIn("the recordings disagree", done.stdout.splitlines()[0])
+        self.assertIn("0_40.csv", done.stdout)
+        one = identified(*logs)["disagreements"][0]
+        self.assertEqual(one["about"], "amplitude")
+        values = [value["value"] for value in one["values"]]
+        self.assertEqual(len(values), len(wear))
+        for value, nm in zip(values, wear):
+            self.assertAlmostEqual(value, nm, delta=0.05 * nm)
 
     def test_an_encoder_whose_zero_was_moved_is_told_by_its_phase(self):
-        with tempfile.TemporaryDirectory() as folder:
-            logs = [self.log(folder, f"{i}.csv", speed=60, ripple_nm=0.5, seed=i) for i in range(3)]
-            moved = pathlib.Path(logs[2])
-            rows = [row.split(",") for row in moved.read_text().split()]
-            moved.write_text("\n".join(",".join(row[:3] + [row[3] if k == 0 else f"{float(row[3]) + 0.9:.6f}"])
-                                       for k, row in enumerate(rows)) + "\n")
-            self.assertEqual(identified(*logs[:2])["disagreements"], [])
-            one, = identified(*logs)["disagreements"]
-            self.assertEqual(one["about"], "phase")
-            values = [value["value"] for value in one["values"]]
-            self.assertAlmostEqual(values[0] - values[1], 0, delta=5)
-            self.assertAlmostEqual((values[0] - values[2]) % 360, 90, delta=5)
-            lines = run("identify", *logs, "-q").stdout.splitlines()
-            self.assertIn("the recordings disagree: the phase of ", lines[0])
-            self.assertTrue(any(line.endswith("2.csv") for line in lines))
+        logs = [self.log(self.folder, f"{i}.csv", speed=60, ripple_nm=0.5, seed=i) for i in range(3)]
+        moved = pathlib.Path(logs[2])
+        rows = [row.split(",") for row in moved.read_text().split()]
+        moved.write_text("\n".join(",".join(row[:3] + [row[3] if k == 0 else f"{float(row[3]) + 0.9:.6f}"])
+                                   for k, row in enumerate(rows)) + "\n")
+        self.assertEqual(identified(*logs[:2])["disagreements"], [])
+        one, = identified(*logs)["disagreements"]
+        self.assertEqual(one["about"], "phase")
+        values = [value["value"] for value in one["values"]]
+        self.assertAlmostEqual(values[0] - values[1], 0, delta=5)
+        self.assertAlmostEqual((values[0] - values[2]) % 360, 90, delta=5)
+        lines = run("identify", *logs, "-q").stdout.splitlines()
+        self.assertIn("the recordings disagree: the phase of ", lines[0])
+        self.assertTrue(any(line.endswith("2.csv") for line in lines))
 
 
-class FixedTones(unittest.TestCase):
+class FixedTones(Case):
     """The shortest sweep of this motion has 2.7 cycles of the first order, which its smooth part takes some of."""
 
     def found_of(self, folder, *more):
@@ -308,14 +286,13 @@ class FixedTones(unittest.TestCase):
         return identified(log)
 
     def test_ripple_where_the_speed_has_an_extremum_is_no_tone_and_a_tone_is_one(self):
-        with tempfile.TemporaryDirectory() as folder:
-            for seed in ("1", "2", "3"):
-                found = self.found_of(folder, "--seed", seed)
-                self.assertEqual([line["order"] for line in found["lines"]], [1, 2], found["verdict"])
-                tone = "tone,frequency_hz=31.7,amplitude_nm=0.05,phase_deg=0"
-                both = self.found_of(folder, "--seed", seed, "--effect", tone)
-                self.assertEqual([line["kind"] for line in both["lines"]], ["order", "order", "tone"], both["verdict"])
-                self.assertAlmostEqual(both["lines"][2]["hz"], 31.7, delta=0.1)
+        for seed in ("1", "2", "3"):
+            found = self.found_of(self.folder, "--seed", seed)
+            self.assertEqual([line["order"] for line in found["lines"]], [1, 2], found["verdict"])
+            tone = "tone,frequency_hz=31.7,amplitude_nm=0.05,phase_deg=0"
+            both = self.found_of(self.folder, "--seed", seed, "--effect", tone)
+            self.assertEqual([line["kind"] for line in both["lines"]], ["order", "order", "tone"], both["verdict"])
+            self.assertAlmostEqual(both["lines"][2]["hz"], 31.7, delta=0.1)
 
 
 class Spectra(unittest.TestCase):
@@ -357,7 +334,7 @@ class Spectra(unittest.TestCase):
         self.assertIn("nowhere moves", still.stderr)
 
 
-class AnyTravelAnyRatio(unittest.TestCase):
+class AnyTravelAnyRatio(Case):
     """Lines from four cycles per sweep, or once per output turn, on, and a bound for what was searched."""
 
     def simulated(self, folder, ratio, *motions, rate="1kHz", ripple=("1:0.8Nm:30deg", "2:0.5Nm"), noise="0.05Nm", seed=1):
@@ -371,49 +348,45 @@ class AnyTravelAnyRatio(unittest.TestCase):
         return [f"poly6,to={angle}deg,duration={seconds}s" for _ in range(times) for angle in (degrees, 0)]
 
     def test_low_ratios_over_short_travel(self):
-        with tempfile.TemporaryDirectory() as folder:
-            for ratio, travel in ((30, 60), (50, 60), (40, 115), (100, 38)):
-                found = identified(self.simulated(folder, ratio, *self.to_and_fro(travel, travel / 30)))
-                lines = {round(line["order_output"] / ratio): line["amplitude_nm"] for line in found["lines"] if line["order_output"]}
-                self.assertAlmostEqual(lines.get(1, 0.0), 0.8, delta=0.05, msg=(ratio, travel, found["verdict"]))
-                self.assertAlmostEqual(lines.get(2, 0.0), 0.5, delta=0.05, msg=(ratio, travel, found["verdict"]))
+        for ratio, travel in ((30, 60), (50, 60), (40, 115), (100, 38)):
+            found = identified(self.simulated(self.folder, ratio, *self.to_and_fro(travel, travel / 30)))
+            lines = {round(line["order_output"] / ratio): line["amplitude_nm"] for line in found["lines"] if line["order_output"]}
+            self.assertAlmostEqual(lines.get(1, 0.0), 0.8, delta=0.05, msg=(ratio, travel, found["verdict"]))
+            self.assertAlmostEqual(lines.get(2, 0.0), 0.5, delta=0.05, msg=(ratio, travel, found["verdict"]))
 
     def test_ratios_below_twenty(self):
-        with tempfile.TemporaryDirectory() as folder:
-            for ratio in (6, 9, 16):
-                found = identified(self.simulated(folder, ratio, "constant,speed=300deg/s,duration=4s", "constant,speed=200deg/s,duration=4s",
-                                                  "constant,speed=100deg/s,duration=6s"))
-                seen = sorted(line["order_output"] for line in found["lines"] if line["kind"] == "order")
-                self.assertEqual(len(seen), 2, found["verdict"])
-                self.assertAlmostEqual(seen[0], ratio, delta=0.05)
-                self.assertAlmostEqual(seen[1], 2 * ratio, delta=0.05)
-                value = found["gear_ratio"]["value"]
-                self.assertTrue(value is None or abs(value - ratio) < 0.05, found["verdict"])
-                self.assertTrue(value is not None or not found["conclusive"])
+        for ratio in (6, 9, 16):
+            found = identified(self.simulated(self.folder, ratio, "constant,speed=300deg/s,duration=4s", "constant,speed=200deg/s,duration=4s",
+                                              "constant,speed=100deg/s,duration=6s"))
+            seen = sorted(line["order_output"] for line in found["lines"] if line["kind"] == "order")
+            self.assertEqual(len(seen), 2, found["verdict"])
+            self.assertAlmostEqual(seen[0], ratio, delta=0.05)
+            self.assertAlmostEqual(seen[1], 2 * ratio, delta=0.05)
+            value = found["gear_ratio"]["value"]
+            self.assertTrue(value is None or abs(value - ratio) < 0.05, found["verdict"])
+            self.assertTrue(value is not None or not found["conclusive"])
 
     def test_a_bound_names_its_range_and_holds_there(self):
-        with tempfile.TemporaryDirectory() as folder:
-            motions = self.to_and_fro(200, 1.0, 10)
-            found = identified(self.simulated(folder, 100, *motions, rate="77Hz", ripple=(), noise="0.1Nm"))
-            self.assertEqual((found["finding"], found["lines"]), ("nothing", []))
-            searched = found["searched"]
-            # 77 rows a sweep, 20 sweeps: least squares of one amplitude has a standard error of 0.1 Nm sqrt(2 / 1540).
-            self.assertGreater(searched["detectable_nm"], 3 * 0.1 * math.sqrt(2 / 1540))
-            self.assertLess(searched["lowest_order"], searched["highest_order"])
-            self.assertIn(f"to {searched['highest_order']:.4g} cycles per output turn", found["verdict"])
-            self.assertEqual([bound["detectable_nm"] for bound in searched["bounds"]],
-                             sorted((bound["detectable_nm"] for bound in searched["bounds"]), reverse=True))
-            middle = math.sqrt(searched["lowest_order"] * searched["highest_order"])
-            path = self.simulated(folder, middle, *motions, rate="77Hz", ripple=(f"1:{2 * searched['detectable_nm']:.4g}Nm",), noise="0.1Nm")
-            lines = [line["order_output"] for line in identified(path)["lines"] if line["kind"] in ("order", "unknown")]
-            self.assertTrue(any(abs(order - middle) < 2.0 for order in lines), lines)
+        motions = self.to_and_fro(200, 1.0, 10)
+        found = identified(self.simulated(self.folder, 100, *motions, rate="77Hz", ripple=(), noise="0.1Nm"))
+        self.assertEqual((found["finding"], found["lines"]), ("nothing", []))
+        searched = found["searched"]
+        # 77 rows a sweep, 20 sweeps: least squares of one amplitude has a standard error of 0.1 Nm sqrt(2 / 1540).
+        self.assertGreater(searched["detectable_nm"], 3 * 0.1 * math.sqrt(2 / 1540))
+        self.assertLess(searched["lowest_order"], searched["highest_order"])
+        self.assertIn(f"to {searched['highest_order']:.4g} cycles per output turn", found["verdict"])
+        self.assertEqual([bound["detectable_nm"] for bound in searched["bounds"]],
+                         sorted((bound["detectable_nm"] for bound in searched["bounds"]), reverse=True))
+        middle = math.sqrt(searched["lowest_order"] * searched["highest_order"])
+        path = self.simulated(self.folder, middle, *motions, rate="77Hz", ripple=(f"1:{2 * searched['detectable_nm']:.4g}Nm",), noise="0.1Nm")
+        lines = [line["order_output"] for line in identified(path)["lines"] if line["kind"] in ("order", "unknown")]
+        self.assertTrue(any(abs(order - middle) < 2.0 for order in lines), lines)
 
     def test_a_joint_that_hardly_moves_allows_no_claim(self):
-        with tempfile.TemporaryDirectory() as folder:
-            found = identified(self.simulated(folder, 100, "poly6,to=2deg,duration=1s", ripple=()))
-            self.assertIsNone(found["searched"])
-            self.assertFalse(found["conclusive"])
-            self.assertTrue(found["verdict"].startswith("Cannot tell"), found["verdict"])
+        found = identified(self.simulated(self.folder, 100, "poly6,to=2deg,duration=1s", ripple=()))
+        self.assertIsNone(found["searched"])
+        self.assertFalse(found["conclusive"])
+        self.assertTrue(found["verdict"].startswith("Cannot tell"), found["verdict"])
 
 
 @unittest.skipUnless((LOGS / "README.md").is_file(), "the real logs are not here")
@@ -504,7 +477,3 @@ class RealLogs(unittest.TestCase):
         hinted = identified(str(LOGS / "kuka_kr300_trajB_all.csv"), "--joint", "j4", "--gear-ratio", "221")
         self.assertAlmostEqual(hinted["gear_ratio"]["value"], 221.0, delta=0.003 * 221)
         self.assertIn(8, [line["order"] for line in hinted["lines"]])
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -3,17 +3,10 @@
 
 import hashlib
 import json
-import os
-import pathlib
-import subprocess
-import sys
-import tempfile
-import unittest
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
-from test_diagnose_arm import DH, DOWN, write_log  # noqa: E402
+from commands import SharedCase, good
+from test_diagnose_arm import DH, DOWN, write_log
 
-TOOL = os.environ["RIPPLENOTCH"]
 ARM = f"dh,file=dh.csv,{DOWN}"
 
 
@@ -22,12 +15,10 @@ def without_head(document):
             ("schema", "tool", "version", "command", "inputs", "recordings", "joint")}
 
 
-class Improved(unittest.TestCase):
+class Improved(SharedCase):
     @classmethod
     def setUpClass(cls):
-        cls.scratch = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(cls.scratch.cleanup)
-        cls.folder = pathlib.Path(cls.scratch.name)
+        super().setUpClass()
         (cls.folder / "dh.csv").write_text(DH)
         write_log(cls.folder / "log.csv", 1, coulomb_nm=1.2, seconds=20.0)
         write_log(cls.folder / "other.csv", 2, coulomb_nm=1.2, seconds=20.0)
@@ -37,15 +28,8 @@ class Improved(unittest.TestCase):
                                            "--validate", "other.csv", "-o", f"{joint}.json")
 
     @classmethod
-    def tool(cls, *words):
-        return subprocess.run([TOOL, *map(str, words)], cwd=cls.folder, capture_output=True, text=True, timeout=300)
-
-    @classmethod
     def json_of(cls, *words):
-        done = cls.tool(*words, "--json", "-q", "--force")
-        if done.returncode:
-            raise AssertionError(done.stderr)
-        return json.loads(done.stdout)
+        return json.loads(good(*words, "--json", "-q", "--force", cwd=cls.folder).stdout)
 
     def residual_nm(self, *words):
         return self.json_of("simulate", *words, "-o", "again.csv")["along_log"]["residual_rms_nm"]
@@ -89,18 +73,18 @@ class Improved(unittest.TestCase):
         (self.folder / "open.json").write_text(json.dumps(model))
         again = self.json_of("diagnose", "log.csv", "--model", "open.json")
         self.assertEqual(again["named"], ["coulomb-friction"])
-        done = self.tool("simulate", "--model", "open.json", "log.csv")
+        done = self.run_tool("simulate", "--model", "open.json", "log.csv")
         self.assertEqual(done.returncode, 2)
         self.assertIn("arm.links", done.stderr)
 
     def test_a_residual_is_looked_into(self):
         strongest = []
         for words in (("--joint", "j2"), ("--residual", "j2.json"), ("--residual", "j2.json", "--segment", "4s")):
-            done = self.tool("spectrum", "log.csv", *words)
+            done = self.run_tool("spectrum", "log.csv", *words)
             self.assertEqual(done.returncode, 0, done.stderr)
             strongest.append(max(float(line.split(",")[1]) for line in done.stdout.splitlines()[1:]))
         self.assertLess(max(strongest[1:]), 0.02 * strongest[0])
-        done = self.tool("identify", "log.csv", "--residual", "j2.json", "-v")
+        done = self.run_tool("identify", "log.csv", "--residual", "j2.json", "-v")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertRegex(done.stderr, r"log.csv: [\d.]+ Nm rms of torque, 0.0\d+ less what is predicted")
 
@@ -115,21 +99,21 @@ class Improved(unittest.TestCase):
             models = [json.loads((self.folder / name).read_text()) for name in (f"all_{joint}.json", f"{joint}.json")]
             self.assertEqual(*(json.dumps(without_head(model)) for model in models))
         (self.folder / "every.json").write_text(json.dumps(every))
-        page = self.tool("report", "every.json", "-o", "every.html", "--no-plotly")
+        page = self.run_tool("report", "every.json", "-o", "every.html", "--no-plotly")
         self.assertEqual(page.returncode, 0, page.stderr)
         for one in every["joints"]:
             self.assertIn(f'diagnosis: every.json, joint {one["joint"]}', (self.folder / "every.html").read_text())
-        told = self.tool(*words, "--joint", "all")
+        told = self.run_tool(*words, "--joint", "all")
         self.assertEqual(told.returncode, 0, told.stderr)
         table = told.stdout.split("\n\n")[-1].splitlines()
         self.assertRegex(table[0], r"^joint +before, Nm +after, Nm +validation before +validation after +verdict +named$")
         self.assertEqual([line.split()[0] for line in table[1:]], ["j1", "j2"])
         for joint in ("j1", "j2"):
-            alone = self.tool(*words, "--joint", joint).stdout
+            alone = self.run_tool(*words, "--joint", joint).stdout
             self.assertIn(f"joint {joint}\n{alone}\n", told.stdout)
 
     def test_the_story_tells_the_gap_by_band(self):
-        told = self.tool("diagnose", "log.csv", "--joint", "j2", "--arm", ARM, "--gear-ratio", "100").stdout
+        told = self.run_tool("diagnose", "log.csv", "--joint", "j2", "--arm", ARM, "--gear-ratio", "100").stdout
         rows = told[told.index("\nfrequency") + 1:].splitlines()
         self.assertRegex(rows[0], r"^frequency +torque, Nm rms +beside what is given +and the model$")
         self.assertEqual([row[:12].strip() for row in rows[1:4]], ["below 1 Hz", "1 to 10 Hz", "above 10 Hz"])
@@ -148,10 +132,6 @@ class Improved(unittest.TestCase):
                 (("diagnose", "log.csv", "--model", "j1.json", "--arm", ARM), 2, "--arm: the model states it already"),
                 (("diagnose", "log.csv", "--model", "j1.json", "--accept", "hysteresis"), 2, "--accept hysteresis")):
             with self.subTest(words=words):
-                done = self.tool(*words)
+                done = self.run_tool(*words)
                 self.assertEqual(done.returncode, code, done.stderr)
                 self.assertIn(part, done.stderr)
-
-
-if __name__ == "__main__":
-    unittest.main()

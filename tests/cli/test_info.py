@@ -3,25 +3,14 @@
 
 import json
 import math
-import os
-import pathlib
 import subprocess
-import tempfile
 import unittest
 
-TOOL = os.environ["RIPPLENOTCH"]
-SOURCE = pathlib.Path(os.environ["RIPPLENOTCH_SOURCE"])
-LOGS = pathlib.Path(os.environ.get("RIPPLENOTCH_LOGS", "no-such-folder"))
+from commands import LOGS, SOURCE, TOOL, Case, good, run
 
 
-def run(*words, data=None):
-    return subprocess.run([TOOL, *map(str, words)], capture_output=True, input=data, timeout=60)
-
-
-def info(*words, data=None):
-    done = run("info", "--json", *words, data=data)
-    assert done.returncode == 0, done.stderr
-    return json.loads(done.stdout)
+def info(*words, stdin=None):
+    return json.loads(good("info", "--json", *words, stdin=stdin).stdout)
 
 
 def swing(clock=1.0, rows=4000, torque=True):
@@ -33,12 +22,12 @@ def swing(clock=1.0, rows=4000, torque=True):
         if torque:
             cells.append(3 * math.sin(2.1 * t))
         lines.append(",".join(f"{cell:.6f}" for cell in cells))
-    return ("\n".join(lines) + "\n").encode()
+    return "\n".join(lines) + "\n"
 
 
-class Fields(unittest.TestCase):
+class Fields(Case):
     def test_the_fields_that_other_tools_rely_on(self):
-        got = info("-", data=swing())
+        got = info("-", stdin=swing())
         self.assertEqual(got["schema"], "ripplenotch/info/1")
         self.assertEqual(got["rows"], 4000)
         self.assertAlmostEqual(got["duration_s"], 7.998, places=9)
@@ -57,41 +46,40 @@ class Fields(unittest.TestCase):
         self.assertTrue(all(use["possible"] for use in got["uses"]))
 
     def test_the_same_log_gives_the_same_bytes(self):
-        self.assertEqual(run("info", "--json", "-", data=swing()).stdout, run("info", "--json", "-", data=swing()).stdout)
+        self.assertEqual(run("info", "--json", "-", stdin=swing()).stdout, run("info", "--json", "-", stdin=swing()).stdout)
 
     def test_a_wrong_nominal_clock_is_a_warning_that_names_the_factor(self):
-        got = info("-", data=swing(clock=1 / 1.47))
+        got = info("-", stdin=swing(clock=1 / 1.47))
         self.assertAlmostEqual(got["clock_factor"], 1.47, delta=0.003)
         self.assertEqual(len(got["warnings"]), 1)
         self.assertIn("1.47", got["warnings"][0])
         self.assertIn("the sample rate is then 500 Hz, not 735 Hz", got["warnings"][0])
-        text = run("info", "-", data=swing(clock=1 / 1.47)).stdout.decode()
+        text = run("info", "-", stdin=swing(clock=1 / 1.47)).stdout
         self.assertIn("1.47", text.split("warnings")[1])
 
     def test_a_stated_rate_is_checked_as_well(self):
-        got = info("-", "--sample-rate", "735Hz", data=swing())
+        got = info("-", "--sample-rate", "735Hz", stdin=swing())
         self.assertEqual(got["sample_rate_hz"], 735)
         self.assertAlmostEqual(got["clock_factor"], 1.47, delta=0.003)
 
     def test_a_gap_is_listed_and_left_out_of_the_rate(self):
-        rows = swing().decode().splitlines()
+        rows = swing().splitlines()
         late = [f"{float(r.split(',')[0]) + 5:.6f}," + r.split(",", 1)[1] for r in rows[2001:]]
-        got = info("-", data=("\n".join(rows[:2001] + late) + "\n").encode())
+        got = info("-", stdin="\n".join(rows[:2001] + late) + "\n")
         self.assertEqual(len(got["gaps"]), 1)
         self.assertEqual(got["gaps"][0]["row"], 1999)
         self.assertAlmostEqual(got["gaps"][0]["to_s"] - got["gaps"][0]["from_s"], 5.002, places=6)
         self.assertAlmostEqual(got["sample_rate_hz"], 500.0, places=6)
 
     def test_several_logs_are_one_object(self):
-        with tempfile.TemporaryDirectory() as folder:
-            for name in ("a.csv", "b.csv"):
-                pathlib.Path(folder, name).write_bytes(swing())
-            got = info(pathlib.Path(folder, "a.csv"), pathlib.Path(folder, "b.csv"))
-            self.assertEqual([log["rows"] for log in got["logs"]], [4000, 4000])
-            self.assertEqual(len(got["inputs"][0]["sha256"]), 64)
+        for name in ("a.csv", "b.csv"):
+            (self.folder / name).write_text(swing())
+        got = info(self.folder / "a.csv", self.folder / "b.csv")
+        self.assertEqual([log["rows"] for log in got["logs"]], [4000, 4000])
+        self.assertEqual(len(got["inputs"][0]["sha256"]), 64)
 
 
-class Joints(unittest.TestCase):
+class Joints(Case):
     def test_all_joints_are_described_without_asking(self):
         got = info(SOURCE / "data/dialects/named_joints.csv")
         self.assertEqual([joint["joint"] for joint in got["joints"]], ["shoulder_pan_joint", "wrist_1_joint"])
@@ -106,7 +94,7 @@ class Joints(unittest.TestCase):
 
 class Lacking(unittest.TestCase):
     def test_a_log_without_torque_is_described(self):
-        got = info("-", data=swing(torque=False))
+        got = info("-", stdin=swing(torque=False))
         self.assertAlmostEqual(got["clock_factor"], 1.0, places=4)
         self.assertIsNone(got["joints"][0]["torque_nm"])
         self.assertEqual({use["name"]: use["possible"] for use in got["uses"]},
@@ -115,14 +103,14 @@ class Lacking(unittest.TestCase):
     def test_a_log_of_unknown_columns_is_described_and_told_to_be_of_no_use_as_it_is(self):
         rows = "\n".join(f"{k},{0.37 * k % 5:.3f},{0.11 * k % 3:.3f}" for k in range(100)) + "\n"
         for data in ("a,b,c\n" + rows, rows):
-            got = info("-", data=data.encode())
+            got = info("-", stdin=data)
             self.assertEqual({column["role"] for column in got["columns"]}, {"other"})
             self.assertEqual({use["possible"] for use in got["uses"]}, {False})
             self.assertIn("no command can use this log as it is", got["warnings"][0])
             self.assertIn("--columns time=NAME,velocity=NAME,torque=NAME", got["warnings"][0])
-            text = run("info", "-", data=data.encode()).stdout.decode()
+            text = run("info", "-", stdin=data).stdout
             self.assertIn("no column known as velocity, torque or position", text.split("\n")[0])
-            named = info("-", "--columns", "time=1,velocity=2,torque=3", "--unit", "time=ms", data=data.encode())
+            named = info("-", "--columns", "time=1,velocity=2,torque=3", "--unit", "time=ms", stdin=data)
             self.assertEqual([column["role"] for column in named["columns"]], ["time", "velocity", "torque"])
             self.assertFalse([text for text in named["warnings"] if "no column is known" in text])
 
@@ -142,13 +130,13 @@ class Dialects(unittest.TestCase):
                 "libfranka_style": ["--joint", "0", "--unit", "time=ms"], "named_joints": ["--joint", "wrist_1_joint"]}
         for path in sorted((SOURCE / "data/dialects").glob("*.csv")):
             with self.subTest(path.name):
-                done = run("filter", path, "--method", "none", "-q", *more.get(path.stem, []))
+                done = run("filter", path, "--method", "none", "-q", *more.get(path.stem, []), text=False)
                 self.assertEqual(done.returncode, 0, done.stderr)
                 self.assertEqual(done.stdout, path.read_bytes())
 
     def test_the_option_line_of_verbose_forces_the_same_reading(self):
         path = SOURCE / "data/dialects/semicolon_decimal_comma_crlf.csv"
-        line = run("info", "-v", path).stderr.decode().split("read as if with ")[1].strip()
+        line = run("info", "-v", path).stderr.split("read as if with ")[1].strip()
         again = subprocess.run(f"'{TOOL}' info --json '{path}' {line}", shell=True, capture_output=True, timeout=60)
         self.assertEqual(again.returncode, 0, again.stderr)
         self.assertEqual(json.loads(again.stdout)["options"], line)
@@ -182,7 +170,3 @@ class RealLogs(unittest.TestCase):
         ur3e = info(LOGS / "raw/ur3e_rad_L1L2_original_CR_line_ends.csv")
         self.assertIn("UR RTDE", " ".join(one["reason"] for one in ur3e["recordings"][0]["inferences"]))
         self.assertEqual(ur3e["recordings"][0]["assumptions"], [])
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -2,13 +2,13 @@
 """A log that arrives while it is written: how much of it `filter` waits for, and that the clock on the wall does not matter."""
 
 import math
-import os
 import select
 import subprocess
 import time
 import unittest
 
-TOOL = os.environ["RIPPLENOTCH"]
+from commands import TOOL
+
 FILTER = [TOOL, "filter", "-", "--method", "lowpass,cutoff=13rad/s", "-q"]
 OPENING_ROWS = 16384
 STATED = ["--unit", "velocity=rad/s,position=rad"]
@@ -61,7 +61,3 @@ class LivePipe(unittest.TestCase):
                     time.sleep(0.7)
                 slow, _ = run.communicate("".join(lines[17000:]).encode())
             self.assertEqual(slow, at_once)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -7,20 +7,15 @@ import functools
 import itertools
 import json
 import math
-import os
-import pathlib
 import random
 import re
 import resource
 import struct
-import subprocess
-import tempfile
 import unittest
 
-from sanitizers import sanitized
+from commands import LOGS, TOOL, Case, run, sanitized
 
-TOOL = os.environ["RIPPLENOTCH"]
-LOGS = pathlib.Path(os.environ.get("RIPPLENOTCH_LOGS", ""))
+
 RATIO, RATE = 100.0, 500.0
 EPOCH_NS = 1_700_000_000_123_456_789
 DEG = math.pi / 180.0
@@ -235,38 +230,36 @@ DIALECTS = {
 
 
 def identify(path, *options):
-    return subprocess.run([TOOL, "identify", str(path), "--json", "-q", "--require-conclusive", *options],
-                          capture_output=True, text=True, timeout=120)
+    return run("identify", path, "--json", "-q", "--require-conclusive", *options)
 
 
-class OneLogInManyDialects(unittest.TestCase):
+class OneLogInManyDialects(Case):
     def test_there_are_more_than_thirty_four(self):
         self.assertGreaterEqual(len(DIALECTS), 34)
 
     def test_right_or_refused_with_the_option_that_makes_it_right(self):
         right, refused = [], []
-        with tempfile.TemporaryDirectory() as folder:
-            for name, (content, option) in DIALECTS.items():
-                with self.subTest(name):
-                    path = pathlib.Path(folder) / ("log.npy" if name.startswith("npy") else "log.csv")
-                    path.write_bytes(content)
-                    done = identify(path)
-                    if done.returncode == 0:
-                        ratio = json.loads(done.stdout)["gear_ratio"]["value"]
-                        self.assertIsNotNone(ratio, done.stdout[:600])
-                        self.assertAlmostEqual(ratio, RATIO, delta=0.5, msg=done.stdout[:600])
-                        right.append(name)
-                        continue
-                    self.assertIn(done.returncode, (3, 5), done.stderr)
-                    said = done.stdout + done.stderr
-                    self.assertIsNotNone(option, f"refused: {said[:900]}")
-                    self.assertIn(option[0], said)
-                    if option[0] == "--unit":
-                        self.assertIn(option[1], said)
-                    again = identify(path, *option)
-                    self.assertEqual(again.returncode, 0, again.stdout[:900] + again.stderr)
-                    self.assertAlmostEqual(json.loads(again.stdout)["gear_ratio"]["value"], RATIO, delta=0.5)
-                    refused.append(name)
+        for name, (content, option) in DIALECTS.items():
+            with self.subTest(name):
+                path = self.folder / ("log.npy" if name.startswith("npy") else "log.csv")
+                path.write_bytes(content)
+                done = identify(path)
+                if done.returncode == 0:
+                    ratio = json.loads(done.stdout)["gear_ratio"]["value"]
+                    self.assertIsNotNone(ratio, done.stdout[:600])
+                    self.assertAlmostEqual(ratio, RATIO, delta=0.5, msg=done.stdout[:600])
+                    right.append(name)
+                    continue
+                self.assertIn(done.returncode, (3, 5), done.stderr)
+                said = done.stdout + done.stderr
+                self.assertIsNotNone(option, f"refused: {said[:900]}")
+                self.assertIn(option[0], said)
+                if option[0] == "--unit":
+                    self.assertIn(option[1], said)
+                again = identify(path, *option)
+                self.assertEqual(again.returncode, 0, again.stdout[:900] + again.stderr)
+                self.assertAlmostEqual(json.loads(again.stdout)["gear_ratio"]["value"], RATIO, delta=0.5)
+                refused.append(name)
         print(f"\n{len(right)} right without an option, {len(refused)} refused with it: {', '.join(refused)}")
 
 
@@ -277,8 +270,7 @@ class ChannelsWithClocksOfTheirOwn(unittest.TestCase):
         text = twincat("ms").decode()
         head, rows = text[:text.index("0\t")], text[text.index("0\t"):].splitlines()
         rows = ["\t".join(change(k, row.split("\t"))) for k, row in enumerate(rows) if "\t" in row]
-        return subprocess.run([TOOL, "info", "-", "--json", *words], input=head + "\n".join(rows) + "\nEOF\n",
-                              capture_output=True, text=True, timeout=60)
+        return run("info", "-", "--json", *words, stdin=head + "\n".join(rows) + "\nEOF\n")
 
     def test_one_clock_in_several_columns_is_read(self):
         done = self.info()
@@ -303,24 +295,15 @@ class ChannelsWithClocksOfTheirOwn(unittest.TestCase):
         self.assertIn("'Axis1.ActVelo' (column 2)", self.info(velocity_late, "--columns", "time=3").stderr)
 
 
-
-class WhatIsSaidWithoutAUnit(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
-
-    def tool(self, *words):
-        return subprocess.run([TOOL, *words], cwd=self.folder, capture_output=True, text=True, timeout=300)
-
+class WhatIsSaidWithoutAUnit(Case):
     def test_the_first_sentence_says_that_nothing_is_told_and_quiet_does_not_hide_it(self):
         (self.folder / "log.csv").write_bytes(DIALECTS["plain words"][0])
-        done = self.tool("identify", "log.csv", "-q")
+        done = self.run_tool("identify", "log.csv", "-q")
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         self.assertTrue(done.stdout.startswith("Cannot tell: if it is rad/s and rad, as assumed, ripple"), done.stdout)
         self.assertIn("; if the speed is in deg/s, ", done.stdout)
-        self.assertEqual(self.tool("identify", "log.csv", "--require-conclusive").returncode, 5)
-        found = json.loads(self.tool("identify", "log.csv", "--json", "-q").stdout)
+        self.assertEqual(self.run_tool("identify", "log.csv", "--require-conclusive").returncode, 5)
+        found = json.loads(self.run_tool("identify", "log.csv", "--json", "-q").stdout)
         self.assertFalse(found["conclusive"])
         self.assertIsNone(found["gear_ratio"]["value"])
         self.assertEqual(found["recording"]["assumptions"][0]["settle_with"], "--unit velocity=rad/s,position=rad")
@@ -329,10 +312,10 @@ class WhatIsSaidWithoutAUnit(unittest.TestCase):
         for name in ("plain words", "motor velocity by position", "timestamp in ns", "ROS 2, sec and nanosec"):
             with self.subTest(name):
                 (self.folder / "log.csv").write_bytes(DIALECTS[name][0])
-                seen = json.loads(self.tool("info", "log.csv", "--json").stdout)
-                done = self.tool("filter", "log.csv", "--method", "none", "-o", "out.npy", "--force", "-q")
+                seen = json.loads(self.run_tool("info", "log.csv", "--json").stdout)
+                done = self.run_tool("filter", "log.csv", "--method", "none", "-o", "out.npy", "--force", "-q")
                 self.assertEqual(done.returncode, 0, done.stderr)
-                written = json.loads(self.tool("info", "out.npy", "--json").stdout)
+                written = json.loads(self.run_tool("info", "out.npy", "--json").stdout)
                 self.assertAlmostEqual(written["sample_rate_hz"], seen["sample_rate_hz"], delta=1e-6)
                 for side in ("min", "max"):
                     self.assertAlmostEqual(written["speed_deg_s"][side], seen["speed_deg_s"][side], delta=1e-6)
@@ -342,17 +325,17 @@ class WhatIsSaidWithoutAUnit(unittest.TestCase):
 
     def test_motion_of_the_motor_without_a_ratio_is_refused_where_it_would_be_misread(self):
         (self.folder / "log.csv").write_bytes(DIALECTS["motor velocity by name"][0])
-        done = self.tool("filter", "log.csv", "--method", "none", "-o", "out.csv")
+        done = self.run_tool("filter", "log.csv", "--method", "none", "-o", "out.csv")
         self.assertEqual(done.returncode, 3)
         self.assertIn("--gear-ratio", done.stderr)
-        found = json.loads(self.tool("identify", "log.csv", "--json", "-q").stdout)
+        found = json.loads(self.run_tool("identify", "log.csv", "--json", "-q").stdout)
         self.assertTrue(found["verdict"].startswith("Cannot tell the gear ratio: "), found["verdict"])
         self.assertEqual(sorted(round(line["order"]) for line in found["lines"]), [1, 2])
 
     def test_lines_above_a_table_can_be_skipped_and_stay_in_what_is_written(self):
         text = table("time_s|velocity_deg_s|torque_nm", "t|deg/s|Nm").decode()
         (self.folder / "log.csv").write_text("run 7, warm, 0.5\nsecond line, 1, 2\n" + text)
-        done = self.tool("filter", "log.csv", "--skip-lines", "2", "--method", "none", "-o", "out.csv", "-q")
+        done = self.run_tool("filter", "log.csv", "--skip-lines", "2", "--method", "none", "-o", "out.csv", "-q")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertTrue((self.folder / "out.csv").read_text().startswith("run 7, warm, 0.5\nsecond line, 1, 2\ntime_s,"))
 
@@ -360,9 +343,8 @@ class WhatIsSaidWithoutAUnit(unittest.TestCase):
     def test_a_clock_in_a_wrong_unit_makes_no_memory_grow(self):
         (self.folder / "log.csv").write_bytes(DIALECTS["timestamp in ns"][0])
         limit = 1 << 30
-        done = subprocess.run([TOOL, "identify", "log.csv", "--unit", "timestamp=s", "-q"], cwd=self.folder,
-                              capture_output=True, text=True, timeout=120,
-                              preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)))
+        done = self.run_tool("identify", "log.csv", "--unit", "timestamp=s", "-q",
+                             preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)))
         self.assertIn(done.returncode, (0, 3), done.stderr)
 
     def test_a_diagnosis_without_units_is_the_one_with_units_or_none(self):
@@ -372,16 +354,16 @@ class WhatIsSaidWithoutAUnit(unittest.TestCase):
         motion = ["--motion", "rest,duration=0.4s,from=0deg"]
         for target, seconds in ((120, 1.4), (-60, 1.9), (30, 2.4), (-40, 1.4)):
             motion += ["--motion", f"poly6,to={target}deg,duration={seconds}s", "--motion", "rest,duration=0.4s"]
-        done = self.tool("simulate", "--gear-ratio", "100", "--inertia", "0.4", "--ripple", "1:0.7Nm:30deg", "--ripple",
+        done = self.run_tool("simulate", "--gear-ratio", "100", "--inertia", "0.4", "--ripple", "1:0.7Nm:30deg", "--ripple",
                          "2:0.4Nm:-60deg", "--effect", "coulomb-friction,torque_nm=0.8,width_deg_s=2", *motion,
                          "--sample-rate", "250Hz", "--noise", "0.05Nm", "--velocity-noise", "0.05deg/s", "--seed", "3",
                          "-o", "log.csv", "--force")
         self.assertEqual(done.returncode, 0, done.stderr)
-        expected = json.loads(self.tool("diagnose", "log.csv", "--model", "model.json", "--json", "-q").stdout)
+        expected = json.loads(self.run_tool("diagnose", "log.csv", "--model", "model.json", "--json", "-q").stdout)
         for header in ("t,dq,tau_J,q", "time,velocity,torque,position"):
             with self.subTest(header=header):
                 (self.folder / "bare.csv").write_text(in_radians(self.folder / "log.csv", header))
-                done = self.tool("diagnose", "bare.csv", "--model", "model.json", "--json", "-q")
+                done = self.run_tool("diagnose", "bare.csv", "--model", "model.json", "--json", "-q")
                 self.assertEqual(done.returncode, 0, done.stderr)
                 found = json.loads(done.stdout)
                 if found["verdict"] == "undecided":
@@ -422,16 +404,16 @@ def stripped(text, symbols):
 
 
 @unittest.skipUnless(LOGS.is_dir(), "the real logs are not here")
-class RealLogsWithoutUnits(unittest.TestCase):
+class RealLogsWithoutUnits(Case):
     def test_the_same_verdict_or_none(self):
         said = functools.cache(identify)  # of the log as it is: once for both ways to strip it
         for (name, joint), symbols in itertools.product(REAL, (True, False)):
             source = LOGS / name
             if not source.is_file():
                 continue
-            with self.subTest(log=name, joint=joint, symbols=symbols), tempfile.TemporaryDirectory() as folder:
+            with self.subTest(log=name, joint=joint, symbols=symbols):
                 words = ["--joint", joint] if joint else []
-                path = pathlib.Path(folder) / "log.csv"
+                path = self.folder / "log.csv"
                 path.write_text(stripped(source.read_text(), symbols))
                 with_units, without = said(source, *words), identify(path, *words)
                 self.assertIn(with_units.returncode, (0, 5), with_units.stderr)
@@ -443,7 +425,3 @@ class RealLogsWithoutUnits(unittest.TestCase):
                     verdict = json.loads(without.stdout)["verdict"]
                     self.assertTrue(verdict.startswith("Cannot tell"), verdict)
                     self.assertIn("--unit", verdict)
-
-
-if __name__ == "__main__":
-    unittest.main()

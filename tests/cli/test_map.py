@@ -4,21 +4,15 @@
 import functools
 import json
 import math
-import os
-import pathlib
 import random
 import shutil
 import subprocess
-import tempfile
 import unittest
 
-TOOL = os.environ["RIPPLENOTCH"]
-LOGS = pathlib.Path(os.environ.get("RIPPLENOTCH_LOGS", "/nonexistent"))
+import commands
+from commands import run
+
 GEAR = ["--gear-ratio", "100", "--orders", "1,2"]
-
-
-def run(*words):
-    return subprocess.run([TOOL, *map(str, words)], capture_output=True, text=True, timeout=120, stdin=subprocess.DEVNULL)
 
 
 @functools.cache
@@ -45,11 +39,9 @@ def write_log(path, seed, shift_deg=0.0, ripple=1.0, header="time_s,velocity_deg
     return [row[3] for row in motion(seed)]
 
 
-class Case(unittest.TestCase):
+class Case(commands.Case):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
+        super().setUp()
         self.log, self.map = self.folder / "log.csv", self.folder / "map.json"
 
     def made(self, *words):
@@ -381,7 +373,3 @@ class Exports(Case):
             self.assertEqual(len(found), len(expected))
             self.assertLess(max(abs(float(a) - b) for a, b in zip(found, expected)), most, precision)
             (self.folder / "ripple_map.h").unlink()
-
-
-if __name__ == "__main__":
-    unittest.main()

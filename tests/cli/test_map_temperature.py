@@ -10,7 +10,9 @@ import shutil
 import subprocess
 import unittest
 
-from test_map import GEAR, TOOL, Case, motion, run
+from commands import GEAR, run
+from commands import run
+from test_map import Case, motion
 
 
 @functools.cache
@@ -261,11 +263,5 @@ class Warm(Case):
 
     def pasted(self, line):
         words = shlex.split(line)
-        done = subprocess.run([TOOL, *words, *([] if words[0] == "compare" else ["--force"])], capture_output=True, text=True, timeout=120, cwd=self.folder,
-                              stdin=subprocess.DEVNULL)
-        self.assertEqual(done.returncode, 0, f"{line}: {done.stderr}")
+        done = self.good(*words, *([] if words[0] == "compare" else ["--force"]))
         return done.stdout
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -2,14 +2,12 @@
 """tracking and oscillator as C: what was exported compiles without a warning and is the method, sample for sample."""
 
 import math
-import os
-import pathlib
 import shutil
 import subprocess
-import tempfile
 import unittest
 
-TOOL = os.environ["RIPPLENOTCH"]
+from commands import Case, run
+
 ROWS = 20000
 MOST = {"double": 1e-12, "float": 1e-5}
 # A map by three speeds, direction, two harmonics of the joint's turn and load.
@@ -48,10 +46,6 @@ static void run%(k)d(void) {
 MOTIONS = {"speed": ("speed",), "angle": ("angle",), "map": ("angle", "speed", "position")}
 
 
-def run(*words):
-    return subprocess.run([TOOL, *map(str, words)], capture_output=True, text=True, timeout=120, stdin=subprocess.DEVNULL)
-
-
 def rows():
     """A swing through standstill whose position is its velocity added up, as the tool does it."""
     position, before, made = 0.0, None, []
@@ -67,12 +61,7 @@ def rows():
     return made
 
 
-class Code(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
-
+class Code(Case):
     def export(self, method, *words, code=0, to="c-header,name=code", header="code.h"):
         done = run("export", "--method", method, "--sample-rate", "1kHz", "--to", to, "-o", self.folder / header, "--force", *words)
         self.assertEqual(done.returncode, code, done.stderr)
@@ -126,7 +115,3 @@ class Code(unittest.TestCase):
             self.assertIn(said, self.export(f"oscillator,gear-ratio=100{orders},{more}", code=2).stderr)
         self.assertIn("use c-header", self.export("tracking,gear-ratio=100,orders=1", to="scipy", code=2).stderr)
         self.assertIn("limits are on coefficients", self.export("tracking,gear-ratio=100,orders=1", "--min-depth-db", "20", code=2).stderr)
-
-
-if __name__ == "__main__":
-    unittest.main()

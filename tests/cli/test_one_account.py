@@ -3,25 +3,14 @@
 
 import csv
 import json
-import os
-import pathlib
 import resource
-import subprocess
-import tempfile
 import unittest
 
+from commands import ACCOUNTS, DATA, GEAR, LOGS, TOOL, SharedCase, asked_for_json, run, sanitized
+from commands import DATA, LOGS, TOOL, SharedCase, run, sanitized
 import hard_logs
-from sanitizers import sanitized
 
-TOOL = os.environ["RIPPLENOTCH"]
-DATA = pathlib.Path(os.environ["RIPPLENOTCH_SOURCE"]) / "data"
-LOGS = pathlib.Path(os.environ["RIPPLENOTCH_LOGS"])
-GEAR = ["--gear-ratio", "100", "--orders", "1,2"]
 MOST_BYTES = 2 << 30
-
-
-def run(*words):
-    return subprocess.run([TOOL, *map(str, words)], capture_output=True, text=True, timeout=300)
 
 
 def without_effects():
@@ -30,44 +19,28 @@ def without_effects():
     return [word for effect in effects for word in ("--without", effect["effect"])]
 
 
-class Case(unittest.TestCase):
+class Account(SharedCase):
     @classmethod
     def setUpClass(cls):
+        super().setUpClass()
         # What runs these tests is under the same limit as the tool: set in each of 400 runs, it took a copy of Python each.
         # A sanitizer maps terabytes before the program begins, so that it runs without the limit.
         if not sanitized(TOOL):
             resource.setrlimit(resource.RLIMIT_AS, (MOST_BYTES, MOST_BYTES))
         cls.nothing_tried = without_effects()
-        cls.folder = tempfile.TemporaryDirectory()
-        cls.path = pathlib.Path(cls.folder.name)
-        cls.hard = hard_logs.Written(cls.path)
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.folder.cleanup()
+        cls.hard = hard_logs.Written(cls.folder)
 
     def commands(self, log, read):
-        """Every command that reads a log, as words."""
-        model = DATA / "paper_model.json"
-        out = self.path / "out.csv"
-        return {
-            "info": ["info", log, "--json", *read],
-            "filter": ["filter", log, "--method", "tracking,gear-ratio=100,orders=1:2", "-o", out, "--json", "--force", *read],
-            "compare": ["compare", log, "--method", "lowpass,cutoff=5Hz,order=1", *GEAR, "--json", *read],
-            "spectrum": ["spectrum", log, "--json", *read],
-            "spectrum --segment": ["spectrum", log, "--segment", "1s", "--json", *read],
-            "spectrum --domain order": ["spectrum", log, "--domain", "order", "--json", *read],
-            "spectrum --map": ["spectrum", log, "--map", "campbell", "--json", *read],
-            "identify": ["identify", log, "--json", *read],
-            "track": ["track", log, *GEAR, "--json", *read],
-            "simulate": ["simulate", log, "--model", model, "-o", out, "--json", "--force", *read],
-            "diagnose": ["diagnose", log, "--model", model, "--json", *self.nothing_tried, *read],
-        }
+        """Every command that tells of the recording, as words; none is asked to search for more than that."""
+        for name in ACCOUNTS:
+            if name not in ("spectrum --peaks", "recommend"):
+                words = asked_for_json(name, log, self.folder / "out.csv")
+                yield name, [*words, *(self.nothing_tried if name == "diagnose" else []), *read]
 
     def accounts(self, log, read=(), leave_out=()):
         """The recording blocks by command; commands that refuse the log are left out, and have to say why."""
         found, refused, gears = {}, {}, []
-        for name, words in self.commands(log, list(read)).items():
+        for name, words in self.commands(log, read):
             if name in leave_out:
                 continue
             done = run(*words)
@@ -91,7 +64,7 @@ class Case(unittest.TestCase):
         return info, refused
 
 
-class Laws(Case):
+class Laws(Account):
     def test_all_commands_say_the_same_of_every_log_in_data(self):
         for log in sorted(DATA.glob("*.csv")):
             with self.subTest(log.name):
@@ -112,7 +85,7 @@ class Laws(Case):
 
 
 @unittest.skipUnless(LOGS.is_dir(), "the folder of real logs is not here")
-class RealLogs(Case):
+class RealLogs(Account):
     def test_all_commands_say_the_same(self):
         for name, joint in (("gpl3/panda_gaz_j1.csv", None), ("kuka_kr300_trajA_all.csv", "j4"), ("neura_lara8_j3.csv", None),
                             ("ur10_unisa_exciting_all.csv", "shoulder_pan_joint")):
@@ -122,11 +95,11 @@ class RealLogs(Case):
                 self.one_account(LOGS / name, ["--joint", joint] if joint else [])
 
 
-class Angles(Case):
+class Angles(Account):
     """Metrics are measured on the joint's angle, whatever the position column is."""
 
     def metrics(self, name, *more):
-        done = run("filter", self.hard[name], "--method", "tracking", *GEAR, "-o", self.path / "out.csv", "--json", "--force", "-v",
+        done = run("filter", self.hard[name], "--method", "tracking", *GEAR, "-o", self.folder / "out.csv", "--json", "--force", "-v",
                    *more)
         self.assertEqual(done.returncode, 0, done.stderr)
         return json.loads(done.stdout), done.stderr
@@ -151,7 +124,7 @@ class Angles(Case):
                     self.assertGreater(order["attenuation_db"], expected["attenuation_db"] - 1.0)
 
     def test_a_limit_is_kept_on_the_right_angle(self):
-        done = run("filter", self.hard["another_joints_position"], "--method", "tracking", *GEAR, "-o", self.path / "out.csv", "--force",
+        done = run("filter", self.hard["another_joints_position"], "--method", "tracking", *GEAR, "-o", self.folder / "out.csv", "--force",
                    "--min-attenuation", "15dB")
         self.assertEqual(done.returncode, 0, done.stderr)
 
@@ -167,7 +140,7 @@ class Angles(Case):
                     self.assertAlmostEqual(one["attenuation_db"], other["db"], delta=0.02)
 
 
-class Clocks(Case):
+class Clocks(Account):
     def account(self, name):
         done = run("info", self.hard[name], "--json")
         self.assertEqual(done.returncode, 0, done.stderr)
@@ -183,14 +156,14 @@ class Clocks(Case):
         self.assertTrue(any("data row 17001" in warning for warning in info["warnings"]))
 
     def test_a_clock_of_no_use_is_summed_up_without_a_rate(self):
-        log = self.path / "coarse.csv"
+        log = self.folder / "coarse.csv"
         log.write_text("time_s,velocity_deg_s,torque_nm\n" + "".join(f"{k // 10 * 0.01:.2f},30,{k % 7}\n" for k in range(3000)))
         said = run("info", log).stdout
         self.assertIn(" filter       no   time advances once in 10 rows", said)
         self.assertRegex(said.split("\n")[0], r": 3000 rows over [0-9.]+ s, speed 30 to 30 deg/s")
 
     def test_rows_at_another_rate_pass_as_they_are(self):
-        log, out = self.hard["rate_falls_on_the_way"], self.path / "passed.csv"
+        log, out = self.hard["rate_falls_on_the_way"], self.folder / "passed.csv"
         done = run("filter", log, "--method", "lowpass,cutoff=5Hz,order=1", "-o", out, "--force")
         self.assertEqual(done.returncode, 0, done.stderr)
         before, after = log.read_text().split("\n"), out.read_text().split("\n")
@@ -203,12 +176,12 @@ class Clocks(Case):
         account = self.account("lost_rows")["recording"]
         self.assertEqual(account["nominal_rate_hz"], 1000)
         self.assertAlmostEqual(account["mean_rate_hz"], 978.4, delta=0.1)
-        joint = self.path / "joint.json"
+        joint = self.folder / "joint.json"
         done = run("identify", log, "-o", joint, "--force")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("978.399 Hz in the mean, but at 1000 Hz by the usual step", done.stderr)
         self.assertEqual(json.loads(joint.read_text())["sample_rate_hz"], 1000)
-        table = self.path / "table.json"
+        table = self.folder / "table.json"
         done = run("design", joint, "-o", table, "--force")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual(json.loads(table.read_text())["sample_rate_hz"], 1000)
@@ -217,7 +190,7 @@ class Clocks(Case):
         for name, log in self.hard.items():
             with self.subTest(name):
                 uses = {use["name"]: use for use in self.account(name)["uses"]}
-                done = run("filter", log, "--method", "lowpass,cutoff=5Hz,order=1", "-o", self.path / "out.csv", "--force")
+                done = run("filter", log, "--method", "lowpass,cutoff=5Hz,order=1", "-o", self.folder / "out.csv", "--force")
                 self.assertEqual(done.returncode, 0 if uses["filter"]["possible"] else 3, done.stderr)
                 if done.returncode:
                     self.assertIn(uses["filter"]["reason"], done.stderr)
@@ -227,17 +200,13 @@ class Clocks(Case):
         self.assertEqual((account["held_samples"], account["longest_hold"]), (2000, 1))
 
     def test_no_clock_of_any_kind_makes_memory_grow(self):
-        log = self.path / "nanoseconds.csv"
+        log = self.folder / "nanoseconds.csv"
         with open(self.hard["clean"]) as read, open(log, "w") as write:
             rows = list(csv.reader(read))
             write.write(",".join(rows[0]) + "\n")
             for row in rows[1:6001]:
                 write.write(",".join([str(int(float(row[0]) * 1e9) + 1_700_000_000_000_000_000)] + row[1:]) + "\n")
-        for name, words in self.commands(log, ["--unit", "time=s"]).items():
+        for name, words in self.commands(log, ["--unit", "time=s"]):
             with self.subTest(name):
                 done = run(*words)
                 self.assertIn(done.returncode, (0, 2, 3), done.stderr)  # 2: 5 Hz is beyond half of such a rate
-
-
-if __name__ == "__main__":
-    unittest.main()

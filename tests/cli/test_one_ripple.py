@@ -3,13 +3,11 @@
 
 import json
 import math
-import os
-import pathlib
 import unittest
 
-from test_gear_methods import DATA, Case
+from commands import DATA, LOGS
+from test_gear_methods import Case
 
-LOGS = pathlib.Path(os.environ.get("RIPPLENOTCH_LOGS", "/nonexistent"))
 CASES = LOGS.parent / "cases"
 # Where identify names no gear, the law is asked at these ratios: of data sheets, or as the logs were simulated.
 REAL = [("gpl3/panda_gaz_all.csv", f"panda_joint{j}", ratio) for j, ratio in zip(range(1, 7), (120, 120, 120, 120, 80, 80))]
@@ -125,7 +123,3 @@ class Law(Case):
     @unittest.skipUnless(CASES.is_dir(), "no cases beside the logs of real robots (RIPPLENOTCH_LOGS)")
     def test_on_short_travel_and_low_ratios(self):
         self.check_all(CASES, SIMULATED)
-
-
-if __name__ == "__main__":
-    unittest.main()

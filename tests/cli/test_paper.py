@@ -4,13 +4,12 @@
 import csv
 import importlib.machinery
 import importlib.util
-import os
-import pathlib
 import subprocess
 import sys
 import unittest
 
-SOURCE = pathlib.Path(os.environ["RIPPLENOTCH_SOURCE"])
+from commands import SOURCE
+
 SCRIPT = SOURCE / "scripts" / "reproduce-paper"
 PAPER = SOURCE / "docs" / "paper"
 
@@ -105,7 +104,3 @@ class Move(unittest.TestCase):
                 self.assertEqual(row["switches"], "16")
             elif not row["guard"]:
                 self.assertGreater(int(row["switches"]), 100)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -3,16 +3,13 @@
 
 import json
 import os
-import pathlib
 import shutil
-import subprocess
-import tempfile
 import time
 import unittest
 import xml.dom.minidom
 
-TOOL = os.environ["RIPPLENOTCH"]
-DATA = pathlib.Path(os.environ["RIPPLENOTCH_SOURCE"]) / "data"
+from commands import DATA, Case, run
+
 LOG = str(DATA / "paper_90deg_s.csv")
 MOVE = str(DATA / "paper_move_2s.csv")
 TABLE = ["--gear-ratio", "100", "--orders", "1,2", "--sample-rate", "1kHz", "--speed", "18:180:18"]
@@ -21,11 +18,6 @@ SIGNALS = ["--step", "10Nm", "--ramp", "20Nm/s", "--speed", "90deg/s", "--sample
 HOSTILE = "<script>alert(1)</script> \"q\" 'x' `touch pwned` $(touch pwned) @m _a^b{c} ]]> é \x1b[2J.csv"
 
 needs_gnuplot = unittest.skipUnless(shutil.which("gnuplot"), "SKIPPED: there is no gnuplot here")
-
-
-def run(*words, folder=None, **environment):
-    return subprocess.run([TOOL, *map(str, words)], capture_output=True, cwd=folder, timeout=120,
-                          stdin=subprocess.DEVNULL, env=dict(os.environ, **environment))
 
 
 COMMANDS = {
@@ -43,21 +35,16 @@ COMMANDS = {
 }
 
 
-class Plots(unittest.TestCase):
-    def setUp(self):
-        self.folder = tempfile.TemporaryDirectory()
-        self.addCleanup(self.folder.cleanup)
-        self.path = pathlib.Path(self.folder.name)
-
+class Plots(Case):
     def plot(self, words, name, **environment):
-        return run(*words, "-o", self.path / "result", "--plot", self.path / name, "--force", folder=self.path,
-                   **environment)
+        return run(*words, "-o", self.folder / "result", "--plot", self.folder / name, "--force", cwd=self.folder,
+                   environment=environment)
 
     def test_every_figure_is_data_with_labels_and_units(self):
         for name, words in COMMANDS.items():
             done = self.plot(words, "figure.json")
             self.assertEqual(done.returncode, 0, done.stderr)
-            figure = json.loads((self.path / "figure.json").read_text())
+            figure = json.loads((self.folder / "figure.json").read_text())
             self.assertEqual((figure["schema"], figure["name"]), ("ripplenotch/figure/1", name))
             for panel in figure["panels"]:
                 self.assertTrue(panel["x"]["label"] and panel["y"]["label"], name)
@@ -66,12 +53,12 @@ class Plots(unittest.TestCase):
                     self.assertEqual(len(curve["x"]), len(curve["y"]))
 
     def test_a_diagnosis_shows_the_gap_fall_and_the_residual_before_and_after(self):
-        (self.path / "model.json").write_text(json.dumps(
+        (self.folder / "model.json").write_text(json.dumps(
             {"schema": "ripplenotch/model/1", "gear_ratio": 100,
              "effects": [{"effect": "inertia"}, {"effect": "ripple", "order": 1}]}))
-        done = run("diagnose", MOVE, "--model", "model.json", "--plot", "d.json", "--json", folder=self.path)
+        done = run("diagnose", MOVE, "--model", "model.json", "--plot", "d.json", "--json", cwd=self.folder)
         self.assertEqual(done.returncode, 0, done.stderr)
-        diagnosis, figure = json.loads(done.stdout), json.loads((self.path / "d.json").read_text())
+        diagnosis, figure = json.loads(done.stdout), json.loads((self.folder / "d.json").read_text())
         self.assertEqual(figure["name"], "diagnosis")
         gap, residual, before, after = figure["panels"]
         self.assertEqual(len(gap["curves"][0]["y"]), 1 + len(diagnosis["rounds"]))
@@ -81,8 +68,8 @@ class Plots(unittest.TestCase):
         self.assertGreater(highest[0], 2.0 * highest[1])
         self.assertEqual(before["map"]["highest"], after["map"]["highest"])
         self.assertEqual([curve["name"] for curve in residual["curves"]], ["before", "after"])
-        refused = run("diagnose", MOVE, "--model", "model.json", "--plot", "-", "--json", folder=self.path)
-        self.assertEqual((refused.returncode, refused.stdout), (2, b""))
+        refused = run("diagnose", MOVE, "--model", "model.json", "--plot", "-", "--json", cwd=self.folder)
+        self.assertEqual((refused.returncode, refused.stdout), (2, ""))
 
     @needs_gnuplot
     def test_every_figure_is_drawn_in_every_form(self):
@@ -90,10 +77,10 @@ class Plots(unittest.TestCase):
             forms = (("svg", b"<?xml"), ("png", b"\x89PNG"), ("pdf", b"%PDF"))
             for form, magic in forms if name in ("campbell", "torque") else forms[:1]:
                 done = self.plot(words, f"{name}.{form}")
-                self.assertEqual((done.returncode, done.stderr), (0, b""), name)
-                self.assertTrue((self.path / f"{name}.{form}").read_bytes().startswith(magic))
-            figure = json.loads((self.plot(words, "figure.json"), (self.path / "figure.json").read_text())[1])
-            text = xml.dom.minidom.parse(str(self.path / f"{name}.svg")).documentElement
+                self.assertEqual((done.returncode, done.stderr), (0, ""), name)
+                self.assertTrue((self.folder / f"{name}.{form}").read_bytes().startswith(magic))
+            figure = json.loads((self.plot(words, "figure.json"), (self.folder / "figure.json").read_text())[1])
+            text = xml.dom.minidom.parse(str(self.folder / f"{name}.svg")).documentElement
             written = " ".join(node.firstChild.data for node in text.getElementsByTagName("text")
                                if node.firstChild)
             for panel in figure["panels"]:
@@ -109,99 +96,95 @@ class Plots(unittest.TestCase):
             if form == "pdf":
                 time.sleep(1.1)  # a clock in it would be another one
             self.plot(COMMANDS["campbell"], f"b.{form}", LC_ALL="de_DE.UTF-8", TZ="Asia/Tokyo", GNUTERM="dumb")
-            self.assertEqual((self.path / f"a.{form}").read_bytes(), (self.path / f"b.{form}").read_bytes(), form)
+            self.assertEqual((self.folder / f"a.{form}").read_bytes(), (self.folder / f"b.{form}").read_bytes(), form)
 
     @needs_gnuplot
     def test_the_terminal_gets_eighty_columns_of_text(self):
         for name, words in COMMANDS.items():
             done = run(*words, "--plot", "-")
             self.assertEqual(done.returncode, 0, done.stderr)
-            text = done.stdout.decode()
+            text = done.stdout
             self.assertNotIn("\x1b", text)
             if name in ("spectrum", "campbell", "torque"):
                 self.assertLessEqual(max(map(len, text.splitlines())), 80, name)
-        drawn = run(*COMMANDS["spectrum"], "--plot", "-").stdout.decode()
+        drawn = run(*COMMANDS["spectrum"], "--plot", "-").stdout
         for part in ("amplitude, zero to peak, Nm", "frequency, Hz", "A 25 Hz, 0.8 Nm", "B 50 Hz, 0.5", "noise floor"):
             self.assertIn(part, drawn)
 
     @needs_gnuplot
     def test_hostile_names_show_as_text_and_run_nothing(self):
-        os.symlink(LOG, self.path / "log.csv")
+        os.symlink(LOG, self.folder / "log.csv")
         hostile = HOSTILE.replace("/", "∕")
-        os.symlink(LOG, self.path / hostile)
-        done = run("spectrum", hostile, "-o", "out.csv", "--plot", "page.svg", folder=self.path)
+        os.symlink(LOG, self.folder / hostile)
+        done = run("spectrum", hostile, "-o", "out.csv", "--plot", "page.svg", cwd=self.folder)
         self.assertEqual(done.returncode, 0, done.stderr)
-        svg = (self.path / "page.svg").read_bytes()
+        svg = (self.folder / "page.svg").read_bytes()
         self.assertNotIn(b"<script", svg)
         self.assertNotIn(b"\x1b", svg)
         page = xml.dom.minidom.parseString(svg).documentElement
         written = " ".join(node.firstChild.data for node in page.getElementsByTagName("text") if node.firstChild)
         self.assertIn("<script>alert(1)<∕script> \"q\" 'x' `touch pwned` $(touch pwned) @m _a^b{c} ]]> é \\x1b[2J",
                       written)
-        drawn = run("spectrum", hostile, "--plot", "-", folder=self.path)
-        self.assertIn(b"`touch pwned`", drawn.stdout)
-        self.assertNotIn(b"\x1b", drawn.stdout)
-        self.assertFalse((self.path / "pwned").exists())
+        drawn = run("spectrum", hostile, "--plot", "-", cwd=self.folder)
+        self.assertIn("`touch pwned`", drawn.stdout)
+        self.assertNotIn("\x1b", drawn.stdout)
+        self.assertFalse((self.folder / "pwned").exists())
 
     def test_a_picture_s_name_is_never_run(self):
         name = "a`touch pwned`;$(touch pwned)'\".svg"
-        done = run(*COMMANDS["candidate-table"], "-o", "out", "--plot", name, folder=self.path)
+        done = run(*COMMANDS["candidate-table"], "-o", "out", "--plot", name, cwd=self.folder)
         if shutil.which("gnuplot"):
             self.assertEqual(done.returncode, 0, done.stderr)
-            self.assertTrue((self.path / name).is_file())
-        self.assertFalse((self.path / "pwned").exists())
+            self.assertTrue((self.folder / name).is_file())
+        self.assertFalse((self.folder / "pwned").exists())
 
     def test_without_gnuplot_the_result_and_the_figure_s_data_are_written_and_it_is_said(self):
         done = self.plot(COMMANDS["spectrum"], "picture.svg", PATH="/nowhere")
         self.assertEqual(done.returncode, 4)
-        self.assertIn(b"no gnuplot", done.stderr)
-        self.assertIn(b"gnuplot-nox", done.stderr)
-        self.assertTrue((self.path / "result").read_text().startswith("frequency_hz,"))
-        self.assertEqual(json.loads((self.path / "picture.json").read_text())["name"], "spectrum")
-        self.assertFalse((self.path / "picture.svg").exists())
-        terminal = run(*COMMANDS["spectrum"], "--plot", "-", PATH="/nowhere")
-        self.assertEqual((terminal.returncode, terminal.stdout), (4, b""))
+        self.assertIn("no gnuplot", done.stderr)
+        self.assertIn("gnuplot-nox", done.stderr)
+        self.assertTrue((self.folder / "result").read_text().startswith("frequency_hz,"))
+        self.assertEqual(json.loads((self.folder / "picture.json").read_text())["name"], "spectrum")
+        self.assertFalse((self.folder / "picture.svg").exists())
+        terminal = run(*COMMANDS["spectrum"], "--plot", "-", environment={"PATH": "/nowhere"})
+        self.assertEqual((terminal.returncode, terminal.stdout), (4, ""))
 
     def test_a_gnuplot_that_fails_is_quoted(self):
-        fake = self.path / "gnuplot"
+        fake = self.folder / "gnuplot"
         fake.write_text("#!/bin/sh\necho 'it hurts' >&2\nexit 3\n")
         fake.chmod(0o755)
-        done = self.plot(COMMANDS["candidate-table"], "picture.svg", PATH=f"{self.path}:/usr/bin:/bin")
+        done = self.plot(COMMANDS["candidate-table"], "picture.svg", PATH=f"{self.folder}:/usr/bin:/bin")
         self.assertEqual(done.returncode, 4)
-        self.assertIn(b"it hurts", done.stderr)
+        self.assertIn("it hurts", done.stderr)
 
     def test_a_start_that_fails_only_in_the_child_is_no_gnuplot(self):
-        fake = self.path / "gnuplot"
+        fake = self.folder / "gnuplot"
         fake.write_text("#!/bin/sh\nexit 127\n")
         fake.chmod(0o755)
-        done = self.plot(COMMANDS["spectrum"], "picture.svg", PATH=f"{self.path}:/usr/bin:/bin")
+        done = self.plot(COMMANDS["spectrum"], "picture.svg", PATH=f"{self.folder}:/usr/bin:/bin")
         self.assertEqual(done.returncode, 4)
-        self.assertIn(b"no gnuplot", done.stderr)
+        self.assertIn("no gnuplot", done.stderr)
 
     def test_requests_that_make_no_sense_are_refused_before_any_work(self):
-        for words, part in ((["--plot", "picture.jpg"], b".svg"), (["--plot", "-", "--json"], b"standard output")):
+        for words, part in ((["--plot", "picture.jpg"], ".svg"), (["--plot", "-", "--json"], "standard output")):
             done = run(*COMMANDS["spectrum"], *words)
-            self.assertEqual((done.returncode, done.stdout), (2, b""), words)
+            self.assertEqual((done.returncode, done.stdout), (2, ""), words)
             self.assertIn(part, done.stderr)
-        (self.path / "mine.svg").write_text("mine")
-        done = run(*COMMANDS["spectrum"], "--plot", self.path / "mine.svg")
-        self.assertEqual((done.returncode, done.stdout), (4, b""))
-        self.assertEqual((self.path / "mine.svg").read_text(), "mine")
-        done = run("filter", LOG, MOVE, "--method", "none", "--out-dir", self.path, "--plot", "x.svg")
+        (self.folder / "mine.svg").write_text("mine")
+        done = run(*COMMANDS["spectrum"], "--plot", self.folder / "mine.svg")
+        self.assertEqual((done.returncode, done.stdout), (4, ""))
+        self.assertEqual((self.folder / "mine.svg").read_text(), "mine")
+        done = run("filter", LOG, MOVE, "--method", "none", "--out-dir", self.folder, "--plot", "x.svg")
         self.assertEqual(done.returncode, 2, done.stderr)
 
     def test_a_result_does_not_know_of_its_picture(self):
-        plain, plotted = self.path / "a.json", self.path / "b.json"
+        plain, plotted = self.folder / "a.json", self.folder / "b.json"
         run(*COMMANDS["candidate-table"], "-o", plain)
-        run(*COMMANDS["candidate-table"], "-o", plotted, "--plot", self.path / "x.json")
+        run(*COMMANDS["candidate-table"], "-o", plotted, "--plot", self.folder / "x.json")
         self.assertEqual(plain.read_bytes(), plotted.read_bytes())
 
     def test_the_filtered_log_is_the_same_with_and_without_a_picture(self):
         words = ["filter", LOG, "--method", "lowpass,cutoff=13rad/s,order=1"]
-        run(*words, "-o", self.path / "a.csv")
-        run(*words, "-o", self.path / "b.csv", "--plot", self.path / "x.json")
-        self.assertEqual((self.path / "a.csv").read_bytes(), (self.path / "b.csv").read_bytes())
-
-
-if __name__ == "__main__":
-    unittest.main()
+        run(*words, "-o", self.folder / "a.csv")
+        run(*words, "-o", self.folder / "b.csv", "--plot", self.folder / "x.json")
+        self.assertEqual((self.folder / "a.csv").read_bytes(), (self.folder / "b.csv").read_bytes())

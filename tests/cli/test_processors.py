@@ -5,14 +5,12 @@ glibc chooses its functions by the processor's instruction sets, and lets itself
 where one is installed, hides them from FFTW and from the tool's own kernels too."""
 
 import os
-import pathlib
 import shutil
 import subprocess
-import tempfile
 import unittest
 
-TOOL = os.environ["RIPPLENOTCH"]
-DATA = pathlib.Path(os.environ["RIPPLENOTCH_SOURCE"]) / "data"
+from commands import DATA, TOOL, SharedCase, good, run
+
 FEWER = "glibc.cpu.hwcaps=-AVX512F,-AVX2,-FMA,-AVX,-BMI2"
 EMULATOR = next(filter(None, map(shutil.which, ("qemu-x86_64-static", "qemu-x86_64"))), None)
 OLD_PROCESSOR = "Nehalem"  # of 2008, without AVX
@@ -61,23 +59,22 @@ COMMANDS = {
 SLOW_UNDER_EMULATION = ("diagnose",)
 
 
-class Processors(unittest.TestCase):
+class Processors(SharedCase):
     @classmethod
     def setUpClass(cls):
-        cls.scratch = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(cls.scratch.cleanup)
-        folder = pathlib.Path(cls.scratch.name)
+        super().setUpClass()
+        folder = cls.folder
         (folder / "model.json").write_text(MODEL)
         (folder / "made.csv").write_bytes(cls.run_tool(*MADE))
         (folder / "table.json").write_bytes(cls.run_tool(*COMMANDS["design"]))
         (folder / "map.json").write_bytes(cls.run_tool("map", MOVE, *GEAR, "--json"))
         (folder / "list.txt").write_text("made.csv\n")
-        subprocess.run([TOOL, "features", "--manifest", "list.txt", "--shard", "1/1", "-o", "shards", *GEAR], cwd=folder, check=True)
+        good("features", "--manifest", "list.txt", "--shard", "1/1", "-o", "shards", *GEAR, cwd=folder)
         cls.here = {name: cls.run_tool(*words) for name, words in COMMANDS.items()}
 
     @classmethod
     def run_tool(cls, *words, before=(), **settings):
-        done = subprocess.run([*before, TOOL, *words], capture_output=True, timeout=300, cwd=cls.scratch.name,
+        done = subprocess.run([*before, TOOL, *words], capture_output=True, timeout=300, cwd=cls.folder,
                               stdin=subprocess.DEVNULL, env={**os.environ, **settings})
         if done.returncode != 0 or not done.stdout:
             raise AssertionError(f"{words}: exit {done.returncode}: {done.stderr.decode()}")
@@ -89,7 +86,7 @@ class Processors(unittest.TestCase):
                 self.assertEqual(self.run_tool(*words, GLIBC_TUNABLES=FEWER), self.here[name])
 
     def test_every_command_is_compared(self):
-        listed = subprocess.run([TOOL, "--help"], capture_output=True, text=True).stdout
+        listed = run("--help").stdout
         commands = {line.split()[0] for line in listed.partition("Subcommands:\n")[2].splitlines() if line.startswith("  ")}
         self.assertGreater(len(commands), 10)
         self.assertEqual(commands, {words[0] for words in COMMANDS.values()})
@@ -100,8 +97,7 @@ class Processors(unittest.TestCase):
                 self.assertEqual(self.run_tool(*words, RIPPLENOTCH_VECTORS="none"), self.here[name])
 
     def test_a_word_that_turns_nothing_off_is_refused(self):
-        done = subprocess.run([TOOL, "effects"], capture_output=True, text=True,
-                              env={**os.environ, "RIPPLENOTCH_VECTORS": "off"})
+        done = run("effects", environment={"RIPPLENOTCH_VECTORS": "off"})
         self.assertEqual(done.returncode, 2)
         self.assertIn("RIPPLENOTCH_VECTORS=off", done.stderr)
 
@@ -112,7 +108,3 @@ class Processors(unittest.TestCase):
                 continue
             with self.subTest(name):
                 self.assertEqual(self.run_tool(*words, before=(EMULATOR, "-cpu", OLD_PROCESSOR)), self.here[name])
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -3,16 +3,12 @@
 
 import json
 import math
-import os
-import pathlib
 import random
 import shlex
-import subprocess
-import tempfile
 import unittest
 
-TOOL = os.environ["RIPPLENOTCH"]
-LOGS = pathlib.Path(os.environ.get("RIPPLENOTCH_LOGS", "/nonexistent"))
+from commands import LOGS, SharedCase
+
 GEAR = ["--gear-ratio", "100", "--orders", "1,2"]
 
 
@@ -34,18 +30,12 @@ def write_log(path, seconds=16, ripple=1.0, noise=0.05, slow_nm=6.0, header="tim
             file.write(",".join(f"{cell:.6f}" for cell in cells[:len(header.split(","))]) + "\n")
 
 
-class Case(unittest.TestCase):
+class Recommended(SharedCase):
     @classmethod
     def setUpClass(cls):
-        folder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(folder.cleanup)
-        cls.folder = pathlib.Path(folder.name)
+        super().setUpClass()
         cls.log, cls.told = cls.folder / "log.csv", {}
         write_log(cls.log)
-
-    def run_tool(self, *words):
-        return subprocess.run([TOOL, *map(str, words)], capture_output=True, text=True, timeout=120, cwd=self.folder,
-                              stdin=subprocess.DEVNULL)
 
     def recommended(self, *words, log="log.csv", code=0, gear=GEAR):
         """What is told; of the log that all tests share, what an earlier run has said of the same words."""
@@ -68,7 +58,7 @@ class Case(unittest.TestCase):
         return done
 
 
-class Pasted(Case):
+class Pasted(Recommended):
     def test_what_is_told_to_paste_runs_and_measures_what_was_told(self):
         told = self.recommended()
         self.assertEqual((told["finding"], told["conclusive"]), ("recommended", True))
@@ -108,7 +98,7 @@ class Pasted(Case):
         self.assertEqual(self.run_tool("recommend", "log.csv", *GEAR).stdout, self.run_tool("recommend", "log.csv", *GEAR).stdout)
 
 
-class Limits(Case):
+class Limits(Recommended):
     def test_looser_limits_never_give_a_worse_answer(self):
         best = None
         for limit in ("0.5ms", "3ms", "8ms", "20ms", "100ms", None):
@@ -152,7 +142,7 @@ class Limits(Case):
         self.assertIn("subtract", "".join(one["method"] for one in self.recommended("--offline")["methods"]))
 
 
-class Honest(Case):
+class Honest(Recommended):
     def test_without_ripple_there_is_nothing_to_take(self):
         write_log(self.folder / "none.csv", ripple=0.0)
         told = self.recommended(log="none.csv")
@@ -213,7 +203,7 @@ class Honest(Case):
             self.assertIn(part, done.stdout)
 
 
-class Robot(Case):
+class Robot(Recommended):
     @unittest.skipUnless((LOGS / "gpl3" / "panda_gaz_j1.csv").exists(), "SKIPPED: the folder of real logs is not here")
     def test_on_a_robot_it_beats_the_notch_that_one_would_have_taken(self):
         told = self.recommended("--max-delay", "10ms", "--min-attenuation", "12dB", log=LOGS / "gpl3" / "panda_gaz_j1.csv",
@@ -223,7 +213,3 @@ class Robot(Case):
         self.assertTrue(mapped["meets"])
         self.assertLess(mapped["error_nm"], 1.1 * told["methods"][0]["error_nm"])
         self.assertTrue(all(one["db"] >= 12 for one in told["methods"][0]["attenuation_db"]))
-
-
-if __name__ == "__main__":
-    unittest.main()

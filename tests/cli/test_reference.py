@@ -2,36 +2,29 @@
 """Man pages and completions are made of what --help is made of: the same options, no more and no fewer; and the programs
 that read them take them."""
 
-import os
-import pathlib
 import re
 import shutil
 import subprocess
 import tempfile
 import unittest
 
-TOOL = os.environ["RIPPLENOTCH"]
-SOURCE = pathlib.Path(os.environ["RIPPLENOTCH_SOURCE"])
-
-
-def tool(*words):
-    return subprocess.run([TOOL, *words], capture_output=True, text=True, timeout=60)
+from commands import SOURCE, Case, run
 
 
 def printed(kind):
-    done = tool("--generate", kind)
+    done = run("--generate", kind)
     assert (done.returncode, done.stderr) == (0, ""), done.stderr
     return done.stdout
 
 
 def commands():
-    listed = tool("--help").stdout.split("Subcommands:")[1].split("\n\n")[0]
+    listed = run("--help").stdout.split("Subcommands:")[1].split("\n\n")[0]
     return re.findall(r"^  (\S+)", listed, re.M)
 
 
 def options_of_help(command):
     """Names of options, as --help has them: '-o', '--output'."""
-    lines = tool(command, "--help").stdout.split("\nOptions:\n")[1].split("\n\n")[0]
+    lines = run(command, "--help").stdout.split("\nOptions:\n")[1].split("\n\n")[0]
     return {name for line in re.findall(r"^  (-\S+)", lines, re.M) for name in line.split(",")}
 
 
@@ -74,30 +67,29 @@ class Reference(unittest.TestCase):
         self.assertEqual(told, documented)
 
     def test_what_people_type_elsewhere(self):
-        self.assertEqual(tool("help", "identify").stdout, tool("identify", "--help").stdout)
-        self.assertEqual(tool("help").stdout, tool("--help").stdout)
+        self.assertEqual(run("help", "identify").stdout, run("identify", "--help").stdout)
+        self.assertEqual(run("help").stdout, run("--help").stdout)
         for words in (["-V"], ["version"]):
-            self.assertEqual(tool(*words).stdout, tool("--version").stdout)
-        done = tool("help", "nonsense")
+            self.assertEqual(run(*words).stdout, run("--version").stdout)
+        done = run("help", "nonsense")
         self.assertEqual((done.returncode, done.stdout), (2, ""))
         self.assertIn("there is no command 'nonsense'", done.stderr)
-        done = tool("--generate", "man-nonsense")
+        done = run("--generate", "man-nonsense")
         self.assertEqual((done.returncode, done.stdout), (2, ""))
         self.assertIn("expected one of man, man-COMMAND, complete-bash", done.stderr)
 
 
-class Bash(unittest.TestCase):
+class Bash(Case):
     def completed(self, *words):
         script = printed("complete-bash") + (
             f'COMP_WORDS=({" ".join(words)} "$1"); COMP_CWORD={len(words)}; _ripplenotch; printf "%s\\n" "${{COMPREPLY[@]}}"')
-        done = subprocess.run(["bash", "-c", script, "bash", self.last], capture_output=True, text=True, cwd=self.folder.name)
+        done = subprocess.run(["bash", "-c", script, "bash", self.last], capture_output=True, text=True, cwd=self.folder)
         self.assertEqual(done.stderr, "")
         return done.stdout.split()
 
     def setUp(self):
-        self.folder = tempfile.TemporaryDirectory()
-        self.addCleanup(self.folder.cleanup)
-        (pathlib.Path(self.folder.name) / "log.csv").touch()
+        super().setUp()
+        (self.folder / "log.csv").touch()
 
     def test_commands_options_choices_and_files(self):
         for words, last, expected in (
@@ -140,7 +132,3 @@ class Fish(unittest.TestCase):
     def kinds(self):
         return ["complete-fish"]
     test_it_reads_it = checked_by("fish", "-n")
-
-
-if __name__ == "__main__":
-    unittest.main()

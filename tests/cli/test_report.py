@@ -4,35 +4,25 @@
 import html.parser
 import json
 import os
-import pathlib
 import re
 import shutil
 import subprocess
-import tempfile
 import time
 import unittest
 
-TOOL = os.environ["RIPPLENOTCH"]
-SOURCE = pathlib.Path(os.environ["RIPPLENOTCH_SOURCE"])
-DATA = SOURCE / "data"
+from commands import DATA, SOURCE, SharedCase, good, new_folder, run
+
 PLOTLY = SOURCE / "scripts/report-assets/node_modules/plotly.js-cartesian-dist-min/plotly-cartesian.min.js"
 BROWSER = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 
 needs_browser = unittest.skipUnless(BROWSER and PLOTLY.is_file(), "SKIPPED: there is no Chromium or no plotly.js here")
 
 
-def run(*words, folder=None, **environment):
-    return subprocess.run([TOOL, *map(str, words)], capture_output=True, cwd=folder, timeout=120,
-                          stdin=subprocess.DEVNULL, env=dict(os.environ, **environment))
-
-
-class Pages(unittest.TestCase):
+class Pages(SharedCase):
     @classmethod
     def setUpClass(cls):
-        cls.folder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(cls.folder.cleanup)
-        cls.path = pathlib.Path(cls.folder.name)
-        os.symlink(DATA, cls.path / "data")
+        super().setUpClass()
+        os.symlink(DATA, cls.folder / "data")
         for command in (
                 "identify data/paper_60deg_s.csv data/paper_120deg_s.csv data/paper_180deg_s.csv --json -o joint.json",
                 "design joint.json --speed 18:180:18 --json -o table.json",
@@ -41,31 +31,30 @@ class Pages(unittest.TestCase):
                 "spectrum data/paper_move_2s.csv --map campbell --gear-ratio 100 -o m.csv --plot campbell.json",
                 "compare --step 10Nm --ramp 20Nm/s --speed 90deg/s --sample-rate 1kHz --gear-ratio 100 --orders 1,2 "
                 "--method lowpass,cutoff=13Hz --json -o comparison.json --plot responses.json"):
-            done = run(*command.split(), folder=cls.path)
-            assert done.returncode == 0, done.stderr
+            good(*command.split(), cwd=cls.folder)
 
     RESULTS = ["joint.json", "table.json", "metrics.json", "torque.json", "spectrum.json", "campbell.json",
                "comparison.json", "responses.json"]
 
     def page(self, *words):
-        done = run("report", *words, "-q", "-o", "page.html", "--force", folder=self.path)
-        self.assertEqual((done.returncode, done.stderr), (0, b""))
-        return (self.path / "page.html").read_text()
+        done = run("report", *words, "-q", "-o", "page.html", "--force", cwd=self.folder)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        return (self.folder / "page.html").read_text()
 
     def open(self, name):
         """The page as Chromium leaves it, what it said on the console, and every address it asked for."""
-        with tempfile.TemporaryDirectory() as profile:
-            log = pathlib.Path(profile, "net.json")
-            began = time.monotonic()
-            done = subprocess.run(
-                [BROWSER, "--headless=new", "--no-sandbox", "--disable-gpu", f"--user-data-dir={profile}/p",
-                 "--disable-background-networking", "--disable-component-update", "--disable-sync", "--no-first-run",
-                 "--host-resolver-rules=MAP * ~NOTFOUND", f"--log-net-log={log}", "--enable-logging=stderr",
-                 "--virtual-time-budget=8000", "--dump-dom", f"file://{self.path / name}"],
-                capture_output=True, timeout=120)
-            took = time.monotonic() - began
-            console = [line for line in done.stderr.decode("utf-8", "replace").splitlines() if "CONSOLE" in line]
-            asked = re.findall(r'"url":"(\w+:[^"]*)"', log.read_text()) if log.is_file() else []
+        profile = new_folder(self)
+        log = profile / "net.json"
+        began = time.monotonic()
+        done = subprocess.run(
+            [BROWSER, "--headless=new", "--no-sandbox", "--disable-gpu", f"--user-data-dir={profile}/p",
+             "--disable-background-networking", "--disable-component-update", "--disable-sync", "--no-first-run",
+             "--host-resolver-rules=MAP * ~NOTFOUND", f"--log-net-log={log}", "--enable-logging=stderr",
+             "--virtual-time-budget=8000", "--dump-dom", f"file://{self.folder / name}"],
+            capture_output=True, timeout=120)
+        took = time.monotonic() - began
+        console = [line for line in done.stderr.decode("utf-8", "replace").splitlines() if "CONSOLE" in line]
+        asked = re.findall(r'"url":"(\w+:[^"]*)"', log.read_text()) if log.is_file() else []
         ours = [url for url in asked if not re.match(r"(chrome|devtools|data|blob|about)", url)
                 and "google" not in url and "gvt1" not in url]
         return done.stdout.decode(), console, ours, took
@@ -93,8 +82,8 @@ class Pages(unittest.TestCase):
     @needs_browser
     def test_hostile_names_are_text_in_the_browser(self):
         hostile = "<img src=x onerror=document.title='pwned'> <b>bold %{x} `q`.csv"
-        os.symlink(DATA / "paper_90deg_s.csv", self.path / hostile)
-        done = run("spectrum", hostile, "-o", "h.csv", "--plot", "hostile.json", "--force", folder=self.path)
+        os.symlink(DATA / "paper_90deg_s.csv", self.folder / hostile)
+        done = run("spectrum", hostile, "-o", "h.csv", "--plot", "hostile.json", "--force", cwd=self.folder)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.page("hostile.json", "--plotly", PLOTLY, "--title", "<script>document.title='pwned'</script>")
         drawn, console, asked, _ = self.open("page.html")
@@ -105,16 +94,16 @@ class Pages(unittest.TestCase):
 
     @needs_browser
     def test_a_page_of_two_million_samples_is_small_and_opens_at_once(self):
-        log = self.path / "long.npy"
+        log = self.folder / "long.npy"
         if not log.exists():
             done = run("simulate", "--gear-ratio", "100", "--ripple", "1:0.8Nm", "--motion",
                        "constant,speed=90deg/s,duration=2000s", "--sample-rate", "1kHz", "--noise", "0.05Nm", "-o", log)
             self.assertEqual(done.returncode, 0, done.stderr)
-        done = run("filter", log, "--method", "lowpass,cutoff=13Hz", "-o", self.path / "long_out.npy", "--plot",
-                   self.path / "long.json", "--force")
+        done = run("filter", log, "--method", "lowpass,cutoff=13Hz", "-o", self.folder / "long_out.npy", "--plot",
+                   self.folder / "long.json", "--force")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.page("long.json", "--plotly", PLOTLY)
-        self.assertLess((self.path / "page.html").stat().st_size, 8_000_000)
+        self.assertLess((self.folder / "page.html").stat().st_size, 8_000_000)
         drawn, console, _, took = self.open("page.html")
         self.assertEqual(console, [])
         self.assertIn("data-drawn", drawn)
@@ -148,13 +137,9 @@ class Pages(unittest.TestCase):
 
     def test_what_is_no_result_is_named(self):
         for name, text in (("log.csv", "a,b\n1,2\n"), ("x.json", "{}"), ("y.json", '{"schema": "ripplenotch/joint/1"}')):
-            (self.path / name).write_text(text)
-            done = run("report", name, folder=self.path)
-            self.assertEqual((done.returncode, done.stdout), (3, b""), name)
-            self.assertIn(name.encode(), done.stderr)
+            (self.folder / name).write_text(text)
+            done = run("report", name, cwd=self.folder)
+            self.assertEqual((done.returncode, done.stdout), (3, ""), name)
+            self.assertIn(name, done.stderr)
         self.assertEqual(run("report").returncode, 2)
-        self.assertEqual(run("report", "nowhere.json", folder=self.path).returncode, 4)
-
-
-if __name__ == "__main__":
-    unittest.main()
+        self.assertEqual(run("report", "nowhere.json", cwd=self.folder).returncode, 4)

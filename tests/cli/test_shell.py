@@ -7,12 +7,11 @@ import pathlib
 import pty
 import signal
 import subprocess
-import tempfile
 import time
 import unittest
 
-TOOL = os.environ["RIPPLENOTCH"]
-DATA = pathlib.Path(os.environ["RIPPLENOTCH_SOURCE"]) / "data"
+from commands import DATA, TOOL, Case, new_folder
+
 LOG = DATA / "paper_90deg_s.csv"
 LOWPASS = "lowpass,cutoff=13rad/s,order=1"
 
@@ -31,23 +30,22 @@ def shell(command):
                           stdin=subprocess.DEVNULL, timeout=60)
 
 
-class Provenance(unittest.TestCase):
+class Provenance(Case):
     def test_where_a_result_goes_and_how_much_is_told_is_no_part_of_its_command(self):
         plain = f"ripplenotch info {LOG}"
-        with tempfile.TemporaryDirectory() as folder:
-            target = pathlib.Path(folder, "info.json")
-            for words in (f"-o {target}", f"-o{target} -qv", f"-vqo {target}", f"-qo{target}", f"--output={target} -q -v",
-                          f"--output {target} --quiet --verbose --json"):
-                done = shell(f"{plain} {words} --force")
-                self.assertEqual(done.returncode, 0, done.stderr)
-                self.assertEqual(json.loads(target.read_text())["command"], plain, words)
+        target = self.folder / "info.json"
+        for words in (f"-o {target}", f"-o{target} -qv", f"-vqo {target}", f"-qo{target}", f"--output={target} -q -v",
+                      f"--output {target} --quiet --verbose --json"):
+            done = shell(f"{plain} {words} --force")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertEqual(json.loads(target.read_text())["command"], plain, words)
         done = shell(f"ripplenotch info --json -- {LOG} {LOG} -qv")
         self.assertIn(b"-qv: ", done.stderr)  # behind -- it is a name
         done = shell(f"ripplenotch info --json -v --columns -,velocity,torque --sample-rate 1kHz --no-header --skip-lines 1 {LOG}")
         self.assertIn("--columns -,velocity,torque", json.loads(done.stdout)["command"])
 
 
-class Pipes(unittest.TestCase):
+class Pipes(Case):
     def test_a_log_flows_through_filter_into_spectrum(self):
         done = shell(f"cat {LOG} | ripplenotch filter --method {LOWPASS} - | ripplenotch spectrum - --json")
         self.assertEqual(done.returncode, 0, done.stderr)
@@ -63,12 +61,11 @@ class Pipes(unittest.TestCase):
 
     def test_a_binary_log_of_unknown_length_is_whole_in_a_pipe(self):
         # Its header holds the number of rows, which a pipe of text tells only at its end.
-        with tempfile.TemporaryDirectory() as folder:
-            target = pathlib.Path(folder, "out.npy")
-            self.assertEqual(shell(f"ripplenotch filter --method {LOWPASS} {LOG} -o {target}").returncode, 0)
-            piped = shell(f"cat {LOG} | ripplenotch filter --method {LOWPASS} - --output-format npy | cat")
-            self.assertEqual(piped.returncode, 0, piped.stderr)
-            self.assertEqual(piped.stdout, target.read_bytes())
+        target = self.folder / "out.npy"
+        self.assertEqual(shell(f"ripplenotch filter --method {LOWPASS} {LOG} -o {target}").returncode, 0)
+        piped = shell(f"cat {LOG} | ripplenotch filter --method {LOWPASS} - --output-format npy | cat")
+        self.assertEqual(piped.returncode, 0, piped.stderr)
+        self.assertEqual(piped.stdout, target.read_bytes())
         read = shell(f"cat {LOG} | ripplenotch filter --method none - --output-format npy | ripplenotch info - --json")
         self.assertEqual(json.loads(read.stdout)["rows"], 4000)
 
@@ -113,12 +110,11 @@ class Pipes(unittest.TestCase):
 
     def test_a_signal_leaves_no_temporary_file_behind(self):
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-            with self.subTest(number=number), tempfile.TemporaryDirectory() as folder:
-                self.assertEqual(self.interrupted(folder, number), (-number, []))
+            with self.subTest(number=number):
+                self.assertEqual(self.interrupted(new_folder(self), number), (-number, []))
 
     def test_an_ignored_signal_stays_ignored(self):
-        with tempfile.TemporaryDirectory() as folder:
-            self.assertEqual(self.interrupted(folder, signal.SIGHUP, ignored=True), (0, ["out.csv"]))
+        self.assertEqual(self.interrupted(self.folder, signal.SIGHUP, ignored=True), (0, ["out.csv"]))
 
     def test_a_full_disk_is_exit_code_4_with_a_reason(self):
         done = shell(f"ripplenotch filter --method {LOWPASS} {LOG} > /dev/full")
@@ -148,41 +144,40 @@ class Terminals(unittest.TestCase):
         self.assertIn(b"terminal", done.stderr)
 
 
-class Progress(unittest.TestCase):
+class Progress(Case):
     """On a terminal, after a second, and gone afterwards."""
 
     def slow(self, words, terminal=True, seconds=1.8):
         """Runs with a reader of standard output that lets it wait; what came on standard error, and how it ended."""
-        with tempfile.TemporaryDirectory() as folder:
-            log = pathlib.Path(folder, "long.csv")
-            head, *rows = LOG.read_text().splitlines()
-            speed = "\n".join(row.split(",", 1)[1] for row in rows)
-            log.write_text(head.split(",", 1)[1] + "\n" + "\n".join([speed] * 60) + "\n")
-            ours, theirs = open_terminal() if terminal else (None, None)
-            process = subprocess.Popen([TOOL, "filter", log, "--sample-rate", "1kHz", "--method", LOWPASS, *words],
-                                       stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-                                       stderr=theirs if terminal else subprocess.PIPE,
-                                       env=dict(os.environ, TERM="xterm"))
-            if terminal:
-                os.close(theirs)
-            time.sleep(seconds)
-            process.stdout.read()
-            process.stdout.close()
-            code = process.wait(timeout=60)
-            said = b"" if terminal else process.stderr.read()
-            if process.stderr:
-                process.stderr.close()
-            while terminal:
-                try:
-                    piece = os.read(ours, 65536)
-                except OSError:  # the other end is closed
-                    break
-                if not piece:
-                    break
-                said += piece
-            if terminal:
-                os.close(ours)
-            return code, said.decode()
+        log = self.folder / "long.csv"
+        head, *rows = LOG.read_text().splitlines()
+        speed = "\n".join(row.split(",", 1)[1] for row in rows)
+        log.write_text(head.split(",", 1)[1] + "\n" + "\n".join([speed] * 60) + "\n")
+        ours, theirs = open_terminal() if terminal else (None, None)
+        process = subprocess.Popen([TOOL, "filter", log, "--sample-rate", "1kHz", "--method", LOWPASS, *words],
+                                   stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                                   stderr=theirs if terminal else subprocess.PIPE,
+                                   env=dict(os.environ, TERM="xterm"))
+        if terminal:
+            os.close(theirs)
+        time.sleep(seconds)
+        process.stdout.read()
+        process.stdout.close()
+        code = process.wait(timeout=60)
+        said = b"" if terminal else process.stderr.read()
+        if process.stderr:
+            process.stderr.close()
+        while terminal:
+            try:
+                piece = os.read(ours, 65536)
+            except OSError:  # the other end is closed
+                break
+            if not piece:
+                break
+            said += piece
+        if terminal:
+            os.close(ours)
+        return code, said.decode()
 
     def test_work_longer_than_a_second_shows_share_rate_and_time_left_and_tidies_up(self):
         code, said = self.slow([])
@@ -198,25 +193,20 @@ class Progress(unittest.TestCase):
         self.assertEqual(self.slow([], seconds=0.0), (0, ""))
 
 
-class Files(unittest.TestCase):
+class Files(Case):
     def test_nothing_is_overwritten_unasked(self):
-        with tempfile.TemporaryDirectory() as folder:
-            target = pathlib.Path(folder, "out.csv")
-            target.write_text("mine")
-            command = f"ripplenotch filter --method {LOWPASS} {LOG} -o {target}"
-            refused = shell(command)
-            self.assertEqual(refused.returncode, 4)
-            self.assertIn(b"--force", refused.stderr)
-            self.assertEqual(target.read_text(), "mine")
-            self.assertEqual(shell(command + " --force").returncode, 0)
-            self.assertNotEqual(target.read_text(), "mine")
-            self.assertEqual(os.listdir(folder), ["out.csv"])
+        target = self.folder / "out.csv"
+        target.write_text("mine")
+        command = f"ripplenotch filter --method {LOWPASS} {LOG} -o {target}"
+        refused = shell(command)
+        self.assertEqual(refused.returncode, 4)
+        self.assertIn(b"--force", refused.stderr)
+        self.assertEqual(target.read_text(), "mine")
+        self.assertEqual(shell(command + " --force").returncode, 0)
+        self.assertNotEqual(target.read_text(), "mine")
+        self.assertEqual(os.listdir(self.folder), ["out.csv"])
 
     def test_a_folder_that_cannot_be_written_is_exit_code_4(self):
         done = shell(f"ripplenotch filter --method {LOWPASS} {LOG} -o /proc/none/out.csv")
         self.assertEqual(done.returncode, 4)
         self.assertIn(b"/proc/none/out.csv", done.stderr)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -9,19 +9,17 @@ import os
 import pathlib
 import struct
 import subprocess
-import tempfile
 import unittest
 
-TOOL = os.environ["RIPPLENOTCH"]
-SOURCE = pathlib.Path(os.environ["RIPPLENOTCH_SOURCE"])
-DATA = SOURCE / "data"
+from commands import DATA, SOURCE, TOOL, Case, run
+
 JOINT = ["--gear-ratio", "100", "--ripple", "1:0.8Nm:30deg", "--inertia", "0.5kgm2"]
 MOVE = ["--motion", "poly6,to=90deg,duration=1s", "--motion", "constant,speed=60deg/s,duration=0.5s",
         "--sample-rate", "1kHz"]
 
 
-def simulate(*words, stdin=b""):
-    return subprocess.run([TOOL, "simulate", *words], capture_output=True, input=stdin, timeout=60)
+def simulate(*words, stdin=None):
+    return run("simulate", *words, stdin=stdin, text=False)
 
 
 def rows(done):
@@ -38,13 +36,12 @@ def peak_to_peak(values):
     return max(values) - min(values)
 
 
-class Data(unittest.TestCase):
+class Data(Case):
     def test_make_data_writes_the_committed_logs_byte_for_byte(self):
-        with tempfile.TemporaryDirectory() as folder:
-            done = subprocess.run([SOURCE / "scripts" / "make-data", folder], capture_output=True, text=True,
-                                  env=dict(os.environ, RIPPLENOTCH=TOOL), timeout=60)
-            self.assertEqual(done.returncode, 0, done.stderr)
-            made = {path.name: path.read_bytes() for path in pathlib.Path(folder).iterdir()}
+        done = subprocess.run([SOURCE / "scripts" / "make-data", self.folder], capture_output=True, text=True,
+                              env=dict(os.environ, RIPPLENOTCH=TOOL), timeout=60)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        made = {path.name: path.read_bytes() for path in self.folder.iterdir()}
         committed = {path.name: path.read_bytes() for path in DATA.glob("*.csv")}
         self.assertEqual(sorted(made), sorted(committed))
         self.assertEqual(len(made), 6)
@@ -59,19 +56,19 @@ class Data(unittest.TestCase):
 
         self.assertLess(peak_to_peak(log("paper_rest")["torque_nm"]), 0.3)
         for speed in (60, 90, 120, 180):
-            run = log(f"paper_{speed}deg_s")
-            self.assertEqual(set(run["velocity_deg_s"]), {float(speed)})
-            self.assertEqual(len(run["time_s"]), 4000)
+            logged = log(f"paper_{speed}deg_s")
+            self.assertEqual(set(logged["velocity_deg_s"]), {float(speed)})
+            self.assertEqual(len(logged["time_s"]), 4000)
             # 1.96 Nm of ripple, widened by less than the noise's own span.
-            self.assertGreater(peak_to_peak(run["torque_nm"]), 1.96)
-            self.assertLess(peak_to_peak(run["torque_nm"]), 1.96 + 0.3)
+            self.assertGreater(peak_to_peak(logged["torque_nm"]), 1.96)
+            self.assertLess(peak_to_peak(logged["torque_nm"]), 1.96 + 0.3)
             # The share of order 1 at f = 100 v / 360, from a plain Fourier sum over whole cycles.
             cycles = int(4 * 100 * speed / 360)
             n = round(1000 * cycles / (100 * speed / 360))
-            turns = [2 * math.pi * 100 * speed / 360 * t for t in run["time_s"][:n]]
+            turns = [2 * math.pi * 100 * speed / 360 * t for t in logged["time_s"][:n]]
             for order, amplitude in ((1, 0.8), (2, 0.5), (3, 0.0)):
-                real = sum(x * math.cos(order * a) for x, a in zip(run["torque_nm"], turns)) * 2 / n
-                imaginary = sum(x * math.sin(order * a) for x, a in zip(run["torque_nm"], turns)) * 2 / n
+                real = sum(x * math.cos(order * a) for x, a in zip(logged["torque_nm"], turns)) * 2 / n
+                imaginary = sum(x * math.sin(order * a) for x, a in zip(logged["torque_nm"], turns)) * 2 / n
                 self.assertAlmostEqual(math.hypot(real, imaginary), amplitude, delta=0.006)
         move = log("paper_move_2s")
         self.assertEqual((move["position_deg"][0], move["position_deg"][-1]), (90.0, -90.0))
@@ -173,7 +170,6 @@ class Logs(unittest.TestCase):
         for a, b in zip(torque(["--ripple", "1:1Nm"], 45), torque(["--ripple", "1:1Nm"], -45)):
             self.assertAlmostEqual(a, b, delta=1e-9)
 
-
     def test_the_clean_torque_of_the_papers_move_is_what_paper_and_pencil_say(self):
         done = simulate("--model", str(DATA / "paper_model.json"), "--motion", "rest,duration=0.5s,from=90deg",
                         "--motion", "poly6,to=-90deg,duration=2s", "--motion", "rest,duration=0.5s",
@@ -188,14 +184,13 @@ class Logs(unittest.TestCase):
             self.assertAlmostEqual(float(row["torque_nm"]), torque, delta=1e-10)
 
 
-class Summary(unittest.TestCase):
+class Summary(Case):
     def test_json_describes_the_log_that_was_written(self):
-        with tempfile.TemporaryDirectory() as folder:
-            log = str(pathlib.Path(folder, "log.csv"))
-            done = simulate(*JOINT, *MOVE, "--noise", "0.05Nm", "--seed", "9", "-o", log, "--json")
-            self.assertEqual(done.returncode, 0, done.stderr)
-            summary = json.loads(done.stdout)
-            written = pathlib.Path(log).read_bytes()
+        log = str(self.folder / "log.csv")
+        done = simulate(*JOINT, *MOVE, "--noise", "0.05Nm", "--seed", "9", "-o", log, "--json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        summary = json.loads(done.stdout)
+        written = pathlib.Path(log).read_bytes()
         self.assertEqual(summary["schema"], "ripplenotch/simulation/1")
         self.assertEqual(summary["rows"], 1500)
         self.assertEqual(summary["sample_rate_hz"], 1000)
@@ -211,18 +206,17 @@ class Summary(unittest.TestCase):
         self.assertEqual(summary["speed_deg_s"], {"min": min(speed), "max": max(speed)})
         self.assertEqual([effect["effect"] for effect in summary["model"]["effects"]], ["inertia", "ripple"])
         self.assertIn("--seed 9", summary["command"])
-        self.assertNotIn(folder, summary["command"])
+        self.assertNotIn(str(self.folder), summary["command"])
 
     def test_the_models_of_summaries_run_again(self):
-        with tempfile.TemporaryDirectory() as folder:
-            log = pathlib.Path(folder, "log.csv")
-            summary = json.loads(simulate(*JOINT, *MOVE, "-o", str(log), "--json").stdout)
-            model = dict(summary["model"], schema="ripplenotch/model/1")
-            again = simulate("--model", "-", *MOVE, stdin=json.dumps(model).encode())
-            self.assertEqual(again.stdout, log.read_bytes())
+        log = self.folder / "log.csv"
+        summary = json.loads(simulate(*JOINT, *MOVE, "-o", str(log), "--json").stdout)
+        model = dict(summary["model"], schema="ripplenotch/model/1")
+        again = simulate("--model", "-", *MOVE, stdin=json.dumps(model).encode())
+        self.assertEqual(again.stdout, log.read_bytes())
 
 
-class AlongLogs(unittest.TestCase):
+class AlongLogs(Case):
     """simulate LOG: the model along the motion that a log measured."""
 
     JOINT = ["--gear-ratio", "100", "--inertia", "0.5kgm2", "--ripple", "1:0.8Nm:30deg", "--effect",
@@ -238,71 +232,67 @@ class AlongLogs(unittest.TestCase):
         return path
 
     def test_the_right_model_leaves_the_noise_and_a_wrong_one_more(self):
-        with tempfile.TemporaryDirectory() as folder:
-            log = self.log(folder, "--noise", "0.06Nm", "--velocity-noise", "0.15deg/s")
-            out = str(pathlib.Path(folder, "out.csv"))
-            done = simulate(*self.JOINT, log, "-o", out, "--json")
-            self.assertEqual(done.returncode, 0, done.stderr)
-            summary = json.loads(done.stdout)
-            # By the velocity alone its noise would come in through the acceleration: 0.15 deg/s * 1 kHz *
-            # sqrt(75 / 51^3) = 3.6 deg/s2, 0.03 Nm, 0.067 Nm in all. The position is surer.
-            self.assertGreater(summary["along_log"]["residual_rms_nm"], 0.057)
-            self.assertLess(summary["along_log"]["residual_rms_nm"], 0.064)
-            self.assertEqual(summary["along_log"]["smoothing_s"], 0.05)
-            self.assertEqual(summary["motions"], [])
-            self.assertEqual(summary["sample_rate_hz"], 1000)
-            self.assertEqual([record["rows"] for record in summary["inputs"]], [3400])
-            # The residual printed is that of the columns written.
-            with open(out) as made, open(log) as measured:
-                pairs = list(zip(csv.DictReader(made), csv.DictReader(measured)))
-            for a, b in pairs:
-                for name in ("time_s", "velocity_deg_s", "position_deg"):
-                    self.assertEqual(a[name], b[name])
-            residual = [float(b["torque_nm"]) - float(a["torque_nm"]) for a, b in pairs]
-            self.assertAlmostEqual(math.sqrt(sum(r * r for r in residual) / len(residual)),
-                                   summary["along_log"]["residual_rms_nm"], delta=5.1e-11)  # nine digits
-            wrong = json.loads(simulate("--gear-ratio", "101", *self.JOINT[2:], log, "-o", out, "--force", "--json").stdout)
-            self.assertGreater(wrong["along_log"]["residual_rms_nm"], 0.3)
+        log = self.log(self.folder, "--noise", "0.06Nm", "--velocity-noise", "0.15deg/s")
+        out = str(self.folder / "out.csv")
+        done = simulate(*self.JOINT, log, "-o", out, "--json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        summary = json.loads(done.stdout)
+        # By the velocity alone its noise would come in through the acceleration: 0.15 deg/s * 1 kHz *
+        # sqrt(75 / 51^3) = 3.6 deg/s2, 0.03 Nm, 0.067 Nm in all. The position is surer.
+        self.assertGreater(summary["along_log"]["residual_rms_nm"], 0.057)
+        self.assertLess(summary["along_log"]["residual_rms_nm"], 0.064)
+        self.assertEqual(summary["along_log"]["smoothing_s"], 0.05)
+        self.assertEqual(summary["motions"], [])
+        self.assertEqual(summary["sample_rate_hz"], 1000)
+        self.assertEqual([record["rows"] for record in summary["inputs"]], [3400])
+        # The residual printed is that of the columns written.
+        with open(out) as made, open(log) as measured:
+            pairs = list(zip(csv.DictReader(made), csv.DictReader(measured)))
+        for a, b in pairs:
+            for name in ("time_s", "velocity_deg_s", "position_deg"):
+                self.assertEqual(a[name], b[name])
+        residual = [float(b["torque_nm"]) - float(a["torque_nm"]) for a, b in pairs]
+        self.assertAlmostEqual(math.sqrt(sum(r * r for r in residual) / len(residual)),
+                               summary["along_log"]["residual_rms_nm"], delta=5.1e-11)  # nine digits
+        wrong = json.loads(simulate("--gear-ratio", "101", *self.JOINT[2:], log, "-o", out, "--force", "--json").stdout)
+        self.assertGreater(wrong["along_log"]["residual_rms_nm"], 0.3)
 
     def test_a_log_without_position_gives_one_without_position(self):
-        with tempfile.TemporaryDirectory() as folder:
-            log = self.log(folder, "--no-position")
-            done = simulate(*self.JOINT, log)
-            self.assertEqual(list(rows(done)[0]), ["time_s", "velocity_deg_s", "torque_nm"])
-            with open(log) as measured:
-                truth = [float(row["torque_nm"]) for row in csv.DictReader(measured)]
-            # The moves begin with a kink of the acceleration, which the smoothing rounds.
-            for a, b in zip(column(done, "torque_nm"), truth):
-                self.assertAlmostEqual(a, b, delta=0.2)
-            sharp = column(simulate(*self.JOINT, "--smoothing", "6ms", log), "torque_nm")
-            for a, b in zip(sharp, truth):
-                self.assertAlmostEqual(a, b, delta=0.02)
+        log = self.log(self.folder, "--no-position")
+        done = simulate(*self.JOINT, log)
+        self.assertEqual(list(rows(done)[0]), ["time_s", "velocity_deg_s", "torque_nm"])
+        with open(log) as measured:
+            truth = [float(row["torque_nm"]) for row in csv.DictReader(measured)]
+        # The moves begin with a kink of the acceleration, which the smoothing rounds.
+        for a, b in zip(column(done, "torque_nm"), truth):
+            self.assertAlmostEqual(a, b, delta=0.2)
+        sharp = column(simulate(*self.JOINT, "--smoothing", "6ms", log), "torque_nm")
+        for a, b in zip(sharp, truth):
+            self.assertAlmostEqual(a, b, delta=0.02)
 
     def test_units_joints_and_pipes_are_read_as_every_command_does(self):
-        with tempfile.TemporaryDirectory() as folder:
-            log = pathlib.Path(self.log(folder))
-            done = simulate(*self.JOINT, str(log))
-            lines = log.read_text().splitlines()
-            odd = [lines[0].replace("velocity_deg_s", "j4_velocity [rad/s]").replace("torque_nm", "j4_torque [Nm]")
-                   .replace("position_deg", "j4_position [deg]")]
-            for line in lines[1:]:
-                cells = line.split(",")
-                cells[1] = repr(math.radians(float(cells[1])))
-                odd.append(",".join(cells))
-            piped = simulate(*self.JOINT, "--joint", "j4", "-", stdin="\n".join(odd).encode())
-            for a, b in zip(column(piped, "torque_nm"), column(done, "torque_nm")):
-                self.assertAlmostEqual(a, b, delta=1e-9)
+        log = pathlib.Path(self.log(self.folder))
+        done = simulate(*self.JOINT, str(log))
+        lines = log.read_text().splitlines()
+        odd = [lines[0].replace("velocity_deg_s", "j4_velocity [rad/s]").replace("torque_nm", "j4_torque [Nm]")
+               .replace("position_deg", "j4_position [deg]")]
+        for line in lines[1:]:
+            cells = line.split(",")
+            cells[1] = repr(math.radians(float(cells[1])))
+            odd.append(",".join(cells))
+        piped = simulate(*self.JOINT, "--joint", "j4", "-", stdin="\n".join(odd).encode())
+        for a, b in zip(column(piped, "torque_nm"), column(done, "torque_nm")):
+            self.assertAlmostEqual(a, b, delta=1e-9)
 
     def test_spikes_of_a_model_are_left_out_of_a_prediction_unless_asked_for(self):
-        with tempfile.TemporaryDirectory() as folder:
-            log = self.log(folder)
-            spiky = [*self.JOINT, "--effect", "spikes,rate_percent=1,size_nm=50"]
-            plain = column(simulate(*self.JOINT, log), "torque_nm")
-            self.assertEqual(column(simulate(*spiky, log), "torque_nm"), plain)
-            with_spikes = column(simulate(*spiky, "--faults", log), "torque_nm")
-            self.assertGreater(sum(abs(a - b) > 40 for a, b in zip(with_spikes, plain)), 10)
-            made = column(simulate(*spiky, *self.MOVES), "torque_nm")
-            self.assertGreater(max(made), 40)
+        log = self.log(self.folder)
+        spiky = [*self.JOINT, "--effect", "spikes,rate_percent=1,size_nm=50"]
+        plain = column(simulate(*self.JOINT, log), "torque_nm")
+        self.assertEqual(column(simulate(*spiky, log), "torque_nm"), plain)
+        with_spikes = column(simulate(*spiky, "--faults", log), "torque_nm")
+        self.assertGreater(sum(abs(a - b) > 40 for a, b in zip(with_spikes, plain)), 10)
+        made = column(simulate(*spiky, *self.MOVES), "torque_nm")
+        self.assertGreater(max(made), 40)
 
     def test_correlated_noise_has_its_rms_and_its_correlation(self):
         long = ["--gear-ratio", "1", "--motion", "rest,duration=40s", "--sample-rate", "1kHz", "--noise", "50mNm"]
@@ -314,18 +304,17 @@ class AlongLogs(unittest.TestCase):
         self.assertEqual(simulate(*long, "--noise-correlation", "0").stdout, simulate(*long).stdout)
 
 
-class Refusals(unittest.TestCase):
+class Refusals(Case):
     def refused(self, code, expected, *words, stdin=b""):
-        with tempfile.TemporaryDirectory() as folder:
-            log = pathlib.Path(folder, "log.csv")
-            done = simulate(*words, "-o", str(log), stdin=stdin)
-            message = done.stderr.decode()
-            self.assertEqual(done.returncode, code, message)
-            self.assertEqual(done.stdout, b"")
-            self.assertEqual(len(message.splitlines()), 1, message)
-            for part in expected:
-                self.assertIn(part, message)
-            self.assertEqual(list(pathlib.Path(folder).iterdir()), [])
+        log = self.folder / "log.csv"
+        done = simulate(*words, "-o", str(log), stdin=stdin)
+        message = done.stderr.decode()
+        self.assertEqual(done.returncode, code, message)
+        self.assertEqual(done.stdout, b"")
+        self.assertEqual(len(message.splitlines()), 1, message)
+        for part in expected:
+            self.assertIn(part, message)
+        self.assertEqual(list(self.folder.iterdir()), [])
 
     def test_a_wrong_request_is_exit_code_2_with_one_line_and_no_file(self):
         self.refused(2, ["--gear-ratio is missing", "--model"], *MOVE)
@@ -369,19 +358,14 @@ class Refusals(unittest.TestCase):
         self.refused(4, ["no-such-model.json"], "--model", "no-such-model.json", *MOVE)
 
     def test_an_existing_log_is_not_overwritten_unasked(self):
-        with tempfile.TemporaryDirectory() as folder:
-            log = pathlib.Path(folder, "log.csv")
-            log.write_text("precious")
-            self.assertEqual(simulate(*JOINT, *MOVE, "-o", str(log)).returncode, 4)
-            self.assertEqual(log.read_text(), "precious")
-            self.assertEqual(simulate(*JOINT, *MOVE, "-o", str(log), "--force").returncode, 0)
-            self.assertTrue(log.read_text().startswith("time_s,"))
+        log = self.folder / "log.csv"
+        log.write_text("precious")
+        self.assertEqual(simulate(*JOINT, *MOVE, "-o", str(log)).returncode, 4)
+        self.assertEqual(log.read_text(), "precious")
+        self.assertEqual(simulate(*JOINT, *MOVE, "-o", str(log), "--force").returncode, 0)
+        self.assertTrue(log.read_text().startswith("time_s,"))
 
     def test_a_summary_and_a_log_cannot_share_standard_output(self):
         done = simulate(*JOINT, *MOVE, "--json")
         self.assertEqual(done.returncode, 2)
         self.assertIn(b"-o FILE", done.stderr)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -4,25 +4,20 @@
 import csv
 import io
 import json
-import os
 import pathlib
-import subprocess
-import tempfile
-import unittest
 
-TOOL = os.environ["RIPPLENOTCH"]
-DATA = pathlib.Path(os.environ["RIPPLENOTCH_SOURCE"]) / "data"
+from commands import DATA, Case, run
+
 MOVE = str(DATA / "paper_move_2s.csv")
 
 
-def run(*words):
-    return subprocess.run([TOOL, "spectrum", *words], capture_output=True, text=True, timeout=60,
-                          stdin=subprocess.DEVNULL)
+def spectrum(*words):
+    return run("spectrum", *words)
 
 
-class Maps(unittest.TestCase):
+class Maps(Case):
     def cells(self, *words):
-        done = run(*words)
+        done = spectrum(*words)
         self.assertEqual(done.returncode, 0, done.stderr)
         table = list(csv.reader(io.StringIO(done.stdout)))
         rows = {}
@@ -55,7 +50,7 @@ class Maps(unittest.TestCase):
         self.assertAlmostEqual(amplitude, 0.8, delta=0.01)
 
     def test_a_resolution_that_the_log_cannot_give_is_not_pretended(self):
-        done = run(MOVE, "--map", "order", "--gear-ratio", "100", "--resolution", "0.001", "--highest", "4", "--json")
+        done = spectrum(MOVE, "--map", "order", "--gear-ratio", "100", "--resolution", "0.001", "--highest", "4", "--json")
         self.assertEqual(done.returncode, 0, done.stderr)
         result = json.loads(done.stdout)
         self.assertEqual((result["schema"], result["domain"]), ("ripplenotch/spectrum/1", "order-map"))
@@ -65,32 +60,29 @@ class Maps(unittest.TestCase):
             self.assertEqual(len(row["amplitude_nm"]), len(result["axis_values"]))
 
     def test_the_orders_of_a_joint_file_are_the_lines_of_the_figure(self):
-        with tempfile.TemporaryDirectory() as folder:
-            joint, figure = f"{folder}/joint.json", f"{folder}/map.json"
-            logs = [str(DATA / f"paper_{speed}deg_s.csv") for speed in (60, 120, 180)]
-            done = subprocess.run([TOOL, "identify", *logs, "-o", joint, "-q"], capture_output=True, text=True,
-                                  timeout=60, stdin=subprocess.DEVNULL)
-            self.assertEqual(done.returncode, 0, done.stderr)
-            for words, orders in ((["--joint-file", joint], [1, 2]), (["--gear-ratio", "100"], [1, 2]),
-                                  (["--gear-ratio", "100", "--orders", "1,2,3,4"], [1, 2, 3, 4]),
-                                  ([], [])):
-                for kind, scale in (("campbell", 100 / 360), ("order", 1)):
-                    done = run(MOVE, "--map", kind, "--highest", "5", *words, "-o", f"{folder}/map.csv",
-                               "--plot", figure, "--force")
-                    self.assertEqual(done.returncode, 0, done.stderr)
-                    result = json.loads(pathlib.Path(figure).read_text())
-                    lines = result["panels"][0]["lines"]
-                    self.assertEqual([line["name"] for line in lines], [f"order {n}" for n in orders])
-                    for line, order in zip(lines, orders, strict=True):
-                        self.assertAlmostEqual(line["value"], order * scale, delta=2e-5)
-                    names = [entry["name"] for entry in result["inputs"]]
-                    self.assertEqual(names, [MOVE, joint] if "--joint-file" in words else [MOVE])
+        joint, figure = f"{self.folder}/joint.json", f"{self.folder}/map.json"
+        logs = [str(DATA / f"paper_{speed}deg_s.csv") for speed in (60, 120, 180)]
+        self.good("identify", *logs, "-o", joint, "-q")
+        for words, orders in ((["--joint-file", joint], [1, 2]), (["--gear-ratio", "100"], [1, 2]),
+                              (["--gear-ratio", "100", "--orders", "1,2,3,4"], [1, 2, 3, 4]),
+                              ([], [])):
+            for kind, scale in (("campbell", 100 / 360), ("order", 1)):
+                done = spectrum(MOVE, "--map", kind, "--highest", "5", *words, "-o", f"{self.folder}/map.csv",
+                           "--plot", figure, "--force")
+                self.assertEqual(done.returncode, 0, done.stderr)
+                result = json.loads(pathlib.Path(figure).read_text())
+                lines = result["panels"][0]["lines"]
+                self.assertEqual([line["name"] for line in lines], [f"order {n}" for n in orders])
+                for line, order in zip(lines, orders, strict=True):
+                    self.assertAlmostEqual(line["value"], order * scale, delta=2e-5)
+                names = [entry["name"] for entry in result["inputs"]]
+                self.assertEqual(names, [MOVE, joint] if "--joint-file" in words else [MOVE])
 
     def test_a_joint_file_that_is_none_is_refused(self):
-        done = run(MOVE, "--map", "order", "--joint-file", MOVE)
+        done = spectrum(MOVE, "--map", "order", "--joint-file", MOVE)
         self.assertEqual(done.returncode, 3)
         self.assertIn("expected schema \"ripplenotch/joint/1\"", done.stderr)
-        done = run(MOVE, "--joint-file", "joint.json")
+        done = spectrum(MOVE, "--joint-file", "joint.json")
         self.assertEqual(done.returncode, 2)
         self.assertIn("belong to --map", done.stderr)
 
@@ -98,13 +90,9 @@ class Maps(unittest.TestCase):
         for words, part in ((["--resolution", "1"], "--map"), (["--map", "waterfall"], "campbell"),
                             (["--map", "order", "--peaks"], "--peaks"),
                             (["--map", "order", "--resolution", "0"], "above 0")):
-            done = run(MOVE, *words)
+            done = spectrum(MOVE, *words)
             self.assertEqual((done.returncode, done.stdout), (2, ""), done.stderr)
             self.assertIn(part, done.stderr)
-        done = run(str(DATA / "paper_rest.csv"), "--map", "campbell")
+        done = spectrum(str(DATA / "paper_rest.csv"), "--map", "campbell")
         self.assertEqual(done.returncode, 3, done.stderr)
         self.assertIn("does not move", done.stderr)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -2,31 +2,26 @@
 """ripplenotch spectrum --segment as users meet it: a log goes by, from a file or through a pipe, and is not held."""
 
 import math
-import os
-import pathlib
 import random
 import resource
 import subprocess
-import tempfile
-import unittest
 
-from sanitizers import sanitized
+from commands import DATA, TOOL, Case, run, sanitized
 
-TOOL = os.environ["RIPPLENOTCH"]
-DATA = pathlib.Path(os.environ["RIPPLENOTCH_SOURCE"]) / "data"
+
 ROWS = 2_000_000  # held in memory they would take 70 MiB
 MOST_MIB = 32.0   # measured: 14, whatever the number of rows
 
 
-def run(*words, log=None):
-    return subprocess.run([TOOL, "spectrum", *words], stdin=log or subprocess.DEVNULL, capture_output=True, timeout=120)
+def spectrum(*words, log=None):
+    return run("spectrum", *words, stdin=log, text=False)
 
 
-class Streams(unittest.TestCase):
+class Streams(Case):
     def equal_by_pipe(self, log, *words):
-        by_file = run(str(log), *words)
+        by_file = spectrum(str(log), *words)
         with open(log, "rb") as stream:
-            by_pipe = run("-", *words, log=stream)
+            by_pipe = spectrum("-", *words, log=stream)
         self.assertEqual(by_file.returncode, by_pipe.returncode, by_pipe.stderr)
         self.assertEqual(by_file.stdout, by_pipe.stdout)
         self.assertEqual(by_file.stderr.replace(str(log).encode(), b"standard input"), by_pipe.stderr)
@@ -39,14 +34,13 @@ class Streams(unittest.TestCase):
                     self.assertEqual(self.equal_by_pipe(DATA / name, *words).returncode, 0)
 
     def test_errors_are_those_of_reading(self):
-        with tempfile.TemporaryDirectory() as folder:
-            log = pathlib.Path(folder) / "log.csv"
-            lines = (DATA / "paper_90deg_s.csv").read_text().splitlines(keepends=True)
-            log.write_text("".join(lines[:3500]) + "3.6,90,oops,12\n" + "".join(lines[3500:]))
-            done = self.equal_by_pipe(log, "--segment", "0.5s")
-            self.assertEqual((done.returncode, done.stdout), (3, b""))
-            self.assertIn(b"log.csv:3501:", done.stderr)
-        done = run(str(DATA / "paper_90deg_s.csv"), "--segment", "0.01s")
+        log = self.folder / "log.csv"
+        lines = (DATA / "paper_90deg_s.csv").read_text().splitlines(keepends=True)
+        log.write_text("".join(lines[:3500]) + "3.6,90,oops,12\n" + "".join(lines[3500:]))
+        done = self.equal_by_pipe(log, "--segment", "0.5s")
+        self.assertEqual((done.returncode, done.stdout), (3, b""))
+        self.assertIn(b"log.csv:3501:", done.stderr)
+        done = spectrum(str(DATA / "paper_90deg_s.csv"), "--segment", "0.01s")
         self.assertEqual(done.returncode, 3)
         self.assertIn(b"use a longer --segment", done.stderr)
 
@@ -56,20 +50,15 @@ class Streams(unittest.TestCase):
         stamps = [f"{k:03d}" for k in range(1000)]
         if sanitized(TOOL):
             self.skipTest("a sanitizer's own memory would count")
-        with tempfile.TemporaryDirectory() as folder:
-            log = pathlib.Path(folder) / "log.csv"
-            with open(log, "w") as file:
-                file.write("time_s,velocity_deg_s,torque_nm\n")
-                for second in range(ROWS // 1000):
-                    at = random.randrange(len(rest) - 1000)
-                    file.write("".join([f"{second}.{stamp},{row}\n" for stamp, row in zip(stamps, rest[at:at + 1000])]))
-            out = pathlib.Path(folder) / "spectrum.csv"
-            command = f"cat '{log}' | '{TOOL}' spectrum - --segment 4.096s -o '{out}'"
-            subprocess.run(["sh", "-c", command], check=True, timeout=120, stdin=subprocess.DEVNULL)
-            peak = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024.0
-            self.assertEqual(len(out.read_text().splitlines()), 1 + 2049)
-            self.assertLess(peak, MOST_MIB, "MiB at most of the tool, the shell and what they were started from")
-
-
-if __name__ == "__main__":
-    unittest.main()
+        log = self.folder / "log.csv"
+        with open(log, "w") as file:
+            file.write("time_s,velocity_deg_s,torque_nm\n")
+            for second in range(ROWS // 1000):
+                at = random.randrange(len(rest) - 1000)
+                file.write("".join([f"{second}.{stamp},{row}\n" for stamp, row in zip(stamps, rest[at:at + 1000])]))
+        out = self.folder / "spectrum.csv"
+        command = f"cat '{log}' | '{TOOL}' spectrum - --segment 4.096s -o '{out}'"
+        subprocess.run(["sh", "-c", command], check=True, timeout=120, stdin=subprocess.DEVNULL)
+        peak = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024.0
+        self.assertEqual(len(out.read_text().splitlines()), 1 + 2049)
+        self.assertLess(peak, MOST_MIB, "MiB at most of the tool, the shell and what they were started from")

@@ -3,17 +3,16 @@
 
 import math
 import os
-import pathlib
 import subprocess
-import tempfile
-import unittest
 
-TOOL = os.environ["RIPPLENOTCH"]
+from commands import OF_A_LOG, TOOL, Case, asked_for_json
+from commands import TOOL, Case
+
 ESCAPE = "\x1b]0;x\x07"
 ACTING = [chr(c) for c in (*range(0x20), 0x7F, *range(0x80, 0xA0), 0x202E, 0x2028) if c != 0x0A]
 
 
-class Streams(unittest.TestCase):
+class Streams(Case):
     # Words, and what they end with; the second warns before it works, the last talks all the time.
     RUNS = (
         (("nonsense",), 2),
@@ -26,21 +25,20 @@ class Streams(unittest.TestCase):
     )
 
     def setUp(self):
-        self.folder = tempfile.TemporaryDirectory()
-        self.addCleanup(self.folder.cleanup)
+        super().setUp()
         rows = "".join(f"{k / 1000},60,{(k % 7) / 7}\n" for k in range(2000))
-        pathlib.Path(self.folder.name, "log.csv").write_text("time_s,velocity_deg_s,torque_nm\n" + rows)
-        pathlib.Path(self.folder.name, "broken.csv").write_text("time_s,velocity_deg_s,torque_nm\n1,2\n")
+        (self.folder / "log.csv").write_text("time_s,velocity_deg_s,torque_nm\n" + rows)
+        (self.folder / "broken.csv").write_text("time_s,velocity_deg_s,torque_nm\n1,2\n")
 
-    def run_tool(self, words, **streams):
-        return subprocess.run([TOOL, *words], cwd=self.folder.name, stdin=subprocess.DEVNULL, timeout=60, **streams)
+    def run_with(self, words, **streams):
+        return subprocess.run([TOOL, *words], cwd=self.folder, stdin=subprocess.DEVNULL, timeout=60, **streams)
 
     def each(self, name, **streams):
         for words, code in self.RUNS:
             with self.subTest(name, words=words):
-                usual = self.run_tool(words, capture_output=True)
+                usual = self.run_with(words, capture_output=True)
                 self.assertEqual(usual.returncode, code, usual.stderr)
-                then = self.run_tool(words, stdout=subprocess.PIPE, **streams)
+                then = self.run_with(words, stdout=subprocess.PIPE, **streams)
                 self.assertEqual((then.returncode, then.stdout), (code, usual.stdout))
 
     def test_full(self):
@@ -58,38 +56,36 @@ class Streams(unittest.TestCase):
 
     def test_a_file_never_becomes_standard_error(self):
         for words in (("filter", "log.csv", "--method", "lowpass,cutoff=13Hz,order=1", "-v", "-o", "out.csv", "--force"),):
-            self.run_tool(words, capture_output=True)
-            usual = pathlib.Path(self.folder.name, "out.csv").read_bytes()
-            then = self.run_tool(words, preexec_fn=lambda: [os.close(stream) for stream in (0, 1, 2)])
+            self.run_with(words, capture_output=True)
+            usual = (self.folder / "out.csv").read_bytes()
+            then = self.run_with(words, preexec_fn=lambda: [os.close(stream) for stream in (0, 1, 2)])
             self.assertEqual(then.returncode, 0)
-            self.assertEqual(pathlib.Path(self.folder.name, "out.csv").read_bytes(), usual)
+            self.assertEqual((self.folder / "out.csv").read_bytes(), usual)
 
     def test_closed_input_and_output_are_errors_with_a_name(self):
-        done = self.run_tool(("info", "log.csv"), stderr=subprocess.PIPE, preexec_fn=lambda: os.close(1))
+        done = self.run_with(("info", "log.csv"), stderr=subprocess.PIPE, preexec_fn=lambda: os.close(1))
         self.assertEqual(done.returncode, 4)
         self.assertIn(b"standard output: cannot write", done.stderr)
-        done = subprocess.run([TOOL, "info", "-"], cwd=self.folder.name, capture_output=True, preexec_fn=lambda: os.close(0))
+        done = subprocess.run([TOOL, "info", "-"], cwd=self.folder, capture_output=True, preexec_fn=lambda: os.close(0))
         self.assertEqual(done.returncode, 4)
         self.assertIn(b"standard input: cannot read", done.stderr)
 
     def test_help_that_cannot_be_written_is_an_error(self):
         for words in (("--help",), ("--version",), ("info", "--help")):
             with open("/dev/full", "w") as full:
-                self.assertEqual(self.run_tool(words, stdout=full, stderr=subprocess.PIPE).returncode, 4, words)
+                self.assertEqual(self.run_with(words, stdout=full, stderr=subprocess.PIPE).returncode, 4, words)
 
 
-class Visible(unittest.TestCase):
-    def setUp(self):
-        self.folder = tempfile.TemporaryDirectory()
-        self.addCleanup(self.folder.cleanup)
+class Visible(Case):
+    bytes_out = True
 
     def write(self, name, text):
-        path = os.path.join(self.folder.name.encode(), name if isinstance(name, bytes) else name.encode())
+        path = os.path.join(os.fsencode(self.folder), name if isinstance(name, bytes) else name.encode())
         with open(path, "wb") as file:
             file.write(text if isinstance(text, bytes) else text.encode())
 
     def shown(self, *words):
-        done = subprocess.run([TOOL, *words], cwd=self.folder.name, capture_output=True, timeout=60, stdin=subprocess.DEVNULL)
+        done = self.run_tool(*words)
         self.assertNotIn(done.returncode, (70, -6, -11))
         for stream in (done.stdout, done.stderr):
             text = stream.decode("utf-8")  # whatever came in, what goes out is UTF-8
@@ -113,11 +109,10 @@ class Visible(unittest.TestCase):
         log = "time_s,velocity_deg_s,torque_nm\n" + "".join(f"{k / 1000},60,{(k % 7) / 7}\n" for k in range(2000))
         for name in ("a\x1b[31mb.csv", "a\u009b31mb.csv", "a\u202eb.csv", "a\nripplenotch: all is well.csv", b"a\xff\xfeb.csv", "a\x7f.csv"):
             self.write(name, log)
-            for words in (("info", name), ("info", name, "--json"), ("info", name, "-v"), ("identify", name), ("identify", name, "--json"),
-                          ("spectrum", name, "--peaks"), ("filter", name, "--method", "lowpass,cutoff=13Hz,order=1", "-v", "-o", "out.csv", "--force"),
-                          ("compare", name, "--method", "lowpass,cutoff=13Hz,order=1", "--gear-ratio", "100", "--orders", "1"),
-                          ("track", name, "--gear-ratio", "100", "--orders", "1", "--json"), ("filter", name, "--method", "switching,table=" + str(name)),
-                          ("info", str(name) + ".missing")):
+            given = [asked_for_json(command, name) for command in OF_A_LOG if command not in ("recommend", "diagnose", "map")]
+            for words in (*given, ("info", name), ("info", name, "-v"), ("identify", name), ("compare", name, "--method", "none"),
+                          ("filter", name, "--method", "lowpass,cutoff=13Hz,order=1", "-v", "-o", "out.csv", "--force"),
+                          ("filter", name, "--method", "switching,table=" + str(name)), ("info", str(name) + ".missing")):
                 self.shown(*words)
         for words in (("info", "x.csv", "--columns", "a\x1b[31m"), ("filtre\x1b[2J",), ("info", "--\x1b[2J"), ("info", "x", "--format", "\x1b[2J"),
                       ("filter", "x.csv", "--method", "\x1b[2J,a=b"), ("design", "--gear-ratio", "\u009b5")):
@@ -143,7 +138,3 @@ class Visible(unittest.TestCase):
         figure = ('{"schema": "ripplenotch/metrics/1", "command": "\\u001b[2J", "verdict": "\\u001b[2J\u202e", "\\u001b[2J": "\u009b"}')
         self.write("x.json", figure)
         self.assertEqual(self.shown("report", "x.json", "--no-plotly").returncode, 0)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -3,12 +3,9 @@
 
 import json
 import math
-import pathlib
-import subprocess
-import tempfile
-import unittest
 
-from test_log_dialects import ROWS, TOOL, lvm, table
+from commands import Case
+from test_log_dialects import ROWS, lvm, table
 
 
 def lvm_without_times(x_value=True, step="0.002", dimension="Time"):
@@ -20,24 +17,16 @@ def lvm_without_times(x_value=True, step="0.002", dimension="Time"):
     return table(f"{names}velocity|torque|position|Comment", f"{columns}deg/s|Nm|deg", delimiter="\t", head=head)
 
 
-class Case(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
-
-    def tool(self, *words):
-        return subprocess.run([TOOL, *words], cwd=self.folder, capture_output=True, text=True, timeout=120)
-
+class Clocks(Case):
     def recording(self, content, *options):
         (self.folder / "log.csv").write_bytes(content)
-        done = self.tool("identify", "log.csv", "--json", "-q", *options)
+        done = self.run_tool("identify", "log.csv", "--json", "-q", *options)
         self.assertEqual(done.returncode, 0, done.stderr)
         found = json.loads(done.stdout)
         return found["recording"], found["gear_ratio"]["value"]
 
 
-class LabView(Case):
+class LabView(Clocks):
     def test_the_head_is_the_clock_of_a_file_without_one(self):
         for x_value in (True, False):
             with self.subTest(x_value=x_value):
@@ -49,8 +38,8 @@ class LabView(Case):
 
     def test_every_row_is_as_far_from_the_last_in_what_is_written(self):
         (self.folder / "log.csv").write_bytes(lvm_without_times(step="0.004"))
-        self.assertEqual(self.tool("filter", "log.csv", "--method", "none", "-o", "out.npy", "-q").returncode, 0)
-        seen = json.loads(self.tool("info", "out.npy", "--json").stdout)
+        self.assertEqual(self.run_tool("filter", "log.csv", "--method", "none", "-o", "out.npy", "-q").returncode, 0)
+        seen = json.loads(self.run_tool("info", "out.npy", "--json").stdout)
         self.assertEqual((seen["sample_rate_hz"], seen["rows"]), (250, len(ROWS)))
 
     def test_times_and_options_come_before_the_head(self):
@@ -62,11 +51,11 @@ class LabView(Case):
         for content in (lvm_without_times(dimension="Frequency"), lvm_without_times(step="0.0"),
                         lvm_without_times().replace(b"0.002\t0.002\t0.002", b"0.002\t0.004\t0.002")):
             (self.folder / "log.csv").write_bytes(content)
-            done = self.tool("identify", "log.csv", "-q")
+            done = self.run_tool("identify", "log.csv", "-q")
             self.assertEqual(done.returncode, 3, done.stdout)
 
 
-class Counters(Case):
+class Counters(Clocks):
     """libfranka counts milliseconds, one a row: a row number, until somebody says what it counts."""
 
     def libfranka(self, name):
@@ -81,10 +70,6 @@ class Counters(Case):
 
     def test_without_one_the_option_is_named(self):
         (self.folder / "log.csv").write_bytes(self.libfranka("time"))
-        done = self.tool("identify", "log.csv")
+        done = self.run_tool("identify", "log.csv")
         self.assertEqual(done.returncode, 3)
         self.assertIn("--unit time=ms", done.stderr)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -3,34 +3,15 @@
 
 import json
 import math
-import os
-import pathlib
-import subprocess
-import tempfile
-import unittest
 
-TOOL = os.environ["RIPPLENOTCH"]
-DATA = pathlib.Path(os.environ["RIPPLENOTCH_SOURCE"]) / "data"
-MODEL = DATA / "paper_model.json"
-GEAR = ["--gear-ratio", "100", "--orders", "1,2"]
+from commands import ACCOUNTS, DATA, Case, asked_for_json
+from commands import DATA, Case
+
 METHOD = ["--method", "tracking,gear-ratio=100,orders=1:2"]
-OUT = ["-o", "out.csv", "--json", "--force"]
 
-# Every command that reads a log, {}.
-COMMANDS = {
-    "info": ["info", "{}", "--json"],
-    "filter": ["filter", "{}", *METHOD, *OUT],
-    "compare": ["compare", "{}", "--method", "lowpass,cutoff=5Hz,order=1", *GEAR, "--json"],
-    "compare --truth": ["compare", "{}", "--truth", "{}", "--method", "lowpass,cutoff=5Hz,order=1", *GEAR, "--json"],
-    "spectrum": ["spectrum", "{}", "--json"],
-    "spectrum --segment": ["spectrum", "{}", "--segment", "0.5s", "--json"],
-    "spectrum --domain order": ["spectrum", "{}", "--domain", "order", "--json"],
-    "spectrum --map": ["spectrum", "{}", "--map", "campbell", "--json"],
-    "identify": ["identify", "{}", "--json"],
-    "track": ["track", "{}", *GEAR, "--json"],
-    "simulate": ["simulate", "{}", "--model", str(MODEL), *OUT],
-    "diagnose": ["diagnose", "{}", "--model", str(MODEL), "--json"],
-}
+# Every command that tells of a log, {}.
+LAWS = {name: asked_for_json(name, "{}") for name in ACCOUNTS}
+LAWS["compare --truth"] = [*LAWS["compare"], "--truth", "{}"]
 
 
 def motion(rows):
@@ -57,11 +38,13 @@ def spoilt(lines, first, last):
     return before + lines[first:last + 1] + after
 
 
-class Case(unittest.TestCase):
+class TwoLogs(Case):
+    """A whole log and one that was cut, each in a folder of its own."""
+
+    bytes_out = True
+
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
+        super().setUp()
         for name in ("whole", "cut"):
             (self.folder / name).mkdir()
 
@@ -69,16 +52,14 @@ class Case(unittest.TestCase):
         (self.folder / side / name).write_bytes(end.join([*lines, ""]).encode())
 
     def run_in(self, side, *words, **more):
-        return subprocess.run([TOOL, *map(str, words)], cwd=self.folder / side, capture_output=True, timeout=120, **more)
+        return self.run_tool(*words, cwd=self.folder / side, **more)
 
-    def good(self, side, *words, **more):
-        done = self.run_in(side, *words, **more)
-        self.assertEqual(done.returncode, 0, f"{words}: {done.stderr.decode()}")
-        return done.stdout
+    def said(self, side, *words, **more):
+        return self.good(*words, cwd=self.folder / side, **more).stdout
 
     def result(self, side, *words, **more):
         """The JSON without what names the input and the range, and what was left out."""
-        result = json.loads(self.good(side, *words, **more))
+        result = json.loads(self.said(side, *words, **more))
         result.pop("command")
         for one in result["inputs"]:
             one.pop("sha256", None)
@@ -87,7 +68,7 @@ class Case(unittest.TestCase):
 
     def law(self, words, limits, name="log.csv", **more):
         """The same of the whole log with a range, and of the log that was cut; returns what was left out."""
-        words = [word.replace("{}", name) for word in words]
+        words = [str(word).replace("{}", name) for word in words]
         found, outside = self.result("whole", *words, *limits, **more)
         expected, nothing = self.result("cut", *words, **more)
         self.assertEqual(found, expected)
@@ -101,19 +82,19 @@ class Case(unittest.TestCase):
         return self.law(["filter", "{}", *METHOD, "-o", out, "--json", "--force", *read], limits, name)
 
 
-class Law(Case):
+class Law(TwoLogs):
     def test_every_command_says_what_it_says_of_the_cut_log(self):
         head, *rows = (DATA / "paper_move_2s.csv").read_text().splitlines()
         self.write("whole", [head, *spoilt(rows, 300, 2600)])
         self.write("cut", [head, *rows[300:2601]])
-        for name, words in COMMANDS.items():
+        for name, words in LAWS.items():
             with self.subTest(name):
                 outside = self.law(words, ["--from", "300ms", "--to", "2.6"])
                 self.assertEqual(outside, {"before": 103, "after": 5, "from_s": 0.3, "to_s": 2.6, "zero_s": 0.0})
 
     def test_the_help_of_every_command_names_both(self):
-        for name, words in COMMANDS.items():
-            text = self.good("whole", words[0], "--help").decode()
+        for name, words in LAWS.items():
+            text = self.said("whole", words[0], "--help").decode()
             for option in ("--from TIME", "--to TIME"):
                 self.assertIn(option, text, name)
 
@@ -124,14 +105,14 @@ class Law(Case):
                              (["--from", "0.1999", "--to", "700.9ms"], rows[200:701]), (["--from", "0"], rows),
                              (["--from", "0.998", "--to", "0:00.999"], rows[998:])):
             with self.subTest(limits):
-                written = self.good("whole", "filter", "log.csv", "--method", "none", *limits)
+                written = self.said("whole", "filter", "log.csv", "--method", "none", *limits)
                 self.assertEqual(written.decode().splitlines(), [HEAD, *kept])
 
     def test_stamps_in_another_unit_are_met_exactly(self):
         rows = [f"{1000 + k};{1 + k % 3},5;{k},25" for k in range(3000)]
         self.write("whole", ["time_ms;velocity_deg_s;torque_nm", *rows], end="\r\n")
         for at in range(1001, 3990, 331):
-            written = self.good("whole", "filter", "log.csv", "--method", "none", "--from", at / 1000, "--to", (at + 2) / 1000)
+            written = self.said("whole", "filter", "log.csv", "--method", "none", "--from", at / 1000, "--to", (at + 2) / 1000)
             self.assertEqual(written.decode().split("\r\n")[1:-1], rows[at - 1000:at - 997])
 
     def test_text_of_many_kinds(self):
@@ -155,13 +136,13 @@ class Law(Case):
     def test_arrays(self):
         for rows, side in ((motion(1500), "whole"), (motion(1500)[300:1201], "cut")):
             self.write(side, [HEAD, *(plain(*row) for row in rows)])
-            self.good(side, "filter", "log.csv", "--method", "none", "-o", "log.npy")
+            self.said(side, "filter", "log.csv", "--method", "none", "-o", "log.npy")
         for out in ("out.csv", "out.npy"):
             outside = self.info_and_filter(["--from", "0.3", "--to", "1.2"], "log.npy", out=out)
             self.assertEqual((outside["before"], outside["after"]), (300, 299))
         self.law(["spectrum", "{}", "--segment", "0.2s", "--json"], ["--from", "0.3", "--to", "1.2"], "log.npy")
-        piped = self.good("whole", "filter", "-", *METHOD, "--output-format", "npy", "--from", "0.3", "--to", "1.2",
-                          input=(self.folder / "whole" / "log.npy").read_bytes())
+        piped = self.said("whole", "filter", "-", *METHOD, "--output-format", "npy", "--from", "0.3", "--to", "1.2",
+                          stdin=(self.folder / "whole" / "log.npy").read_bytes())
         self.assertEqual(piped, (self.folder / "cut" / "out.npy").read_bytes())
 
     def test_every_joint(self):
@@ -173,10 +154,10 @@ class Law(Case):
         for words in (["info", "{}", "--json"], ["info", "{}", "--joint", "j2", "--json"]):
             self.law(words, limits)
         words = ["filter", "log.csv", "--joint", "all", *METHOD]
-        self.assertEqual(self.good("whole", *words, *limits), self.good("cut", *words))
+        self.assertEqual(self.said("whole", *words, *limits), self.said("cut", *words))
 
 
-class Paths(Case):
+class Paths(TwoLogs):
     def test_pipes_threads_and_files_give_the_same_bytes(self):
         cells = [row[row.index(","):] + "," + "0" * 60 for row in (plain(*each) for each in motion(3000))]
         rows = [f"{k / 1000}{cells[k % 3000]}" for k in range(60000)]
@@ -185,23 +166,23 @@ class Paths(Case):
         whole = (self.folder / "whole" / "log.csv").read_bytes()
         self.assertGreater(len(whole), 5 << 20)  # threads start behind 4 MiB
         limits = ["--from", "1.5", "--to", "58"]
-        expected = self.good("cut", "filter", "log.csv", *METHOD)
+        expected = self.said("cut", "filter", "log.csv", *METHOD)
         for threads in (1, 2, 4):
-            self.assertEqual(self.good("whole", "filter", "log.csv", *METHOD, *limits, "--threads", threads), expected)
-        self.assertEqual(self.good("whole", "filter", "-", *METHOD, *limits, input=whole), expected)
+            self.assertEqual(self.said("whole", "filter", "log.csv", *METHOD, *limits, "--threads", threads), expected)
+        self.assertEqual(self.said("whole", "filter", "-", *METHOD, *limits, stdin=whole), expected)
         learns = ["filter", "-", "--method", "subtract,gear-ratio=100,orders=1:2"]
-        self.assertEqual(self.good("whole", *learns, *limits, input=whole),
-                         self.good("cut", *learns, input=(self.folder / "cut" / "log.csv").read_bytes()))
+        self.assertEqual(self.said("whole", *learns, *limits, stdin=whole),
+                         self.said("cut", *learns, stdin=(self.folder / "cut" / "log.csv").read_bytes()))
 
 
-class Clocks(Case):
+class Clocks(TwoLogs):
     """What hours and minutes mean, and where the zero is."""
 
     def test_plain_times_count_minutes_from_zero(self):
         rows = [f"{100 + k / 10},{k % 7},{k % 5}" for k in range(600)]
         self.write("whole", ["time_s,velocity_deg_s,torque_nm", *rows])
         for at, seconds in (("1:50", 110), ("01:50.0", 110), ("0:01:50", 110), ("110s", 110), ("1.9min", 114), ("110000ms", 110)):
-            written = self.good("whole", "filter", "log.csv", "--method", "none", "--from", at, "--to", "2:00")
+            written = self.said("whole", "filter", "log.csv", "--method", "none", "--from", at, "--to", "2:00")
             self.assertEqual(written.decode().splitlines()[1:], rows[10 * (seconds - 100):201], at)
 
     def log_of_stamps(self, stamp, head="time"):
@@ -221,7 +202,7 @@ class Clocks(Case):
         for start, end in (("14:29:51.5", "14:29:52.5"), ("1.5", "2.5"), ("2024-05-01T12:29:51.5Z", "2024-05-01T14:29:52.5")):
             outside = self.info_and_filter(["--from", start, "--to", end])
             self.assertEqual(outside, {"before": 1500, "after": 1499, "from_s": 1.5, "to_s": 2.5, "zero_s": 1.0})
-        self.assertIn(b"times count from 1 s", self.good("whole", "info", "log.csv", "--from", "1.5"))
+        self.assertIn(b"times count from 1 s", self.said("whole", "info", "log.csv", "--from", "1.5"))
 
     def test_counts_since_1970(self):
         self.log_of_stamps(lambda k: 1714566600123456789 + 1000000 * k, "timestamp_ns")
@@ -234,7 +215,7 @@ class Clocks(Case):
         self.assertEqual((outside["before"], outside["after"], outside["zero_s"]), (1500, 1499, 1.5))
 
 
-class Words(Case):
+class Words(TwoLogs):
     def setUp(self):
         super().setUp()
         self.rows = [plain(*row) for row in motion(1000)]
@@ -276,7 +257,7 @@ class Words(Case):
     def test_negative_times_are_taken_where_the_log_has_them(self):
         rows = [f"{(k - 500) / 1000},{k % 7},{k % 5}" for k in range(1000)]
         self.write("whole", ["time_s,velocity_deg_s,torque_nm", *rows])
-        written = self.good("whole", "filter", "log.csv", "--method", "none", "--from", "-0.25", "--to=-100ms")
+        written = self.said("whole", "filter", "log.csv", "--method", "none", "--from", "-0.25", "--to=-100ms")
         self.assertEqual(written.decode().splitlines()[1:], rows[250:401])
 
     def test_a_broken_row_inside_is_told_by_its_line_in_the_file(self):
@@ -285,16 +266,12 @@ class Words(Case):
         self.assertIn("log.csv:603:7: read 'oops'", message)
         self.write("whole", [HEAD, *self.rows[:600], "zero,1,2,3", *self.rows[600:]])
         self.assertIn("log.csv:602:1: read 'zero'", self.refused(3, "info", "log.csv", "--from", "0.4"))
-        self.good("whole", "info", "log.csv", "--from", "0.6")
+        self.said("whole", "info", "log.csv", "--from", "0.6")
 
     def test_nothing_is_dropped_without_a_word(self):
-        text = self.good("whole", "info", "log.csv", "--from", "0.2", "--to", "0.7").decode()
+        text = self.said("whole", "info", "log.csv", "--from", "0.2", "--to", "0.7").decode()
         self.assertIn("range     only rows from 0.2 s to 0.7 s; left out are 200 rows before and 299 after", text)
         self.assertIn("log.csv: 501 rows over 0.5 s", text)
         done = self.run_in("whole", "filter", "log.csv", *METHOD, "-o", "out.csv", "-v", "--from", "0.2")
         self.assertIn("200 rows before and 0 after are left out, by --from and --to", done.stderr.decode())
-        self.assertNotIn("rows_outside", self.good("whole", "info", "log.csv", "--json").decode())
-
-
-if __name__ == "__main__":
-    unittest.main()
+        self.assertNotIn("rows_outside", self.said("whole", "info", "log.csv", "--json").decode())

@@ -5,22 +5,13 @@ import csv
 import io
 import json
 import math
-import os
 import pathlib
-import subprocess
-import tempfile
 import unittest
 
-TOOL = os.environ["RIPPLENOTCH"]
-DATA = pathlib.Path(os.environ["RIPPLENOTCH_SOURCE"]) / "data"
-LOGS = pathlib.Path(os.environ.get("RIPPLENOTCH_LOGS", "/nonexistent"))
+from commands import DATA, LOGS, Case, run
+
 MOVE = str(DATA / "paper_move_2s.csv")
 ORDERS = ["--orders", "1,2", "--gear-ratio", "100"]
-
-
-def run(*words, stdin=None):
-    return subprocess.run([TOOL, *words], capture_output=True, text=True, timeout=60, input=stdin,
-                          stdin=None if stdin is not None else subprocess.DEVNULL)
 
 
 def rows_of(text):
@@ -28,14 +19,14 @@ def rows_of(text):
     return table[0], [[float(cell) for cell in row] for row in table[1:]]
 
 
-class Case(unittest.TestCase):
+class Track(Case):
     def track(self, *words, **more):
         done = run("track", *words, **more)
         self.assertEqual(done.returncode, 0, done.stderr)
         return rows_of(done.stdout)
 
 
-class Columns(Case):
+class Columns(Track):
     def test_both_methods_find_the_amplitudes_that_the_move_was_made_with(self):
         for words, names in ((), "ls"), (("--method", "vold-kalman", "--bandwidth", "3Hz"), "vold-kalman"):
             header, rows = self.track(MOVE, *ORDERS, *words)
@@ -94,11 +85,10 @@ class Columns(Case):
     def test_the_same_bytes_twice_from_a_file_and_from_a_pipe_and_as_npy(self):
         first = run("track", MOVE, *ORDERS).stdout
         self.assertEqual(first, run("track", "-", *ORDERS, stdin=pathlib.Path(MOVE).read_text()).stdout)
-        with tempfile.TemporaryDirectory() as folder:
-            path = pathlib.Path(folder, "track.npy")
-            done = run("track", MOVE, *ORDERS, "-o", str(path))
-            self.assertEqual((done.returncode, done.stdout), (0, ""), done.stderr)
-            self.assertEqual(path.read_bytes()[:6], b"\x93NUMPY")
+        path = self.folder / "track.npy"
+        done = run("track", MOVE, *ORDERS, "-o", str(path))
+        self.assertEqual((done.returncode, done.stdout), (0, ""), done.stderr)
+        self.assertEqual(path.read_bytes()[:6], b"\x93NUMPY")
 
     def test_without_position_amplitudes_stand_and_a_warning_says_what_phases_mean(self):
         lines = pathlib.Path(MOVE).read_text().splitlines()
@@ -110,7 +100,7 @@ class Columns(Case):
             self.assertAlmostEqual(row[2], 0.8, delta=0.03)
 
 
-class Json(unittest.TestCase):
+class Json(Case):
     def test_the_verdict_and_the_columns_agree(self):
         done = run("track", MOVE, *ORDERS, "--json", "--method", "vold-kalman", "--bandwidth", "2Hz")
         self.assertEqual(done.returncode, 0, done.stderr)
@@ -134,10 +124,9 @@ class Json(unittest.TestCase):
     def test_a_joint_file_says_ratio_and_orders(self):
         joint = run("identify", str(DATA / "paper_60deg_s.csv"), str(DATA / "paper_120deg_s.csv"), "--json")
         self.assertEqual(joint.returncode, 0, joint.stderr)
-        with tempfile.TemporaryDirectory() as folder:
-            path = pathlib.Path(folder, "joint.json")
-            path.write_text(joint.stdout)
-            done = run("track", MOVE, "--joint-file", str(path), "--json")
+        path = self.folder / "joint.json"
+        path.write_text(joint.stdout)
+        done = run("track", MOVE, "--joint-file", str(path), "--json")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual([line["order"] for line in json.loads(done.stdout)["lines"]], [1.0, 2.0])
 
@@ -181,7 +170,3 @@ class Refusals(unittest.TestCase):
     def test_a_log_at_rest_has_nothing_to_track(self):
         self.refused(3, [str(DATA / "paper_rest.csv"), *ORDERS], "no row could be measured")
         self.refused(3, [str(DATA / "paper_rest.csv"), *ORDERS, "--method", "vold-kalman"], "no row could be measured")
-
-
-if __name__ == "__main__":
-    unittest.main()

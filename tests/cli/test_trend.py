@@ -3,44 +3,32 @@
 
 import json
 import os
-import pathlib
 import random
 import subprocess
 import sys
-import tempfile
 import unittest
 
-from sanitizers import sanitized
-
-TOOL = os.environ["RIPPLENOTCH"]
-SOURCE = pathlib.Path(os.environ["RIPPLENOTCH_SOURCE"])
-sys.path.insert(0, str(SOURCE / "scripts"))
-
-from prove_trend import fleet  # noqa: E402
+import commands
+from commands import SOURCE, TOOL, good, run, sanitized
+from prove_trend import fleet
 
 
-def run(*words, text=None):
-    return subprocess.run([TOOL, "trend", *map(str, words)], capture_output=True, text=True, timeout=120,
-                          **({"input": text} if text is not None else {"stdin": subprocess.DEVNULL}))
+def trend(*words, text=None):
+    return run("trend", *words, stdin=text)
 
 
 def text_of(lines):
     return "".join(json.dumps(line) + "\n" for line in lines)
 
 
-class Case(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
-
+class Case(commands.Case):
     def trend(self, lines, *words):
-        done = run("-", "--json", *words, text=text_of(lines))
+        done = trend("-", "--json", *words, text=text_of(lines))
         self.assertEqual(done.returncode, 0, done.stderr)
         return json.loads(done.stdout)
 
     def refused(self, lines, *words):
-        done = run("-", text=text_of(lines))
+        done = trend("-", text=text_of(lines))
         self.assertEqual((done.returncode, done.stdout), (3, ""))
         said = [line for line in done.stderr.splitlines() if "warning" not in line]
         self.assertEqual(len(said), 1, done.stderr)
@@ -161,7 +149,7 @@ class Determinism(Case):
         a, b = self.folder / "a.ndjson", self.folder / "b.ndjson"
         a.write_text(text_of(lines[:50]))
         b.write_text(text_of(lines[50:]))
-        third = json.loads(run(b, a, "--json").stdout)
+        third = json.loads(trend(b, a, "--json").stdout)
         for told in (first, second, third):
             told.pop("inputs"), told.pop("command")
         self.assertEqual(first, second)
@@ -169,8 +157,8 @@ class Determinism(Case):
 
     def test_the_seed_is_told_and_the_same_seed_gives_the_same_bytes(self):
         text = text_of(lines_of(fleet.fleet(4, 40, 22, events=True)))
-        self.assertEqual(run("-", "--json", "--seed", "7", text=text).stdout, run("-", "--json", "--seed", "7", text=text).stdout)
-        self.assertEqual(json.loads(run("-", "--json", "--seed", "7", text=text).stdout)["seed"], 7)
+        self.assertEqual(trend("-", "--json", "--seed", "7", text=text).stdout, trend("-", "--json", "--seed", "7", text=text).stdout)
+        self.assertEqual(json.loads(trend("-", "--json", "--seed", "7", text=text).stdout)["seed"], 7)
 
     @unittest.skipIf(sanitized(TOOL), "sanitizers take their own time")
     def test_ten_thousand_lines_take_at_most_two_seconds_of_a_core(self):
@@ -178,7 +166,7 @@ class Determinism(Case):
         path.write_text(text_of(lines_of(fleet.fleet(214, 52, 23, events=False))))
         self.assertGreater(path.read_text().count("\n"), 9800)
         before = os.times()
-        done = run(path, "-q")
+        done = trend(path, "-q")
         after = os.times()
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertLess(after.children_user - before.children_user, 6.0, "three times the bar, for slow machines")
@@ -190,8 +178,8 @@ class Outputs(Case):
         self.lines = lines_of(fleet.fleet(4, 40, 31, events=True))
 
     def test_text_json_and_lines_tell_the_same_alerts(self):
-        text, told = run("-", text=text_of(self.lines)).stdout, self.trend(self.lines)
-        lines = [json.loads(line) for line in run("-", "--ndjson", text=text_of(self.lines)).stdout.splitlines()]
+        text, told = trend("-", text=text_of(self.lines)).stdout, self.trend(self.lines)
+        lines = [json.loads(line) for line in trend("-", "--ndjson", text=text_of(self.lines)).stdout.splitlines()]
         self.assertEqual(lines, told["alerts"])
         self.assertTrue(lines)
         for alert in lines:
@@ -201,14 +189,13 @@ class Outputs(Case):
 
     def test_report_shows_a_trend(self):
         path, page = self.folder / "trend.json", self.folder / "page.html"
-        run("-", "-o", path, text=text_of(self.lines))
-        done = subprocess.run([TOOL, "report", path, "-o", page, "--no-plotly"], capture_output=True, text=True)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        trend("-", "-o", path, text=text_of(self.lines))
+        good("report", path, "-o", page, "--no-plotly")
         self.assertIn("alerts", page.read_text())
 
     def test_the_figure_has_a_map_and_a_course_for_each_alert(self):
         path = self.folder / "trend.figure.json"
-        done = run("-", "--plot", path, text=text_of(self.lines))
+        done = trend("-", "--plot", path, text=text_of(self.lines))
         self.assertEqual(done.returncode, 0, done.stderr)
         panels = json.loads(path.read_text())["panels"]
         self.assertEqual(len(panels), 1 + min(10, len(self.trend(self.lines)["alerts"])))
@@ -257,8 +244,4 @@ class BadInput(Case):
 
     def test_rates_that_are_none_are_refused(self):
         for rate in ("0", "1", "x", "1/0", "-1/1000"):
-            self.assertEqual(run("-", "--false-alarms=" + rate, text=text_of(self.lines)).returncode, 2, rate)
-
-
-if __name__ == "__main__":
-    unittest.main()
+            self.assertEqual(trend("-", "--false-alarms=" + rate, text=text_of(self.lines)).returncode, 2, rate)

@@ -8,16 +8,13 @@ import json
 import os
 import pathlib
 import re
-import subprocess
-import sys
-import tempfile
 import unittest
 
-TOOL = os.environ["RIPPLENOTCH"]
-SOURCE = pathlib.Path(os.environ["RIPPLENOTCH_SOURCE"])
-sys.path.insert(0, str(SOURCE / "tests/support"))
+import commands
+from commands import DATA
 
-LOG = SOURCE / "data/paper_90deg_s.csv"
+
+LOG = DATA / "paper_90deg_s.csv"
 
 
 def there(module):
@@ -28,7 +25,9 @@ def needs(module):
     return unittest.skipUnless(there(module), f"no {module} here to write the file")
 
 
-class Case(unittest.TestCase):
+class Case(commands.Case):
+    bytes_out = True
+
     # Of the build, by their names in cmake/containers.cmake.
     libraries = ("ZLIB", "ZSTD", "LZ4", "LZMA")
 
@@ -36,17 +35,14 @@ class Case(unittest.TestCase):
         missing = set(self.libraries) & set(os.environ["RIPPLENOTCH_LACKS"].split(","))
         if missing:
             self.skipTest(f"this build was made without {', '.join(sorted(missing))}")
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
+        super().setUp()
         with open(LOG, newline="") as file:
             rows = list(csv.reader(file))
         self.names, self.rows = rows[0], [[float(cell) for cell in row] for row in rows[1:]]
         self.columns = {name: [row[c] for row in self.rows] for c, name in enumerate(self.names)}
 
-    def run_tool(self, *words, stdin=None, code=0):
-        done = subprocess.run([TOOL, *map(str, words)], input=stdin, stdin=None if stdin is not None else subprocess.DEVNULL,
-                              capture_output=True, timeout=60, cwd=self.folder)
+    def run_tool(self, *words, code=0, **more):
+        done = super().run_tool(*words, **more)
         self.assertEqual(done.returncode, code, done.stderr.decode()[-2000:])
         return done
 

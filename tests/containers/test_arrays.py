@@ -266,6 +266,3 @@ class Hdf5(Case):
         file.close()
         data = (self.folder / "run.h5").read_bytes()
         self.assertIn("cut off", self.refusal(self.write("cut.h5", data[:len(data) // 2])))
-
-if __name__ == "__main__":
-    unittest.main()

@@ -8,8 +8,8 @@ import subprocess
 import sys
 import unittest
 
-from container_case import LOG, SOURCE, Case, there
-
+from commands import SOURCE
+from container_case import LOG, Case, there
 import bags
 
 NAMES = ["elbow", "wrist_1_joint"]
@@ -254,7 +254,3 @@ class Rosbag2(Messages):
         other.commit()
         other.close()
         self.assertIn("without the table messages", self.refusal(self.folder / "other.db3"))
-
-
-if __name__ == "__main__":
-    unittest.main()

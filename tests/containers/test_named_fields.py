@@ -4,11 +4,9 @@ layouts, and by Protobuf's own library where it is."""
 
 import json
 import struct
-import unittest
 
 from container_case import needs
 from test_messages import EPOCH, NAMES, Messages
-
 import bags
 
 TIMESTAMP = {"Timestamp": [("seconds", 1, "int64"), ("nanos", 2, "int32")]}
@@ -195,7 +193,3 @@ class Protobuf(Messages):
             messages.append((ns, one.SerializeToString()))
         channel = [("/joint_states", "tests.States", declared.SerializeToString(), "protobuf", "protobuf")]
         self.assert_same(self.recorded(messages, channel), "--joint", "elbow", twin=self.twin(), twin_options=("--joint", "elbow"))
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Arrays with a time beside each: what Simulink and dSPACE export, and HDF5 groups of devices."""
 
-import unittest
-
 from container_case import Case, needs
 
 UNITS = ("--unit", "velocity=deg/s,position=deg,torque=Nm,time=s")
@@ -124,7 +122,3 @@ class GroupsOfDevices(Case):
             file["torque_nm"], file["velocity_deg_s"] = self.columns["torque_nm"], self.columns["velocity_deg_s"][::2]
         said = self.run_tool("info", "run.h5", "--columns", "torque=/torque_nm,velocity=/velocity_deg_s", code=2).stderr.decode()
         self.assertIn("their clocks differ", said)
-
-
-if __name__ == "__main__":
-    unittest.main()

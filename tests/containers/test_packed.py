@@ -14,7 +14,8 @@ import sys
 import unittest
 import unittest.mock
 
-from container_case import LOG, SOURCE, Case, needs, there
+from commands import SOURCE
+from container_case import LOG, Case, needs, there
 
 
 def zstd(data):
@@ -155,7 +156,3 @@ class Strangers(Case):
                         for name, values in self.columns.items() if name != "time_s"])
             mdf.save(self.folder / "run.mf4")
         self.assert_has_the_rows(self.converted("run.mf4"))
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -2,7 +2,6 @@
 """Raw dumps, written by struct."""
 
 import struct
-import unittest
 
 from container_case import LOG, Case
 
@@ -60,6 +59,3 @@ class Raw(Case):
             said = self.run_tool("info", path, "--format", "raw", "--layout", layout, code=2).stderr.decode()
             self.assertIn("--layout", said)
         self.assertIn("--layout", self.run_tool("info", path, "--format", "raw", code=2).stderr.decode())
-
-if __name__ == "__main__":
-    unittest.main()

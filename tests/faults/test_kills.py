@@ -2,33 +2,22 @@
 """A short round of scripts/prove-trust kills: some seconds."""
 
 import os
-import pathlib
 import signal
-import sys
-import tempfile
 import unittest
 
-SOURCE = pathlib.Path(os.environ["RIPPLENOTCH_SOURCE"])
-sys.path.insert(0, str(SOURCE / "scripts"))
-sys.dont_write_bytecode = True
+from commands import SOURCE, TOOL, Case
+from prove_trust.kills import CAUGHT, Killer
+from prove_trust.workshop import Workshop
 
-from prove_trust.kills import CAUGHT, Killer  # noqa: E402
-from prove_trust.workshop import Workshop  # noqa: E402
-
-TOOL = os.environ["RIPPLENOTCH"]
 PRELOADABLE, FAULTS = os.environ.get("RIPPLENOTCH_PRELOADABLE"), os.environ.get("RIPPLENOTCH_FAULTS")
 SIGNALS = [getattr(signal, f"SIG{name}") for name in CAUGHT]
 
 
-class Kills(unittest.TestCase):
+class Kills(Case):
     ROWS = 20_000
 
-    def setUp(self):
-        self.folder = tempfile.TemporaryDirectory()
-        self.addCleanup(self.folder.cleanup)
-
     def killer(self, tool, settings=None):
-        return Killer(Workshop(tool, SOURCE, self.folder.name, self.ROWS), 1, settings)
+        return Killer(Workshop(tool, SOURCE, self.folder, self.ROWS), 1, settings)
 
     def test_a_kill_that_nobody_can_catch_leaves_nothing(self):
         killer = self.killer(TOOL)
@@ -49,7 +38,3 @@ class Kills(unittest.TestCase):
             self.assertEqual(killer.kill("filter", number), [])
         for _ in range(6):  # leaves a name that no later run uses
             self.assertEqual(killer.kill("filter", signal.SIGKILL), [])
-
-
-if __name__ == "__main__":
-    unittest.main()

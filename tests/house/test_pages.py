@@ -1,14 +1,12 @@
 # SPDX-License-Identifier: MIT
 """Every command, method, format and effect that is listed has its page, and a command's page names every option."""
 
-import os
-import pathlib
 import re
-import subprocess
 import unittest
 
-SOURCE = pathlib.Path(os.environ["RIPPLENOTCH_SOURCE"])
-TOOL = os.environ["RIPPLENOTCH"]
+from commands import COMMANDS, SOURCE, run
+from commands import SOURCE, run
+
 
 # kind, which is its folder of docs -> (the list, its word)
 REGISTRIES = {
@@ -19,10 +17,6 @@ REGISTRIES = {
     "motions": ("src/model/motions/motions.def", "MOTION"),
     "export": ("src/export/targets/targets.def", "TARGET"),
 }
-
-
-def run(*words):
-    return subprocess.run([TOOL, *words], capture_output=True, text=True, stdin=subprocess.DEVNULL, timeout=60)
 
 
 def listed(kind):
@@ -85,6 +79,9 @@ class HelpLists(unittest.TestCase):
 
 
 class Pages(unittest.TestCase):
+    def test_the_laws_of_the_commands_go_through_every_one(self):
+        self.assertEqual({words.split()[0] for words in COMMANDS.values()}, set(listed("commands")))
+
     def test_every_command_that_is_defined_is_listed(self):
         defined = {name.rstrip("_") for path in (SOURCE / "src" / "cli").rglob("*.cpp")
                    for name in re.findall(r"^const Command commands::(\w+)", path.read_text(), re.M)}
@@ -143,7 +140,3 @@ class Pages(unittest.TestCase):
         done = run("filtre")
         self.assertEqual(done.returncode, 2)
         self.assertIn("did you mean filter?", done.stderr)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -2,14 +2,13 @@
 """Which room may include which, where third-party headers are included, formatting, and what must not be in the repository."""
 
 import functools
-import os
-import pathlib
 import re
 import shutil
 import subprocess
 import unittest
 
-SOURCE = pathlib.Path(os.environ["RIPPLENOTCH_SOURCE"])
+from commands import SOURCE
+
 
 # A room sees only the rooms named here, and itself. docs/decisions/0001-rooms.md says why.
 SEES = {
@@ -152,7 +151,3 @@ class Format(unittest.TestCase):
         self.assertGreater(len(files), 400)
         done = subprocess.run(["clang-format", "--dry-run", "-Werror", *files], cwd=SOURCE, capture_output=True, text=True)
         self.assertEqual((done.returncode, done.stderr), (0, ""))
-
-
-if __name__ == "__main__":
-    unittest.main()

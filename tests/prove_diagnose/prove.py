@@ -1,15 +1,12 @@
 # SPDX-License-Identifier: MIT
 """Finds the scripts under test; without numpy the test ends as skipped."""
 
-import os
 import pathlib
 import subprocess
 import sys
 import tempfile
 
-SOURCE = pathlib.Path(os.environ["RIPPLENOTCH_SOURCE"])
-TOOL = os.environ["RIPPLENOTCH"]
-sys.path.insert(0, str(SOURCE / "scripts"))
+from commands import SOURCE, TOOL, run
 
 try:
     import numpy  # noqa: F401
@@ -19,7 +16,7 @@ except ModuleNotFoundError:
 
 
 def skip_unless_command(name):
-    if subprocess.run([TOOL, name, "--help"], capture_output=True).returncode != 0:
+    if run(name, "--help").returncode != 0:
         print(f"skipped: this ripplenotch has no command {name}")
         sys.exit(77)
 

@@ -8,6 +8,7 @@ import math
 import subprocess
 import unittest
 
+from commands import SHORT
 import prove  # first: it skips without numpy
 import numpy as np
 from prove_diagnose import agreement, cases, joint, motion, plan, score, sensor, strengths, two_mass
@@ -131,12 +132,12 @@ class TwoMasses(unittest.TestCase):
         return 2 * np.mean(torque[steady] * drive.conj()) / 0.7, 1 / (1 - u**2 + 0.2j * u), 1 + 0.2j * u
 
     def test_a_torque_of_the_mesh_passes_the_mode_of_a_link_whose_motor_is_heavy(self):
-        for speed in (18.0, 72.0, 144.0, 216.0):
+        for speed in (72.0,) if SHORT else (18.0, 72.0, 144.0, 216.0):
             found, held, _ = self.ripple_at("mesh", speed)
             self.assertLess(abs(found - held), 0.02 * abs(held), speed)
 
     def test_an_error_of_the_angle_bends_the_spring_at_speed_alone(self):
-        for speed in (18.0, 72.0, 144.0, 216.0):
+        for speed in (72.0,) if SHORT else (18.0, 72.0, 144.0, 216.0):
             found, held, damper = self.ripple_at("angle", speed)
             self.assertLess(abs(found - (1 - damper * held)), 0.03 * abs(held), speed)
 
@@ -148,7 +149,3 @@ class TwoMasses(unittest.TestCase):
             self.assertEqual(len(log.torque_nm), 1000 * round(travel.duration_s))
             self.assertGreater(np.max(log.velocity_deg_s), 170.0)
             self.assertLess(np.max(np.abs(log.torque_nm)), 30.0)
-
-
-if __name__ == "__main__":
-    unittest.main()

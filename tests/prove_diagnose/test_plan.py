@@ -36,7 +36,3 @@ class Plan(unittest.TestCase):
         self.assertTrue(undecided)
         self.assertEqual([row for row in undecided if not row["decided"] or not row["exact"]], [])
         self.assertTrue(all(row["duration_s"] <= 30.0 for row in undecided))
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -41,7 +41,3 @@ class Table(unittest.TestCase):
                 {"label": "delay", "size": 3.0, "right": False, "offered": True, "false": []}]
         line = power.line("delay", rows)
         self.assertEqual(line, ["delay", "0/0", "0/0", "1/2", "0/0", "0/0", "0/1 +1", "resonance (1 at 0.4)"])
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -135,7 +135,3 @@ class Reach(unittest.TestCase):
         self.assertAlmostEqual(self.told("speed", speed_deg_s=[[-300.0, 300.0]]), 1.0, delta=1e-9)
         self.assertLess(self.told("speed", speed_deg_s=[[-300.0, 300.0]], direction="positive"), 0.7)
         self.assertEqual(self.told("position"), 0.0)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -100,7 +100,3 @@ class Yardsticks(unittest.TestCase):
         values = 3.0 + 0.5 * columns[:, 7] + rng.standard_normal(4000)
         self.assertEqual(yardsticks.forward_regression(base, columns, values), [7])
         self.assertEqual(yardsticks.thresholded(base, columns, values, 0.2), [7])
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -41,7 +41,3 @@ class Run(unittest.TestCase):
         usual, moved = done.stdout.splitlines()[2:4]
         self.assertIn("| 0/1 | 1 | 0 |", usual)
         self.assertIn("| 0.06 | **1/1** | **0** | 0 |", moved)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -16,7 +16,3 @@ class Without(unittest.TestCase):
         self.assertEqual([row["label"] for row in rows], list(TAKEN_OUT))
         self.assertEqual([(row["case"], row["told"]) for row in rows if row["told"] < 0.5], [])
         self.assertEqual([(row["case"], row["named"]) for row in rows if row["named"]], [])
-
-
-if __name__ == "__main__":
-    unittest.main()

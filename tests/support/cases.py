@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Tests of a Python file, class by class, so that each is one ctest that fails, passes or is skipped by itself.
 
-usage: cases.py list FILE...        the interpreter itself, whatever script started it; then "FILE CLASS", a line each
+usage: cases.py list FILE...        the interpreter itself, whatever script started it; then "FILE CLASS", a line each, and
+                                    "FILE CLASS SHORT" where the class has a short version, since it asks for SHORT
        cases.py run FILE CLASS      exit code 77 where all that was to run was skipped
 """
 
@@ -18,7 +19,8 @@ def classes_with_tests(path):
     for node in ast.parse(path.read_text()).body:
         if isinstance(node, ast.ClassDef) and any(
                 isinstance(item, ast.FunctionDef) and item.name.startswith("test_") for item in node.body):
-            yield node.name
+            short = any(isinstance(name, ast.Name) and name.id == "SHORT" for name in ast.walk(node))
+            yield node.name + (" SHORT" if short else "")
 
 
 def run(path, name):

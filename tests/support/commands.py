@@ -1,0 +1,128 @@
+# SPDX-License-Identifier: MIT
+"""What the tests of commands share: the tool as it was built, a run of it, a folder that goes with its test, and one table
+of the commands."""
+
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+TOOL = os.environ["RIPPLENOTCH"]
+SOURCE = pathlib.Path(os.environ["RIPPLENOTCH_SOURCE"])
+DATA = SOURCE / "data"
+LOGS = pathlib.Path(os.environ.get("RIPPLENOTCH_LOGS", "no-such-folder"))  # real logs, which few have
+SHORT = os.environ.get("RIPPLENOTCH_SHORT") == "1"  # what takes long is left to scripts/nightly
+sys.path.insert(0, str(SOURCE / "scripts"))
+sys.dont_write_bytecode = True
+
+GEAR = ("--gear-ratio", "100", "--orders", "1,2")
+# Every command, and every kind of answer of `spectrum`, each as the shortest call that gives a result; the laws go through
+# them. What has {gear} takes any gear, what has {log} reads a log.
+COMMANDS = {
+    "info": "info {log}",
+    "filter": "filter {log} --method tracking {gear}",
+    "compare": "compare {log} --method lowpass,cutoff=5Hz,order=1 {gear}",
+    "spectrum": "spectrum {log}",
+    "spectrum --peaks": "spectrum {log} --peaks",
+    "spectrum --segment": "spectrum {log} --segment 0.5s",
+    "spectrum --domain order": "spectrum {log} --domain order",
+    "spectrum --map campbell": "spectrum {log} --map campbell {gear}",
+    "spectrum --map order": "spectrum {log} --map order {gear}",
+    "identify": "identify {log}",
+    "track": "track {log} {gear}",
+    "map": "map {log} {gear}",
+    "recommend": "recommend {log} {gear}",
+    "features": "features {log} {gear}",
+    "simulate": "simulate {log} --model {data}/paper_model.json",
+    "diagnose": "diagnose {log} --model {data}/paper_model.json",
+    "design": "design {gear} --sample-rate 1kHz --speed 18:90:18",
+    "export": "export --method lowpass,cutoff=13Hz,order=1 --sample-rate 1kHz --to c-header",
+    "effects": "effects",
+    "trend": "trend {data}/fleet.ndjson",
+    "merge": "merge shards",
+    "report": "report result.json",
+}
+OF_A_LOG = [name for name, words in COMMANDS.items() if "{log}" in words]
+TAKES_A_GEAR = [name for name, words in COMMANDS.items() if "{gear}" in words]
+# Those whose JSON holds the account of the recording.
+ACCOUNTS = [name for name in OF_A_LOG if name != "features"]
+WRITES_A_LOG = ("filter", "simulate")
+
+
+def asked(name, log=DATA / "paper_move_2s.csv", gear=GEAR):
+    """The words of a command of the table."""
+    words = []
+    for word in COMMANDS[name].split():
+        words += gear if word == "{gear}" else [log if word == "{log}" else word.format(data=DATA)]
+    return words
+
+
+def asked_for_json(name, log, out="out.csv"):
+    """The same for its result as JSON; a log that it writes beside is `out`."""
+    return [*asked(name, log), *(["-o", str(out), "--force"] if name in WRITES_A_LOG else []), "--json"]
+
+
+def run(*words, stdin=None, environment=None, text=True, timeout=300, **more):
+    """The tool with these words as it ended. stdin: text, bytes or an open file; nothing by default. environment: beside
+    that of the test. text=False gives its output as bytes."""
+    if isinstance(stdin, (str, bytes)):
+        more["input"] = stdin
+    else:
+        more["stdin"] = stdin or subprocess.DEVNULL
+    if environment:
+        more["env"] = {**os.environ, **environment}
+    return subprocess.run([TOOL, *(word if isinstance(word, bytes) else str(word) for word in words)], capture_output=True, text=text, timeout=timeout, **more)
+
+
+def good(*words, **more):
+    """The same where it has to succeed."""
+    done = run(*words, **more)
+    if done.returncode != 0:
+        raise AssertionError(f"{words}: {done.stderr}")
+    return done
+
+
+def new_folder(test):
+    """A folder that goes when the test has ended, or with the last test of a class that is given."""
+    folder = tempfile.TemporaryDirectory()
+    (test.addClassCleanup if isinstance(test, type) else test.addCleanup)(folder.cleanup)
+    return pathlib.Path(folder.name)
+
+
+def sanitized(program):
+    """Whether a program was built with a sanitizer, which takes memory, address space and time of its own."""
+    # In pieces: what this process holds counts as its children's, too. A name across two pieces is met again in the
+    # program's symbols.
+    with open(program, "rb") as file:
+        return any(b"__asan_init" in piece or b"__tsan_init" in piece for piece in iter(lambda: file.read(1 << 20), b""))
+
+
+class Case(unittest.TestCase):
+    """Tests that run the tool in a folder of their own. bytes_out: what it says is kept as bytes."""
+
+    bytes_out = False
+
+    def setUp(self):
+        self.folder = new_folder(self)
+
+    def here(self, more):
+        return {"cwd": self.folder, "text": not self.bytes_out, **more}
+
+    def run_tool(self, *words, **more):
+        return run(*words, **self.here(more))
+
+    def good(self, *words, **more):
+        return good(*words, **self.here(more))
+
+
+class SharedCase(Case):
+    """The same in one folder for all tests of a class."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = new_folder(cls)
+
+    def setUp(self):
+        pass
