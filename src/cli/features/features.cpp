@@ -15,9 +15,8 @@
 #include <vector>
 
 #include "cli/command.hpp"
-#include "cli/gear/gear_choice.hpp"
 #include "cli/options/options.hpp"
-#include "cli/readings/readings.hpp"
+#include "cli/options/verdict_options.hpp"
 #include "cli/talk.hpp"
 #include "core/process/two_cores.hpp"
 #include "ripplenotch/core/error.hpp"
@@ -27,6 +26,9 @@
 #include "ripplenotch/document/features_json.hpp"
 #include "ripplenotch/fleet/features.hpp"
 #include "ripplenotch/fleet/shards.hpp"
+#include "ripplenotch/verdict/gear_choice.hpp"
+#include "ripplenotch/verdict/readings.hpp"
+#include "ripplenotch/verdict/side_column.hpp"
 
 namespace ripplenotch {
 

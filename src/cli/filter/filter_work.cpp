@@ -6,10 +6,12 @@
 #include <complex>
 
 #include "cli/filter/filter.hpp"
-#include "cli/gear/gear_choice.hpp"
+#include "cli/options/verdict_options.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/document/comparison_json.hpp"
 #include "ripplenotch/log/log.hpp"
+#include "ripplenotch/verdict/gear_choice.hpp"
+#include "ripplenotch/verdict/method_choice.hpp"
 
 namespace ripplenotch {
 namespace {

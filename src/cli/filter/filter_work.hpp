@@ -7,12 +7,14 @@
 #include <string>
 #include <vector>
 
-#include "cli/gear/gear_choice.hpp"
 #include "cli/options/options.hpp"
 #include "cli/options/plot_request.hpp"
+#include "cli/options/verdict_options.hpp"
 #include "ripplenotch/core/files.hpp"
 #include "ripplenotch/evaluate/ledger.hpp"
 #include "ripplenotch/filter/engine.hpp"
+#include "ripplenotch/verdict/gear_choice.hpp"
+#include "ripplenotch/verdict/method_choice.hpp"
 
 namespace ripplenotch {
 

@@ -9,9 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "cli/arm/arm_option.hpp"
-#include "cli/options/options.hpp"
-#include "cli/options/simulated_option.hpp"
 #include "ripplenotch/arm/arm_fit.hpp"
 #include "ripplenotch/arm/arm_setup.hpp"
 #include "ripplenotch/diagnose/diagnosis.hpp"
@@ -19,6 +16,8 @@
 #include "ripplenotch/document/model_json.hpp"
 #include "ripplenotch/log/log.hpp"
 #include "ripplenotch/model/model.hpp"
+#include "ripplenotch/verdict/arm_source.hpp"
+#include "ripplenotch/verdict/simulation_source.hpp"
 
 namespace ripplenotch {
 
@@ -29,8 +28,6 @@ struct GivenOptions {
 
     [[nodiscard]] bool any() const { return simulated || arm; }
 };
-
-void attach_given(Options& options, GivenOptions& given);
 
 /// A log of one joint as a command reads it.
 struct GivenLog {
@@ -74,7 +71,7 @@ class GivenSource {
   private:
     void add_simulated(GivenTerms& terms, const ModelWithGiven& stated, const ReadOptions& reading,
                        const GivenLog& log, const GivenLog* validation);
-    void check_setup(GivenTerms& terms, SimulatedOption& simulated, const ModelWithGiven& stated,
+    void check_setup(GivenTerms& terms, SimulationSource& simulated, const ModelWithGiven& stated,
                      const ReadOptions& reading, const GivenLog& log);
     void add_arm(GivenTerms& terms, const ModelWithGiven& stated, const ReadOptions& reading,
                  const GivenLog& log, const GivenLog* validation);
@@ -108,13 +105,18 @@ struct ResidualOptions {
 
     [[nodiscard]] bool any() const { return model || simulated; }
 };
-void attach_residual(Options& options, ResidualOptions& residual);
 
-/// Takes what model and simulation predict out of the torque of the log at `path`, which was read by
-/// `reading` for one joint. `logs`: how many logs there are, of which a simulation in a file of its own fits
-/// one only. Throws UsageError, DataError, FileError.
-void take_residual(const ResidualOptions& residual, ReadOptions reading, std::size_t logs,
-                   const GivenLog& log, const CommonOptions& common, Provenance& provenance);
+/// What a prediction left of the torque of a log; both in Nm rms.
+struct Residual {
+    double before_nm = 0.0, after_nm = 0.0;
+    std::optional<std::string> model;  ///< the file of the model; empty without one, and for standard input
+};
+
+/// Takes what model and simulation predict out of the torque of `log`, which was read by `reading` for one
+/// joint. `logs`: how many logs there are, of which a simulation in a file of its own fits one only. Throws
+/// UsageError, DataError, FileError.
+Residual subtract_predicted(const ResidualOptions& residual, ReadOptions reading, std::size_t logs,
+                            const GivenLog& log);
 
 /// The joint that the model of --residual is for, where the user names none.
 void take_joint_of(const ResidualOptions& residual, std::optional<std::string>& joint);

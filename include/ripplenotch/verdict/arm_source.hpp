@@ -9,21 +9,15 @@
 #include <utility>
 #include <vector>
 
-#include "cli/readings/readings.hpp"
 #include "ripplenotch/arm/arm_fit.hpp"
 #include "ripplenotch/arm/arm_setup.hpp"
 #include "ripplenotch/arm/chain.hpp"
 #include "ripplenotch/arm/joint_matching.hpp"
+#include "ripplenotch/log/log.hpp"
 
 namespace ripplenotch {
 
-/// For help: what an --arm may be.
-inline constexpr std::string_view arm_option_help =
-    "rigid bodies of the whole arm: urdf,file=FILE[,tip=LINK], mjcf,file=FILE[,tip=BODY], mdh,file=FILE, "
-    "dh,file=FILE, or axes,word=zyyzyz (which way each axis points); each with [,gravity=0:0:-9.81] and "
-    "[,joints=NAME:NAME IN THE LOG|NAME:=0deg]";
-
-struct ArmOption {
+struct ArmSource {
     Chain chain;          ///< without joints that are kept still
     StatedJoints stated;  ///< partners in the log
     std::string words;    ///< as it would be typed again
@@ -32,7 +26,26 @@ struct ArmOption {
 
 /// Reads the file that the words name. Throws UsageError for the words, what the readers of chains throw for
 /// the file.
-[[nodiscard]] ArmOption read_arm_option(std::string_view words);
+[[nodiscard]] ArmSource read_arm_source(std::string_view words);
+
+// All joints of an arm from one log, in the order of its chain.
+
+struct ArmReading {
+    std::vector<Log> logs;  ///< a joint of the chain each
+    JointMatch match;
+    std::vector<std::string> names;  ///< of the joints in the log, in the order of the chain
+
+    [[nodiscard]] ArmLog view() const;
+    /// The place in the chain of a joint by its name in the log or in the chain, whatever its case. Throws
+    /// UsageError with the nearest name.
+    [[nodiscard]] std::size_t find(const Chain& chain, const std::string& joint) const;
+};
+
+/// Of a log with more than `most_rows` the pieces of read_log_in_part. Throws what
+/// read_joints_at_once_in_part and match_joints throw, and UsageError where a joint of the chain has no
+/// position.
+[[nodiscard]] ArmReading read_arm(const std::string& path, const ReadOptions& options, std::size_t most_rows,
+                                  const Chain& chain, const StatedJoints& stated);
 
 // An arm and a log of its joints: the term that a diagnosis of one of them is given, and what is told of it.
 
@@ -40,7 +53,7 @@ class GivenArm {
   public:
     /// Reads the log, as read_arm, and so any other one. `smoothing`: of the motion that the arm sees; left
     /// out: the fit chooses it. Throws what read_arm and arm_travel throw.
-    GivenArm(ArmOption option, const std::string& path, const ReadOptions& options,
+    GivenArm(ArmSource option, const std::string& path, const ReadOptions& options,
              std::optional<Seconds> smoothing = {}, std::size_t most_rows = all_rows);
 
     [[nodiscard]] const Chain& chain() const { return option_.chain; }
@@ -65,7 +78,7 @@ class GivenArm {
     [[nodiscard]] ArmAccount stated_account(std::size_t joint, Seconds smoothing) const;
 
   private:
-    ArmOption option_;
+    ArmSource option_;
     std::optional<Seconds> smoothing_;
     std::size_t most_rows_;
     ArmReading reading_;
@@ -83,9 +96,5 @@ class GivenArm {
     [[nodiscard]] ArmFitOptions options_for(std::size_t joint) const;
     std::map<std::size_t, Fitted> fits_;  ///< by joint; all joints at once: under 0
 };
-
-/// "arm: 6 joints of ur10.urdf matched by number (-v shows them); 36 of 36 combinations ... 0.1 s", and what
-/// it leaves.
-[[nodiscard]] std::string arm_text(const ArmAccount& account);
 
 }  // namespace ripplenotch
