@@ -17,7 +17,6 @@
 #include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/quantity.hpp"
-#include "ripplenotch/design/candidate_table.hpp"
 #include "ripplenotch/document/identification_json.hpp"
 
 namespace ripplenotch {

@@ -178,7 +178,7 @@ Contender choose_method(const std::string& spec_text, const std::optional<std::s
     Contender chosen = make_contender(spec, std::move(loaded));
     chosen.gear = std::move(gear);
     chosen.files = maps;
-    if (loaded) chosen.files.push_back(of_table.source);
+    if (chosen.table) chosen.files.push_back(of_table.source);
     if (joint) chosen.files.push_back(joint->path);
     if (choice.joint() && (!joint || joint->path != choice.joint()->path))
         chosen.files.push_back(choice.joint()->path);
