@@ -16,15 +16,6 @@
 
 namespace ripplenotch {
 
-/// Readings as possible as the one taken, of all the logs, each once.
-[[nodiscard]] std::vector<OtherReading> open_readings(std::span<const Log> logs);
-
-/// What the one that was taken is called: "in rad/s and rad, as assumed".
-[[nodiscard]] std::string assumed_reading(std::span<const Log> logs);
-
-/// Options that settle them, those for what was assumed first.
-[[nodiscard]] std::string settling_options(std::span<const Log> logs);
-
 /// Why nothing is known of orders, in half a sentence: the readings that may hold as well as the one taken,
 /// and what settles it. Empty where none of them may.
 [[nodiscard]] std::string reading_doubt(std::span<const Log> logs,
@@ -50,8 +41,8 @@ namespace ripplenotch {
 [[nodiscard]] MapFit map_readings(std::span<const Log> logs, const GearAccount& gear, Degrees zero,
                                   const std::vector<std::vector<double>>& temperatures_degc = {});
 
-/// What a log itself says against what is found in it, read in this way: position, velocity and time that
-/// contradict each other by more than 5 %. One entry a reason, each with what settles it.
-[[nodiscard]] std::vector<Doubt> log_doubts(const Log& log, const OtherReading& reading);
+/// Throws DataError, naming what settles it, where the log may mean several motions: its units are open, or
+/// it was measured before the gear and nobody states the ratio.
+void refuse_open_readings(const Log& log);
 
 }  // namespace ripplenotch

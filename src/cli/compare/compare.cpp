@@ -38,7 +38,6 @@
 #include "ripplenotch/filter/engine.hpp"
 #include "ripplenotch/log/log.hpp"
 #include "ripplenotch/verdict/gear_choice.hpp"
-#include "ripplenotch/verdict/method_choice.hpp"
 #include "ripplenotch/verdict/side_column.hpp"
 
 namespace ripplenotch {

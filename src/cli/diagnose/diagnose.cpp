@@ -17,7 +17,7 @@
 #include "ripplenotch/chart/trend_figure.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/document/diagnosis_json.hpp"
-#include "ripplenotch/verdict/method_choice.hpp"
+#include "ripplenotch/verdict/gear_choice.hpp"
 
 namespace ripplenotch {
 

@@ -25,7 +25,6 @@
 #include "ripplenotch/model/model.hpp"
 #include "ripplenotch/model/motion.hpp"
 #include "ripplenotch/verdict/gear_choice.hpp"
-#include "ripplenotch/verdict/method_choice.hpp"
 #include "ripplenotch/verdict/readings.hpp"
 
 namespace ripplenotch {

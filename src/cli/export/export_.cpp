@@ -33,7 +33,7 @@
 #include "ripplenotch/export/map_target.hpp"
 #include "ripplenotch/export/target.hpp"
 #include "ripplenotch/filter/engine.hpp"
-#include "ripplenotch/verdict/method_choice.hpp"
+#include "ripplenotch/verdict/gear_choice.hpp"
 
 namespace ripplenotch {
 

@@ -11,7 +11,6 @@
 #include "ripplenotch/document/comparison_json.hpp"
 #include "ripplenotch/log/log.hpp"
 #include "ripplenotch/verdict/gear_choice.hpp"
-#include "ripplenotch/verdict/method_choice.hpp"
 
 namespace ripplenotch {
 namespace {

@@ -14,7 +14,6 @@
 #include "ripplenotch/evaluate/ledger.hpp"
 #include "ripplenotch/filter/engine.hpp"
 #include "ripplenotch/verdict/gear_choice.hpp"
-#include "ripplenotch/verdict/method_choice.hpp"
 
 namespace ripplenotch {
 

@@ -24,7 +24,6 @@
 #include "ripplenotch/log/log.hpp"
 #include "ripplenotch/verdict/gear_choice.hpp"
 #include "ripplenotch/verdict/given_terms.hpp"
-#include "ripplenotch/verdict/method_choice.hpp"
 #include "ripplenotch/verdict/readings.hpp"
 
 namespace ripplenotch {

@@ -23,7 +23,6 @@
 #include "ripplenotch/filter/map_fit.hpp"
 #include "ripplenotch/log/log.hpp"
 #include "ripplenotch/verdict/gear_choice.hpp"
-#include "ripplenotch/verdict/method_choice.hpp"
 #include "ripplenotch/verdict/readings.hpp"
 #include "ripplenotch/verdict/side_column.hpp"
 

@@ -19,7 +19,7 @@
 #include "ripplenotch/document/map_json.hpp"
 #include "ripplenotch/evaluate/comparison.hpp"
 #include "ripplenotch/filter/map_fit.hpp"
-#include "ripplenotch/verdict/method_choice.hpp"
+#include "ripplenotch/verdict/gear_choice.hpp"
 #include "ripplenotch/verdict/side_column.hpp"
 
 namespace ripplenotch {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "ripplenotch/verdict/method_choice.hpp"
+#include "ripplenotch/verdict/gear_choice.hpp"
 
 #include <fmt/format.h>
 

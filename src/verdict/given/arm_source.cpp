@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "ripplenotch/verdict/arm_source.hpp"
+#include "ripplenotch/verdict/given_terms.hpp"
 
 #include <fmt/format.h>
 
@@ -159,6 +159,11 @@ std::size_t ArmReading::find(const Chain& chain, const std::string& joint) const
                       did_you_mean(joint, known));
 }
 
+namespace {
+
+// Of a log with more than `most_rows` the pieces of read_log_in_part. Throws what
+// read_joints_at_once_in_part and match_joints throw, and UsageError where a joint of the chain has no
+// position.
 ArmReading read_arm(const std::string& path, const ReadOptions& options, std::size_t most_rows,
                     const Chain& chain, const StatedJoints& stated) {
     ReadOptions motion = options;
@@ -181,8 +186,6 @@ ArmReading read_arm(const std::string& path, const ReadOptions& options, std::si
     }
     return reading;
 }
-
-namespace {
 
 double deviation(std::span<const double> values) {
     double mean = 0.0, squares = 0.0;

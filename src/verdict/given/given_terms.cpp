@@ -25,7 +25,8 @@
 #include "ripplenotch/log/log.hpp"
 #include "ripplenotch/model/model.hpp"
 #include "ripplenotch/model/motion.hpp"
-#include "ripplenotch/verdict/method_choice.hpp"
+#include "ripplenotch/verdict/gear_choice.hpp"
+#include "verdict/given/simulation_source.hpp"
 
 namespace ripplenotch {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "ripplenotch/verdict/simulation_source.hpp"
+#include "verdict/given/simulation_source.hpp"
 
 #include <fmt/format.h>
 

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "ripplenotch/analysis/identification.hpp"
+#include "ripplenotch/core/error.hpp"
 #include "ripplenotch/diagnose/diagnosis.hpp"
 #include "ripplenotch/log/log.hpp"
 
@@ -28,8 +29,8 @@ namespace {
 constexpr double agreement = 0.05;
 constexpr double widest_clock = 5.0;  // no clock is off by more; a unit or a side is
 
-}  // namespace
-
+// One entry a reason, each with what settles it, with the log read in this way. Empty for a log that does
+// not contradict itself.
 std::vector<Doubt> log_doubts(const Log& log, const OtherReading& reading) {
     const auto& factor = log.recording.angle.factor;
     if (!factor) return {};
@@ -47,8 +48,6 @@ std::vector<Doubt> log_doubts(const Log& log, const OtherReading& reading) {
                                      log.recording.clock.nominal_rate.value() / reading.time_factor / size)
                        : "a unit is wrong, or one of the two is the motor's: --unit would mend it")}};
 }
-
-namespace {
 
 /// The ratio that motion of the motor's shaft is divided by where nobody knows the real one, so that its
 /// lines stand where those of a joint would.
@@ -187,12 +186,12 @@ Identification cannot_tell(Identification found, const std::string& assumed,
     return found;
 }
 
-}  // namespace
-
+// Readings as possible as the one taken, of all the logs, each once.
 std::vector<OtherReading> open_readings(std::span<const Log> logs) {
     return readings_of(logs, &Layout::assumptions);
 }
 
+// What the one that was taken is called: "in rad/s and rad, as assumed".
 std::string assumed_reading(std::span<const Log> logs) {
     for (const Log& log : logs) {
         for (const Assumption& one : log.layout.assumptions)
@@ -205,6 +204,7 @@ std::string assumed_reading(std::span<const Log> logs) {
     return "as read";
 }
 
+// Options that settle them, those for what was assumed first.
 std::string settling_options(std::span<const Log> logs) {
     std::vector<std::string> options;
     for (const auto list : {&Layout::assumptions, &Layout::inferences}) {
@@ -223,6 +223,8 @@ std::string settling_options(std::span<const Log> logs) {
     }
     return fmt::format("{}", fmt::join(options, " or "));
 }
+
+}  // namespace
 
 std::string reading_doubt(std::span<const Log> logs,
                           const std::function<bool(const OtherReading&)>& may_hold) {
@@ -334,6 +336,17 @@ MapFit map_readings(std::span<const Log> logs, const GearAccount& gear, Degrees 
     fit.doubt = fmt::format("Cannot tell: {}. {}:", doubt, assumed_reading(logs));
     fit.conclusive = false;
     return fit;
+}
+
+void refuse_open_readings(const Log& log) {
+    const std::span one(&log, 1);
+    const auto open = open_readings(one);
+    if (!open.empty())
+        raise<DataError>("{}: the log does not say its units: {}, or {}; {} settles it", log.layout.source,
+                         assumed_reading(one), open.front().words, settling_options(one));
+    if (log.layout.motor_units)
+        raise<DataError>("{}: the motion is measured before the gear; --gear-ratio tells the joint's",
+                         log.layout.source);
 }
 
 }  // namespace ripplenotch

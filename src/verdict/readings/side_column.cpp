@@ -14,7 +14,7 @@
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/spec.hpp"
 #include "ripplenotch/document/map_json.hpp"
-#include "ripplenotch/verdict/method_choice.hpp"
+#include "ripplenotch/verdict/gear_choice.hpp"
 
 namespace ripplenotch {
 
