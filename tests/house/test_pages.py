@@ -122,7 +122,7 @@ class Pages(unittest.TestCase):
         log = SOURCE / "data" / "paper_rest.csv"
         for words, nearest in ((("info", log, "--format", "cvs"), "csv"), (("filter", log, "--method", "swiching"), "switching"),
                                (("export", log, "--to", "c-heder"), "c-header"), (("effects", "vicous-friction"), "viscous-friction"),
-                               (("simulate", "--sample-rate", "1kHz", "--motion", "sien"), "sine")):
+                               (("simulate", "--gear-ratio", "100", "--sample-rate", "1kHz", "--motion", "sien"), "sine")):
             done = run(*map(str, words))
             self.assertEqual(done.returncode, 2, done.stderr)
             self.assertIn(f"(did you mean {nearest}?)", done.stderr)

@@ -10,7 +10,6 @@
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/document/comparison_json.hpp"
 #include "ripplenotch/log/log.hpp"
-#include "ripplenotch/verdict/gear_choice.hpp"
 
 namespace ripplenotch {
 namespace {

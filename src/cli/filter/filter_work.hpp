@@ -9,7 +9,6 @@
 
 #include "cli/options/options.hpp"
 #include "cli/options/plot_request.hpp"
-#include "cli/options/verdict_options.hpp"
 #include "ripplenotch/core/files.hpp"
 #include "ripplenotch/evaluate/ledger.hpp"
 #include "ripplenotch/filter/engine.hpp"

@@ -2,7 +2,6 @@
 // ripplenotch simulate: a log from a joint model and a motion.
 
 #include "cli/simulate/simulate.hpp"
-#include "cli/options/verdict_options.hpp"
 
 #include <fmt/format.h>
 
@@ -18,6 +17,7 @@
 #include "cli/command.hpp"
 #include "cli/options/lists.hpp"
 #include "cli/options/options.hpp"
+#include "cli/options/verdict_options.hpp"
 #include "cli/talk.hpp"
 #include "core/rows/row_facts.hpp"
 #include "ripplenotch/core/error.hpp"

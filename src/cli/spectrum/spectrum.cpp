@@ -2,7 +2,6 @@
 // ripplenotch spectrum: amplitude of the torque against frequency or against output order.
 
 #include "cli/spectrum/spectrum.hpp"
-#include "cli/options/verdict_options.hpp"
 
 #include <fmt/format.h>
 
@@ -19,6 +18,7 @@
 #include "cli/command.hpp"
 #include "cli/options/options.hpp"
 #include "cli/options/plot_request.hpp"
+#include "cli/options/verdict_options.hpp"
 #include "cli/talk.hpp"
 #include "ripplenotch/analysis/order_map.hpp"
 #include "ripplenotch/analysis/spectrum.hpp"

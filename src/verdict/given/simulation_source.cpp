@@ -71,6 +71,11 @@ ReadOptions with_role(ReadOptions reading, const std::string& role, const std::s
     return reading;
 }
 
+void begin_together(std::vector<double>& time_s, const Log& log) {
+    const double ahead_s = log.trace.time_s.front() - time_s.front();
+    for (double& time : time_s) time += ahead_s;
+}
+
 void refuse_useless(const std::vector<double>& torque_nm, const Log* measured, const std::string& column,
                     const std::string& source) {
     const auto [low, high] = std::minmax_element(torque_nm.begin(), torque_nm.end());
@@ -224,10 +229,7 @@ SimulatedMotion SimulationSource::read_motion(const ReadOptions& reading, const 
     const bool has_velocity = std::any_of(trace.velocity_deg_s.begin(), trace.velocity_deg_s.end(),
                                           [](double each) { return std::isfinite(each); });
     if (has_velocity && (file_ || velocity_)) motion.velocity_deg_s = trace.velocity_deg_s;
-    if (align_start_) {
-        const double ahead_s = log.trace.time_s.front() - motion.time_s.front();
-        for (double& time : motion.time_s) time += ahead_s;
-    }
+    if (align_start_) begin_together(motion.time_s, log);
     return motion;
 }
 
@@ -236,10 +238,7 @@ GivenTerm SimulationSource::from(ReadOptions reading, const std::string& path, L
     const Log simulated = read_log(path, reading);
     refuse_useless(simulated.trace.torque_nm, file_ ? nullptr : &log, term_.column, path);
     std::vector<double> time_s = simulated.trace.time_s;
-    if (align_start_) {
-        const double ahead_s = log.trace.time_s.front() - time_s.front();
-        for (double& time : time_s) time += ahead_s;
-    }
+    if (align_start_) begin_together(time_s, log);
     if (!file_ && simulated.trace.size() != log.trace.size())
         raise<DataError>("simulated: '{}' of {} has {} rows that can be read, the log {}", term_.column, path,
                          simulated.trace.size(), log.trace.size());
