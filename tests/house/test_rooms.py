@@ -28,8 +28,9 @@ SEES = {
     "chart": {"core", "log", "analysis", "design", "filter", "evaluate", "model", "diagnose", "fleet", "figure"},
     "document": {"core", "figure", "log", "analysis", "survey", "design", "filter", "evaluate", "model", "export", "diagnose", "arm", "fleet"},
     "page": {"core", "diagnose", "figure", "chart", "document"},
+    "verdict": {"core", "log", "analysis", "design", "filter", "evaluate", "model", "diagnose", "arm", "document"},
     "cli": {"core", "log", "analysis", "survey", "design", "filter", "evaluate", "model", "export", "diagnose", "figure", "chart",
-            "document", "page", "arm", "fleet"},
+            "document", "page", "verdict", "arm", "fleet"},
 }
 
 # Third-party header -> the files that may include it.

@@ -18,6 +18,9 @@ struct InputRecord {
     std::optional<std::size_t> rows;
 };
 
+/// The file with its hash, for the artifact that is made from it. Standard input has no hash: it is gone.
+[[nodiscard]] InputRecord input_record(const std::string& path);
+
 struct Provenance {
     std::vector<InputRecord> inputs;
     std::string command;  ///< the command line that reproduces it, without paths of its own making

@@ -18,11 +18,10 @@
 
 #include "cli/command.hpp"
 #include "cli/design/design_text.hpp"
-#include "cli/gear/gear_choice.hpp"
 #include "cli/options/lists.hpp"
 #include "cli/options/options.hpp"
 #include "cli/options/plot_request.hpp"
-#include "cli/readings/readings.hpp"
+#include "cli/options/verdict_options.hpp"
 #include "cli/talk.hpp"
 #include "ripplenotch/chart/comparison_figure.hpp"
 #include "ripplenotch/core/error.hpp"
@@ -38,6 +37,8 @@
 #include "ripplenotch/evaluate/recommendation.hpp"
 #include "ripplenotch/filter/engine.hpp"
 #include "ripplenotch/log/log.hpp"
+#include "ripplenotch/verdict/gear_choice.hpp"
+#include "ripplenotch/verdict/side_column.hpp"
 
 namespace ripplenotch {
 

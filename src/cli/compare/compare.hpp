@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "cli/gear/gear_choice.hpp"
 #include "cli/options/options.hpp"
 #include "ripplenotch/document/provenance.hpp"
 #include "ripplenotch/evaluate/comparison.hpp"

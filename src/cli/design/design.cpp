@@ -14,9 +14,9 @@
 
 #include "cli/command.hpp"
 #include "cli/design/design_text.hpp"
-#include "cli/gear/gear_choice.hpp"
 #include "cli/options/options.hpp"
 #include "cli/options/plot_request.hpp"
+#include "cli/options/verdict_options.hpp"
 #include "cli/talk.hpp"
 #include "ripplenotch/chart/comparison_figure.hpp"
 #include "ripplenotch/core/error.hpp"
@@ -24,6 +24,7 @@
 #include "ripplenotch/design/guarantee.hpp"
 #include "ripplenotch/document/comparison_json.hpp"
 #include "ripplenotch/document/table_json.hpp"
+#include "ripplenotch/verdict/gear_choice.hpp"
 
 namespace ripplenotch {
 

@@ -12,11 +12,12 @@
 #include "cli/command.hpp"
 #include "cli/diagnose/diagnosis_text.hpp"
 #include "cli/diagnose/joint_diagnosis.hpp"
-#include "cli/gear/gear_choice.hpp"
+#include "cli/options/verdict_options.hpp"
 #include "cli/talk.hpp"
 #include "ripplenotch/chart/trend_figure.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/document/diagnosis_json.hpp"
+#include "ripplenotch/verdict/gear_choice.hpp"
 
 namespace ripplenotch {
 

@@ -365,4 +365,45 @@ std::string diagnosis_story(const Diagnosis& diagnosis, bool explain) {
     return text + band_table(diagnosis.bands) + next_text(diagnosis.next);
 }
 
+namespace {
+
+std::string lag_text(const ArmAccount& account) {
+    if (!account.lag) return {};
+    const ArmLag& lag = *account.lag;
+    std::string text = fmt::format(
+        "  delay of the torque behind the motion, one for all joints: {:.3g} ms, 95 % interval {:.3g} to "
+        "{:.3g} "
+        "ms{}\n",
+        1e3 * lag.delay_s, 1e3 * lag.delay_95_s.low, 1e3 * lag.delay_95_s.high,
+        account.lag_is_applied ? "; part of the model" : "; none is assumed");
+    for (const JointLag& joint : lag.joints)
+        if (joint.contradicts)
+            text += fmt::format("  joint {} contradicts it: {:.3g} ms\n", account.joints[joint.joint].name,
+                                1e3 * joint.delay_s);
+    return text;
+}
+
+}  // namespace
+
+std::string arm_text(const ArmAccount& account) {
+    if (account.values_are_stated)
+        return fmt::format(
+            "arm: {} joints of {} matched {} (-v shows them); its values are the model's, motion smoothed "
+            "over "
+            "{:g} s\n",
+            account.joints.size(), account.source, account.rule, account.smoothing.value());
+    return fmt::format(
+               "arm: {} joints of {} matched {} (-v shows them); {} of {} combinations of its masses told by "
+               "this "
+               "log, {}, motion smoothed over {:g} s{}\n  {:.3g} -> {:.3g} Nm rms with friction beside it, "
+               "on "
+               "fifths "
+               "of the log left out\n",
+               account.joints.size(), account.source, account.rule, account.values_told, account.values_there,
+               account.all_joints_at_once ? "all joints fitted at once" : "this joint fitted alone",
+               account.smoothing.value(), account.lengths_are_guessed ? ", lengths of its links guessed" : "",
+               account.gap_before_nm, account.gap_nm) +
+           lag_text(account);
+}
+
 }  // namespace ripplenotch

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "ripplenotch/arm/arm_setup.hpp"
 #include "ripplenotch/diagnose/diagnosis.hpp"
 
 namespace ripplenotch {
@@ -20,5 +21,9 @@ namespace ripplenotch {
 
 /// `explain`: with the rules that were asked about each finding and each refused candidate.
 [[nodiscard]] std::string diagnosis_story(const Diagnosis& diagnosis, bool explain = false);
+
+/// "arm: 6 joints of ur10.urdf matched by number (-v shows them); 36 of 36 combinations ... 0.1 s", and what
+/// it leaves.
+[[nodiscard]] std::string arm_text(const ArmAccount& account);
 
 }  // namespace ripplenotch

@@ -11,8 +11,7 @@
 #include <string_view>
 
 #include "cli/diagnose/diagnosis_text.hpp"
-#include "cli/gear/gear_choice.hpp"
-#include "cli/readings/readings.hpp"
+#include "cli/options/verdict_options.hpp"
 #include "cli/talk.hpp"
 #include "core/rows/row_facts.hpp"
 #include "core/text/lower_case.hpp"
@@ -26,6 +25,8 @@
 #include "ripplenotch/export/joint_mjcf.hpp"
 #include "ripplenotch/model/model.hpp"
 #include "ripplenotch/model/motion.hpp"
+#include "ripplenotch/verdict/gear_choice.hpp"
+#include "ripplenotch/verdict/readings.hpp"
 
 namespace ripplenotch {
 
@@ -261,12 +262,12 @@ Model identified_model(const DiagnoseRequest& request, const LogOptions& words) 
     if (request.gear.ratio) options.hint = stated = GearRatio(*request.gear.ratio);
     const JointFile joint{request.path, request.path, identify_readings(logs, options)};
     const JointFacts facts = joint.facts(stated);
-    if (!facts.gear_ratio)
+    if (!facts.ratio)
         raise<DataError>(
             "{}: --model auto: identify tells no gear ratio from it ({}); give --gear-ratio N, or --model "
             "FILE",
             request.path, joint.found.verdict);
-    Model model{*facts.gear_ratio, {}};
+    Model model{*facts.ratio, {}};
     if (speed_changes(logs.front().trace)) model.terms.push_back(parse_term("inertia"));
     for (const Order order : facts.orders)
         model.terms.push_back(parse_term(fmt::format("ripple,order={}", shortest(order.value()))));

@@ -7,8 +7,6 @@
 #include <string_view>
 #include <vector>
 
-#include "cli/gear/gear_choice.hpp"
-#include "cli/given/given_terms.hpp"
 #include "cli/options/plot_request.hpp"
 #include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/diagnose/diagnosis.hpp"
@@ -16,6 +14,8 @@
 #include "ripplenotch/export/joint_mjcf.hpp"
 #include "ripplenotch/model/model.hpp"
 #include "ripplenotch/model/motion.hpp"
+#include "ripplenotch/verdict/gear_choice.hpp"
+#include "ripplenotch/verdict/given_terms.hpp"
 
 namespace ripplenotch {
 

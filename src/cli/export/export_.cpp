@@ -18,7 +18,6 @@
 #include <string>
 
 #include "cli/command.hpp"
-#include "cli/gear/gear_choice.hpp"
 #include "cli/options/lists.hpp"
 #include "cli/options/options.hpp"
 #include "cli/talk.hpp"
@@ -34,6 +33,7 @@
 #include "ripplenotch/export/map_target.hpp"
 #include "ripplenotch/export/target.hpp"
 #include "ripplenotch/filter/engine.hpp"
+#include "ripplenotch/verdict/gear_choice.hpp"
 
 namespace ripplenotch {
 

@@ -15,9 +15,8 @@
 #include <vector>
 
 #include "cli/command.hpp"
-#include "cli/gear/gear_choice.hpp"
 #include "cli/options/options.hpp"
-#include "cli/readings/readings.hpp"
+#include "cli/options/verdict_options.hpp"
 #include "cli/talk.hpp"
 #include "core/process/two_cores.hpp"
 #include "ripplenotch/core/error.hpp"
@@ -27,6 +26,9 @@
 #include "ripplenotch/document/features_json.hpp"
 #include "ripplenotch/fleet/features.hpp"
 #include "ripplenotch/fleet/shards.hpp"
+#include "ripplenotch/verdict/gear_choice.hpp"
+#include "ripplenotch/verdict/readings.hpp"
+#include "ripplenotch/verdict/side_column.hpp"
 
 namespace ripplenotch {
 
@@ -106,20 +108,8 @@ void take_temperature(const ManifestEntry& entry, const FeatureWork& work, Featu
     }
 }
 
-// Torque over a speed that may be in deg/s as well as in rad/s is no number to be kept.
-void refuse_open_readings(const Log& log) {
-    const std::span one(&log, 1);
-    const auto open = open_readings(one);
-    if (!open.empty())
-        raise<DataError>("{}: the log does not say its units: {}, or {}; {} settles it", log.layout.source,
-                         assumed_reading(one), open.front().words, settling_options(one));
-    if (log.layout.motor_units)
-        raise<DataError>("{}: the motion is measured before the gear; --gear-ratio tells the joint's",
-                         log.layout.source);
-}
-
 FeatureLine line_of(const Log& log, const ManifestEntry& entry, const FeatureWork& work, FeatureLine line) {
-    refuse_open_readings(log);
+    refuse_open_readings(log);  // torque over a speed in deg/s or rad/s is no number to be kept
     if (log.trace.size() < fewest_identify_samples)
         raise<DataError>("{}: {} samples; features need at least 200", log.layout.source, log.trace.size());
     take_date(entry, log, work, line);

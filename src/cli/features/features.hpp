@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "cli/gear/gear_choice.hpp"
 #include "cli/options/options.hpp"
 #include "ripplenotch/fleet/features.hpp"
 #include "ripplenotch/fleet/shards.hpp"

@@ -15,10 +15,11 @@
 #include "cli/command.hpp"
 #include "cli/filter/filter_work.hpp"
 #include "cli/options/lists.hpp"
-#include "cli/readings/readings.hpp"
+#include "cli/options/verdict_options.hpp"
 #include "ripplenotch/core/files.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/log/log.hpp"
+#include "ripplenotch/verdict/side_column.hpp"
 
 namespace ripplenotch {
 

@@ -6,7 +6,7 @@
 #include <complex>
 
 #include "cli/filter/filter.hpp"
-#include "cli/gear/gear_choice.hpp"
+#include "cli/options/verdict_options.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/document/comparison_json.hpp"
 #include "ripplenotch/log/log.hpp"

@@ -7,12 +7,12 @@
 #include <string>
 #include <vector>
 
-#include "cli/gear/gear_choice.hpp"
 #include "cli/options/options.hpp"
 #include "cli/options/plot_request.hpp"
 #include "ripplenotch/core/files.hpp"
 #include "ripplenotch/evaluate/ledger.hpp"
 #include "ripplenotch/filter/engine.hpp"
+#include "ripplenotch/verdict/gear_choice.hpp"
 
 namespace ripplenotch {
 

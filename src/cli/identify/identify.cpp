@@ -12,10 +12,8 @@
 #include <vector>
 
 #include "cli/command.hpp"
-#include "cli/gear/gear_choice.hpp"
-#include "cli/given/given_terms.hpp"
 #include "cli/options/plot_request.hpp"
-#include "cli/readings/readings.hpp"
+#include "cli/options/verdict_options.hpp"
 #include "cli/talk.hpp"
 #include "ripplenotch/analysis/identification.hpp"
 #include "ripplenotch/chart/spectrum_figure.hpp"
@@ -24,6 +22,9 @@
 #include "ripplenotch/core/progress.hpp"
 #include "ripplenotch/document/identification_json.hpp"
 #include "ripplenotch/log/log.hpp"
+#include "ripplenotch/verdict/gear_choice.hpp"
+#include "ripplenotch/verdict/given_terms.hpp"
+#include "ripplenotch/verdict/readings.hpp"
 
 namespace ripplenotch {
 

@@ -11,9 +11,8 @@
 #include <vector>
 
 #include "cli/command.hpp"
-#include "cli/gear/gear_choice.hpp"
 #include "cli/options/plot_request.hpp"
-#include "cli/readings/readings.hpp"
+#include "cli/options/verdict_options.hpp"
 #include "cli/talk.hpp"
 #include "core/matrices/least_squares.hpp"
 #include "ripplenotch/chart/track_figure.hpp"
@@ -23,6 +22,9 @@
 #include "ripplenotch/document/map_json.hpp"
 #include "ripplenotch/filter/map_fit.hpp"
 #include "ripplenotch/log/log.hpp"
+#include "ripplenotch/verdict/gear_choice.hpp"
+#include "ripplenotch/verdict/readings.hpp"
+#include "ripplenotch/verdict/side_column.hpp"
 
 namespace ripplenotch {
 
@@ -145,31 +147,6 @@ Read read_map_logs(const MapRequest& request, const GearAccount& gear, Provenanc
     return read;
 }
 
-MapFit fitted_map(const Read& read, const OtherReading& reading, const MapRequest& request,
-                  const GearAccount& gear) {
-    std::vector<Trace> traces;
-    for (const Log& log : read.logs) traces.push_back(read_otherwise(log.trace, reading));
-    std::vector<TraceView> views;
-    for (const Trace& trace : traces) views.push_back(trace.view());
-    return fit_ripple_map(views, gear, request.zero.value(), read.temperatures_degc);
-}
-
-// A reading under which something turns with the motor is confirmed by that; where two have it, or none of
-// several, nobody knows which one holds.
-MapFit fitted_by_readings(const Read& read, const MapRequest& request, const GearAccount& gear) {
-    const std::vector<Log>& logs = read.logs;
-    MapFit fit = fitted_map(read, {}, request, gear);
-    const std::string doubt = reading_doubt(logs, [&](const OtherReading& reading) {
-        return !reading.changes_side &&
-               (fit.finding != MapFinding::mapped ||
-                fitted_map(read, reading, request, gear).finding == MapFinding::mapped);
-    });
-    if (doubt.empty()) return fit;
-    fit.doubt = fmt::format("Cannot tell: {}. {}:", doubt, assumed_reading(logs));
-    fit.conclusive = false;
-    return fit;
-}
-
 ExitCode run_map_once(const MapRequest& request, const std::string& command_line) {
     check_plot(request.plot, request.common);
     hash_where_told(request.common, request.plot);
@@ -180,7 +157,7 @@ ExitCode run_map_once(const MapRequest& request, const std::string& command_line
     say(request.common, gear_in_words(*gear));
     const Read read = read_map_logs(request, *gear, provenance);
     if (choice.joint()) provenance.inputs.push_back(input_record(choice.joint()->path));
-    MapFit fit = fitted_by_readings(read, request, *gear);
+    MapFit fit = map_readings(read.logs, *gear, request.zero, read.temperatures_degc);
     fit.map.joint = read.logs.front().trace.joint;
     fit.map.temperature_column = request.temperature.value_or("");
     for (const std::string& note : fit.notes) say(request.common, note);

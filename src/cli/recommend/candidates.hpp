@@ -7,13 +7,13 @@
 #include <string>
 #include <vector>
 
-#include "cli/gear/gear_choice.hpp"
 #include "cli/options/options.hpp"
 #include "cli/recommend/recommend.hpp"
 #include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/evaluate/contender.hpp"
 #include "ripplenotch/evaluate/recommendation.hpp"
 #include "ripplenotch/log/log.hpp"
+#include "ripplenotch/verdict/gear_choice.hpp"
 
 namespace ripplenotch {
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 // ripplenotch recommend: which method to take for a log, within what it may cost.
-
 #include "cli/recommend/recommend.hpp"
 
 #include <fmt/format.h>
@@ -16,7 +15,7 @@
 #include "cli/command.hpp"
 #include "cli/options/lists.hpp"
 #include "cli/options/options.hpp"
-#include "cli/readings/readings.hpp"
+#include "cli/options/verdict_options.hpp"
 #include "cli/recommend/candidates.hpp"
 #include "cli/talk.hpp"
 #include "ripplenotch/core/error.hpp"
@@ -30,6 +29,8 @@
 #include "ripplenotch/export/map_target.hpp"
 #include "ripplenotch/export/target.hpp"
 #include "ripplenotch/log/log.hpp"
+#include "ripplenotch/verdict/readings.hpp"
+#include "ripplenotch/verdict/side_column.hpp"
 
 namespace ripplenotch {
 

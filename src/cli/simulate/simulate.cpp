@@ -15,10 +15,9 @@
 #include <vector>
 
 #include "cli/command.hpp"
-#include "cli/gear/gear_choice.hpp"
-#include "cli/given/given_terms.hpp"
 #include "cli/options/lists.hpp"
 #include "cli/options/options.hpp"
+#include "cli/options/verdict_options.hpp"
 #include "cli/talk.hpp"
 #include "core/rows/row_facts.hpp"
 #include "ripplenotch/core/error.hpp"
@@ -29,6 +28,8 @@
 #include "ripplenotch/log/log.hpp"
 #include "ripplenotch/model/fit.hpp"
 #include "ripplenotch/model/motion.hpp"
+#include "ripplenotch/verdict/gear_choice.hpp"
+#include "ripplenotch/verdict/given_terms.hpp"
 
 namespace ripplenotch {
 

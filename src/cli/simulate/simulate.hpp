@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "cli/gear/gear_choice.hpp"
 #include "cli/options/options.hpp"
 #include "ripplenotch/document/model_json.hpp"
+#include "ripplenotch/verdict/gear_choice.hpp"
 
 namespace ripplenotch {
 

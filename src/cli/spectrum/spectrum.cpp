@@ -16,11 +16,9 @@
 #include <vector>
 
 #include "cli/command.hpp"
-#include "cli/gear/gear_choice.hpp"
-#include "cli/given/given_terms.hpp"
 #include "cli/options/options.hpp"
 #include "cli/options/plot_request.hpp"
-#include "cli/readings/readings.hpp"
+#include "cli/options/verdict_options.hpp"
 #include "cli/talk.hpp"
 #include "ripplenotch/analysis/order_map.hpp"
 #include "ripplenotch/analysis/spectrum.hpp"
@@ -34,6 +32,9 @@
 #include "ripplenotch/document/spectrum_json.hpp"
 #include "ripplenotch/filter/engine.hpp"
 #include "ripplenotch/log/log.hpp"
+#include "ripplenotch/verdict/gear_choice.hpp"
+#include "ripplenotch/verdict/given_terms.hpp"
+#include "ripplenotch/verdict/readings.hpp"
 
 namespace ripplenotch {
 

@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "cli/gear/gear_choice.hpp"
 #include "cli/options/options.hpp"
 #include "ripplenotch/analysis/order_map.hpp"
 #include "ripplenotch/chart/spectrum_figure.hpp"

@@ -11,9 +11,8 @@
 #include <vector>
 
 #include "cli/command.hpp"
-#include "cli/gear/gear_choice.hpp"
 #include "cli/options/plot_request.hpp"
-#include "cli/readings/readings.hpp"
+#include "cli/options/verdict_options.hpp"
 #include "cli/talk.hpp"
 #include "ripplenotch/analysis/sweeps.hpp"
 #include "ripplenotch/analysis/track_report.hpp"
@@ -22,6 +21,8 @@
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/document/spectrum_json.hpp"
 #include "ripplenotch/log/log.hpp"
+#include "ripplenotch/verdict/gear_choice.hpp"
+#include "ripplenotch/verdict/readings.hpp"
 
 namespace ripplenotch {
 

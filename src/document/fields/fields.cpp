@@ -8,10 +8,16 @@
 
 #include "document/json/json.hpp"
 #include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/files.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/progress.hpp"
 
 namespace ripplenotch {
+
+InputRecord input_record(const std::string& path) {
+    if (path == "-") return {"-", "", std::nullopt};
+    return {path, sha256_as_read(path), std::nullopt};
+}
 
 std::string in_words(const Json& value) {
     constexpr std::size_t most = 40;

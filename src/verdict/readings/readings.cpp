@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/readings/readings.hpp"
+#include "ripplenotch/verdict/readings.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -8,216 +8,18 @@
 #include <cctype>
 #include <cmath>
 #include <functional>
-#include <numeric>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "cli/gear/gear_choice.hpp"
 #include "core/text/lower_case.hpp"
 #include "ripplenotch/analysis/identification.hpp"
 #include "ripplenotch/core/error.hpp"
-#include "ripplenotch/core/number.hpp"
-#include "ripplenotch/core/spec.hpp"
 #include "ripplenotch/diagnose/diagnosis.hpp"
-#include "ripplenotch/document/map_json.hpp"
 #include "ripplenotch/log/log.hpp"
 
 namespace ripplenotch {
-
-namespace {
-
-constexpr std::string_view remedy = "state it in the method: temperature=31";
-
-std::string value_of(const Spec& spec, std::string_view key) {
-    const auto at = std::find_if(spec.values.begin(), spec.values.end(),
-                                 [key](const auto& entry) { return entry.first == key; });
-    return at == spec.values.end() ? "" : at->second;
-}
-
-std::string named_for(std::string column, const std::string& joint) {
-    if (const std::size_t at = column.find(joint_mark); at != std::string::npos)
-        column.replace(at, joint_mark.size(), joint);
-    return column;
-}
-
-// The column is read in the place of the torque.
-ReadOptions beside(std::string& column, const std::string& joint, ReadOptions read) {
-    column = named_for(column, joint);
-    std::erase_if(read.columns, [](const std::string& entry) { return entry.starts_with("torque="); });
-    read.columns.push_back("torque=" + column);
-    read.units["torque"] = "Nm";  // its numbers as they are
-    if (joint.empty())
-        read.joint.reset();
-    else
-        read.joint = joint;
-    return read;
-}
-
-std::string joint_of(const RippleMap& map, const ReadOptions& read) {
-    return read.joint.value_or(names_joint(map.temperature_column) ? map.joint : "");
-}
-
-ReadOptions held(ReadOptions read) {
-    read.hold_bad_values = true;
-    return read;
-}
-
-std::string held_in_words(const std::string& log, const std::string& column, std::size_t cells) {
-    return fmt::format("{}: column '{}': {} {} without a temperature; the row before counts", log, column,
-                       cells, cells == 1 ? "cell" : "cells");
-}
-
-}  // namespace
-
-std::vector<double> side_column(const std::string& path, std::string column, const std::string& joint,
-                                ReadOptions read, std::size_t most_rows) {
-    return read_log_in_part(path, beside(column, joint, std::move(read)), most_rows).trace.torque_nm;
-}
-
-void require_beside(const std::vector<double>& values, const Trace& motion, const std::string& path,
-                    const std::string& column) {
-    if (values.size() != motion.size())
-        raise<DataError>("{}: column '{}' has {} numbers at {} rows of the motion", path, column,
-                         values.size(), motion.size());
-}
-
-double mean_of_side_column(const std::string& path, const std::string& column, const std::string& joint,
-                           const ReadOptions& read, std::size_t most_rows) {
-    const std::vector<double> values = side_column(path, column, joint, read, most_rows);
-    return std::accumulate(values.begin(), values.end(), 0.0) /
-           static_cast<double>(std::max<std::size_t>(values.size(), 1));
-}
-
-std::vector<double> held_side_column(const std::string& path, std::string column, const std::string& joint,
-                                     const ReadOptions& read, std::vector<std::string>& notes) {
-    Log side = read_log_in_part(path, held(beside(column, joint, read)));
-    if (side.held_bad_values > 0) notes.push_back(held_in_words(path, column, side.held_bad_values));
-    return std::move(side.trace.torque_nm);
-}
-
-std::string at_rows_temperature(const std::string& method, double degc) {
-    return fmt::format("{},temperature={},temperature-of=rows", method,
-                       shortest(std::round(1000.0 * degc) / 1000.0));
-}
-
-bool follows_temperature(const Contender& method) {
-    return method.map != nullptr && method.map->form.by_temperature &&
-           method.settings.has("temperature-of") && method.settings.text("temperature-of") == "rows";
-}
-
-std::string at_log_temperature(const std::string& method, const std::string& log, const ReadOptions& read) {
-    if (names_joint(method)) return method;
-    const Spec spec = parse_spec(method);
-    const std::string path = value_of(spec, "map");
-    if (path.empty() || !value_of(spec, "temperature").empty() || !is_map(path)) return method;
-    const RippleMap map = load_map(path).map;
-    if (!map.form.by_temperature) return method;
-    const std::string& column = map.temperature_column;
-    if (log == "-")
-        raise<UsageError>(
-            "method {}: {} depends on the joint's temperature ('{}'), and standard input cannot be "
-            "read twice; {}",
-            spec.name, path, column, remedy);
-    const std::string shown = named_for(column, joint_of(map, read));
-    const auto reader = open_log(log, read);
-    const auto& columns = reader->layout().columns;
-    if (std::none_of(columns.begin(), columns.end(), [&](const auto& one) { return one.name == shown; }))
-        raise<DataError>("{}: read no column '{}', expected the temperature that {} depends on; {}", log,
-                         shown, path, remedy);
-    return at_rows_temperature(method, mean_of_side_column(log, column, joint_of(map, read), held(read)));
-}
-
-FollowedRows::FollowedRows(const std::string& path, std::string column, const ReadOptions& side)
-    : path_(path), column_(std::move(column)), reader_(open_log(path, side)) {}
-
-std::span<const double> FollowedRows::next(std::size_t count) {
-    values_.clear();
-    while (values_.size() < count) {
-        const std::vector<double>& column = block_.joints.front().torque_nm;
-        if (used_ == column.size()) {
-            used_ = 0;
-            if (!reader_->next(block_))
-                raise<DataError>(
-                    "{}: column '{}' ends before the log does; read a copy that nobody writes to", path_,
-                    column_);
-            held_ += block_.held_bad_values;
-            continue;
-        }
-        const std::size_t taken = std::min(count - values_.size(), column.size() - used_);
-        const auto from = column.begin() + static_cast<std::ptrdiff_t>(used_);
-        values_.insert(values_.end(), from, from + static_cast<std::ptrdiff_t>(taken));
-        used_ += taken;
-    }
-    return values_;
-}
-
-std::vector<std::string> FollowedRows::notes() const {
-    return held_ == 0 ? std::vector<std::string>{} : std::vector{held_in_words(path_, column_, held_)};
-}
-
-std::unique_ptr<FollowedRows> followed_rows(const Contender& method, const std::string& log,
-                                            const ReadOptions& read) {
-    if (!follows_temperature(method)) return nullptr;
-    std::string column = method.map->temperature_column;
-    const ReadOptions side = held(beside(column, joint_of(*method.map, read), read));
-    return std::make_unique<FollowedRows>(log, column, side);
-}
-
-std::vector<double> followed_values(const Contender& method, const std::string& log, const ReadOptions& read,
-                                    std::vector<std::string>& notes) {
-    if (!follows_temperature(method)) return {};
-    return held_side_column(log, method.map->temperature_column, joint_of(*method.map, read), read, notes);
-}
-
-namespace {
-
-}  // namespace
-
-ArmLog ArmReading::view() const {
-    ArmLog arm;
-    for (const Log& log : logs) {
-        arm.joints.push_back(log.trace.view());
-        arm.has_torque.push_back(log.layout.chosen.torque.has_value());
-    }
-    return arm;
-}
-
-std::size_t ArmReading::find(const Chain& chain, const std::string& joint) const {
-    for (std::size_t j = 0; j < names.size(); ++j)
-        if (lower_case(names[j]) == lower_case(joint)) return j;
-    std::vector<std::string> known;
-    for (std::size_t j = 0; j < chain.size(); ++j) {
-        known.push_back(chain.joints[j].name);
-        if (lower_case(known.back()) == lower_case(joint)) return j;
-    }
-    raise<UsageError>("arm: '{}' is no joint of {}; {}{}", joint, chain.source, joint_list(chain),
-                      did_you_mean(joint, known));
-}
-
-ArmReading read_arm(const std::string& path, const ReadOptions& options, std::size_t most_rows,
-                    const Chain& chain, const StatedJoints& stated) {
-    ReadOptions motion = options;
-    motion.torque_of_each = false;
-    std::vector<Log> all = read_joints_at_once_in_part(path, motion, most_rows);
-    std::vector<std::string> there;
-    for (const Log& log : all) there.push_back(log.trace.joint);
-    const std::string source = all.front().layout.source;
-    ArmReading reading{{}, match_joints(chain, there, stated, source), {}};
-    for (const std::size_t place : reading.match.of) {
-        if (!all[place].trace.view().has_position()) {
-            raise<UsageError>(
-                "arm: {} has the velocity of '{}' and not its position; gravity depends on it and its "
-                "integral "
-                "does not tell from where",
-                source, there[place]);
-        }
-        reading.names.push_back(there[place]);
-        reading.logs.push_back(std::move(all[place]));
-    }
-    return reading;
-}
 
 namespace {
 
@@ -227,8 +29,6 @@ namespace {
 // moves a gear ratio by as little; the fit of the ratio speaks of it.
 constexpr double agreement = 0.05;
 constexpr double widest_clock = 5.0;  // no clock is off by more; a unit or a side is
-
-}  // namespace
 
 // One entry a reason, each with what settles it, with the log read in this way. Empty for a log that does
 // not contradict itself.
@@ -249,8 +49,6 @@ std::vector<Doubt> log_doubts(const Log& log, const OtherReading& reading) {
                                      log.recording.clock.nominal_rate.value() / reading.time_factor / size)
                        : "a unit is wrong, or one of the two is the motor's: --unit would mend it")}};
 }
-
-namespace {
 
 /// The ratio that motion of the motor's shaft is divided by where nobody knows the real one, so that its
 /// lines stand where those of a joint would.
@@ -389,12 +187,12 @@ Identification cannot_tell(Identification found, const std::string& assumed,
     return found;
 }
 
-}  // namespace
-
+// Readings as possible as the one taken, of all the logs, each once.
 std::vector<OtherReading> open_readings(std::span<const Log> logs) {
     return readings_of(logs, &Layout::assumptions);
 }
 
+// What the one that was taken is called: "in rad/s and rad, as assumed".
 std::string assumed_reading(std::span<const Log> logs) {
     for (const Log& log : logs) {
         for (const Assumption& one : log.layout.assumptions)
@@ -407,6 +205,7 @@ std::string assumed_reading(std::span<const Log> logs) {
     return "as read";
 }
 
+// Options that settle them, those for what was assumed first.
 std::string settling_options(std::span<const Log> logs) {
     std::vector<std::string> options;
     for (const auto list : {&Layout::assumptions, &Layout::inferences}) {
@@ -425,6 +224,8 @@ std::string settling_options(std::span<const Log> logs) {
     }
     return fmt::format("{}", fmt::join(options, " or "));
 }
+
+}  // namespace
 
 std::string reading_doubt(std::span<const Log> logs,
                           const std::function<bool(const OtherReading&)>& may_hold) {
@@ -507,6 +308,46 @@ Diagnosis diagnose_readings(const Model& model, const Log& log, const Log* valid
     taken.accepted.clear();
     taken.next.clear();
     return taken;
+}
+
+namespace {
+
+MapFit map_under(const OtherReading& reading, std::span<const Log> logs, const GearAccount& gear,
+                 Degrees zero, const std::vector<std::vector<double>>& temperatures_degc) {
+    std::vector<Trace> traces;
+    for (const Log& log : logs) traces.push_back(read_otherwise(log.trace, reading));
+    std::vector<TraceView> views;
+    for (const Trace& trace : traces) views.push_back(trace.view());
+    return fit_ripple_map(views, gear, zero.value(), temperatures_degc);
+}
+
+}  // namespace
+
+// A reading under which something turns with the motor is confirmed by that; where two have it, or none of
+// several, nobody knows which one holds.
+MapFit map_readings(std::span<const Log> logs, const GearAccount& gear, Degrees zero,
+                    const std::vector<std::vector<double>>& temperatures_degc) {
+    MapFit fit = map_under({}, logs, gear, zero, temperatures_degc);
+    const std::string doubt = reading_doubt(logs, [&](const OtherReading& reading) {
+        return !reading.changes_side &&
+               (fit.finding != MapFinding::mapped ||
+                map_under(reading, logs, gear, zero, temperatures_degc).finding == MapFinding::mapped);
+    });
+    if (doubt.empty()) return fit;
+    fit.doubt = fmt::format("Cannot tell: {}. {}:", doubt, assumed_reading(logs));
+    fit.conclusive = false;
+    return fit;
+}
+
+void refuse_open_readings(const Log& log) {
+    const std::span one(&log, 1);
+    const auto open = open_readings(one);
+    if (!open.empty())
+        raise<DataError>("{}: the log does not say its units: {}, or {}; {} settles it", log.layout.source,
+                         assumed_reading(one), open.front().words, settling_options(one));
+    if (log.layout.motor_units)
+        raise<DataError>("{}: the motion is measured before the gear; --gear-ratio tells the joint's",
+                         log.layout.source);
 }
 
 }  // namespace ripplenotch

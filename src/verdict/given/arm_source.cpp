@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "cli/arm/arm_option.hpp"
+#include "ripplenotch/verdict/given_terms.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -81,7 +83,7 @@ const Source& source_of(const std::string& name) {
 }
 
 // "a:1|b:2|c:=90deg"
-void take_joint(std::string_view piece, ArmOption& option) {
+void take_joint(std::string_view piece, ArmSource& option) {
     const std::size_t colon = piece.find(':');
     if (colon == std::string_view::npos || colon == 0 || colon + 1 == piece.size()) {
         raise<UsageError>(
@@ -103,11 +105,11 @@ void take_joint(std::string_view piece, ArmOption& option) {
 
 }  // namespace
 
-ArmOption read_arm_option(std::string_view words) {
+ArmSource read_arm_source(std::string_view words) {
     const Spec spec = parse_spec(words);
     const Source& source = source_of(spec.name);
     const Settings settings(fmt::format("--arm {}", spec.name), spec, source.keys);
-    ArmOption option{source.read(settings), {}, spec.text()};
+    ArmSource option{source.read(settings), {}, spec.text()};
     if (settings.has("file")) option.file = settings.text("file");
     if (settings.has("gravity")) {
         const std::vector<double> gravity = settings.list("gravity");
@@ -129,6 +131,62 @@ ArmOption read_arm_option(std::string_view words) {
 
 namespace {
 
+std::string lower_case(std::string text) {
+    for (char& letter : text) letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+    return text;
+}
+
+}  // namespace
+
+ArmLog ArmReading::view() const {
+    ArmLog arm;
+    for (const Log& log : logs) {
+        arm.joints.push_back(log.trace.view());
+        arm.has_torque.push_back(log.layout.chosen.torque.has_value());
+    }
+    return arm;
+}
+
+std::size_t ArmReading::find(const Chain& chain, const std::string& joint) const {
+    for (std::size_t j = 0; j < names.size(); ++j)
+        if (lower_case(names[j]) == lower_case(joint)) return j;
+    std::vector<std::string> known;
+    for (std::size_t j = 0; j < chain.size(); ++j) {
+        known.push_back(chain.joints[j].name);
+        if (lower_case(known.back()) == lower_case(joint)) return j;
+    }
+    raise<UsageError>("arm: '{}' is no joint of {}; {}{}", joint, chain.source, joint_list(chain),
+                      did_you_mean(joint, known));
+}
+
+namespace {
+
+// Of a log with more than `most_rows` the pieces of read_log_in_part. Throws what
+// read_joints_at_once_in_part and match_joints throw, and UsageError where a joint of the chain has no
+// position.
+ArmReading read_arm(const std::string& path, const ReadOptions& options, std::size_t most_rows,
+                    const Chain& chain, const StatedJoints& stated) {
+    ReadOptions motion = options;
+    motion.torque_of_each = false;
+    std::vector<Log> all = read_joints_at_once_in_part(path, motion, most_rows);
+    std::vector<std::string> there;
+    for (const Log& log : all) there.push_back(log.trace.joint);
+    const std::string source = all.front().layout.source;
+    ArmReading reading{{}, match_joints(chain, there, stated, source), {}};
+    for (const std::size_t place : reading.match.of) {
+        if (!all[place].trace.view().has_position()) {
+            raise<UsageError>(
+                "arm: {} has the velocity of '{}' and not its position; gravity depends on it and its "
+                "integral "
+                "does not tell from where",
+                source, there[place]);
+        }
+        reading.names.push_back(there[place]);
+        reading.logs.push_back(std::move(all[place]));
+    }
+    return reading;
+}
+
 double deviation(std::span<const double> values) {
     double mean = 0.0, squares = 0.0;
     for (const double value : values) mean += value / static_cast<double>(values.size());
@@ -136,25 +194,9 @@ double deviation(std::span<const double> values) {
     return std::sqrt(squares / static_cast<double>(values.size()));
 }
 
-std::string lag_text(const ArmAccount& account) {
-    if (!account.lag) return {};
-    const ArmLag& lag = *account.lag;
-    std::string text = fmt::format(
-        "  delay of the torque behind the motion, one for all joints: {:.3g} ms, 95 % interval {:.3g} to "
-        "{:.3g} "
-        "ms{}\n",
-        1e3 * lag.delay_s, 1e3 * lag.delay_95_s.low, 1e3 * lag.delay_95_s.high,
-        account.lag_is_applied ? "; part of the model" : "; none is assumed");
-    for (const JointLag& joint : lag.joints)
-        if (joint.contradicts)
-            text += fmt::format("  joint {} contradicts it: {:.3g} ms\n", account.joints[joint.joint].name,
-                                1e3 * joint.delay_s);
-    return text;
-}
-
 }  // namespace
 
-GivenArm::GivenArm(ArmOption option, const std::string& path, const ReadOptions& options,
+GivenArm::GivenArm(ArmSource option, const std::string& path, const ReadOptions& options,
                    std::optional<Seconds> smoothing, std::size_t most_rows)
     : option_(std::move(option)),
       smoothing_(smoothing),
@@ -239,27 +281,6 @@ ArmAccount GivenArm::account(std::size_t joint) {
     if (const ArmJointFit* const own = found.find(joint)) account.gap_nm = own->error_nm;
     for (std::string& warning : arm_warnings(found, travel_)) account.warnings.push_back(std::move(warning));
     return account;
-}
-
-std::string arm_text(const ArmAccount& account) {
-    if (account.values_are_stated)
-        return fmt::format(
-            "arm: {} joints of {} matched {} (-v shows them); its values are the model's, motion smoothed "
-            "over "
-            "{:g} s\n",
-            account.joints.size(), account.source, account.rule, account.smoothing.value());
-    return fmt::format(
-               "arm: {} joints of {} matched {} (-v shows them); {} of {} combinations of its masses told by "
-               "this "
-               "log, {}, motion smoothed over {:g} s{}\n  {:.3g} -> {:.3g} Nm rms with friction beside it, "
-               "on "
-               "fifths "
-               "of the log left out\n",
-               account.joints.size(), account.source, account.rule, account.values_told, account.values_there,
-               account.all_joints_at_once ? "all joints fitted at once" : "this joint fitted alone",
-               account.smoothing.value(), account.lengths_are_guessed ? ", lengths of its links guessed" : "",
-               account.gap_before_nm, account.gap_nm) +
-           lag_text(account);
 }
 
 }  // namespace ripplenotch

@@ -14,16 +14,16 @@
 
 namespace ripplenotch {
 
-class SimulatedOption {
+class SimulationSource {
   public:
     /// "tau_model[,scale=1][,delay=2ms][,position=q_model][,velocity=dq_model]", the same as
     /// "column,name=tau_model...", or "log,file=sim.csv, column=torque[,validate=sim2.csv][,align=start]...".
     /// Beside a model that states a simulation it says only where its torque is: scale and delay are the
     /// model's. Throws UsageError.
-    explicit SimulatedOption(std::string_view text, const std::optional<SimulatedTerm>& stated = {});
+    explicit SimulationSource(std::string_view text, const std::optional<SimulatedTerm>& stated = {});
 
     /// As a model.json states it: a column of the log.
-    explicit SimulatedOption(SimulatedTerm term) : term_(std::move(term)), states_delay_(true) {}
+    explicit SimulationSource(SimulatedTerm term) : term_(std::move(term)), states_delay_(true) {}
 
     /// The term for the rows of the log at `path`; its deviation is 0 where the scale is stated. Rows that a
     /// simulation in a file of its own does not span are taken out of the log. Throws UsageError, DataError,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/options/simulated_option.hpp"
+#include "verdict/given/simulation_source.hpp"
 
 #include <fmt/format.h>
 
@@ -71,6 +71,11 @@ ReadOptions with_role(ReadOptions reading, const std::string& role, const std::s
     return reading;
 }
 
+void begin_together(std::vector<double>& time_s, const Log& log) {
+    const double ahead_s = log.trace.time_s.front() - time_s.front();
+    for (double& time : time_s) time += ahead_s;
+}
+
 void refuse_useless(const std::vector<double>& torque_nm, const Log* measured, const std::string& column,
                     const std::string& source) {
     const auto [low, high] = std::minmax_element(torque_nm.begin(), torque_nm.end());
@@ -138,7 +143,7 @@ Spec spec_of(std::string_view text) {
 
 }  // namespace
 
-SimulatedOption::SimulatedOption(std::string_view text, const std::optional<SimulatedTerm>& stated) {
+SimulationSource::SimulationSource(std::string_view text, const std::optional<SimulatedTerm>& stated) {
     const Spec spec = spec_of(text);
     const bool own = spec.name == "log";
     const Settings settings("--simulated " + spec.name, spec,
@@ -174,22 +179,22 @@ SimulatedOption::SimulatedOption(std::string_view text, const std::optional<Simu
     term_.delay_s = parse_quantity(delay, Dimension::time, "--simulated: delay");
 }
 
-GivenTerm SimulatedOption::read(const ReadOptions& reading, const std::string& path, Log& log) const {
+GivenTerm SimulationSource::read(const ReadOptions& reading, const std::string& path, Log& log) const {
     if (!file_ && path == "-")
         raise<UsageError>(
             "--simulated column,...: standard input cannot be read twice; give the log as a file");
     return from(reading, file_.value_or(path), log);
 }
 
-GivenTerm SimulatedOption::read_validation(const ReadOptions& reading, const std::string& path,
-                                           Log& log) const {
+GivenTerm SimulationSource::read_validation(const ReadOptions& reading, const std::string& path,
+                                            Log& log) const {
     if (file_ && !validation_file_)
         raise<UsageError>(
             "--simulated log,...: with --validate the simulation of that log is needed too: validate=FILE");
     return from(reading, file_ ? *validation_file_ : path, log);
 }
 
-ReadOptions SimulatedOption::reading_of(ReadOptions reading) const {
+ReadOptions SimulationSource::reading_of(ReadOptions reading) const {
     if (!file_) return with_role(std::move(reading), "torque", term_.column);
     // Its own layout: of what is said about the log only the units of these columns hold.
     ReadOptions own;
@@ -204,7 +209,7 @@ ReadOptions SimulatedOption::reading_of(ReadOptions reading) const {
     return own;
 }
 
-SetupContext SimulatedOption::names() const {
+SetupContext SimulationSource::names() const {
     SetupContext context;
     context.torque_column = term_.column;
     if (position_) context.position_column = *position_;
@@ -212,8 +217,8 @@ SetupContext SimulatedOption::names() const {
     return context;
 }
 
-SimulatedMotion SimulatedOption::read_motion(const ReadOptions& reading, const std::string& path,
-                                             const Log& log) const {
+SimulatedMotion SimulationSource::read_motion(const ReadOptions& reading, const std::string& path,
+                                              const Log& log) const {
     ReadOptions own = reading_of(reading);
     own.needs_velocity = false;
     if (!file_ && position_) own = with_role(std::move(own), "position", *position_);
@@ -224,22 +229,16 @@ SimulatedMotion SimulatedOption::read_motion(const ReadOptions& reading, const s
     const bool has_velocity = std::any_of(trace.velocity_deg_s.begin(), trace.velocity_deg_s.end(),
                                           [](double each) { return std::isfinite(each); });
     if (has_velocity && (file_ || velocity_)) motion.velocity_deg_s = trace.velocity_deg_s;
-    if (align_start_) {
-        const double ahead_s = log.trace.time_s.front() - motion.time_s.front();
-        for (double& time : motion.time_s) time += ahead_s;
-    }
+    if (align_start_) begin_together(motion.time_s, log);
     return motion;
 }
 
-GivenTerm SimulatedOption::from(ReadOptions reading, const std::string& path, Log& log) const {
+GivenTerm SimulationSource::from(ReadOptions reading, const std::string& path, Log& log) const {
     reading = reading_of(std::move(reading));
     const Log simulated = read_log(path, reading);
     refuse_useless(simulated.trace.torque_nm, file_ ? nullptr : &log, term_.column, path);
     std::vector<double> time_s = simulated.trace.time_s;
-    if (align_start_) {
-        const double ahead_s = log.trace.time_s.front() - time_s.front();
-        for (double& time : time_s) time += ahead_s;
-    }
+    if (align_start_) begin_together(time_s, log);
     if (!file_ && simulated.trace.size() != log.trace.size())
         raise<DataError>("simulated: '{}' of {} has {} rows that can be read, the log {}", term_.column, path,
                          simulated.trace.size(), log.trace.size());

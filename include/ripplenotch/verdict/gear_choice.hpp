@@ -10,28 +10,29 @@
 #include <string_view>
 #include <vector>
 
-#include "cli/options/options.hpp"
 #include "ripplenotch/analysis/identification.hpp"
 #include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/core/quantity.hpp"
-#include "ripplenotch/design/candidate_table.hpp"
-#include "ripplenotch/document/provenance.hpp"
+#include "ripplenotch/design/ripple_map.hpp"
 #include "ripplenotch/evaluate/contender.hpp"
 
 namespace ripplenotch {
 
-// A joint.json, and what it says about the gear.
-
-struct JointFacts {
+/// What one source states of a gear; what it does not state is empty.
+struct GearStatement {
     std::string source;  ///< for messages
-    Hertz sample_rate;   ///< nominal: what filter designs for on the same log
-    std::optional<GearRatio> gear_ratio;
-    double ratio_error =
-        0.0;  ///< share: the further end of the file's 95 % interval; 0 for a ratio that is given
-    std::vector<Order> orders;         ///< of the lines that follow the motor, lowest first, each once
-    std::vector<double> amplitude_nm;  ///< one per order
+    std::optional<GearRatio> ratio;
+    std::vector<Order> orders;         ///< lowest first, each once
+    std::vector<double> amplitude_nm;  ///< one per order, or empty
     std::vector<double> phase_deg;     ///< one per order, or empty where one of them is not known
-    DegPerSec slowest, fastest;        ///< |v| at which those lines were seen; both 0 without lines
+};
+
+// A joint.json, and what it says about the gear: of the lines that follow the motor.
+
+struct JointFacts : GearStatement {
+    Hertz sample_rate;           ///< nominal: what filter designs for on the same log
+    double ratio_error = 0.0;    ///< share: the further end of the file's 95 % interval; 0 for a given ratio
+    DegPerSec slowest, fastest;  ///< |v| at which those lines were seen; both 0 without lines
 };
 
 struct JointFile {
@@ -44,8 +45,9 @@ struct JointFile {
     [[nodiscard]] JointFacts facts(std::optional<GearRatio> given = std::nullopt) const;
 };
 
-/// The file with its hash, for the artifact that is made from it. Standard input has no hash: it is gone.
-[[nodiscard]] InputRecord input_record(const std::string& path);
+/// Reads joint.json, or standard input when the path is "-". Throws DataError, FileError, and UsageError for
+/// an empty path.
+[[nodiscard]] JointFile load_joint(const std::string& path);
 
 /// --gear-ratio, --orders and --joint-file as they were typed.
 struct GearOptions {
@@ -56,28 +58,11 @@ struct GearOptions {
     [[nodiscard]] bool any() const { return ratio || !orders.empty() || joint_file; }
 };
 
-/// What an option is for in a command, where that differs; a command has no option whose help is empty.
-struct GearHelp {
-    std::string_view ratio = "motor turns per joint turn";
-    std::string_view orders =
-        "ripple lines in cycles per motor turn (default: where a gear ratio is known, 1,2)";
-    std::string_view joint_file = "joint.json of identify: gear ratio, orders and amplitudes from there";
-};
-
-void attach_gear(Options& options, GearOptions& gear, const GearHelp& help = {});
+/// Orders as they are typed, lowest first.
+[[nodiscard]] std::vector<Order> sorted_orders(const std::vector<double>& values);
 
 /// Throws UsageError on a ratio or an order that is none, and on an order that is given twice.
 void check_gear(const GearOptions& gear);
-
-/// What a method says about its gear.
-struct MethodGear {
-    std::string name;             ///< "method tracking"
-    std::optional<double> ratio;  ///< its keys gear-ratio ...
-    std::vector<double> orders;   ///< ... and orders
-    std::optional<JointFile> joint;
-    const TableSpec* table = nullptr;
-    std::string table_path;
-};
 
 /// Checked options with their joint file read, once.
 class GearChoice {
@@ -85,10 +70,13 @@ class GearChoice {
     /// Throws what check_gear and load_joint throw.
     explicit GearChoice(GearOptions options);
 
-    /// The gear of a method, or of a command without one. Orders that no source states are default_orders().
-    /// Empty when no source states a ratio. Throws DataError when a joint file that is asked has no ratio or
-    /// no line that follows the motor.
-    [[nodiscard]] std::optional<GearAccount> of(const MethodGear& method = {}) const;
+    /// The gear of a command, or of a method with what its keys, its own joint file (null: that of the
+    /// options) and its table state. Orders that no source states are default_orders(). Empty when no source
+    /// states a ratio. Throws DataError when a joint file that is asked has no ratio or no line that follows
+    /// the motor.
+    [[nodiscard]] std::optional<GearAccount> of(const GearStatement& method = {},
+                                                const JointFile* joint = nullptr,
+                                                const GearStatement& table = {}) const;
     /// Of --orders; empty where it is not given.
     [[nodiscard]] const std::vector<double>& asked_orders() const { return options_.orders; }
     [[nodiscard]] const std::optional<JointFile>& joint() const { return joint_; }
@@ -102,10 +90,6 @@ class GearChoice {
 
 /// Throws the one UsageError for whoever needs the gear and is not told it: "--orders", "method tracking".
 [[noreturn]] void raise_no_gear(std::string_view who);
-
-/// How a log is read beside this gear: motion that is measured before the gear is told by its ratio, and
-/// divided by it. Throws what LogOptions::resolve throws.
-[[nodiscard]] ReadOptions read_options(const LogOptions& log, const std::optional<GearAccount>& gear);
 
 /// "gear ratio 100, orders 1, 2 (joint.json)", for -v.
 [[nodiscard]] std::string gear_in_words(const GearAccount& gear);

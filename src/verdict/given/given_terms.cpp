@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/given/given_terms.hpp"
+#include "ripplenotch/verdict/given_terms.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -12,10 +12,6 @@
 #include <string>
 #include <vector>
 
-#include "cli/arm/arm_option.hpp"
-#include "cli/gear/gear_choice.hpp"
-#include "cli/options/options.hpp"
-#include "cli/options/simulated_option.hpp"
 #include "core/matrices/least_squares.hpp"
 #include "core/rows/row_facts.hpp"
 #include "core/vectors/dot.hpp"
@@ -29,15 +25,12 @@
 #include "ripplenotch/log/log.hpp"
 #include "ripplenotch/model/model.hpp"
 #include "ripplenotch/model/motion.hpp"
+#include "ripplenotch/verdict/gear_choice.hpp"
+#include "verdict/given/simulation_source.hpp"
 
 namespace ripplenotch {
 
 namespace {
-
-constexpr std::string_view simulated_option_help =
-    "torque of your own simulation, as a known part of the model: a column of the log, tau_model, or "
-    "of another file, log,file=sim.csv,column=torque; scale=1 states that its size is right, delay=2ms how "
-    "much later it is";
 
 constexpr std::string_view arm_name = "arm", nuisance_name = "nuisance",
                            once = "arm: standard input cannot be read twice; give the log as a file";
@@ -79,14 +72,9 @@ void add_arm_terms(std::vector<GivenTerm>& terms, GivenArm& arm, const StatedArm
     terms.push_back(at_rows_of(log, whole, stated_term(nuisance_name, std::move(beside_nm))));
 }
 
-ArmOption option_of(const StatedArm& arm) { return {arm.chain, arm.stated_joints(), "of the model"}; }
+ArmSource option_of(const StatedArm& arm) { return {arm.chain, arm.stated_joints(), "of the model"}; }
 
 }  // namespace
-
-void attach_given(Options& options, GivenOptions& given) {
-    options.text("--simulated", given.simulated, "SPEC", simulated_option_help);
-    options.text("--arm", given.arm, "SPEC", std::string(arm_option_help));
-}
 
 std::vector<std::string> GivenTerms::open() const {
     std::vector<std::string> names;
@@ -99,7 +87,7 @@ std::shared_ptr<GivenArm> GivenSource::arm(const ReadOptions& reading, const std
     if (path == "-") raise<UsageError>("{}", once);
     std::shared_ptr<GivenArm>& arm = arms_[most_rows];
     if (!arm)
-        arm = std::make_shared<GivenArm>(read_arm_option(*options_.arm), path, reading, std::nullopt,
+        arm = std::make_shared<GivenArm>(read_arm_source(*options_.arm), path, reading, std::nullopt,
                                          most_rows);
     return arm;
 }
@@ -142,7 +130,7 @@ bool is_behind(const SimulationLag& lag, const Trace& log) {
 
 }  // namespace
 
-void GivenSource::check_setup(GivenTerms& terms, SimulatedOption& simulated, const ModelWithGiven& stated,
+void GivenSource::check_setup(GivenTerms& terms, SimulationSource& simulated, const ModelWithGiven& stated,
                               const ReadOptions& reading, const GivenLog& log) {
     if (simulated.states_delay()) return;
     SetupContext context = simulated.names();
@@ -167,10 +155,10 @@ void GivenSource::check_setup(GivenTerms& terms, SimulatedOption& simulated, con
 
 void GivenSource::add_simulated(GivenTerms& terms, const ModelWithGiven& stated, const ReadOptions& reading,
                                 const GivenLog& log, const GivenLog* validation) {
-    SimulatedOption simulated =
+    SimulationSource simulated =
         options_.simulated
-            ? SimulatedOption(with_joint(*options_.simulated, log.log.trace.joint), stated.simulated)
-            : SimulatedOption(*stated.simulated);
+            ? SimulationSource(with_joint(*options_.simulated, log.log.trace.joint), stated.simulated)
+            : SimulationSource(*stated.simulated);
     if (checks_setup_) check_setup(terms, simulated, stated, reading, log);
     terms.simulated = simulated.term();
     if (simulated.file()) terms.files.push_back(*simulated.file());
@@ -333,29 +321,20 @@ std::vector<double> predicted_torque(const ResidualOptions& residual, const Mode
 
 }  // namespace
 
-void attach_residual(Options& options, ResidualOptions& residual) {
-    options.text("--residual", residual.model, "FILE",
-                 "look into measured less predicted torque: of this model.json, along the log");
-    options.text("--simulated", residual.simulated, "SPEC",
-                 "the same of your own simulation: tau_model (a column) or log,file=sim.csv,column=torque; "
-                 "its scale is fitted unless scale=1 keeps it");
-}
-
-void take_residual(const ResidualOptions& residual, ReadOptions reading, std::size_t logs,
-                   const GivenLog& log, const CommonOptions& common, Provenance& provenance) {
-    if (!residual.any()) return;
+Residual subtract_predicted(const ResidualOptions& residual, ReadOptions reading, std::size_t logs,
+                            const GivenLog& log) {
     if (logs > 1 && residual.simulated && residual.simulated->starts_with("log,"))
         raise<UsageError>("--simulated log,...: it is the simulation of one log, and there are {}", logs);
     if (!log.log.trace.joint.empty()) reading.joint = log.log.trace.joint;
     const ModelWithGiven model = residual_model(residual, log.log.trace.joint);
-    if (residual.model && *residual.model != "-")
-        provenance.inputs.push_back(input_record(with_joint(*residual.model, log.log.trace.joint)));
     const std::vector<double> predicted = predicted_torque(residual, model, reading, log);
     std::vector<double>& torque_nm = log.log.trace.torque_nm;
-    const double before_nm = rms(torque_nm);
+    Residual left{rms(torque_nm), 0.0, {}};
     for (std::size_t k = 0; k < torque_nm.size(); ++k) torque_nm[k] -= predicted[k];
-    say(common, fmt::format("{}: {:.4g} Nm rms of torque, {:.4g} less what is predicted", log.path, before_nm,
-                            rms(torque_nm)));
+    left.after_nm = rms(torque_nm);
+    if (residual.model && *residual.model != "-")
+        left.model = with_joint(*residual.model, log.log.trace.joint);
+    return left;
 }
 
 void take_joint_of(const ResidualOptions& residual, std::optional<std::string>& joint) {

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Verdicts under everything that a log may mean: one that another reading of the log would change is none.
+
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "ripplenotch/analysis/identification.hpp"
+#include "ripplenotch/core/gear_account.hpp"
+#include "ripplenotch/core/quantity.hpp"
+#include "ripplenotch/diagnose/diagnosis.hpp"
+#include "ripplenotch/filter/map_fit.hpp"
+#include "ripplenotch/log/log.hpp"
+
+namespace ripplenotch {
+
+/// Why nothing is known of orders, in half a sentence: the readings that may hold as well as the one taken,
+/// and what settles it. Empty where none of them may.
+[[nodiscard]] std::string reading_doubt(std::span<const Log> logs,
+                                        const std::function<bool(const OtherReading&)>& may_hold);
+
+/// The trace as it would be under another reading.
+[[nodiscard]] Trace read_otherwise(const Trace& trace, const OtherReading& reading);
+
+/// What the logs of one joint show; where another reading that is as possible shows something else, an
+/// inconclusive identification without a ratio whose verdict begins with "Cannot tell". Motion measured
+/// before a gear of unknown ratio gives orders of the motor and no ratio.
+[[nodiscard]] Identification identify_readings(std::span<const Log> logs, const IdentifyOptions& options);
+
+/// diagnose(); `undecided`, with nothing named and the model as given, where another reading of the log that
+/// is as possible would name something else.
+[[nodiscard]] Diagnosis diagnose_readings(const Model& model, const Log& log, const Log* validation,
+                                          const DiagnosisOptions& options);
+
+/// fit_ripple_map() of the logs of one joint, with the angle of the joint at which the map begins and the
+/// temperatures in degC at each log's rows (empty: of none). `doubt` says so where two readings of the logs
+/// are as possible and both show a map, or none of several does; then it is not conclusive. Throws what
+/// fit_ripple_map throws.
+[[nodiscard]] MapFit map_readings(std::span<const Log> logs, const GearAccount& gear, Degrees zero,
+                                  const std::vector<std::vector<double>>& temperatures_degc = {});
+
+/// Throws DataError, naming what settles it, where the log may mean several motions: its units are open, or
+/// it was measured before the gear and nobody states the ratio.
+void refuse_open_readings(const Log& log);
+
+}  // namespace ripplenotch

@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: MIT
+#include "ripplenotch/verdict/gear_choice.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "ripplenotch/analysis/identification.hpp"
+#include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/gear_account.hpp"
+#include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/quantity.hpp"
+#include "ripplenotch/document/identification_json.hpp"
+
+namespace ripplenotch {
+
+namespace {
+
+constexpr double whole_order_share = 0.005;  // by hand
+
+// Order per motor turn of a line that turns with the joint; empty for others. Under another ratio than the
+// file's a line keeps its frequency, so its order follows from what was measured per output turn.
+std::optional<double> order_of(const Line& line, const Identification& found,
+                               std::optional<GearRatio> given) {
+    const auto order_found = motor_order(line);
+    if (line.kind != LineKind::order && !order_found) return std::nullopt;
+    if (!given || (found.gear_ratio.value == given->value() && order_found)) return order_found;
+    if (!line.order_output) return std::nullopt;
+    const double order = *line.order_output / given->value();
+    const double whole = std::round(2.0 * order) / 2.0;
+    return std::abs(order - whole) <= whole_order_share * order ? whole : order;
+}
+
+// Six digits in per cent, so that --ratio-error says exactly the same.
+double ratio_error(const GearRatioFit& fit) {
+    const double off = std::max(fit.ci95_high - *fit.value, *fit.value - fit.ci95_low);
+    if (!(off > 0.0) || !std::isfinite(off)) return 0.0;
+    return *parse_number(fmt::format("{:.6g}", std::min(49.0, 100.0 * off / *fit.value))) / 100.0;
+}
+
+}  // namespace
+
+JointFacts JointFile::facts(std::optional<GearRatio> given) const {
+    JointFacts facts;
+    facts.source = source;
+    facts.sample_rate = nominal_rate(found.sample_rate);
+    facts.ratio = given;
+    if (!given && found.gear_ratio.value) {
+        facts.ratio = GearRatio(*found.gear_ratio.value);
+        facts.ratio_error = ratio_error(found.gear_ratio);
+    }
+    std::map<double, const Line*> strongest;
+    for (const Line& line : found.lines) {
+        const auto order = order_of(line, found, given);
+        if (!order) continue;
+        const double a = std::abs(line.speed_from_deg_s), b = std::abs(line.speed_to_deg_s);
+        const DegPerSec low(std::min(a, b)), high(std::max(a, b));
+        facts.slowest = strongest.empty() ? low : std::min(facts.slowest, low);
+        facts.fastest = std::max(facts.fastest, high);
+        const Line*& entry = strongest[*order];
+        if (entry == nullptr || line.amplitude_nm > entry->amplitude_nm) entry = &line;
+    }
+    bool phases_known = true;
+    for (const auto& [order, line] : strongest) {
+        facts.orders.emplace_back(order);
+        facts.amplitude_nm.push_back(line->amplitude_nm);
+        facts.phase_deg.push_back(line->phase_deg);
+        phases_known = phases_known && line->phase_known;
+    }
+    if (!phases_known) facts.phase_deg.clear();
+    return facts;
+}
+
+JointFile load_joint(const std::string& path) {
+    if (path.empty()) raise<UsageError>("--joint-file: the name is empty");
+    return {path, path == "-" ? "standard input" : path, load_identification(path)};
+}
+
+std::vector<Order> sorted_orders(const std::vector<double>& values) {
+    std::vector<Order> orders;
+    for (const double value : values) orders.emplace_back(value);
+    std::sort(orders.begin(), orders.end());
+    return orders;
+}
+
+namespace {
+
+constexpr double largest_ratio = 1e5;  // by hand
+
+std::optional<GearRatio> ratio_of(const GearOptions& options) {
+    return options.ratio ? std::optional(GearRatio(*options.ratio)) : std::nullopt;
+}
+
+std::string reason_for_none(const Identification& found) {
+    if (!found.doubts.empty()) return "cannot tell: " + found.doubts.front().because;
+    std::string ratios;
+    for (const double ratio : undecided_ratios(found.gear_ratio))
+        ratios += fmt::format("{}{:.5g}", ratios.empty() ? "" : " or ", ratio);
+    return ratios.empty() ? "found none" : "could not decide between " + ratios;
+}
+
+// What the file says beside the statements that go before it. A file that is asked and knows nothing is
+// refused: it was measured, and nothing was found.
+GearStatement statement_of(const JointFile& file, const GearStatement& options, const GearStatement& method) {
+    JointFacts facts = file.facts(options.ratio ? options.ratio : method.ratio);
+    if (!facts.ratio)
+        raise<DataError>("{}: its gear ratio is null, because identify {}; give --gear-ratio", file.source,
+                         reason_for_none(file.found));
+    if (facts.orders.empty() && options.orders.empty() && method.orders.empty())
+        raise<DataError>("{}: it has no line that follows the motor; give --orders", file.source);
+    return facts;
+}
+
+// Of each order what the first source says that knows it; nothing unless all are known.
+std::vector<double> known_values(const std::vector<GearStatement>& all, const std::vector<Order>& orders,
+                                 std::vector<double> GearStatement::*member) {
+    std::map<Order, double> known;
+    for (const GearStatement& one : all) {
+        const std::vector<double>& values = one.*member;
+        for (std::size_t i = 0; i < std::min(values.size(), one.orders.size()); ++i)
+            known.try_emplace(one.orders[i], values[i]);
+    }
+    std::vector<double> found;
+    for (const Order order : orders) {
+        const auto entry = known.find(order);
+        if (entry == known.end()) return {};
+        found.push_back(entry->second);
+    }
+    return found;
+}
+
+}  // namespace
+
+void check_gear(const GearOptions& gear) {
+    if (gear.ratio && !(*gear.ratio > 0.0 && *gear.ratio <= largest_ratio)) {
+        raise<UsageError>("--gear-ratio {} is not above 0 and at most {}", shortest(*gear.ratio),
+                          shortest(largest_ratio));
+    }
+    const std::vector<Order> orders = sorted_orders(gear.orders);
+    if (!orders.empty() && !(orders.front() > Order(0.0)))
+        raise<UsageError>("--orders: {} is not above 0", shortest(orders.front().value()));
+    const auto twice = std::adjacent_find(orders.begin(), orders.end());
+    if (twice != orders.end()) raise<UsageError>("--orders: {} is listed twice", shortest(twice->value()));
+}
+
+GearChoice::GearChoice(GearOptions options) : options_(std::move(options)) {
+    check_gear(options_);
+    if (options_.joint_file) joint_ = load_joint(*options_.joint_file);
+}
+
+std::optional<GearAccount> GearChoice::of(const GearStatement& method, const JointFile* joint,
+                                          const GearStatement& table) const {
+    std::vector<GearStatement> all = {
+        {"--gear-ratio", ratio_of(options_), sorted_orders(options_.orders), {}, {}}, method};
+    if (joint == nullptr && joint_) joint = &*joint_;
+    if (joint != nullptr) all.push_back(statement_of(*joint, all[0], all[1]));
+    all.push_back(table);
+    const auto with_ratio =
+        std::find_if(all.begin(), all.end(), [](const GearStatement& one) { return one.ratio.has_value(); });
+    if (with_ratio == all.end()) return std::nullopt;
+    const auto with_orders =
+        std::find_if(all.begin(), all.end(), [](const GearStatement& one) { return !one.orders.empty(); });
+    GearAccount gear{*with_ratio->ratio, default_orders(), {}, {}, with_ratio->source};
+    if (with_orders == all.end()) {
+        gear.source += ", orders by default";
+        return gear;
+    }
+    gear.orders = with_orders->orders;
+    gear.amplitude_nm = known_values(all, gear.orders, &GearStatement::amplitude_nm);
+    gear.phase_deg = known_values(all, gear.orders, &GearStatement::phase_deg);
+    if (with_orders == all.begin() && with_ratio == all.begin()) {
+        gear.source = "--gear-ratio, --orders";
+    } else if (with_orders != with_ratio) {
+        gear.source += ", orders from " + (with_orders == all.begin() ? "--orders" : with_orders->source);
+    }
+    return gear;
+}
+
+std::optional<JointFacts> GearChoice::facts() const {
+    if (!joint_) return std::nullopt;
+    return joint_->facts(ratio_of(options_));
+}
+
+void raise_no_gear(std::string_view who) {
+    raise<UsageError>(
+        "{} needs to know the gear: give --gear-ratio, for example 100, or --joint-file joint.json", who);
+}
+
+std::string gear_in_words(const GearAccount& gear) {
+    std::string orders;
+    for (const Order order : gear.orders)
+        orders += (orders.empty() ? ", orders " : ", ") + shortest(order.value());
+    return fmt::format("gear ratio {:.6g}{} ({})", gear.ratio.value(), orders, gear.source);
+}
+
+}  // namespace ripplenotch
