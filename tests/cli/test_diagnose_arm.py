@@ -6,7 +6,7 @@ import math
 import random
 import unittest
 
-from commands import LOGS, Case
+from commands import LOGS, SHORT, Case
 
 # Two links that hang in a plane: lengths, masses at their ends (m, kg).
 LENGTH, MASS, G = (0.5, 0.4), (4.0, 2.5), 9.81
@@ -122,7 +122,7 @@ class Arm(Case):
 
     def test_delays_that_differ_between_joints_are_not_confirmed(self):
         write_log(self.folder / "log.csv", 1, coulomb_nm=1.2, delay_s=(0.009, -0.013))
-        for joint in ("j1", "j2"):
+        for joint in ("j1",) if SHORT else ("j1", "j2"):
             found = self.diagnosed("log.csv", "--joint", joint, "--arm", f"dh,file=dh.csv,{DOWN}")
             self.assertFalse(found["arm"]["lag"]["applied"])
             self.assertNotIn("delay", found["named"])

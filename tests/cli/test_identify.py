@@ -76,13 +76,13 @@ class ThePapersLogs(Case):
 
 
 class Answers(Case):
-    def write(self, folder, name, text):
-        path = pathlib.Path(folder) / name
+    def write(self, name, text):
+        path = self.folder / name
         path.write_text(text)
         return str(path)
 
     def test_one_speed_is_not_conclusive_and_exits_5_on_request(self):
-        path = self.write(self.folder, "one.csv", log_text(83.0, 0.5))
+        path = self.write("one.csv", log_text(83.0, 0.5))
         self.assertEqual(run("identify", path).returncode, 0)
         done = run("identify", path, "--require-conclusive")
         self.assertEqual(done.returncode, 5)
@@ -96,7 +96,7 @@ class Answers(Case):
         self.assertTrue(one["verdict"].startswith("Lines that may be ripple at orders 1 and 2 of the motor: "))
 
     def test_no_ripple_is_a_conclusive_answer(self):
-        paths = [self.write(self.folder, f"{v}.csv", log_text(v, 0.0, seed=v)) for v in (40, 80)]
+        paths = [self.write(f"{v}.csv", log_text(v, 0.0, seed=v)) for v in (40, 80)]
         done = run("identify", *paths, "--require-conclusive")
         self.assertEqual(done.returncode, 0)
         self.assertTrue(done.stdout.startswith("No ripple: no line above"), done.stdout)
@@ -117,7 +117,7 @@ class Answers(Case):
 
         values = []
         for unit, factor in (("deg_s", 1.0), ("rad_s", math.pi / 180), ("rpm", 1 / 6)):
-            paths = [self.write(self.folder, f"{unit}{v}.csv", in_unit(log_text(v, 0.5), unit, factor)) for v in (30, 60)]
+            paths = [self.write(f"{unit}{v}.csv", in_unit(log_text(v, 0.5), unit, factor)) for v in (30, 60)]
             values.append(identified(*paths)["gear_ratio"]["value"])
         self.assertAlmostEqual(values[0], values[1], places=6)
         self.assertAlmostEqual(values[0], values[2], places=6)
@@ -134,7 +134,7 @@ class Answers(Case):
 class Doubts(Case):
     """Logs that a sure answer would be wrong about."""
 
-    def log(self, folder, name, seconds=6.0, rate=500.0, speed=36.0, ripple_nm=0.0, tones=(), clock=1.0, position=True,
+    def log(self, name, seconds=6.0, rate=500.0, speed=36.0, ripple_nm=0.0, tones=(), clock=1.0, position=True,
             seed=1):
         noise = random.Random(seed)
         rows = ["time_s,velocity_deg_s,torque_nm" + (",position_deg" if position else "")]
@@ -143,7 +143,7 @@ class Doubts(Case):
             torque = 5.0 + ripple_nm * math.sin(math.radians(100 * speed * t)) + noise.gauss(0, 0.05)
             torque += sum(nm * math.sin(2 * math.pi * hz * t) for hz, nm in tones)
             rows.append(f"{t / clock:.6f},{speed},{torque:.6f}" + (f",{speed * t:.6f}" if position else ""))
-        path = pathlib.Path(folder) / name
+        path = self.folder / name
         path.write_text("\n".join(rows) + "\n")
         return str(path)
 
@@ -151,7 +151,7 @@ class Doubts(Case):
     TONES = [(hz / 1.475, 0.3) for hz in (20.06, 30.0, 40.05, 50.02)]
 
     def test_a_wrong_clock_comes_first_and_no_order_is_named(self):
-        logs = [self.log(self.folder, f"{v}.csv", speed=v, tones=self.TONES, clock=1.475, seed=v) for v in (36, 48)]
+        logs = [self.log(f"{v}.csv", speed=v, tones=self.TONES, clock=1.475, seed=v) for v in (36, 48)]
         done = run("identify", *logs, "--require-conclusive", "-q")
         self.assertEqual(done.returncode, 5, done.stdout)
         self.assertTrue(done.stdout.startswith("Cannot tell: "), done.stdout)
@@ -221,20 +221,20 @@ class Doubts(Case):
         self.assertNotIn("--gear-ratio settles", joint.stdout)
 
     def test_speeds_of_a_motor_are_those_of_its_log(self):
-        logs = [self.log(self.folder, f"{v}.csv", speed=v, ripple_nm=0.0, tones=[(2 * v / 360, 0.4)], seed=v) for v in (2400, 3600)]
+        logs = [self.log(f"{v}.csv", speed=v, ripple_nm=0.0, tones=[(2 * v / 360, 0.4)], seed=v) for v in (2400, 3600)]
         found = identified(*logs, "--side", "motor")
         fastest = max(line["speed_range_deg_s"][1] for line in found["lines"])
         self.assertAlmostEqual(fastest, 3600, delta=1)
 
     def test_mains_have_one_frequency(self):
-        logs = [self.log(self.folder, f"{v}.csv", speed=v, tones=[(50, 0.3), (100, 0.3), (180, 0.2)], seed=v) for v in (36, 47)]
+        logs = [self.log(f"{v}.csv", speed=v, tones=[(50, 0.3), (100, 0.3), (180, 0.2)], seed=v) for v in (36, 47)]
         notes = " ".join(line["note"] for line in identified(*logs)["lines"])
         self.assertIn("mains 50 Hz", notes)
         self.assertIn("2 times mains 50 Hz", notes)
         self.assertNotIn("mains 60 Hz", notes)
 
     def test_the_family_without_the_position(self):
-        logs = [self.log(self.folder, f"{v}.csv", speed=v, tones=self.TONES, clock=1.475, position=False, seed=v)
+        logs = [self.log(f"{v}.csv", speed=v, tones=self.TONES, clock=1.475, position=False, seed=v)
                 for v in (36, 48)]
         found = identified(*logs)
         # Tones of one size at 30 Hz, and at 40 Hz at a speed higher by a third, are as much one order as they are two tones.
@@ -245,7 +245,7 @@ class Doubts(Case):
 
     def test_a_joint_that_wears_is_told_log_by_log(self):
         wear = (0.38, 0.52, 0.74, 0.96)
-        logs = [self.log(self.folder, f"{i}_{v}.csv", speed=v, ripple_nm=nm, seed=10 * i + v)
+        logs = [self.log(f"{i}_{v}.csv", speed=v, ripple_nm=nm, seed=10 * i + v)
                 for i, nm in enumerate(wear) for v in (40, 70)]
         done = run("identify", *logs, "-q")
         self.assertIn("the recordings disagree", done.stdout.splitlines()[0])
@@ -258,7 +258,7 @@ class Doubts(Case):
             self.assertAlmostEqual(value, nm, delta=0.05 * nm)
 
     def test_an_encoder_whose_zero_was_moved_is_told_by_its_phase(self):
-        logs = [self.log(self.folder, f"{i}.csv", speed=60, ripple_nm=0.5, seed=i) for i in range(3)]
+        logs = [self.log(f"{i}.csv", speed=60, ripple_nm=0.5, seed=i) for i in range(3)]
         moved = pathlib.Path(logs[2])
         rows = [row.split(",") for row in moved.read_text().split()]
         moved.write_text("\n".join(",".join(row[:3] + [row[3] if k == 0 else f"{float(row[3]) + 0.9:.6f}"])
@@ -277,8 +277,8 @@ class Doubts(Case):
 class FixedTones(Case):
     """The shortest sweep of this motion has 2.7 cycles of the first order, which its smooth part takes some of."""
 
-    def found_of(self, folder, *more):
-        log = str(pathlib.Path(folder) / "log.csv")
+    def found_of(self, *more):
+        log = str(self.folder / "log.csv")
         done = run("simulate", "--gear-ratio", "100", "--inertia", "0.992kgm2", "--ripple", "1:0.8Nm:30deg", "--ripple",
                    "2:0.5Nm", "--motion", "multisine,amplitude=60deg,frequency=0.2Hz,duration=20s", "--sample-rate", "1kHz",
                    "--noise", "0.05Nm", *more, "-o", log, "--force")
@@ -287,10 +287,10 @@ class FixedTones(Case):
 
     def test_ripple_where_the_speed_has_an_extremum_is_no_tone_and_a_tone_is_one(self):
         for seed in ("1", "2", "3"):
-            found = self.found_of(self.folder, "--seed", seed)
+            found = self.found_of("--seed", seed)
             self.assertEqual([line["order"] for line in found["lines"]], [1, 2], found["verdict"])
             tone = "tone,frequency_hz=31.7,amplitude_nm=0.05,phase_deg=0"
-            both = self.found_of(self.folder, "--seed", seed, "--effect", tone)
+            both = self.found_of("--seed", seed, "--effect", tone)
             self.assertEqual([line["kind"] for line in both["lines"]], ["order", "order", "tone"], both["verdict"])
             self.assertAlmostEqual(both["lines"][2]["hz"], 31.7, delta=0.1)
 
@@ -337,9 +337,9 @@ class Spectra(unittest.TestCase):
 class AnyTravelAnyRatio(Case):
     """Lines from four cycles per sweep, or once per output turn, on, and a bound for what was searched."""
 
-    def simulated(self, folder, ratio, *motions, rate="1kHz", ripple=("1:0.8Nm:30deg", "2:0.5Nm"), noise="0.05Nm", seed=1):
+    def simulated(self, ratio, *motions, rate="1kHz", ripple=("1:0.8Nm:30deg", "2:0.5Nm"), noise="0.05Nm", seed=1):
         words = [word for motion in motions for word in ("--motion", motion)] + [word for one in ripple for word in ("--ripple", one)]
-        path = str(pathlib.Path(folder) / "log.csv")
+        path = str(self.folder / "log.csv")
         done = run("simulate", "--gear-ratio", str(ratio), *words, "--sample-rate", rate, "--noise", noise, "--seed", str(seed), "-o", path, "--force")
         self.assertEqual(done.returncode, 0, done.stderr)
         return path
@@ -349,14 +349,14 @@ class AnyTravelAnyRatio(Case):
 
     def test_low_ratios_over_short_travel(self):
         for ratio, travel in ((30, 60), (50, 60), (40, 115), (100, 38)):
-            found = identified(self.simulated(self.folder, ratio, *self.to_and_fro(travel, travel / 30)))
+            found = identified(self.simulated(ratio, *self.to_and_fro(travel, travel / 30)))
             lines = {round(line["order_output"] / ratio): line["amplitude_nm"] for line in found["lines"] if line["order_output"]}
             self.assertAlmostEqual(lines.get(1, 0.0), 0.8, delta=0.05, msg=(ratio, travel, found["verdict"]))
             self.assertAlmostEqual(lines.get(2, 0.0), 0.5, delta=0.05, msg=(ratio, travel, found["verdict"]))
 
     def test_ratios_below_twenty(self):
         for ratio in (6, 9, 16):
-            found = identified(self.simulated(self.folder, ratio, "constant,speed=300deg/s,duration=4s", "constant,speed=200deg/s,duration=4s",
+            found = identified(self.simulated(ratio, "constant,speed=300deg/s,duration=4s", "constant,speed=200deg/s,duration=4s",
                                               "constant,speed=100deg/s,duration=6s"))
             seen = sorted(line["order_output"] for line in found["lines"] if line["kind"] == "order")
             self.assertEqual(len(seen), 2, found["verdict"])
@@ -368,7 +368,7 @@ class AnyTravelAnyRatio(Case):
 
     def test_a_bound_names_its_range_and_holds_there(self):
         motions = self.to_and_fro(200, 1.0, 10)
-        found = identified(self.simulated(self.folder, 100, *motions, rate="77Hz", ripple=(), noise="0.1Nm"))
+        found = identified(self.simulated(100, *motions, rate="77Hz", ripple=(), noise="0.1Nm"))
         self.assertEqual((found["finding"], found["lines"]), ("nothing", []))
         searched = found["searched"]
         # 77 rows a sweep, 20 sweeps: least squares of one amplitude has a standard error of 0.1 Nm sqrt(2 / 1540).
@@ -378,12 +378,12 @@ class AnyTravelAnyRatio(Case):
         self.assertEqual([bound["detectable_nm"] for bound in searched["bounds"]],
                          sorted((bound["detectable_nm"] for bound in searched["bounds"]), reverse=True))
         middle = math.sqrt(searched["lowest_order"] * searched["highest_order"])
-        path = self.simulated(self.folder, middle, *motions, rate="77Hz", ripple=(f"1:{2 * searched['detectable_nm']:.4g}Nm",), noise="0.1Nm")
+        path = self.simulated(middle, *motions, rate="77Hz", ripple=(f"1:{2 * searched['detectable_nm']:.4g}Nm",), noise="0.1Nm")
         lines = [line["order_output"] for line in identified(path)["lines"] if line["kind"] in ("order", "unknown")]
         self.assertTrue(any(abs(order - middle) < 2.0 for order in lines), lines)
 
     def test_a_joint_that_hardly_moves_allows_no_claim(self):
-        found = identified(self.simulated(self.folder, 100, "poly6,to=2deg,duration=1s", ripple=()))
+        found = identified(self.simulated(100, "poly6,to=2deg,duration=1s", ripple=()))
         self.assertIsNone(found["searched"])
         self.assertFalse(found["conclusive"])
         self.assertTrue(found["verdict"].startswith("Cannot tell"), found["verdict"])

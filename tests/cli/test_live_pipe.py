@@ -48,16 +48,20 @@ class LivePipe(unittest.TestCase):
                 self.assertLessEqual(after, OPENING_ROWS + 3 * 2048)
 
     def test_without_units_more_of_the_log_is_awaited(self):
-        self.assertIsNone(self.first_output(rows(40000, True)))
+        with subprocess.Popen(FILTER, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as tool:
+            tool.stdin.write("".join(rows(40000, True)).encode())
+            tool.stdin.flush()
+            self.assertEqual(select.select([tool.stdout], [], [], 2.0)[0], [])
+            tool.kill()
 
     def test_the_same_bytes_however_slowly_they_come(self):
-        for bare in (False, True):
-            lines = rows(30000, bare, rest=200)
+        logs = [rows(30000, bare, rest=200) for bare in (False, True)]
+        slow = [subprocess.Popen(FILTER, stdin=subprocess.PIPE, stdout=subprocess.PIPE) for _ in logs]
+        for begin, end in ((0, 200), (200, 17000)):
+            for tool, lines in zip(slow, logs):
+                tool.stdin.write("".join(lines[begin:end]).encode())
+                tool.stdin.flush()
+            time.sleep(0.7)
+        for tool, lines in zip(slow, logs):
             at_once = subprocess.run(FILTER, input="".join(lines).encode(), capture_output=True, check=True).stdout
-            with subprocess.Popen(FILTER, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as run:
-                for part in (lines[:200], lines[200:17000]):
-                    run.stdin.write("".join(part).encode())
-                    run.stdin.flush()
-                    time.sleep(0.7)
-                slow, _ = run.communicate("".join(lines[17000:]).encode())
-            self.assertEqual(slow, at_once)
+            self.assertEqual(tool.communicate("".join(lines[17000:]).encode())[0], at_once)

@@ -225,14 +225,14 @@ class AlongLogs(Case):
              "rest,duration=0.3s", "--motion", "poly6,to=-20deg,duration=1.5s", "--motion", "rest,duration=0.3s",
              "--sample-rate", "1kHz"]
 
-    def log(self, folder, *words, moves=None):
-        path = str(pathlib.Path(folder, "log.csv"))
+    def log(self, *words, moves=None):
+        path = str(self.folder / "log.csv")
         done = simulate(*self.JOINT, *(moves or self.MOVES), *words, "-o", path, "--force")
         self.assertEqual(done.returncode, 0, done.stderr)
         return path
 
     def test_the_right_model_leaves_the_noise_and_a_wrong_one_more(self):
-        log = self.log(self.folder, "--noise", "0.06Nm", "--velocity-noise", "0.15deg/s")
+        log = self.log("--noise", "0.06Nm", "--velocity-noise", "0.15deg/s")
         out = str(self.folder / "out.csv")
         done = simulate(*self.JOINT, log, "-o", out, "--json")
         self.assertEqual(done.returncode, 0, done.stderr)
@@ -258,7 +258,7 @@ class AlongLogs(Case):
         self.assertGreater(wrong["along_log"]["residual_rms_nm"], 0.3)
 
     def test_a_log_without_position_gives_one_without_position(self):
-        log = self.log(self.folder, "--no-position")
+        log = self.log("--no-position")
         done = simulate(*self.JOINT, log)
         self.assertEqual(list(rows(done)[0]), ["time_s", "velocity_deg_s", "torque_nm"])
         with open(log) as measured:
@@ -271,7 +271,7 @@ class AlongLogs(Case):
             self.assertAlmostEqual(a, b, delta=0.02)
 
     def test_units_joints_and_pipes_are_read_as_every_command_does(self):
-        log = pathlib.Path(self.log(self.folder))
+        log = pathlib.Path(self.log())
         done = simulate(*self.JOINT, str(log))
         lines = log.read_text().splitlines()
         odd = [lines[0].replace("velocity_deg_s", "j4_velocity [rad/s]").replace("torque_nm", "j4_torque [Nm]")
@@ -285,7 +285,7 @@ class AlongLogs(Case):
             self.assertAlmostEqual(a, b, delta=1e-9)
 
     def test_spikes_of_a_model_are_left_out_of_a_prediction_unless_asked_for(self):
-        log = self.log(self.folder)
+        log = self.log()
         spiky = [*self.JOINT, "--effect", "spikes,rate_percent=1,size_nm=50"]
         plain = column(simulate(*self.JOINT, log), "torque_nm")
         self.assertEqual(column(simulate(*spiky, log), "torque_nm"), plain)

@@ -1,12 +1,10 @@
 # SPDX-License-Identifier: MIT
 """Finds the scripts under test; without numpy the test ends as skipped."""
 
-import pathlib
 import subprocess
 import sys
-import tempfile
 
-from commands import SOURCE, TOOL, run
+from commands import SOURCE, TOOL, new_folder, run
 
 try:
     import numpy  # noqa: F401
@@ -29,11 +27,10 @@ def prove(*words):
 def rows(case, study, seeds, only=()):
     """The scores of a study's cases; case: the TestCase, which fails when one of them did not end."""
     from prove_diagnose import record as records
-    with tempfile.TemporaryDirectory() as folder:
-        record = pathlib.Path(folder) / "record.jsonl"
-        chosen = [word for label in only for word in ("--only", label)]
-        done = prove("--study", study, "--seeds", str(seeds), "--record", str(record), *chosen)
-        case.assertEqual(done.returncode, 0, done.stderr)
-        found = records.read(record)[1]
+    record = new_folder(case) / "record.jsonl"
+    chosen = [word for label in only for word in ("--only", label)]
+    done = prove("--study", study, "--seeds", str(seeds), "--record", str(record), *chosen)
+    case.assertEqual(done.returncode, 0, done.stderr)
+    found = records.read(record)[1]
     case.assertEqual([row for row in found if "error" in row], [])
     return found

@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: MIT
 """Logs that end undecided, and the motion that diagnose --plan asks for; all of it is scripts/prove-diagnose --study plan."""
 
-import pathlib
-import tempfile
 import unittest
 
 import numpy
 
+from commands import new_folder
 import prove  # first: it skips without numpy
 
 prove.skip_unless_command("diagnose")
@@ -19,10 +18,9 @@ class Rows(unittest.TestCase):
         travel = motion.Motion(10.0).rest(0.5).stroke(80.0, 2.0).rest(0.5)
         time = numpy.arange(0.0, 3.0, 0.002)
         q, v, _ = travel.at(time)
-        with tempfile.TemporaryDirectory() as folder:
-            path = pathlib.Path(folder) / "plan.csv"
-            numpy.savetxt(path, numpy.column_stack([time, q, v]), delimiter=",", header="time_s,position_deg,velocity_deg_s", comments="")
-            rows = planned.Rows(path)
+        path = new_folder(self) / "plan.csv"
+        numpy.savetxt(path, numpy.column_stack([time, q, v]), delimiter=",", header="time_s,position_deg,velocity_deg_s", comments="")
+        rows = planned.Rows(path)
         between = time[:-1] + 0.0007
         for found, true, most in zip(rows.at(between), travel.at(between), (1e-6, 1e-3, 2.0)):
             self.assertLess(numpy.max(numpy.abs(found - true)), most)

@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: MIT
 """A run of the proof: its order, its record, and the tables made from that."""
 
-import json
 import pathlib
-import tempfile
 import unittest
 
+from commands import new_folder
 import prove  # first: it skips without numpy
 import numpy as np
 import page_tables
@@ -47,9 +46,7 @@ class Plan(unittest.TestCase):
 
 class Record(unittest.TestCase):
     def setUp(self):
-        self.folder = tempfile.TemporaryDirectory()
-        self.addCleanup(self.folder.cleanup)
-        self.path = pathlib.Path(self.folder.name) / "record.jsonl"
+        self.path = new_folder(self) / "record.jsonl"
 
     def test_a_run_goes_on_where_it_was_cut_off_but_not_with_another_program(self):
         record.Record(self.path, prove.TOOL, []).add(row("single", 3))

@@ -73,7 +73,8 @@ def run(*words, stdin=None, environment=None, text=True, timeout=300, **more):
         more["stdin"] = stdin or subprocess.DEVNULL
     if environment:
         more["env"] = {**os.environ, **environment}
-    return subprocess.run([TOOL, *(word if isinstance(word, bytes) else str(word) for word in words)], capture_output=True, text=text, timeout=timeout, **more)
+    command = [TOOL, *(word if isinstance(word, bytes) else str(word) for word in words)]
+    return subprocess.run(command, capture_output=True, text=text, timeout=timeout, **more)
 
 
 def good(*words, **more):
