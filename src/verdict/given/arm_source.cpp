@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "core/text/lower_case.hpp"
 #include "ripplenotch/verdict/given_terms.hpp"
 
 #include <fmt/format.h>
@@ -129,14 +130,7 @@ ArmSource read_arm_source(std::string_view words) {
     }
 }
 
-namespace {
-
-std::string lower_case(std::string text) {
-    for (char& letter : text) letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
-    return text;
-}
-
-}  // namespace
+namespace {}  // namespace
 
 ArmLog ArmReading::view() const {
     ArmLog arm;

@@ -13,7 +13,6 @@
 #include <utility>
 #include <vector>
 
-#include "core/text/lower_case.hpp"
 #include "ripplenotch/analysis/identification.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/diagnose/diagnosis.hpp"
