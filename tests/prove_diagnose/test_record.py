@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """A run of the proof: its order, its record, and the tables made from that."""
 
-import pathlib
 import unittest
 
 from commands import new_folder
@@ -59,7 +58,7 @@ class Record(unittest.TestCase):
     def test_the_page_gets_its_tables_between_their_marks_and_nothing_else_changes(self):
         begun = record.Record(self.path, prove.TOOL, [])
         begun.add(row("single", 3))
-        page = pathlib.Path(self.folder.name) / "page.md"
+        page = self.path.with_name("page.md")
         marks = [f"<!-- made by scripts/prove-diagnose: {name} -->\nold\n<!-- end -->\n"
                  for name in ("about", "bars", "reliability", "studies", "wrong")]
         page.write_text("Before.\n" + "Between.\n".join(marks))
