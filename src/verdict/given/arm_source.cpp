@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "core/text/lower_case.hpp"
 #include "ripplenotch/verdict/given_terms.hpp"
 
 #include <fmt/format.h>
@@ -12,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/text/lower_case.hpp"
 #include "ripplenotch/arm/chain.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/spec.hpp"
