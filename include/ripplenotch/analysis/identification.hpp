@@ -33,8 +33,6 @@ enum class RippleFinding {
     too_little,  ///< the joint is at standstill, or moves too little to determine anything
 };
 [[nodiscard]] std::string_view finding_name(RippleFinding finding);
-/// Empty where nothing has this name.
-[[nodiscard]] std::optional<RippleFinding> finding_of(std::string_view name);
 
 /// Why the lines are not accepted, whatever they show.
 enum class DoubtReason {
@@ -42,8 +40,6 @@ enum class DoubtReason {
     unit,   ///< the unit of the motion is not stated, and another suits the lines as well
 };
 [[nodiscard]] std::string_view doubt_name(DoubtReason reason);
-/// Empty where nothing has this name.
-[[nodiscard]] std::optional<DoubtReason> doubt_of(std::string_view name);
 
 struct Doubt {
     DoubtReason reason = DoubtReason::clock;
@@ -147,8 +143,6 @@ struct Disagreement {
     double chance = 1.0;                        ///< probability that recordings which agree differ as much
 };
 [[nodiscard]] std::string_view about_name(Disagreement::About about);
-/// Empty where nothing has this name.
-[[nodiscard]] std::optional<Disagreement::About> about_of(std::string_view name);
 
 /// Output orders that were searched, and the amplitude that a line at any of them would have been found with,
 /// in 95 of 100 logs. Where lines were found it holds for further ones.

@@ -54,33 +54,13 @@ std::string_view name_in(const Table& table, Value value) {
     return "";
 }
 
-template <class Value, class Table>
-std::optional<Value> value_in(const Table& table, std::string_view name) {
-    for (const auto& [value, one] : table) {
-        if (one == name) return value;
-    }
-    return std::nullopt;
-}
-
 }  // namespace
 
 std::string_view finding_name(RippleFinding finding) { return name_in(findings, finding); }
 
-std::optional<RippleFinding> finding_of(std::string_view name) {
-    return value_in<RippleFinding>(findings, name);
-}
-
 std::string_view doubt_name(DoubtReason reason) { return name_in(doubt_reasons, reason); }
 
-std::optional<DoubtReason> doubt_of(std::string_view name) {
-    return value_in<DoubtReason>(doubt_reasons, name);
-}
-
 std::string_view about_name(Disagreement::About about) { return name_in(abouts, about); }
-
-std::optional<Disagreement::About> about_of(std::string_view name) {
-    return value_in<Disagreement::About>(abouts, name);
-}
 
 std::string_view line_kind_name(LineKind kind) { return name_in(line_kinds, kind); }
 

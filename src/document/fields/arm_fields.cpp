@@ -3,154 +3,118 @@
 
 #include <algorithm>
 #include <array>
-#include <span>
 #include <utility>
+#include <vector>
 
 #include "ripplenotch/core/error.hpp"
-#include "ripplenotch/core/number.hpp"
 
 namespace ripplenotch {
+
 namespace {
 
-constexpr std::string_view prismatic = "prismatic";
+constexpr Rounded no_minus_zero{[](double value) { return finite_or_null(value + 0.0); }};
 
-// Of the ten values of a link: which field, from where on, how many.
-struct LinkField {
-    std::string_view name;
-    std::size_t first, count;
+std::string_view joint_kind_name(JointKind kind) {
+    return kind == JointKind::prismatic ? "prismatic" : "revolute";
+}
+
+// The ten values of a link, in the order of ArmValues::links.
+struct LinkValues {
+    double mass = 0.0;
+    Vector3 first_moment{};
+    std::array<double, 6> inertia{};
 };
-constexpr std::array link_fields = {LinkField{"mass_kg", 0, 1}, LinkField{"first_moment_kgm", 1, 3},
-                                    LinkField{"inertia_kgm2", 4, 6}};
 
-template <class Nuisance>
-auto nuisance_fields(Nuisance& nuisance) {
-    return std::array{std::pair(std::string_view("offset_nm"), &nuisance.offset_nm),
-                      std::pair(std::string_view("coulomb_nm"), &nuisance.coulomb_nm),
-                      std::pair(std::string_view("viscous_nm_per_deg_s"), &nuisance.viscous_nm_per_deg_s),
-                      std::pair(std::string_view("stribeck_nm"), &nuisance.stribeck_nm)};
+}  // namespace
+
+void describe(auto& archive, Is<LinkValues> auto& link) {
+    archive("mass_kg", link.mass, no_minus_zero);
+    archive("first_moment_kgm", link.first_moment, no_minus_zero);
+    archive("inertia_kgm2", link.inertia, no_minus_zero);
 }
 
-Json vector_json(const Vector3& vector) { return {vector[0] + 0.0, vector[1] + 0.0, vector[2] + 0.0}; }
-
-Json joint_json(const ChainJoint& joint, const std::string& log) {
-    Json json{{"name", joint.name}, {"log", log}};
-    if (joint.kind == JointKind::prismatic) json["kind"] = prismatic;
-    json["xyz_m"] = vector_json(joint.origin_m);
-    json["rpy_deg"] = vector_json(rpy_of_rotation(joint.rotation));
-    json["axis"] = vector_json(joint.axis);
-    return json;
+void describe(auto& archive, Is<ArmNuisance> auto& nuisance) {
+    archive("offset_nm", nuisance.offset_nm, if_any);
+    archive("coulomb_nm", nuisance.coulomb_nm, if_any);
+    archive("viscous_nm_per_deg_s", nuisance.viscous_nm_per_deg_s, if_any);
+    archive("stribeck_nm", nuisance.stribeck_nm, if_any);
 }
 
-Json link_json(std::span<const double> values) {
-    Json json = Json::object();
-    for (const LinkField& field : link_fields) {
-        Json list = Json::array();
-        for (const double value : values.subspan(field.first, field.count)) list.push_back(value + 0.0);
-        json[std::string(field.name)] = field.count == 1 ? list[0] : list;
-    }
-    return json;
-}
+namespace {
 
-std::vector<double> numbers_of(Fields& fields, std::string_view name, std::size_t count) {
-    const std::vector<double> numbers = fields.numbers(name);
-    if (numbers.size() != count)
-        raise<DataError>("{} holds {} numbers, expected {}", fields.where(name), numbers.size(), count);
-    return numbers;
-}
-
-Vector3 vector_of(Fields& fields, std::string_view name) {
-    const auto numbers = numbers_of(fields, name, 3);
-    return {numbers[0], numbers[1], numbers[2]};
-}
-
-void read_joint(Fields& entry, StatedArm& arm) {
-    ChainJoint joint;
-    joint.name = entry.text("name");
-    arm.log_joints.push_back(entry.has("log") ? entry.text("log") : joint.name);
-    if (entry.has("kind")) {
-        const std::string kind = entry.text("kind");
-        if (kind != prismatic && kind != "revolute")
-            raise<DataError>("{} is '{}', expected revolute or prismatic", entry.where("kind"), kind);
-        joint.kind = kind == prismatic ? JointKind::prismatic : JointKind::revolute;
-    }
-    joint.origin_m = vector_of(entry, "xyz_m");
-    joint.rotation = rotation_of_rpy(vector_of(entry, "rpy_deg"));
-    joint.axis = vector_of(entry, "axis");
-    arm.chain.joints.push_back(std::move(joint));
-}
-
-void read_values(Fields& fields, StatedArm& arm) {
-    const auto rotor = fields.number_if_any("rotor_inertia_kgm2");
-    if (fields.has("identified")) (void)fields.text("identified");
-    if (!fields.has("links")) return;
-    ArmValues values{{}, rotor.value_or(0.0)};
-    fields.each("links", [&](Fields& entry) {
-        for (const LinkField& field : link_fields) {
-            if (field.count == 1) {
-                values.links.push_back(entry.number(field.name));
-                continue;
-            }
-            const auto numbers = numbers_of(entry, field.name, field.count);
-            values.links.insert(values.links.end(), numbers.begin(), numbers.end());
+// By joint, the ten values of its link.
+template <class Archive>
+void describe_links(Archive& archive, auto& arm) {
+    std::vector<LinkValues> links;
+    if constexpr (!Archive::reading) {
+        for (auto at = arm.values->links.begin(); at != arm.values->links.end(); at += values_of_a_link) {
+            LinkValues& link = links.emplace_back();
+            link.mass = *at;
+            std::copy_n(at + 1, 3, link.first_moment.begin());
+            std::copy_n(at + 4, 6, link.inertia.begin());
         }
+    }
+    archive("links", links);
+    if constexpr (Archive::reading) {
+        if (links.size() != arm.chain.size())
+            raise<DataError>("{} holds {} links for {} joints", archive.where("links"), links.size(),
+                             arm.chain.size());
+        for (const LinkValues& link : links) {
+            auto& values = arm.values->links;
+            values.push_back(link.mass);
+            values.insert(values.end(), link.first_moment.begin(), link.first_moment.end());
+            values.insert(values.end(), link.inertia.begin(), link.inertia.end());
+        }
+    }
+}
+
+template <class Archive>
+void describe_joints(Archive& archive, auto& arm) {
+    archive.each("joints", arm.chain.joints, [&](Archive& entry, auto& joint) {
+        entry("name", joint.name);
+        if constexpr (Archive::reading) arm.log_joints.push_back(joint.name);
+        entry("log", arm.log_joints[static_cast<std::size_t>(&joint - arm.chain.joints.data())], if_there);
+        if (entry.holds("kind", joint.kind != JointKind::revolute))
+            entry("kind", joint.kind, Names{joint_kind_name, JointKind::prismatic});
+        entry("xyz_m", joint.origin_m, no_minus_zero);
+        Vector3 rpy_deg = rpy_of_rotation(joint.rotation);
+        entry("rpy_deg", rpy_deg, no_minus_zero);
+        if constexpr (Archive::reading) joint.rotation = rotation_of_rpy(rpy_deg);
+        entry("axis", joint.axis, no_minus_zero);
     });
-    if (values.links.size() != values_of_a_link * arm.chain.size())
-        raise<DataError>("{} holds {} links for {} joints", fields.where("links"),
-                         values.links.size() / values_of_a_link, arm.chain.size());
-    arm.values = std::move(values);
+}
+
+template <class Archive>
+void describe_arm(Archive& archive, auto& arm) {
+    if constexpr (Archive::reading) arm.chain.source = archive.source();
+    archive("source", arm.chain.source, if_there);
+    archive("joint", arm.joint);
+    archive("gravity_m_s2", arm.chain.gravity_m_s2, no_minus_zero, if_there);
+    describe_joints(archive, arm);
+    archive("lengths_are_guessed", arm.chain.lengths_are_guessed, if_any);
+    if constexpr (Archive::reading) {
+        settle_chain(arm.chain);
+        if (!arm.chain.find(arm.joint))
+            raise<DataError>("{} is '{}', expected one of joints", archive.where("joint"), arm.joint);
+    }
+    archive("smoothing_s", arm.smoothing, if_any, above_zero_up_to(10.0));
+    std::string identified = arm.values ? "torque" : "";
+    archive("identified", identified, if_any);
+    double rotor = arm.values ? arm.values->rotor_inertia_kgm2 : 0.0;
+    const bool known = archive.holds("links", arm.values.has_value());
+    if constexpr (Archive::reading)
+        if (known) arm.values.emplace();
+    if (known) describe_links(archive, arm);
+    if (archive.holds("rotor_inertia_kgm2", known)) archive("rotor_inertia_kgm2", rotor);
+    if constexpr (Archive::reading)
+        if (known) arm.values->rotor_inertia_kgm2 = rotor;
+    if (archive.holds("nuisance", arm.nuisance.any())) archive("nuisance", arm.nuisance);
 }
 
 }  // namespace
 
-Json stated_arm_json(const StatedArm& arm) {
-    Json json{{"source", arm.chain.source}, {"joint", arm.joint}};
-    json["gravity_m_s2"] = vector_json(arm.chain.gravity_m_s2);
-    json["joints"] = Json::array();
-    for (std::size_t j = 0; j < arm.chain.size(); ++j)
-        list_in(json, "joints").push_back(joint_json(arm.chain.joints[j], arm.log_joints[j]));
-    if (arm.chain.lengths_are_guessed) json["lengths_are_guessed"] = true;
-    if (arm.smoothing) json["smoothing_s"] = arm.smoothing->value();
-    if (arm.values) {
-        json["identified"] = "torque";
-        json["links"] = Json::array();
-        for (std::size_t j = 0; j < arm.chain.size(); ++j)
-            list_in(json, "links")
-                .push_back(
-                    link_json(std::span(arm.values->links).subspan(j * values_of_a_link, values_of_a_link)));
-        json["rotor_inertia_kgm2"] = arm.values->rotor_inertia_kgm2;
-    }
-    Json nuisance = Json::object();
-    for (const auto& [name, value] : nuisance_fields(arm.nuisance))
-        if (*value != 0.0) nuisance[std::string(name)] = *value;
-    if (!nuisance.empty()) json["nuisance"] = nuisance;
-    return json;
-}
+void describe(JsonWriter& json, const StatedArm& arm) { describe_arm(json, arm); }
 
-StatedArm stated_arm_of(Fields& fields, const std::string& source) {
-    StatedArm arm;
-    arm.chain.source = fields.has("source") ? fields.text("source") : source;
-    arm.joint = fields.text("joint");
-    if (fields.has("gravity_m_s2")) arm.chain.gravity_m_s2 = vector_of(fields, "gravity_m_s2");
-    fields.each("joints", [&](Fields& entry) { read_joint(entry, arm); });
-    if (fields.has("lengths_are_guessed")) arm.chain.lengths_are_guessed = fields.flag("lengths_are_guessed");
-    settle_chain(arm.chain);
-    if (!arm.chain.find(arm.joint))
-        raise<DataError>("{} is '{}', expected one of joints", fields.where("joint"), arm.joint);
-    if (const auto smoothing = fields.number_if_any("smoothing_s")) {
-        if (!(*smoothing > 0.0 && *smoothing <= 10.0))
-            raise<DataError>("{} is {}, expected a number above 0 and at most 10",
-                             fields.where("smoothing_s"), shortest(*smoothing));
-        arm.smoothing = Seconds(*smoothing);
-    }
-    read_values(fields, arm);
-    if (fields.has("nuisance")) {
-        Fields nuisance = fields.object("nuisance");
-        for (const auto& [name, value] : nuisance_fields(arm.nuisance))
-            *value = nuisance.number_if_any(name).value_or(0.0);
-        nuisance.finish();
-    }
-    fields.finish();
-    return arm;
-}
+void describe(JsonReader& reader, StatedArm& arm) { describe_arm(reader, arm); }
 
 }  // namespace ripplenotch

@@ -2,15 +2,15 @@
 #pragma once
 // The member `arm` of a model.json.
 
-#include "document/fields/fields.hpp"
+#include "document/archive/json_reader.hpp"
+#include "document/archive/json_writer.hpp"
 #include "ripplenotch/arm/arm_fit.hpp"
 
 namespace ripplenotch {
 
-[[nodiscard]] Json stated_arm_json(const StatedArm& arm);
+void describe(JsonWriter& json, const StatedArm& arm);
 
-/// Throws DataError: a field missing, mistyped or unknown, a joint that the chain has not, links for another
-/// number of joints.
-[[nodiscard]] StatedArm stated_arm_of(Fields& fields, const std::string& source);
+/// Throws DataError as well for a joint that the chain has not, and for links of another number of joints.
+void describe(JsonReader& reader, StatedArm& arm);
 
 }  // namespace ripplenotch

@@ -1,70 +1,33 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// What a diagnosis leaves to its user: findings that were accepted, what to do next, and where the gap is.
+// Parts that several documents have.
 
-#include <array>
-#include <optional>
-#include <string_view>
 #include <vector>
 
-#include "document/fields/fields.hpp"
-#include "document/json/json.hpp"
+#include "document/archive/json_reader.hpp"
+#include "document/archive/json_writer.hpp"
 #include "ripplenotch/analysis/ripple_estimate.hpp"
+#include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/diagnose/diagnosis.hpp"
 #include "ripplenotch/evaluate/contender.hpp"
 #include "ripplenotch/evaluate/ledger.hpp"
-#include "ripplenotch/fleet/features.hpp"
 #include "ripplenotch/model/model.hpp"
 
 namespace ripplenotch {
 
-// The known torque of a diagnosis in its document, and what its noise holds.
+/// The gear whose ripple a result is about: {"ratio", "orders", "source"}.
+void describe(JsonWriter& json, const GearAccount& gear);
 
-/// Sets "simulated" and "residual_in_noise" where the diagnosis has them.
-void put_beside(Json& json, const Diagnosis& diagnosis);
-void read_beside(Fields& fields, Diagnosis& diagnosis);
+void describe(JsonWriter& json, const RippleEstimate& one);
 
-// One entry of a delay ledger, as metrics.json and comparison.json write it, and one of a switching ledger.
+/// An entry of a delay ledger.
+void describe(JsonWriter& json, const LedgerEntry& entry);
 
-[[nodiscard]] Json ledger_entry_to_json(const LedgerEntry& entry);
-
-[[nodiscard]] Json switch_to_json(const Switch& change, Seconds time);
-
+/// A change of filter at this time.
+void describe_switch(JsonWriter& json, const Switch& change, Seconds time);
 /// The change, and what it did to the output.
-[[nodiscard]] Json switch_entry_to_json(const SwitchEntry& entry);
-
-// The gear whose ripple a result is about, as every JSON has it.
-
-/// {"ratio", "orders", "source"}; null when nobody says the gear.
-[[nodiscard]] inline Json gear_to_json(const std::optional<GearAccount>& gear) {
-    if (!gear) return nullptr;
-    Json json = Json::object();
-    json["ratio"] = gear->ratio.value();
-    json["orders"] = Json::array();
-    for (const Order order : gear->orders) list_in(json, "orders").push_back(order.value());
-    json["source"] = gear->source;
-    return json;
-}
-
-// Internal: a ripple estimate as every document writes it.
-
-inline Json ripple_to_json(const RippleEstimate& one) {
-    const auto searched = [&](double value) { return one.searched() ? Json(value) : Json(nullptr); };
-    return {{"order", one.order},
-            {"amplitude_nm", searched(one.amplitude_nm)},
-            {"standard_error_nm", searched(one.standard_error_nm)},
-            {"detectable_nm", searched(one.detectable_nm)},
-            {"false_alarm", searched(one.false_alarm)},
-            {"phase_deg", one.phase_deg ? Json(*one.phase_deg) : Json(nullptr)},
-            {"present", one.searched() ? Json(one.present()) : Json(nullptr)},
-            {"slowest_deg_s", searched(one.slowest_deg_s)},
-            {"fastest_deg_s", searched(one.fastest_deg_s)},
-            {"cycles", one.cycles},
-            {"insufficient", one.searched() ? Json(nullptr) : Json(one.insufficient)}};
-}
-
-// Parts of a diagnosis as fields: what a term was fitted to, and where something is.
+void describe(JsonWriter& json, const SwitchEntry& entry);
 
 /// {"level_nm": {"value", "ci95", "fitted", "at_bound"}, ...}, one entry a parameter of the term's effect.
 [[nodiscard]] Json parameters_json(const Term& term, const std::vector<FittedValue>& values);
@@ -72,34 +35,45 @@ inline Json ripple_to_json(const RippleEstimate& one) {
 /// {"time_s", "speed_deg_s", "position_deg", "hz", "order", "direction"}
 [[nodiscard]] Json place_json(const Place& place);
 
-// Internal: names of a line of features that its writer and its reader share.
+/// An effect by its name. The catalogue answers an unknown one as a wrong request; in a file it is wrong
+/// data, and the file must be named.
+template <class Archive, class EffectPointer>
+void describe_effect(Archive& archive, EffectPointer& effect) {
+    if constexpr (Archive::reading) {
+        try {
+            effect = &find_effect(archive.text("effect"));
+        } catch (const UsageError& error) {
+            raise<DataError>("{}: {}", archive.where("effect"), error.what());
+        }
+    } else {
+        archive("effect", effect->name);
+    }
+}
 
-inline constexpr std::string_view features_schema = "ripplenotch/features/1";
+template <class Archive>
+void describe_term(Archive& archive, Is<Term> auto& term, const Model& model) {
+    describe_effect(archive, term.effect);
+    if constexpr (Archive::reading) term.values.resize(term.effect->parameters.size());
+    for (std::size_t p = 0; p < term.values.size(); ++p) {
+        const Parameter& parameter = term.effect->parameters[p];
+        archive(parameter.name, term.values[p], if_any);
+        if constexpr (Archive::reading) {
+            const double least = least_in(model, *term.effect, p);
+            if (term.values[p] && !(least <= *term.values[p] && *term.values[p] <= parameter.upper))
+                raise<DataError>("{} is {}, expected a number between {} and {} {}",
+                                 archive.where(parameter.name), shortest(*term.values[p]), shortest(least),
+                                 shortest(parameter.upper), parameter.unit);
+        }
+    }
+}
 
-struct MixField {
-    const char* name;
-    double MotionMix::*value;
-};
-inline constexpr std::array<MixField, 7> mix_fields = {{{"moving_share", &MotionMix::moving_share},
-                                                        {"forward_share", &MotionMix::forward_share},
-                                                        {"speed_p10_deg_s", &MotionMix::speed_p10_deg_s},
-                                                        {"speed_p50_deg_s", &MotionMix::speed_p50_deg_s},
-                                                        {"speed_p90_deg_s", &MotionMix::speed_p90_deg_s},
-                                                        {"travel_deg", &MotionMix::travel_deg},
-                                                        {"torque_rms_nm", &MotionMix::torque_rms_nm}}};
-
-// The fields of a model, for documents that hold one.
-
-/// Sets "gear_ratio" and "effects" of an object.
-void put_model(Json& json, const Model& model);
-
-/// Reads "gear_ratio" and "effects". Throws DataError as read_model() does.
-[[nodiscard]] Model model_of(Fields& fields, bool beside_simulation);
-
-/// The effect that "effect" names. Throws DataError for a name that the catalogue does not have.
-[[nodiscard]] const Effect& effect_of(Fields& fields);
-
-void put_decided(Json& json, const Diagnosis& diagnosis);
-void read_decided(Fields& fields, Diagnosis& diagnosis);
+/// "gear_ratio" and "effects"; whether it stands beside a simulation is known before.
+template <class Archive>
+void describe(Archive& archive, Is<Model> auto& model) {
+    archive("gear_ratio", model.gear_ratio, above_zero_up_to(largest_gear_ratio.value()));
+    archive.each(
+        "effects", model.terms, [&](Archive& entry, auto& term) { describe_term(entry, term, model); },
+        AtMost{most_effects});
+}
 
 }  // namespace ripplenotch

@@ -8,7 +8,6 @@
 
 #include <cmath>
 #include <cstddef>
-#include <optional>
 #include <string>
 #include <string_view>
 
@@ -26,36 +25,14 @@ using Json = nlohmann::ordered_json;
 /// fitted_digits.
 [[nodiscard]] std::string to_fitted_text(Json json);
 
-/// The list and the object that stand under a name, made where nothing does. The library's own way, to turn
-/// null into either where it is written to, leaves a broken value behind where memory ends, and the program
-/// with it.
-[[nodiscard]] inline Json& list_in(Json& json, const char* name) {
-    Json& there = json[name];
-    if (there.is_null()) there = Json::array();
-    return there;
-}
-[[nodiscard]] inline Json& object_in(Json& json, const char* name) {
-    Json& there = json[name];
-    if (there.is_null()) there = Json::object();
-    return there;
-}
-
 /// Null for what is not finite: JSON has no nan.
 [[nodiscard]] inline Json finite_or_null(double value) {
     return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
 
-template <class Value>
-[[nodiscard]] Json or_null(const std::optional<Value>& value) {
-    return value ? Json(*value) : Json(nullptr);
-}
-
 /// Six significant digits of what was fitted or measured, where more would be rounding noise; null for what
 /// is not finite.
 [[nodiscard]] Json six_digits(double value);
-[[nodiscard]] inline Json six_digits(const std::optional<double>& value) {
-    return value ? six_digits(*value) : Json(nullptr);
-}
 
 // What a document may be at most: far above what the commands write, and so little that reading it takes less
 // than two seconds. docs/security.md has the same table.
@@ -82,7 +59,7 @@ constexpr std::size_t most_words = 4000;  ///< bytes of a title, sentence or nam
 
 constexpr std::size_t most_shades = 20000;  ///< of a panel: two a band of a table
 
-/// The document in `text`, within document/json/limits.hpp and with every name once in its object. Throws
+/// The document in `text`, within these limits and with every name once in its object. Throws
 /// DataError with source, line and column, what was read, and that `wanted` was expected. Linear in the
 /// length of the text.
 [[nodiscard]] Json read_json(std::string_view text, const std::string& source, std::string_view wanted);

@@ -1,140 +1,229 @@
 // SPDX-License-Identifier: MIT
-#include <fmt/format.h>
-
-#include <utility>
+#include "ripplenotch/document/comparison_json.hpp"
 
 #include "document/fields/fields.hpp"
 #include "document/fields/result_fields.hpp"
-#include "document/json/json.hpp"
-#include "ripplenotch/core/number.hpp"
-#include "ripplenotch/document/comparison_json.hpp"
 #include "ripplenotch/evaluate/contender.hpp"
 
 namespace ripplenotch {
 
 namespace {
 
-Json pair_to_json(const std::vector<double>& values) {
-    return {{"raw", finite_or_null(values[0])}, {"filtered", finite_or_null(values[1])}};
+// Of the torque as measured and as filtered.
+auto raw_and_filtered(const std::vector<double>& values) {
+    return [&values](JsonWriter& json) {
+        json("raw", values[0]);
+        json("filtered", values[1]);
+    };
 }
 
-Json order_to_json(const FilterMetrics& metrics, std::size_t order) {
+void write_order(JsonWriter& json, const FilterMetrics& metrics, std::size_t order) {
     const OrderLevel& level = metrics.levels->orders[order];
     const auto predicted = predicted_nm(metrics, order);
-    const auto attenuation = attenuation_db(level);
-    Json json = Json::object();
-    json["order"] = level.order;
-    json["hz"] = finite_or_null(level.mean_hz);
-    json["raw_nm"] = finite_or_null(level.amplitude_nm[0]);
-    json["filtered_nm"] = finite_or_null(level.amplitude_nm[1]);
-    json["attenuation_db"] = attenuation ? Json(*attenuation) : Json(nullptr);
-    json["predicted_nm"] = predicted ? finite_or_null(*predicted) : Json(nullptr);
-    if (predicted) json["predicted_from"] = metrics.gear->amplitude_nm.empty() ? "log" : "joint";
-    return json;
+    json("order", level.order);
+    json("hz", level.mean_hz);
+    json("raw_nm", level.amplitude_nm[0]);
+    json("filtered_nm", level.amplitude_nm[1]);
+    json("attenuation_db", attenuation_db(level));
+    json("predicted_nm", predicted);
+    if (predicted) json("predicted_from", metrics.gear->amplitude_nm.empty() ? "log" : "joint");
 }
 
 // Null figures, not zeros, when there was nothing to measure them on.
-void add_levels(Json& json, const FilterMetrics& metrics) {
-    const bool measured = metrics.levels && metrics.levels->windows > 0;
-    json["gear_ratio"] = metrics.gear ? Json(metrics.gear->ratio.value()) : Json(nullptr);
-    json["gear"] = gear_to_json(metrics.gear);
-    json["orders"] = Json::array();
-    if (!measured) {
-        for (const char* name : {"residual_rms_nm", "residual_peak_to_peak_nm", "ripple_peak_to_peak_nm"}) {
-            json[name] = nullptr;
-        }
-    } else {
-        const RippleLevels& levels = *metrics.levels;
-        for (std::size_t i = 0; i < levels.orders.size(); ++i)
-            list_in(json, "orders").push_back(order_to_json(metrics, i));
-        json["residual_rms_nm"] = pair_to_json(levels.residual_rms_nm);
-        json["residual_peak_to_peak_nm"] = pair_to_json(levels.residual_peak_to_peak_nm);
-        json["ripple_peak_to_peak_nm"] = pair_to_json(levels.ripple_peak_to_peak_nm);
-    }
-    if (!metrics.levels) {
-        json["windows"] = nullptr;
-        return;
-    }
-    json["windows"] = {{"measured", metrics.levels->windows},
-                       {"measured_share", metrics.levels->measured_share},
-                       {"too_few_samples", metrics.levels->windows_too_few_samples}};
+void write_levels(JsonWriter& json, const FilterMetrics& metrics) {
+    const RippleLevels* const levels = metrics.levels ? &*metrics.levels : nullptr;
+    const bool measured = levels != nullptr && levels->windows > 0;
+    json.known("gear_ratio", metrics.gear.has_value(), metrics.gear ? metrics.gear->ratio : GearRatio());
+    json("gear", metrics.gear);
+    Json orders = Json::array();
+    for (std::size_t i = 0; measured && i < levels->orders.size(); ++i)
+        orders.push_back(JsonWriter::object_of([&](JsonWriter& entry) { write_order(entry, metrics, i); }));
+    json("orders", orders);
+    const auto pair = [&](std::string_view name, std::vector<double> RippleLevels::*values) {
+        if (measured)
+            json.group(name, raw_and_filtered(levels->*values));
+        else
+            json.put(name, nullptr);
+    };
+    pair("residual_rms_nm", &RippleLevels::residual_rms_nm);
+    pair("residual_peak_to_peak_nm", &RippleLevels::residual_peak_to_peak_nm);
+    pair("ripple_peak_to_peak_nm", &RippleLevels::ripple_peak_to_peak_nm);
+    json.group_if("windows", levels, [](JsonWriter& windows, const RippleLevels& of) {
+        windows("measured", of.windows);
+        windows("measured_share", of.measured_share);
+        windows("too_few_samples", of.windows_too_few_samples);
+    });
 }
 
-void add_stream(Json& json, const FilterMetrics& metrics) {
+}  // namespace
+
+void describe(JsonWriter& json, const TimedSwitch& entry) {
+    describe_switch(json, entry.change, Seconds(entry.time_s));
+}
+
+void describe(JsonWriter& json, const FilterMetrics& metrics) {
     const StreamReport& stream = metrics.stream;
     const ClockFacts& clock = stream.recording.clock;
-    json["rows"] = clock.rows;
-    json["sample_rate_hz"] = metrics.sample_rate.value();
-    json["measured_sample_rate_hz"] = finite_or_null(clock.mean_rate.value());
-    if (metrics.table_rate) json["table_sample_rate_hz"] = metrics.table_rate->value();
-    json["gap_count"] = clock.gap_count;
-    json["gaps"] = gaps_json(clock);
-    json["repeated_times"] = clock.repeated_times;
-    json["speed_deg_s"] = {finite_or_null(stream.slowest_deg_s), finite_or_null(stream.fastest_deg_s)};
-    json["held_samples"] = stream.recording.held.count;
-    json["held_bad_values"] = stream.held_bad_values;
+    json("source", metrics.source);
+    json("joint", metrics.joint, null_if_empty);
+    json("method", metrics.method);
+    json("rows", clock.rows);
+    json("sample_rate_hz", metrics.sample_rate);
+    json("measured_sample_rate_hz", clock.mean_rate);
+    json("table_sample_rate_hz", metrics.table_rate, if_any);
+    json("gap_count", clock.gap_count);
+    json("gaps", clock.gaps);
+    json("repeated_times", clock.repeated_times);
+    json("speed_deg_s", std::tie(stream.slowest_deg_s, stream.fastest_deg_s));
+    json("held_samples", stream.recording.held.count);
+    json("held_bad_values", stream.held_bad_values);
+    write_levels(json, metrics);
+    json("crossover_hz", metrics.crossover);
+    json("delays", metrics.delays);
+    json("switch_count", stream.switch_count);
+    json("switches", stream.switches);
 }
 
-}  // namespace
+void describe(JsonWriter& json, const TradePoint& point) {
+    json("bands", point.bands);
+    json("attenuation_db", point.attenuation_db);
+    json("delay_ms", point.delay, in_ms);
+    json("q", std::tie(point.least_q, point.largest_q));
+    json("settle_ms", point.settle, in_ms);
+    json("overshoot_percent", point.overshoot_percent);
+}
+
+void describe(JsonWriter& json, const OrderAttenuation& entry) {
+    json("order", entry.order);
+    json("hz", entry.hz);
+    json("db", entry.db);
+}
+
+void describe(JsonWriter& json, const JudgedMethod& method) {
+    json("method", method.figures.method);
+    json("meets", method.meets());
+    json("error_nm", method.error_nm);
+    json("ripple_rms_nm", method.figures.ripple_rms_nm);
+    json("longest_delay_ms", method.delay, in_ms);
+    json("longest_delay_at_deg_s", method.delay_at);
+    json("dc_delay_ms", method.figures.dc_delay_ms);
+    json.each("attenuation_db", method.figures.attenuation,
+              [](JsonWriter& one, const OrderAttenuation& entry) {
+                  one("order", entry.order);
+                  one("db", entry.db);
+              });
+    json("shortfalls", method.shortfalls);
+}
+
+void describe(JsonWriter& json, const RecommendationReport& report) {
+    const Recommendation& found = report.found;
+    const JudgedMethod* const next = found.runner_up();
+    const bool recommended = found.finding == RecommendationFinding::recommended;
+    json("verdict", recommendation_verdict(found));
+    json("finding", recommendation_finding_name(found.finding));
+    json("conclusive", report.conclusive);
+    json("max_delay_ms", found.limits.max_delay, in_ms);
+    json("min_attenuation_db", found.limits.min_attenuation_db);
+    json("target", report.target, null_if_empty);
+    json("gear", report.gear);
+    json("split_s", report.split_s);
+    json("windows", found.windows);
+    json("torque_rate_nm_s", found.torque_rate_nm_s);
+    json("orders", found.orders);
+    json("take", recommended ? found.taken()->figures.method : std::string(), null_if_empty);
+    json("take_commands", report.take);
+    json("runner_up", next != nullptr ? next->figures.method : std::string(), null_if_empty);
+    json("runner_up_commands", report.runner_up);
+    json("check", report.check);
+    json("methods", found.methods);
+    json("assumed", report.assumed);
+    json("left_out", report.left_out);
+}
+
+void describe(JsonWriter& json, const MethodFigures& figures) {
+    json("method", figures.method);
+    json.group_if("settle_ms", figures.settle_ms, [](JsonWriter& settle, const auto& ms) {
+        for (std::size_t i = 0; i < settle_bands_percent.size(); ++i)
+            settle(shortest(settle_bands_percent[i]), ms[i]);
+    });
+    json("overshoot_percent", figures.overshoot_percent);
+    json("ramp_delay_ms", figures.ramp_delay_ms);
+    json("dc_delay_ms", figures.dc_delay_ms);
+    json("phase_lag_deg", figures.phase_lag_deg);
+    json("crossover_db", figures.crossover_db);
+    json("attenuation_db", figures.attenuation);
+    json("ripple_rms_nm", figures.ripple_rms_nm);
+    json("residual_rms_nm", figures.residual_rms_nm);
+    json("residual_peak_to_peak_nm", figures.residual_peak_to_peak_nm);
+    json("switches", figures.switches);
+    json("largest_jump_nm", figures.largest_jump_nm);
+    json("error_rms_nm", figures.error_rms_nm);
+    json("note", figures.note);
+    json("within_max_delay_from_deg_s", figures.within_from);
+    json("ledger", figures.ledger);
+    json("switch_ledger", figures.switch_ledger);
+}
+
+void describe(JsonWriter& json, const LowPassMatch& match) {
+    json("subject", match.subject);
+    json("low_pass", match.low_pass);
+    json("order", match.order);
+    json("cutoff_hz", match.cutoff);
+    json("ripple_rms_nm", match.ripple_rms_nm);
+    json("attenuation_db", match.attenuation_db);
+    json("matched", match.clause);
+}
+
+void describe(JsonWriter& json, const Comparison& comparison) {
+    const GearAccount no_gear;
+    const GearAccount& gear = comparison.lines ? *comparison.lines : no_gear;
+    json("verdict", verdict(comparison));
+    json("sample_rate_hz", comparison.sample_rate);
+    json("speed_deg_s", comparison.speed);
+    json("step_nm", comparison.step_nm);
+    json("ramp_nm_s", comparison.ramp_nm_s);
+    json("crossover_hz", comparison.crossover);
+    json("no_notch_below_deg_s", comparison.no_notch_below);
+    json.known("gear_ratio", comparison.lines.has_value(), gear.ratio);
+    json("gear", comparison.lines);
+    json("orders", gear.orders);
+    if (comparison.on_log) {
+        json("rows", comparison.rows);
+        json("windows", comparison.windows);
+        json("measured_share", comparison.measured_share);
+    }
+    json("match", comparison.match);
+    json("methods", comparison.methods);
+}
 
 std::string metrics_to_json(const FilterMetrics& metrics, const Provenance& provenance) {
-    Json json = document_head("metrics", provenance);
-    json["source"] = metrics.source;
-    json["joint"] = metrics.joint.empty() ? Json(nullptr) : Json(metrics.joint);
-    json["method"] = metrics.method;
-    add_stream(json, metrics);
-    add_levels(json, metrics);
-    json["crossover_hz"] = metrics.crossover ? Json(metrics.crossover->value()) : Json(nullptr);
-    json["delays"] = Json::array();
-    for (const LedgerEntry& entry : metrics.delays)
-        list_in(json, "delays").push_back(ledger_entry_to_json(entry));
-    json["switch_count"] = metrics.stream.switch_count;
-    json["switches"] = Json::array();
-    for (const TimedSwitch& entry : metrics.stream.switches)
-        list_in(json, "switches").push_back(switch_to_json(entry.change, Seconds(entry.time_s)));
-    return to_fitted_text(std::move(json));
+    return to_fitted_text(document_of("metrics", provenance, metrics));
 }
-
-namespace {
-
-Json point_to_json(const TradePoint& point) {
-    Json json = Json::object();
-    json["bands"] = point.bands;
-    json["attenuation_db"] = point.attenuation_db;
-    json["delay_ms"] = 1e3 * point.delay.value();
-    json["q"] = {point.least_q, point.largest_q};
-    json["settle_ms"] = 1e3 * point.settle.value();
-    json["overshoot_percent"] = point.overshoot_percent;
-    return json;
-}
-
-}  // namespace
 
 std::string frontier_to_json(const Frontier& frontier, const GearAccount& gear,
                              const Provenance& provenance) {
     const TableSpec& spec = frontier.spec;
     const DesignGoal& goal = frontier.goal;
-    Json json = document_head("frontier", provenance);
-    json["sample_rate_hz"] = spec.sample_rate.value();
-    json["gear_ratio"] = spec.gear_ratio.value();
-    json["gear"] = gear_to_json(gear);
-    json["gear_ratio_error_percent"] = 100.0 * spec.ratio_error;
-    json["orders"] = Json::array();
-    for (const Order order : spec.orders) list_in(json, "orders").push_back(order.value());
-    json["amplitude_nm"] = spec.amplitude_nm.empty() ? Json(nullptr) : Json(spec.amplitude_nm);
-    json["speed_deg_s"] = {goal.from.value(), goal.to.value()};
-    json["settle_band_percent"] = spec.settle_band_percent;
-    json["min_attenuation_db"] = goal.min_attenuation_db ? Json(*goal.min_attenuation_db) : Json(nullptr);
-    json["max_delay_ms"] = goal.max_delay ? Json(1e3 * goal.max_delay->value()) : Json(nullptr);
-    json["max_bands"] = goal.most_bands ? Json(*goal.most_bands) : Json(nullptr);
-    json["points"] = Json::array();
-    for (const TradePoint& point : frontier.points) list_in(json, "points").push_back(point_to_json(point));
-    json["recommended"] = point_to_json(frontier.points[frontier.recommended]);
-    object_in(json, "recommended")["point"] = frontier.recommended;
-    object_in(json, "recommended")["reason"] = frontier.reason;
-    object_in(json, "recommended")["no_notch_below_deg_s"] =
-        frontier.slowest ? Json(frontier.slowest->value()) : Json(nullptr);
-    return to_fitted_text(std::move(json));
+    return to_fitted_text(document_of("frontier", provenance, [&](JsonWriter& json) {
+        json("sample_rate_hz", spec.sample_rate);
+        json("gear_ratio", spec.gear_ratio);
+        json("gear", gear);
+        json("gear_ratio_error_percent", spec.ratio_error, in_percent);
+        json("orders", spec.orders);
+        json("amplitude_nm", spec.amplitude_nm, null_if_empty);
+        json("speed_deg_s", std::tie(goal.from, goal.to));
+        json("settle_band_percent", spec.settle_band_percent);
+        json("min_attenuation_db", goal.min_attenuation_db);
+        json("max_delay_ms", goal.max_delay, in_ms);
+        json("max_bands", goal.most_bands);
+        json("points", frontier.points);
+        json.group("recommended", [&](JsonWriter& recommended) {
+            describe(recommended, frontier.points[frontier.recommended]);
+            recommended("point", frontier.recommended);
+            recommended("reason", frontier.reason);
+            recommended("no_notch_below_deg_s", frontier.slowest);
+        });
+    }));
 }
 
 std::string frontier_to_csv(const Frontier& frontier) {
@@ -150,144 +239,12 @@ std::string frontier_to_csv(const Frontier& frontier) {
     return csv;
 }
 
-namespace {
-
-Json orders_to_json(const std::vector<RippleEstimate>& orders) {
-    Json json = Json::array();
-    for (const RippleEstimate& one : orders) json.push_back(ripple_to_json(one));
-    return json;
-}
-
-Json judged_method_to_json(const JudgedMethod& method) {
-    Json json;
-    json["method"] = method.figures.method;
-    json["meets"] = method.meets();
-    json["error_nm"] = method.error_nm;
-    json["ripple_rms_nm"] = or_null(method.figures.ripple_rms_nm);
-    json["longest_delay_ms"] = 1e3 * method.delay.value();
-    json["longest_delay_at_deg_s"] = method.delay_at.value();
-    json["dc_delay_ms"] = or_null(method.figures.dc_delay_ms);
-    json["attenuation_db"] = Json::array();
-    for (const OrderAttenuation& entry : method.figures.attenuation)
-        json["attenuation_db"].push_back({{"order", entry.order}, {"db", or_null(entry.db)}});
-    json["shortfalls"] = method.shortfalls;
-    return json;
-}
-
-}  // namespace
-
 std::string recommendation_text(const RecommendationReport& report, const Provenance& provenance) {
-    const Recommendation& found = report.found;
-    Json json = document_head("recommendation", provenance);
-    json["verdict"] = recommendation_verdict(found);
-    json["finding"] = recommendation_finding_name(found.finding);
-    json["conclusive"] = report.conclusive;
-    json["max_delay_ms"] =
-        found.limits.max_delay ? Json(1e3 * found.limits.max_delay->value()) : Json(nullptr);
-    json["min_attenuation_db"] = or_null(found.limits.min_attenuation_db);
-    json["target"] = report.target.empty() ? Json(nullptr) : Json(report.target);
-    json["gear"] = gear_to_json(report.gear);
-    json["split_s"] = report.split_s;
-    json["windows"] = found.windows;
-    json["torque_rate_nm_s"] = found.torque_rate_nm_s;
-    json["orders"] = orders_to_json(found.orders);
-    const JudgedMethod* const next = found.runner_up();
-    json["take"] = found.finding == RecommendationFinding::recommended ? Json(found.taken()->figures.method)
-                                                                       : Json(nullptr);
-    json["take_commands"] = report.take;
-    json["runner_up"] = next != nullptr ? Json(next->figures.method) : Json(nullptr);
-    json["runner_up_commands"] = report.runner_up;
-    json["check"] = report.check;
-    json["methods"] = Json::array();
-    for (const JudgedMethod& method : found.methods) json["methods"].push_back(judged_method_to_json(method));
-    json["assumed"] = report.assumed;
-    json["left_out"] = report.left_out;
-    return to_fitted_text(std::move(json));
+    return to_fitted_text(document_of("recommendation", provenance, report));
 }
-
-namespace {
-
-Json settling_of_method(const MethodFigures& figures) {
-    if (!figures.settle_ms) return nullptr;
-    Json json = Json::object();
-    for (std::size_t i = 0; i < settle_bands_percent.size(); ++i) {
-        json[shortest(settle_bands_percent[i])] = (*figures.settle_ms)[i];
-    }
-    return json;
-}
-
-Json method_to_json(const MethodFigures& figures) {
-    Json json = Json::object();
-    json["method"] = figures.method;
-    json["settle_ms"] = settling_of_method(figures);
-    json["overshoot_percent"] = or_null(figures.overshoot_percent);
-    json["ramp_delay_ms"] = or_null(figures.ramp_delay_ms);
-    json["dc_delay_ms"] = or_null(figures.dc_delay_ms);
-    json["phase_lag_deg"] = or_null(figures.phase_lag_deg);
-    json["crossover_db"] = or_null(figures.crossover_db);
-    json["attenuation_db"] = Json::array();
-    for (const OrderAttenuation& entry : figures.attenuation) {
-        list_in(json, "attenuation_db")
-            .push_back({{"order", entry.order}, {"hz", entry.hz}, {"db", or_null(entry.db)}});
-    }
-    json["ripple_rms_nm"] = or_null(figures.ripple_rms_nm);
-    json["residual_rms_nm"] = or_null(figures.residual_rms_nm);
-    json["residual_peak_to_peak_nm"] = or_null(figures.residual_peak_to_peak_nm);
-    json["switches"] = or_null(figures.switches);
-    json["largest_jump_nm"] = or_null(figures.largest_jump_nm);
-    json["error_rms_nm"] = or_null(figures.error_rms_nm);
-    json["note"] = figures.note;
-    json["within_max_delay_from_deg_s"] =
-        figures.within_from ? Json(figures.within_from->value()) : Json(nullptr);
-    json["ledger"] = Json::array();
-    for (const LedgerEntry& entry : figures.ledger)
-        list_in(json, "ledger").push_back(ledger_entry_to_json(entry));
-    json["switch_ledger"] = Json::array();
-    for (const SwitchEntry& entry : figures.switch_ledger)
-        list_in(json, "switch_ledger").push_back(switch_entry_to_json(entry));
-    return json;
-}
-
-Json match_to_json(const LowPassMatch& match) {
-    Json json = Json::object();
-    json["subject"] = match.subject;
-    json["low_pass"] = or_null(match.low_pass);
-    json["order"] = match.order;
-    json["cutoff_hz"] = match.cutoff ? Json(match.cutoff->value()) : Json(nullptr);
-    json["ripple_rms_nm"] = or_null(match.ripple_rms_nm);
-    json["attenuation_db"] = or_null(match.attenuation_db);
-    json["matched"] = match.clause;
-    return json;
-}
-
-}  // namespace
 
 std::string comparison_text(const Comparison& comparison, const Provenance& provenance) {
-    Json json = document_head("comparison", provenance);
-    json["verdict"] = verdict(comparison);
-    json["sample_rate_hz"] = comparison.sample_rate.value();
-    json["speed_deg_s"] = comparison.speed.value();
-    json["step_nm"] = or_null(comparison.step_nm);
-    json["ramp_nm_s"] = or_null(comparison.ramp_nm_s);
-    json["crossover_hz"] = comparison.crossover ? Json(comparison.crossover->value()) : Json(nullptr);
-    json["no_notch_below_deg_s"] =
-        comparison.no_notch_below ? Json(comparison.no_notch_below->value()) : Json(nullptr);
-    json["gear_ratio"] = comparison.lines ? Json(comparison.lines->ratio.value()) : Json(nullptr);
-    json["gear"] = gear_to_json(comparison.lines);
-    json["orders"] = Json::array();
-    if (comparison.lines) {
-        for (const Order order : comparison.lines->orders) list_in(json, "orders").push_back(order.value());
-    }
-    if (comparison.on_log) {
-        json["rows"] = comparison.rows;
-        json["windows"] = comparison.windows;
-        json["measured_share"] = comparison.measured_share;
-    }
-    json["match"] = comparison.match ? match_to_json(*comparison.match) : Json(nullptr);
-    json["methods"] = Json::array();
-    for (const MethodFigures& figures : comparison.methods)
-        list_in(json, "methods").push_back(method_to_json(figures));
-    return to_fitted_text(std::move(json));
+    return to_fitted_text(document_of("comparison", provenance, comparison));
 }
 
 }  // namespace ripplenotch

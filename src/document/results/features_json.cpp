@@ -1,149 +1,149 @@
 // SPDX-License-Identifier: MIT
+#include "ripplenotch/document/features_json.hpp"
+
 #include <algorithm>
-#include <cmath>
+#include <array>
 
 #include "document/fields/fields.hpp"
-#include "document/fields/result_fields.hpp"
-#include "document/json/json.hpp"
 #include "ripplenotch/core/error.hpp"
-#include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/visible_text.hpp"
-#include "ripplenotch/document/features_json.hpp"
 #include "ripplenotch/fleet/features.hpp"
 
 namespace ripplenotch {
 
 namespace {
 
+constexpr std::string_view features_schema = "ripplenotch/features/1";
 constexpr std::string_view features_line = "a line of features, as 'ripplenotch features' prints it";
 
-class LineFields {
-  public:
-    LineFields(const Json& json, const std::string& source) : json_(json), source_(source) {}
-
-    [[noreturn]] void refuse(std::string_view name, std::string_view expected) const {
-        const auto found = json_.find(name);
-        raise<DataError>("{}: {} is {}, expected {}", source_, name,
-                         found == json_.end() ? "not there" : in_words(*found), expected);
-    }
-    [[nodiscard]] std::string text(std::string_view name) const {
-        const auto found = json_.find(name);
-        if (found == json_.end() || !found->is_string()) refuse(name, "a text");
-        return found->get<std::string>();
-    }
-    [[nodiscard]] std::optional<double> number_or_null(std::string_view name) const {
-        const auto found = json_.find(name);
-        if (found == json_.end() || !(found->is_number() || found->is_null()))
-            refuse(name, "a number or null");
-        return found->is_null() ? std::nullopt : std::optional(found->get<double>());
-    }
-    [[nodiscard]] double number(std::string_view name) const {
-        const auto value = number_or_null(name);
-        if (!value) refuse(name, "a number");
-        return *value;
-    }
-    [[nodiscard]] std::size_t whole(std::string_view name) const {
-        const double value = number(name);
-        if (value < 0.0 || value > 1e15 || value != std::floor(value)) refuse(name, "a whole number");
-        return static_cast<std::size_t>(value);
-    }
-    [[nodiscard]] std::string reason(const std::string& name) const {
-        const auto reasons = json_.find("not_told");
-        if (reasons == json_.end() || !reasons->is_object()) refuse("not_told", "an object of reasons");
-        const auto found = reasons->find(name);
-        if (found == reasons->end() || !found->is_string() || found->get<std::string>().empty())
-            raise<DataError>("{}: {} is null and not_told has no reason for it", source_, name);
-        return found->get<std::string>();
-    }
-    [[nodiscard]] std::optional<Interval> interval(const std::string& name) const {
-        const auto found = json_.find(name);
-        if (found == json_.end()) return std::nullopt;
-        const bool two = found->is_array() && found->size() == 2 && (*found)[0].is_number() &&
-                         (*found)[1].is_number() && (*found)[0].get<double>() <= (*found)[1].get<double>();
-        if (!two) refuse(name, "two numbers, the lower one first");
-        return Interval{(*found)[0].get<double>(), (*found)[1].get<double>()};
-    }
-    [[nodiscard]] const Json& json() const { return json_; }
-
-  private:
-    const Json& json_;
-    const std::string& source_;
-};
-
-bool is_known(std::string_view name) {
-    constexpr std::array names = {
-        "schema",    "version",     "log",        "sha256",           "robot",
-        "joint",     "error",       "date",       "error_code",       "date_source",
-        "rows",      "load_rms_nm", "duration_s", "temperature_degc", "temperature_source",
-        "reversals", "not_told"};
-    return std::find(names.begin(), names.end(), name) != names.end() ||
-           std::any_of(mix_fields.begin(), mix_fields.end(),
-                       [&](const MixField& field) { return field.name == name; });
+// Why a field is null.
+std::string reason_of(JsonReader& line, const std::string& name) {
+    const Json& reasons = line.at("not_told");
+    const auto found = reasons.find(name);
+    if (found == reasons.end() || !found->is_string() || found->get<std::string>().empty())
+        raise<DataError>("{} is null and not_told has no reason for it", line.where(name));
+    return found->get<std::string>();
 }
 
-void read_descriptors(const LineFields& line, const std::string& source, FeatureLine& read) {
-    std::size_t intervals = 0;
-    for (const auto& [name, value] : line.json().items()) {
-        if (is_known(name)) continue;
-        if (name.find("_ci95") != std::string::npos) {
-            ++intervals;
-            continue;
-        }
+// Who says a condition, or why nobody does.
+template <class Archive>
+void describe_source(Archive& archive, const std::string& name, bool is_told, auto& source) {
+    const std::string field = name.substr(0, name.find('_')) + "_source";
+    if constexpr (Archive::reading) {
+        archive.ignore({field});
+        source = is_told ? archive.text(field) : reason_of(archive, name);
+    } else {
+        archive(field, is_told ? source : std::string());
+    }
+}
+
+// Whatever else stands in the line is a descriptor, or the interval of one.
+void read_descriptors(JsonReader& line, FeatureLine& read) {
+    for (const std::string& name : line.not_asked_for()) {
+        if (name.find("_ci95") != std::string::npos) continue;
         try {
             read.descriptors.push_back(descriptor_named(name));
         } catch (const DataError& error) {
-            raise<DataError>("{}: {}", source, error.what());
+            raise<DataError>("{}: {}", line.source(), error.what());
         }
         Descriptor& one = read.descriptors.back();
-        one.value = line.number_or_null(name);
-        if (one.value) one.ci95 = line.interval(one.interval_name());
-        if (one.ci95) --intervals;
-        if (!one.value) one.reason = line.reason(name);
+        line(name, one.value);
+        if (one.value)
+            line(one.interval_name(), one.ci95, lower_first);
+        else
+            one.reason = reason_of(line, name);
     }
-    if (intervals != 0) raise<DataError>("{}: an interval stands beside no value", source);
 }
 
-void read_conditions(const LineFields& line, FeatureLine& read) {
-    const auto date = line.json().find("date");
-    if (date == line.json().end() || !(date->is_null() || date->is_string()))
-        line.refuse("date", "a date or null");
-    if (date->is_string()) {
-        read.date = date->get<std::string>();
-        if (!date_seconds(*read.date)) line.refuse("date", "a date such as 2026-01-05T12:30:00Z");
+void write_descriptors(JsonWriter& json, const FeatureLine& line) {
+    for (const Descriptor& one : line.descriptors) {
+        json(one.name(), one.value, six);
+        if (one.value) json(one.interval_name(), one.ci95, if_any, six);
     }
-    read.date_source = read.date ? line.text("date_source") : line.reason("date");
-    read.temperature_degc = line.number_or_null("temperature_degc");
-    read.temperature_source =
-        read.temperature_degc ? line.text("temperature_source") : line.reason("temperature_degc");
-    read.rows = line.whole("rows");
-    read.duration_s = line.number("duration_s");
-    for (const MixField& field : mix_fields) read.mix.*field.value = line.number(field.name);
-    read.mix.reversals = line.whole("reversals");
-    read.mix.load_rms_nm = line.number_or_null("load_rms_nm");
+    json.group("not_told", [&](JsonWriter& reasons) {
+        for (const Descriptor& one : line.descriptors)
+            if (!one.value) reasons(one.name(), one.reason);
+        if (!line.date) reasons("date", line.date_source);
+        if (!line.temperature_degc) reasons("temperature_degc", line.temperature_source);
+        if (!line.mix.load_rms_nm)
+            reasons("load_rms_nm", "the joint has neither inertia nor weight in this log");
+    });
 }
 
 }  // namespace
 
+template <class Archive>
+void describe(Archive& archive, Is<FeatureLine> auto& line) {
+    std::string schema(features_schema);
+    archive("schema", schema);
+    if constexpr (Archive::reading) {
+        if (schema != features_schema)
+            raise<DataError>("{} is \"{}\", expected {}", archive.where("schema"), schema, features_schema);
+    }
+    archive("version", line.version);
+    archive("log", line.log);
+    archive("sha256", line.sha256);
+    archive("robot", line.robot);
+    archive("joint", line.joint);
+    if (archive.holds("error", line.failed())) {
+        archive("error", line.error);
+        archive("error_code", line.error_code);
+        return;
+    }
+    archive("date", line.date);
+    if constexpr (Archive::reading) {
+        archive.ignore({"not_told"});
+        if (line.date && !date_seconds(*line.date))
+            raise<DataError>("{} is \"{}\", expected a date such as 2026-01-05T12:30:00Z",
+                             archive.where("date"), *line.date);
+    }
+    describe_source(archive, "date", line.date.has_value(), line.date_source);
+    archive("temperature_degc", line.temperature_degc, six);
+    describe_source(archive, "temperature_degc", line.temperature_degc.has_value(), line.temperature_source);
+    archive("rows", line.rows);
+    archive("duration_s", line.duration_s, six);
+    archive("moving_share", line.mix.moving_share, six);
+    archive("forward_share", line.mix.forward_share, six);
+    archive("speed_p10_deg_s", line.mix.speed_p10_deg_s, six);
+    archive("speed_p50_deg_s", line.mix.speed_p50_deg_s, six);
+    archive("speed_p90_deg_s", line.mix.speed_p90_deg_s, six);
+    archive("travel_deg", line.mix.travel_deg, six);
+    archive("torque_rms_nm", line.mix.torque_rms_nm, six);
+    archive("reversals", line.mix.reversals);
+    archive("load_rms_nm", line.mix.load_rms_nm, six);
+    if constexpr (Archive::reading)
+        read_descriptors(archive, line);
+    else
+        write_descriptors(archive, line);
+}
+
+template <class Archive>
+void describe(Archive& archive, Is<ShardRecord> auto& record) {
+    archive.told("schema", [] { return "ripplenotch/shard/1"; });
+    archive("version", record.version);
+    archive("settings", record.settings);
+    archive("manifest_sha256", record.manifest_sha256);
+    archive("shard", record.shard.number);
+    archive("shards", record.shard.of);
+    archive("logs", record.logs);
+    archive("lines", record.lines);
+    archive("failed", record.failed);
+    archive("sha256", record.sha256);
+    if constexpr (Archive::reading) {
+        const Shard& shard = record.shard;
+        if (shard.number < 1 || shard.number > shard.of || shard.of > most_shards)
+            raise<DataError>("{} is {}, expected 1 to {}", archive.where("shard"), shard.number, shard.of);
+    }
+}
+
 FeatureLine feature_line_from_json(std::string_view text, const std::string& source) {
     const Json json = read_json(text, source, features_line);
     if (!json.is_object()) raise<DataError>("{}: expected {}", source, features_line);
-    const LineFields line(json, source);
-    if (line.text("schema") != features_schema) line.refuse("schema", features_schema);
-    FeatureLine read;
-    read.version = line.text("version");
-    read.log = line.text("log");
-    read.sha256 = line.text("sha256");
-    read.robot = line.text("robot");
-    read.joint = line.text("joint");
-    if (json.contains("error")) {
-        read.error = line.text("error");
-        read.error_code = static_cast<int>(line.whole("error_code"));
-        if (read.error.empty()) line.refuse("error", "a message");
-        return read;
-    }
-    read_conditions(line, read);
-    read_descriptors(line, source, read);
-    return read;
+    FeatureLine line;
+    JsonReader reader(json, source, "");
+    describe(reader, line);
+    reader.finish();
+    return line;
 }
 
 std::vector<FeatureLine> feature_lines_from_text(std::string_view text, const std::string& source) {
@@ -158,83 +158,18 @@ std::vector<FeatureLine> feature_lines_from_text(std::string_view text, const st
     return lines;
 }
 
-std::string shard_record_text(const ShardRecord& record) {
-    Json json;
-    json["schema"] = "ripplenotch/shard/1";
-    json["version"] = record.version;
-    json["settings"] = record.settings;
-    json["manifest_sha256"] = record.manifest_sha256;
-    json["shard"] = record.shard.number;
-    json["shards"] = record.shard.of;
-    json["logs"] = record.logs;
-    json["lines"] = record.lines;
-    json["failed"] = record.failed;
-    json["sha256"] = record.sha256;
-    return to_text(json);
-}
+std::string shard_record_text(const ShardRecord& record) { return to_text(to_json(record)); }
 
 ShardRecord shard_record_from_json(std::string_view text, const std::string& source) {
     const Json json = parse_document(text, source, "shard");
-    Fields fields(json, source, "");
-    fields.ignore({"schema"});
     ShardRecord record;
-    record.version = fields.text("version");
-    record.settings = fields.text("settings");
-    record.manifest_sha256 = fields.text("manifest_sha256");
-    record.shard = {fields.whole("shard"), fields.whole("shards")};
-    if (record.shard.number < 1 || record.shard.number > record.shard.of || record.shard.of > most_shards)
-        raise<DataError>("{} is {}, expected 1 to {}", fields.where("shard"), record.shard.number,
-                         record.shard.of);
-    record.logs = fields.whole("logs");
-    record.lines = fields.whole("lines");
-    record.failed = fields.whole("failed");
-    record.sha256 = fields.text("sha256");
-    fields.finish();
+    JsonReader reader(json, source, "");
+    describe(reader, record);
+    reader.finish();
     return record;
 }
 
 namespace {
-
-void add_descriptors(const FeatureLine& line, Json& json) {
-    Json reasons = Json::object();
-    for (const Descriptor& one : line.descriptors) {
-        json[one.name()] = six_digits(one.value);
-        if (one.value && one.ci95)
-            json[one.interval_name()] = {six_digits(one.ci95->low), six_digits(one.ci95->high)};
-        if (!one.value) reasons[one.name()] = one.reason;
-    }
-    if (!line.date) reasons["date"] = line.date_source;
-    if (!line.temperature_degc) reasons["temperature_degc"] = line.temperature_source;
-    if (!line.mix.load_rms_nm)
-        reasons["load_rms_nm"] = "the joint has neither inertia nor weight in this log";
-    json["not_told"] = reasons;
-}
-
-Json feature_line_to_json(const FeatureLine& line) {
-    Json json;
-    json["schema"] = features_schema;
-    json["version"] = line.version;
-    json["log"] = line.log;
-    json["sha256"] = line.sha256;
-    json["robot"] = line.robot;
-    json["joint"] = line.joint;
-    if (line.failed()) {
-        json["error"] = line.error;
-        json["error_code"] = line.error_code;
-        return json;
-    }
-    json["date"] = or_null(line.date);
-    json["date_source"] = line.date ? line.date_source : "";
-    json["temperature_degc"] = six_digits(line.temperature_degc);
-    json["temperature_source"] = line.temperature_degc ? line.temperature_source : "";
-    json["rows"] = line.rows;
-    json["duration_s"] = six_digits(line.duration_s);
-    for (const MixField& field : mix_fields) json[field.name] = six_digits(line.mix.*field.value);
-    json["reversals"] = line.mix.reversals;
-    json["load_rms_nm"] = six_digits(line.mix.load_rms_nm);
-    add_descriptors(line, json);
-    return json;
-}
 
 std::string cell_of(const Json& json) {
     if (json.is_null()) return "";
@@ -249,7 +184,7 @@ std::string cell_of(const Json& json) {
 // Intervals as two columns; the order of first appearance.
 std::vector<std::pair<std::string, Json>> cells_of(const FeatureLine& line) {
     std::vector<std::pair<std::string, Json>> cells;
-    const Json json = feature_line_to_json(line);
+    const Json json = to_json(line);
     for (const auto& [name, value] : json.items()) {
         if (name == "schema" || name == "not_told" || name == "error" || name == "error_code") continue;
         if (value.is_array()) {
@@ -271,8 +206,7 @@ std::vector<std::pair<std::string, Json>> cells_of(const FeatureLine& line) {
 }  // namespace
 
 std::string feature_line_text(const FeatureLine& line) {
-    return visible_json(feature_line_to_json(line).dump(-1, ' ', false, Json::error_handler_t::replace)) +
-           "\n";
+    return visible_json(to_json(line).dump(-1, ' ', false, Json::error_handler_t::replace)) + "\n";
 }
 
 std::string features_csv(std::span<const FeatureLine> lines) {

@@ -1,292 +1,170 @@
 // SPDX-License-Identifier: MIT
+#include "ripplenotch/document/figure_json.hpp"
+
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
+#include <stdexcept>
 
 #include "document/fields/fields.hpp"
-#include "document/json/json.hpp"
 #include "ripplenotch/core/error.hpp"
-#include "ripplenotch/core/number.hpp"
-#include "ripplenotch/document/figure_json.hpp"
 
 namespace ripplenotch {
 
 namespace {
 
-// One of these words, as its place in the list.
-template <class Enum, std::size_t N>
-Enum word_of(Fields& fields, std::string_view name, const std::array<const char*, N>& words) {
-    const std::string text = fields.text(name);
-    for (std::size_t i = 0; i < N; ++i)
-        if (text == words[i]) return static_cast<Enum>(i);
-    raise<DataError>("{}: '{}' is not what a figure knows, such as '{}'", fields.where(name), text,
-                     words.front());
+constexpr Limits panel_height{0.1, 10.0};  // against the others
+constexpr AtMost words{most_words};
+
+// Eight digits are more than any picture shows, and keep a figure of many points small. Null is a nan: a
+// break, an empty cell.
+constexpr Rounded eight{[](double value) {
+    return std::isfinite(value) ? Json(*parse_number(fmt::format("{:.8g}", value))) : Json(nullptr);
+}};
+constexpr Rounded eight_or_unknown{eight.json_of, true};
+
+std::string_view scale_name(PlotScale scale) {
+    return std::array{"linear", "logarithmic", "whole"}[static_cast<std::size_t>(scale)];
 }
 
-constexpr double lowest_panel = 0.1, highest_panel = 10.0;  // against the others
-constexpr std::array scales = {"linear", "logarithmic", "whole"};
-constexpr std::array styles = {"line", "dashed", "steps", "points", "stems", "crosses"};
-constexpr std::array runs = {"at-x", "at-y", "ray"};
-
-Ink ink_of(Fields& fields) {
-    const std::string text = fields.text("ink");
-    for (int i = 0; i < 8; ++i)
-        if (text == ink_rgb(static_cast<Ink>(i))) return static_cast<Ink>(i);
-    raise<DataError>("{}: '{}' is none of the eight inks, such as '{}'", fields.where("ink"), text,
-                     ink_rgb(Ink::blue));
+std::string_view style_name(CurveStyle style) {
+    return std::array{
+        "line", "dashed", "steps", "points", "stems", "crosses"}[static_cast<std::size_t>(style)];
 }
 
-std::string words(Fields& fields, std::string_view name) {
-    std::string text = fields.text(name);
-    if (text.size() > most_words)
-        raise<DataError>("{} has {} bytes, expected at most {}", fields.where(name), text.size(), most_words);
-    return text;
+std::string_view run_name(NamedLine::Run run) {
+    return std::array{"at-x", "at-y", "ray"}[static_cast<std::size_t>(run)];
 }
 
-// null is a nan: a break, an empty cell.
-std::vector<double> numbers_or_nan(Fields& fields, std::string_view name) {
-    const Json& array = fields.at(name);
-    if (!array.is_array()) raise<DataError>("{}: not a list of numbers", fields.where(name));
-    std::vector<double> values;
-    for (const Json& entry : array) {
-        if (!entry.is_number() && !entry.is_null())
-            raise<DataError>("{}: holds {}, expected numbers and null", fields.where(name), in_words(entry));
-        values.push_back(entry.is_null() ? std::numeric_limits<double>::quiet_NaN() : entry.get<double>());
-    }
-    return values;
+std::string_view ink_name(Ink ink) {
+    static const std::vector<std::string> inks = [] {
+        std::vector<std::string> all;
+        for (int i = 0; i <= static_cast<int>(Ink::grey); ++i) all.push_back(ink_rgb(static_cast<Ink>(i)));
+        return all;
+    }();
+    return inks[static_cast<std::size_t>(ink)];
 }
 
-// {from, to}, null for an edge without end.
-std::pair<double, double> edges_of(Fields& fields, std::string_view name) {
-    const std::vector<double> pair = numbers_or_nan(fields, name);
-    if (pair.size() != 2) raise<DataError>("{}: {} numbers, expected 2", fields.where(name), pair.size());
-    const double endless = std::numeric_limits<double>::infinity();
-    return {std::isnan(pair[0]) ? -endless : pair[0], std::isnan(pair[1]) ? endless : pair[1]};
+constexpr Names scales{scale_name, PlotScale::whole};
+constexpr Names inks{ink_name, Ink::grey};
+
+// `spanned` is written: what the panel's contents span where the axis does not say.
+template <class Archive>
+void describe_axis(Archive& archive, auto& axis, PlotRange spanned) {
+    archive("label", axis.label, words);
+    archive("unit", axis.unit, words);
+    archive("scale", axis.scale, scales);
+    archive("from", spanned.from, eight);
+    archive("to", spanned.to, eight);
+    if constexpr (Archive::reading) {
+        axis.from = spanned.from;
+        axis.to = spanned.to;
+        if (!(spanned.from < spanned.to) || (axis.scale == PlotScale::logarithmic && !(spanned.from > 0.0)))
+            raise<DataError>("{}: cannot span {} to {}", archive.place(), spanned.from, spanned.to);
+    }
 }
 
-class FigureReader {
-  public:
-    explicit FigureReader(std::string source) : source_(std::move(source)) {}
-
-    Panel panel(const Json& json, const std::string& path) const {
-        Fields fields(json, source_, path);
-        Panel panel;
-        panel.title = words(fields, "title");
-        panel.x = axis(fields.at("x"), path + ".x");
-        panel.y = axis(fields.at("y"), path + ".y");
-        panel.legend = flag(fields, "legend");
-        panel.height = fields.number("height");
-        if (!(panel.height >= lowest_panel && panel.height <= highest_panel))
-            raise<DataError>("{} is {}, expected {} to {}", fields.where("height"), panel.height,
-                             lowest_panel, highest_panel);
-        if (const Json* map = fields.find("map")) panel.map = heat_map(*map, path + ".map");
-        each(
-            fields, "shades", path,
-            [&](Fields& f) {
-                const auto [x_from, x_to] = edges_of(f, "x");
-                const auto [y_from, y_to] = edges_of(f, "y");
-                panel.shades.push_back({words(f, "name"), ink_of(f), x_from, x_to, y_from, y_to});
-            },
-            most_shades);
-        each(fields, "ribbons", path, [&](Fields& f) {
-            panel.ribbons.push_back({words(f, "name"), ink_of(f), numbers_or_nan(f, "x"),
-                                     numbers_or_nan(f, "low"), numbers_or_nan(f, "high")});
-        });
-        each(fields, "curves", path, [&](Fields& f) {
-            panel.curves.push_back({words(f, "name"), ink_of(f), word_of<CurveStyle>(f, "style", styles),
-                                    numbers_or_nan(f, "x"), numbers_or_nan(f, "y")});
-        });
-        each(fields, "lines", path, [&](Fields& f) {
-            panel.lines.push_back({words(f, "name"), word_of<NamedLine::Run>(f, "run", runs),
-                                   f.number("value"), ink_of(f), flag(f, "dashed")});
-        });
-        fields.finish();
-        return panel;
+// [from, to], null for an edge without end.
+template <class Archive>
+void describe_edges(Archive& archive, std::string_view name, auto& from, auto& to) {
+    std::vector<double> edges{from, to};
+    archive(name, edges, eight_or_unknown);
+    if constexpr (Archive::reading) {
+        if (edges.size() != 2)
+            raise<DataError>("{}: {} numbers, expected 2", archive.where(name), edges.size());
+        const double endless = std::numeric_limits<double>::infinity();
+        from = std::isnan(edges[0]) ? -endless : edges[0];
+        to = std::isnan(edges[1]) ? endless : edges[1];
     }
-
-  private:
-    static bool flag(Fields& fields, std::string_view name) {
-        const Json& json = fields.at(name);
-        if (!json.is_boolean()) raise<DataError>("{}: neither true nor false", fields.where(name));
-        return json.get<bool>();
-    }
-
-    PlotAxis axis(const Json& json, const std::string& path) const {
-        Fields fields(json, source_, path);
-        PlotAxis axis{words(fields, "label"), words(fields, "unit"),
-                      word_of<PlotScale>(fields, "scale", scales), fields.number("from"),
-                      fields.number("to")};
-        fields.finish();
-        if (!(*axis.from < *axis.to) || (axis.scale == PlotScale::logarithmic && !(*axis.from > 0.0)))
-            raise<DataError>("{}: {}: cannot span {} to {}", source_, path, *axis.from, *axis.to);
-        return axis;
-    }
-
-    HeatMap heat_map(const Json& json, const std::string& path) const {
-        Fields fields(json, source_, path);
-        HeatMap map{words(fields, "label"),
-                    words(fields, "unit"),
-                    word_of<PlotScale>(fields, "scale", scales),
-                    fields.number("lowest"),
-                    fields.number("highest"),
-                    numbers_or_nan(fields, "x_edges"),
-                    numbers_or_nan(fields, "y_edges"),
-                    numbers_or_nan(fields, "cells")};
-        fields.finish();
-        return map;
-    }
-
-    template <class Read>
-    void each(Fields& fields, std::string_view name, const std::string& path, const Read& read,
-              std::size_t most = most_curves) const {
-        const Json& array = fields.list(name, most);
-        for (std::size_t i = 0; i < array.size(); ++i) {
-            Fields entry(array[i], source_, fmt::format("{}.{}[{}]", path, name, i));
-            read(entry);
-            entry.finish();
-        }
-    }
-
-    std::string source_;
-};
+}
 
 }  // namespace
 
+void describe(auto& archive, Is<HeatMap> auto& map) {
+    archive("label", map.label, words);
+    archive("unit", map.unit, words);
+    archive("scale", map.scale, scales);
+    archive("lowest", map.lowest, eight);
+    archive("highest", map.highest, eight);
+    archive("x_edges", map.x_edges, eight_or_unknown);
+    archive("y_edges", map.y_edges, eight_or_unknown);
+    archive("cells", map.cells, eight_or_unknown);
+}
+
+void describe(auto& archive, Is<Shade> auto& shade) {
+    archive("name", shade.name, words);
+    archive("ink", shade.ink, inks);
+    describe_edges(archive, "x", shade.x_from, shade.x_to);
+    describe_edges(archive, "y", shade.y_from, shade.y_to);
+}
+
+void describe(auto& archive, Is<Ribbon> auto& ribbon) {
+    archive("name", ribbon.name, words);
+    archive("ink", ribbon.ink, inks);
+    archive("x", ribbon.x, eight_or_unknown);
+    archive("low", ribbon.low, eight_or_unknown);
+    archive("high", ribbon.high, eight_or_unknown);
+}
+
+void describe(auto& archive, Is<Curve> auto& curve) {
+    archive("name", curve.name, words);
+    archive("ink", curve.ink, inks);
+    archive("style", curve.style, Names{style_name, CurveStyle::crosses});
+    archive("x", curve.x, eight_or_unknown);
+    archive("y", curve.y, eight_or_unknown);
+}
+
+void describe(auto& archive, Is<NamedLine> auto& line) {
+    archive("name", line.name, words);
+    archive("ink", line.ink, inks);
+    archive("run", line.run, Names{run_name, NamedLine::Run::ray});
+    archive("dashed", line.dashed);
+    archive("value", line.value, eight);
+}
+
+template <class Archive>
+void describe(Archive& archive, Is<Panel> auto& panel) {
+    PlotRange x, y;
+    if constexpr (!Archive::reading) x = x_range(panel), y = y_range(panel);
+    archive("title", panel.title, words);
+    archive.group("x", [&](Archive& axis) { describe_axis(axis, panel.x, x); });
+    archive.group("y", [&](Archive& axis) { describe_axis(axis, panel.y, y); });
+    archive("legend", panel.legend);
+    archive("height", panel.height, panel_height);
+    archive("map", panel.map);
+    archive("shades", panel.shades, AtMost{most_shades});
+    archive("ribbons", panel.ribbons, AtMost{most_curves});
+    archive("curves", panel.curves, AtMost{most_curves});
+    archive("lines", panel.lines, AtMost{most_curves});
+}
+
+template <class Archive>
+void describe(Archive& archive, Is<Figure> auto& figure) {
+    archive("name", figure.name, words);
+    archive("title", figure.title, words);
+    archive("sentence", figure.sentence, words);
+    if constexpr (Archive::reading)
+        figure.columns = static_cast<int>(std::clamp(archive.number("columns"), 1.0, 4.0));
+    else
+        archive("columns", figure.columns);
+    archive("panels", figure.panels, AtMost{most_panels});
+}
+
+std::string figure_text(const Figure& figure, const Provenance& provenance) {
+    check_figure(figure);
+    const Json json = document_of("figure", {provenance.inputs, provenance.command}, figure);
+    return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
 Figure figure_from_json(std::string_view text, const std::string& source) {
-    const Json json = parse_document(text, source, "figure");
-    Fields fields(json, source, "");
-    fields.ignore_head();
-    Figure figure{words(fields, "name"), words(fields, "title"), words(fields, "sentence"), {}};
-    figure.columns = static_cast<int>(std::clamp(fields.number("columns"), 1.0, 4.0));
-    const Json& panels = fields.list("panels", most_panels);
-    const FigureReader reader(source);
-    for (std::size_t i = 0; i < panels.size(); ++i)
-        figure.panels.push_back(reader.panel(panels[i], fmt::format("panels[{}]", i)));
-    fields.finish();
+    Figure figure = result_of<Figure>(text, source, "figure");
     try {
         check_figure(figure);
     } catch (const std::logic_error& fault) {
         raise<DataError>("{}: {}", source, fault.what());
     }
     return figure;
-}
-
-namespace {
-
-// Eight digits are more than any picture shows, and keep a figure of many points small.
-Json number_json(double value) {
-    if (!std::isfinite(value)) return nullptr;
-    return *parse_number(fmt::format("{:.8g}", value));
-}
-
-Json figure_numbers(const std::vector<double>& values) {
-    Json array = Json::array();
-    for (const double value : values) array.push_back(number_json(value));
-    return array;
-}
-
-const char* scale_name(PlotScale scale) {
-    return scale == PlotScale::linear ? "linear" : scale == PlotScale::whole ? "whole" : "logarithmic";
-}
-
-Json axis_json(const PlotAxis& axis, const PlotRange& range) {
-    return {{"label", axis.label},
-            {"unit", axis.unit},
-            {"scale", scale_name(axis.scale)},
-            {"from", number_json(range.from)},
-            {"to", number_json(range.to)}};
-}
-
-const char* style_name(CurveStyle style) {
-    switch (style) {
-        case CurveStyle::dashed:
-            return "dashed";
-        case CurveStyle::steps:
-            return "steps";
-        case CurveStyle::points:
-            return "points";
-        case CurveStyle::stems:
-            return "stems";
-        case CurveStyle::crosses:
-            return "crosses";
-        case CurveStyle::line:
-            break;
-    }
-    return "line";
-}
-
-const char* run_name(NamedLine::Run run) {
-    if (run == NamedLine::Run::ray) return "ray";
-    return run == NamedLine::Run::at_x ? "at-x" : "at-y";
-}
-
-Json map_json(const HeatMap& map) {
-    return {{"label", map.label},
-            {"unit", map.unit},
-            {"scale", scale_name(map.scale)},
-            {"lowest", number_json(map.lowest)},
-            {"highest", number_json(map.highest)},
-            {"x_edges", figure_numbers(map.x_edges)},
-            {"y_edges", figure_numbers(map.y_edges)},
-            {"cells", figure_numbers(map.cells)}};
-}
-
-Json panel_json(const Panel& panel) {
-    Json json{{"title", panel.title},
-              {"x", axis_json(panel.x, x_range(panel))},
-              {"y", axis_json(panel.y, y_range(panel))},
-              {"legend", panel.legend},
-              {"height", panel.height},
-              {"map", panel.map ? map_json(*panel.map) : Json(nullptr)},
-              {"shades", Json::array()},
-              {"ribbons", Json::array()},
-              {"curves", Json::array()},
-              {"lines", Json::array()}};
-    for (const Shade& shade : panel.shades) {
-        list_in(json, "shades")
-            .push_back({{"name", shade.name},
-                        {"ink", ink_rgb(shade.ink)},
-                        {"x", {number_json(shade.x_from), number_json(shade.x_to)}},
-                        {"y", {number_json(shade.y_from), number_json(shade.y_to)}}});
-    }
-    for (const Ribbon& ribbon : panel.ribbons) {
-        list_in(json, "ribbons")
-            .push_back({{"name", ribbon.name},
-                        {"ink", ink_rgb(ribbon.ink)},
-                        {"x", figure_numbers(ribbon.x)},
-                        {"low", figure_numbers(ribbon.low)},
-                        {"high", figure_numbers(ribbon.high)}});
-    }
-    for (const Curve& curve : panel.curves) {
-        list_in(json, "curves")
-            .push_back({{"name", curve.name},
-                        {"ink", ink_rgb(curve.ink)},
-                        {"style", style_name(curve.style)},
-                        {"x", figure_numbers(curve.x)},
-                        {"y", figure_numbers(curve.y)}});
-    }
-    for (const NamedLine& line : panel.lines) {
-        list_in(json, "lines")
-            .push_back({{"name", line.name},
-                        {"ink", ink_rgb(line.ink)},
-                        {"run", run_name(line.run)},
-                        {"dashed", line.dashed},
-                        {"value", number_json(line.value)}});
-    }
-    return json;
-}
-
-}  // namespace
-
-std::string figure_text(const Figure& figure, const Provenance& provenance) {
-    check_figure(figure);
-    Json json = document_head("figure", {provenance.inputs, provenance.command});
-    json["name"] = figure.name;
-    json["title"] = figure.title;
-    json["sentence"] = figure.sentence;
-    json["columns"] = figure.columns;
-    json["panels"] = Json::array();
-    for (const Panel& panel : figure.panels) list_in(json, "panels").push_back(panel_json(panel));
-    return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace ripplenotch

@@ -2,54 +2,11 @@
 #include "ripplenotch/document/info_json.hpp"
 
 #include <algorithm>
-#include <utility>
 
 #include "document/fields/fields.hpp"
-#include "document/json/json.hpp"
 
 namespace ripplenotch {
 namespace {
-
-Json range_json(const std::optional<Range>& range) {
-    return range ? Json{{"min", range->min}, {"max", range->max}} : Json(nullptr);
-}
-
-Json optional_json(const std::optional<double>& value) {
-    return value ? finite_or_null(*value) : Json(nullptr);
-}
-
-Json columns_json(const Layout& layout) {
-    Json columns = Json::array();
-    for (const Column& column : layout.columns) {
-        const bool known = column.role != Role::other;
-        columns.push_back({{"name", column.name},
-                           {"role", role_name(column.role)},
-                           {"unit", known ? Json(column.unit) : Json(nullptr)},
-                           {"unit_assumed", column.unit_assumed},
-                           {"joint", column.joint.empty() ? Json(nullptr) : Json(column.joint)}});
-    }
-    return columns;
-}
-
-Json joint_info_json(const JointInfo& joint) {
-    Json stretches = Json::array();
-    for (const SteadyStretch& stretch : joint.stretches) {
-        stretches.push_back({{"from_s", stretch.from_s},
-                             {"duration_s", stretch.duration_s},
-                             {"speed_deg_s", stretch.speed_deg_s},
-                             {"rest", stretch.rest}});
-    }
-    return {{"joint", joint.joint.empty() ? Json(nullptr) : Json(joint.joint)},
-            {"speed_deg_s", range_json(joint.speed_deg_s)},
-            {"torque_nm", range_json(joint.torque_nm)},
-            {"position_deg", range_json(joint.position_deg)},
-            {"turns", joint.turns},
-            {"held_samples", joint.recording.held.count},
-            {"longest_hold", joint.recording.held.longest},
-            {"clock_factor", optional_json(joint.clock_factor)},
-            {"steady_stretches", stretches},
-            {"options", joint.options}};
-}
 
 std::optional<Range> widest(const std::vector<JointInfo>& joints) {
     std::optional<Range> all;
@@ -71,78 +28,99 @@ std::optional<double> best_clock_factor(const std::vector<JointInfo>& joints) {
     return best == nullptr ? std::nullopt : best->clock_factor;
 }
 
-void add_clock_of_log(Json& json, const LogInfo& log) {
-    const ClockFacts& clock = log.clock;
-    const bool timed = clock.nominal_rate.value() > 0.0;
-    const auto ms = [timed](Seconds time) { return timed ? Json(1e3 * time.value()) : Json(nullptr); };
-    json["sample_rate_hz"] = timed ? Json(clock.nominal_rate.value()) : Json(nullptr);
-    json["mean_rate_hz"] = timed ? Json(clock.mean_rate.value()) : Json(nullptr);
-    json["median_step_ms"] = ms(clock.usual_step);
-    json["shortest_step_ms"] = ms(clock.shortest_step);
-    json["longest_step_ms"] = ms(clock.longest_step);
-    json["jitter_ms"] = ms(clock.jitter);
-    json["repeated_times"] = clock.repeated_times;
-    json["gap_count"] = clock.gap_count;
-    json["gaps"] = gaps_json(clock);
+}  // namespace
+
+void describe(JsonWriter& json, const Range& range) {
+    json("min", range.min);
+    json("max", range.max);
+}
+
+void describe(JsonWriter& json, const Column& column) {
+    json("name", column.name);
+    json("role", role_name(column.role));
+    json.known("unit", column.role != Role::other, column.unit);
+    json("unit_assumed", column.unit_assumed);
+    json("joint", column.joint, null_if_empty);
+}
+
+void describe(JsonWriter& json, const SteadyStretch& stretch) {
+    json("from_s", stretch.from_s);
+    json("duration_s", stretch.duration_s);
+    json("speed_deg_s", stretch.speed_deg_s);
+    json("rest", stretch.rest);
+}
+
+void describe(JsonWriter& json, const JointInfo& joint) {
+    json("joint", joint.joint, null_if_empty);
+    json("speed_deg_s", joint.speed_deg_s);
+    json("torque_nm", joint.torque_nm);
+    json("position_deg", joint.position_deg);
+    json("turns", joint.turns);
+    json("held_samples", joint.recording.held.count);
+    json("longest_hold", joint.recording.held.longest);
+    json("clock_factor", joint.clock_factor);
+    json("steady_stretches", joint.stretches);
+    json("options", joint.options);
 }
 
 // What is in a container, taken or not.
-Json contents_json(const Layout& layout) {
-    Json contents = Json::array();
-    for (const ContentEntry& entry : layout.contents) {
-        contents.push_back({{"path", entry.path},
-                            {"shape", entry.shape},
-                            {"type", entry.type},
-                            {"unit", entry.unit},
-                            {"rate_hz", optional_json(entry.rate_hz)},
-                            {"read", entry.read}});
-    }
-    return contents;
+void describe(JsonWriter& json, const ContentEntry& entry) {
+    json("path", entry.path);
+    json("shape", entry.shape);
+    json("type", entry.type);
+    json("unit", entry.unit);
+    json("rate_hz", entry.rate_hz);
+    json("read", entry.read);
 }
 
-void add_log(Json& json, const LogInfo& log) {
-    json["log"] = log.source;
-    json["rows"] = log.rows;
-    json["duration_s"] = optional_json(log.duration_s);
-    add_clock_of_log(json, log);
+void describe(JsonWriter& json, const Use& use) {
+    json("name", use.name);
+    json("possible", use.possible);
+    json("reason", use.reason);
+}
+
+void describe(JsonWriter& json, const LogInfo& log) {
+    const ClockFacts& clock = log.clock;
+    const bool timed = clock.nominal_rate.value() > 0.0;
+    json("log", log.source);
+    json("rows", log.rows);
+    json("duration_s", log.duration_s);
+    json.known("sample_rate_hz", timed, clock.nominal_rate);
+    json.known("mean_rate_hz", timed, clock.mean_rate);
+    json.known("median_step_ms", timed, clock.usual_step, in_ms);
+    json.known("shortest_step_ms", timed, clock.shortest_step, in_ms);
+    json.known("longest_step_ms", timed, clock.longest_step, in_ms);
+    json.known("jitter_ms", timed, clock.jitter, in_ms);
+    json("repeated_times", clock.repeated_times);
+    json("gap_count", clock.gap_count);
+    json("gaps", clock.gaps);
     std::size_t held = 0;
-    for (const JointInfo& joint : log.joints) held = std::max(held, joint.recording.held.count);
-    json["held_samples"] = held;
-    json["bad_values_held"] = log.bad_values_held;
-    json["clock_factor"] = optional_json(best_clock_factor(log.joints));
-    json["format"] = log.layout.format;
-    json["columns"] = columns_json(log.layout);
-    if (!log.layout.contents.empty()) json["contents"] = contents_json(log.layout);
-    json["speed_deg_s"] = range_json(widest(log.joints));
-    json["joints"] = Json::array();
-    for (const JointInfo& joint : log.joints) list_in(json, "joints").push_back(joint_info_json(joint));
-    json["uses"] = Json::array();
-    for (const Use& use : log.uses) {
-        list_in(json, "uses")
-            .push_back({{"name", use.name}, {"possible", use.possible}, {"reason", use.reason}});
-    }
-    json["warnings"] = log.warnings;
     std::vector<Recording> recordings;
-    for (const JointInfo& joint : log.joints) recordings.push_back(joint.recording);
+    for (const JointInfo& joint : log.joints) {
+        held = std::max(held, joint.recording.held.count);
+        recordings.push_back(joint.recording);
+    }
+    json("held_samples", held);
+    json("bad_values_held", log.bad_values_held);
+    json("clock_factor", best_clock_factor(log.joints));
+    json("format", log.layout.format);
+    json("columns", log.layout.columns);
+    json("contents", log.layout.contents, if_any);
+    json("speed_deg_s", widest(log.joints));
+    json("joints", log.joints);
+    json("uses", log.uses);
+    json("warnings", log.warnings);
     add_recordings(json, recordings);
-    json["options"] = log.layout.options;
+    json("options", log.layout.options);
 }
-
-}  // namespace
 
 std::string info_to_json(std::span<const LogInfo> logs, const Provenance& provenance) {
-    Json json = document_head("info", provenance);
-    if (logs.size() == 1) {
-        add_log(json, logs[0]);
-        return to_fitted_text(std::move(json));
-    }
-    json["logs"] = Json::array();
-    for (const LogInfo& log : logs) {
-        Json entry = Json::object();
-        add_log(entry, log);
-        list_in(json, "logs").push_back(std::move(entry));
-    }
-    return to_fitted_text(std::move(json));
+    return to_fitted_text(document_of("info", provenance, [&](JsonWriter& json) {
+        if (logs.size() == 1)
+            describe(json, logs.front());
+        else
+            json("logs", logs);
+    }));
 }
 
 }  // namespace ripplenotch

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
+#include "ripplenotch/document/map_json.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 
 #include "core/matrices/least_squares.hpp"
 #include "document/fields/fields.hpp"
-#include "document/json/json.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/files.hpp"
-#include "ripplenotch/document/map_json.hpp"
 
 namespace ripplenotch {
 
@@ -16,140 +16,163 @@ namespace {
 
 constexpr std::size_t most_speeds = 64, most_turn_harmonics = 8, most_map_orders = 64;
 
-std::optional<MapFinding> map_finding_of(std::string_view name) {
-    for (const MapFinding one :
-         {MapFinding::mapped, MapFinding::nothing, MapFinding::unclear, MapFinding::too_little})
-        if (map_finding_name(one) == name) return one;
-    return std::nullopt;
-}
+// How many numbers a list may hold, which rise, the first from `least` on.
+struct Rising {
+    double least;
+    std::size_t fewest, most;
+};
 
-std::size_t at_most(Fields& fields, std::string_view name, std::size_t least, std::size_t most) {
-    const std::size_t value = fields.whole(name);
-    if (value < least || value > most)
-        raise<DataError>("{} is {}, expected {} to {}", fields.where(name), value, least, most);
-    return value;
-}
-
-MapRange range_at(Fields& fields, std::string_view name) {
-    const std::vector<double> ends = fields.numbers(name);
-    if (ends.size() != 2 || !(ends[0] <= ends[1]))
-        raise<DataError>("{} is not two numbers, the lower one first", fields.where(name));
-    return {ends[0], ends[1]};
-}
-
-// Rising, and not more than a list may hold.
-std::vector<double> rising_at(Fields& fields, std::string_view name, double least, std::size_t fewest,
-                              std::size_t most) {
-    std::vector<double> values = fields.numbers(name);
-    const bool rises = std::is_sorted(values.begin(), values.end(), std::less_equal<>());
-    if (values.size() < fewest || values.size() > most || !rises ||
-        (!values.empty() && !(values.front() >= least))) {
-        raise<DataError>("{} is not {} to {} numbers from {} on, each above the one before",
-                         fields.where(name), fewest, most, least);
-    }
-    return values;
-}
-
-MapForm form_from_json(Fields& fields) {
-    MapForm form;
-    fields.ignore({"words"});
-    form.speeds_deg_s = rising_at(fields, "speeds_deg_s", 0.0, 1, most_speeds);
-    form.directions = at_most(fields, "directions", 1, 2);
-    form.turn_harmonics = at_most(fields, "turn_harmonics", 0, most_turn_harmonics);
-    form.by_load = fields.flag("by_load");
-    form.by_temperature = fields.has("by_temperature") && fields.flag("by_temperature");
-    if (fields.has("second_comb")) {
-        const double side = fields.number("second_comb");
-        if (std::abs(side) != 1.0)
-            raise<DataError>("{} is {}, expected 1 or -1", fields.where("second_comb"), side);
-        form.second_comb = side > 0.0 ? 1 : -1;
-    }
-    fields.finish();
-    return form;
-}
-
-void coefficients_from_json(Fields& fields, MapFit& fit) {
-    const std::size_t columns = fit.map.form.columns();
-    std::vector<std::complex<double>> values, errors;
-    fields.each("coefficients", [&](Fields& entry) {
-        entry.ignore({"order", "column"});
-        values.emplace_back(entry.number("cosine_nm"), entry.number("sine_nm"));
-        errors.emplace_back(entry.number("cosine_ci95_nm") / normal_95_errors,
-                            entry.number("sine_ci95_nm") / normal_95_errors);
-    });
-    if (values.size() != columns * fit.map.orders.size()) {
-        raise<DataError>("{}: {} values, expected {} for each of {} orders", fields.where("coefficients"),
-                         values.size(), columns, fit.map.orders.size());
-    }
-    for (auto at = std::ptrdiff_t{0}; at < std::ssize(values); at += static_cast<std::ptrdiff_t>(columns)) {
-        const auto to = at + static_cast<std::ptrdiff_t>(columns);
-        fit.map.values.emplace_back(values.begin() + at, values.begin() + to);
-        fit.errors.emplace_back(errors.begin() + at, errors.begin() + to);
+template <class Archive>
+void describe_rising(Archive& archive, std::string_view name, auto& values, const Rising& rising) {
+    archive(name, values);
+    if constexpr (Archive::reading) {
+        using Entry = std::remove_cvref_t<decltype(values.front())>;
+        const bool rises = std::is_sorted(values.begin(), values.end(), std::less_equal<>());
+        if (values.size() < rising.fewest || values.size() > rising.most || !rises ||
+            (!values.empty() && !(values.front() >= Entry(rising.least))))
+            raise<DataError>("{} is not {} to {} numbers from {} on, each above the one before",
+                             archive.where(name), rising.fewest, rising.most, rising.least);
     }
 }
 
-void scores_from_json(Fields& fields, MapFit& fit) {
-    fields.each("left_out", [&](Fields& entry) {
-        fit.scores.push_back({entry.number("order"), entry.flag("in_map"), entry.number("ripple_nm"),
-                              entry.number("noise_nm"), entry.number("left_nm"),
-                              entry.number("predicted_share"),
-                              entry.has("false_alarm") ? entry.number("false_alarm") : 1.0,
-                              entry.has("detectable_nm") ? entry.number("detectable_nm") : 0.0});
-    });
-    fields.each("agreement", [&](Fields& entry) {
-        fit.agreement.push_back({entry.whole("log"), entry.number("order"), entry.number("amplitude_ratio"),
-                                 entry.number("amplitude_error"), entry.number("phase_deg"),
-                                 entry.number("phase_error_deg"), entry.flag("agrees")});
-    });
-}
-
-void map_fields(Fields& fields, MapFit& fit) {
-    RippleMap& map = fit.map;
-    map.joint = fields.text("joint");
-    map.gear_ratio = GearRatio(fields.number("gear_ratio"));
-    if (!(map.gear_ratio.value() > 0.0))
-        raise<DataError>("{} is {}, expected a positive number", fields.where("gear_ratio"),
-                         map.gear_ratio.value());
-    map.zero_deg = fields.number("zero_deg");
-    fit.anchored = fields.text("angle") == "position";
-    Fields form = fields.object("form");
-    map.form = form_from_json(form);
-    Fields range = fields.object("range");
-    map.speeds_deg_s = range_at(range, "speed_deg_s");
-    map.positions_deg = range_at(range, "position_deg");
-    map.loads_nm = range_at(range, "load_nm");
-    if (map.form.by_temperature) {
-        map.temperatures_degc = range_at(range, "temperature_degc");
-        map.temperature_column = fields.text("temperature_column");
-    }
-    range.finish();
-    for (const double order : rising_at(fields, "orders", 1e-9, 0, most_map_orders))
-        map.orders.emplace_back(order);
-    map.spread_nm = fields.numbers("spread_nm");
-    if (map.spread_nm.size() != map.orders.size())
-        raise<DataError>("{}: {} numbers for {} orders", fields.where("spread_nm"), map.spread_nm.size(),
-                         map.orders.size());
-}
+// A value of the map with its error, a row each, so that a page shows a table.
+struct Coefficient {
+    double order = 0.0;
+    std::string column;
+    std::complex<double> value, error;
+};
 
 }  // namespace
 
+auto ends_of(Is<MapRange> auto& range) { return std::tie(range.from, range.to); }
+
+template <class Archive>
+void describe(Archive& archive, Is<Coefficient> auto& one) {
+    archive.told("order", [&] { return one.order; });
+    archive.told("column", [&] { return one.column; });
+    double cosine_error = one.error.real(), sine_error = one.error.imag(), cosine = one.value.real(),
+           sine = one.value.imag();
+    archive("cosine_nm", cosine);
+    archive("cosine_ci95_nm", cosine_error, Times{normal_95_errors});
+    archive("sine_nm", sine);
+    archive("sine_ci95_nm", sine_error, Times{normal_95_errors});
+    if constexpr (Archive::reading) one = {0.0, {}, {cosine, sine}, {cosine_error, sine_error}};
+}
+
+template <class Archive>
+void describe(Archive& archive, Is<MapForm> auto& form) {
+    archive.told("words", [&] { return map_form_words(form); });
+    describe_rising(archive, "speeds_deg_s", form.speeds_deg_s, {0.0, 1, most_speeds});
+    archive("directions", form.directions, Limits{1, 2});
+    archive("turn_harmonics", form.turn_harmonics, Limits{0, most_turn_harmonics});
+    archive("by_load", form.by_load);
+    archive("by_temperature", form.by_temperature, if_any);
+    if (!archive.holds("second_comb", form.second_comb != 0)) return;
+    if constexpr (Archive::reading) {
+        const double side = archive.number("second_comb");
+        if (std::abs(side) != 1.0)
+            raise<DataError>("{} is {}, expected 1 or -1", archive.where("second_comb"), side);
+        form.second_comb = side > 0.0 ? 1 : -1;
+    } else {
+        archive("second_comb", form.second_comb);
+    }
+}
+
+void describe(auto& archive, Is<MapOrderScore> auto& score) {
+    archive("order", score.order);
+    archive("in_map", score.in_map);
+    archive("ripple_nm", score.ripple_nm);
+    archive("noise_nm", score.noise_nm);
+    archive("left_nm", score.left_nm);
+    archive("predicted_share", score.predicted_share);
+    archive("false_alarm", score.false_alarm, if_there);
+    if (archive.holds("detectable_nm", !score.in_map && std::isfinite(score.detectable_nm)))
+        archive("detectable_nm", score.detectable_nm);
+}
+
+void describe(auto& archive, Is<MapAgreement> auto& one) {
+    archive("log", one.log);
+    archive("order", one.order);
+    archive("amplitude_ratio", one.amplitude_ratio);
+    archive("amplitude_error", one.amplitude_error);
+    archive("phase_deg", one.phase_deg);
+    archive("phase_error_deg", one.phase_error_deg);
+    archive("agrees", one.agrees);
+}
+
+namespace {
+
+template <class Archive>
+void describe_coefficients(Archive& archive, auto& fit) {
+    auto& map = fit.map;
+    std::vector<Coefficient> all;
+    for (std::size_t i = 0; i < map.values.size(); ++i)
+        for (std::size_t c = 0; c < map.values[i].size(); ++c)
+            all.push_back(
+                {map.orders[i].value(), map_column_words(map.form, c), map.values[i][c], fit.errors[i][c]});
+    archive("coefficients", all);
+    if constexpr (Archive::reading) {
+        const std::size_t columns = map.form.columns();
+        if (all.size() != columns * map.orders.size())
+            raise<DataError>("{}: {} values, expected {} for each of {} orders",
+                             archive.where("coefficients"), all.size(), columns, map.orders.size());
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            if (i % columns == 0) {
+                map.values.emplace_back();
+                fit.errors.emplace_back();
+            }
+            map.values.back().push_back(all[i].value);
+            fit.errors.back().push_back(all[i].error);
+        }
+    }
+}
+
+std::string_view angle_name(bool anchored) { return anchored ? "position" : "integrated velocity"; }
+
+}  // namespace
+
+template <class Archive>
+void describe(Archive& archive, Is<MapFit> auto& fit) {
+    auto& map = fit.map;
+    archive.told("verdict", [&] { return map_verdict(fit); });
+    archive("finding", fit.finding, Names{map_finding_name, MapFinding::too_little});
+    archive("doubt", fit.doubt);
+    archive("conclusive", fit.conclusive);
+    archive("joint", map.joint);
+    archive("gear_ratio", map.gear_ratio, above_zero);
+    archive("zero_deg", map.zero_deg);
+    std::string angle(angle_name(fit.anchored));
+    archive("angle", angle);
+    if constexpr (Archive::reading) fit.anchored = angle == angle_name(true);
+    archive("form", map.form);
+    archive.group("range", [&](Archive& range) {
+        range("speed_deg_s", map.speeds_deg_s, lower_first);
+        range("position_deg", map.positions_deg, lower_first);
+        range("load_nm", map.loads_nm, lower_first);
+        if (map.form.by_temperature) range("temperature_degc", map.temperatures_degc, lower_first);
+    });
+    if (map.form.by_temperature) archive("temperature_column", map.temperature_column);
+    describe_rising(archive, "orders", map.orders, {1e-9, 0, most_map_orders});
+    archive("spread_nm", map.spread_nm);
+    if constexpr (Archive::reading) {
+        if (map.spread_nm.size() != map.orders.size())
+            raise<DataError>("{}: {} numbers for {} orders", archive.where("spread_nm"), map.spread_nm.size(),
+                             map.orders.size());
+    }
+    describe_coefficients(archive, fit);
+    archive("left_out", fit.scores);
+    archive("agreement", fit.agreement);
+    archive("windows", fit.windows);
+    archive("blocks", fit.blocks);
+    archive("notes", fit.notes);
+}
+
+std::string map_text(const MapFit& fit, const Provenance& provenance) {
+    return to_fitted_text(document_of("map", provenance, fit));
+}
+
 MapFit map_from_json(std::string_view text, const std::string& source) {
-    const Json json = parse_document(text, source, "map");
-    Fields fields(json, source, "");
-    fields.ignore_head();
-    fields.ignore({"verdict"});
-    MapFit fit;
-    fit.finding = fields.named("finding", map_finding_of);
-    fit.doubt = fields.text("doubt");
-    fit.conclusive = fields.flag("conclusive");
-    map_fields(fields, fit);
-    coefficients_from_json(fields, fit);
-    scores_from_json(fields, fit);
-    fit.windows = fields.whole("windows");
-    fit.blocks = fields.whole("blocks");
-    fit.notes = fields.texts("notes");
-    fields.finish();
-    return fit;
+    return result_of<MapFit>(text, source, "map");
 }
 
 MapFit load_map(const std::string& path) {
@@ -161,100 +184,6 @@ bool is_map(const std::string& path) {
     std::error_code failed;
     if (!std::filesystem::is_regular_file(path, failed)) return false;
     return read_all(path).substr(0, head).find("ripplenotch/map/1") != std::string::npos;
-}
-
-namespace {
-
-Json range_to_json(const MapRange& range) { return {range.from, range.to}; }
-
-Json form_to_json(const MapForm& form) {
-    Json json = Json::object();
-    json["words"] = map_form_words(form);
-    json["speeds_deg_s"] = form.speeds_deg_s;
-    json["directions"] = form.directions;
-    json["turn_harmonics"] = form.turn_harmonics;
-    json["by_load"] = form.by_load;
-    if (form.by_temperature) json["by_temperature"] = true;
-    if (form.second_comb != 0) json["second_comb"] = form.second_comb;
-    return json;
-}
-
-// One row a value, so that a page shows a table.
-Json coefficients_to_json(const MapFit& fit) {
-    Json json = Json::array();
-    for (std::size_t i = 0; i < fit.map.orders.size(); ++i) {
-        for (std::size_t c = 0; c < fit.map.values[i].size(); ++c) {
-            json.push_back({{"order", fit.map.orders[i].value()},
-                            {"column", map_column_words(fit.map.form, c)},
-                            {"cosine_nm", fit.map.values[i][c].real()},
-                            {"cosine_ci95_nm", normal_95_errors * fit.errors[i][c].real()},
-                            {"sine_nm", fit.map.values[i][c].imag()},
-                            {"sine_ci95_nm", normal_95_errors * fit.errors[i][c].imag()}});
-        }
-    }
-    return json;
-}
-
-Json scores_to_json(const std::vector<MapOrderScore>& scores) {
-    Json json = Json::array();
-    for (const MapOrderScore& score : scores) {
-        json.push_back({{"order", score.order},
-                        {"in_map", score.in_map},
-                        {"ripple_nm", score.ripple_nm},
-                        {"noise_nm", score.noise_nm},
-                        {"left_nm", score.left_nm},
-                        {"predicted_share", score.predicted_share},
-                        {"false_alarm", score.false_alarm}});
-        if (!score.in_map && std::isfinite(score.detectable_nm))
-            json.back()["detectable_nm"] = score.detectable_nm;
-    }
-    return json;
-}
-
-Json agreement_to_json(const std::vector<MapAgreement>& agreement) {
-    Json json = Json::array();
-    for (const MapAgreement& one : agreement) {
-        json.push_back({{"log", one.log},
-                        {"order", one.order},
-                        {"amplitude_ratio", one.amplitude_ratio},
-                        {"amplitude_error", one.amplitude_error},
-                        {"phase_deg", one.phase_deg},
-                        {"phase_error_deg", one.phase_error_deg},
-                        {"agrees", one.agrees}});
-    }
-    return json;
-}
-
-}  // namespace
-
-std::string map_text(const MapFit& fit, const Provenance& provenance) {
-    Json json = document_head("map", provenance);
-    json["verdict"] = map_verdict(fit);
-    json["finding"] = map_finding_name(fit.finding);
-    json["doubt"] = fit.doubt;
-    json["conclusive"] = fit.conclusive;
-    json["joint"] = fit.map.joint;
-    json["gear_ratio"] = fit.map.gear_ratio.value();
-    json["zero_deg"] = fit.map.zero_deg;
-    json["angle"] = fit.anchored ? "position" : "integrated velocity";
-    json["form"] = form_to_json(fit.map.form);
-    json["range"] = {{"speed_deg_s", range_to_json(fit.map.speeds_deg_s)},
-                     {"position_deg", range_to_json(fit.map.positions_deg)},
-                     {"load_nm", range_to_json(fit.map.loads_nm)}};
-    if (fit.map.form.by_temperature) {
-        json["range"]["temperature_degc"] = range_to_json(fit.map.temperatures_degc);
-        json["temperature_column"] = fit.map.temperature_column;
-    }
-    json["orders"] = Json::array();
-    for (const Order order : fit.map.orders) list_in(json, "orders").push_back(order.value());
-    json["spread_nm"] = fit.map.spread_nm;
-    json["coefficients"] = coefficients_to_json(fit);
-    json["left_out"] = scores_to_json(fit.scores);
-    json["agreement"] = agreement_to_json(fit.agreement);
-    json["windows"] = fit.windows;
-    json["blocks"] = fit.blocks;
-    json["notes"] = fit.notes;
-    return to_fitted_text(std::move(json));
 }
 
 }  // namespace ripplenotch

@@ -6,9 +6,7 @@
 
 #include "document/fields/fields.hpp"
 #include "document/fields/result_fields.hpp"
-#include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/files.hpp"
-#include "ripplenotch/core/number.hpp"
 #include "ripplenotch/design/candidate_table.hpp"
 
 namespace ripplenotch {
@@ -18,209 +16,148 @@ namespace {
 constexpr double section_tolerance = 1e-12;
 constexpr double figure_tolerance = 1e-6;  // dB, per cent, and a share of the delay
 
-std::vector<double> each_to_digits(std::vector<double> values) {
-    for (double& value : values) value = to_digits(value);
-    return values;
-}
-
-Json depth_to_json(double depth_db) { return depth_db >= infinite_depth_db ? Json(nullptr) : Json(depth_db); }
-
-Json band_to_json(const Band& band) {
-    Json notches = Json::array();
-    for (const CandidateNotch& notch : band.notches) {
-        const Biquad& f = notch.section;
-        Json entry = Json::object();
-        entry["order"] = notch.order.value();
-        entry["center_hz"] = notch.notch.center.value();
-        entry["q"] = notch.notch.q;
-        entry["depth_db"] = depth_to_json(notch.notch.depth_db);
-        entry["sos"] = {f.b0, f.b1, f.b2, 1.0, f.a1, f.a2};
-        notches.push_back(std::move(entry));
-    }
-    Json json = Json::object();
-    json["number"] = band.number;
-    json["speed_from_deg_s"] = band.from.value();
-    json["speed_to_deg_s"] = band.to.value();
-    json["notches"] = std::move(notches);
-    // Figures for people: what follows from the notches, to the digits on which processors agree.
-    json["dc_delay_ms"] = to_digits(1e3 * band.dc_delay.value());
-    json["settle_ms"] = to_digits(1e3 * band.settle.value());
-    json["settle_band_percent"] = band.settle_band_percent;
-    json["overshoot_percent"] = to_digits(band.overshoot_percent);
-    json["worst_attenuation_db"] = each_to_digits(band.worst_attenuation_db);
-    json["held_attenuation_db"] = to_digits(band.held_attenuation_db);
-    if (!band.predicted_residual_nm.empty())
-        json["predicted_residual_nm"] = each_to_digits(band.predicted_residual_nm);
-    return json;
-}
-
-Json note_to_json(const DesignNote& note) {
-    Json json = Json::object();
-    json["min_attenuation_db"] = note.min_attenuation_db ? Json(*note.min_attenuation_db) : Json(nullptr);
-    json["max_delay_ms"] = note.max_delay ? Json(1e3 * note.max_delay->value()) : Json(nullptr);
-    json["reason"] = note.reason;
-    json["no_notch_below_deg_s"] = note.slowest ? Json(note.slowest->value()) : Json(nullptr);
-    return json;
-}
-
-template <class Choice, std::size_t n>
-Choice choice_at(Fields& fields, std::string_view name, const std::array<Choice, n>& choices,
-                 std::string_view (*name_of)(Choice)) {
-    const std::string text = fields.text(name);
-    std::string known;
-    for (const Choice choice : choices) {
-        if (name_of(choice) == text) return choice;
-        known += fmt::format("{}{}", known.empty() ? "" : ", ", name_of(choice));
-    }
-    raise<DataError>("{} is \"{}\", expected one of {}", fields.where(name), text, known);
-}
-
 // What a figure depends on may have been edited by hand; then the figure, or the section, would lie.
-void compare(const Fields& fields, std::string_view name, double stored, double computed, double tolerance) {
+void compare(const JsonReader& reader, std::string_view name, double stored, double computed,
+             double tolerance) {
     if (std::abs(stored - computed) <= tolerance) return;
     raise<DataError>(
         "{} is {}, but the table's own bands and notches give {}; run 'ripplenotch design' again instead "
         "of editing the file",
-        fields.where(name), shortest(stored), shortest(computed));
+        reader.where(name), shortest(stored), shortest(computed));
 }
 
-void compare_list(Fields& fields, std::string_view name, const std::vector<double>& computed) {
-    const std::vector<double> stored = fields.numbers(name);
-    if (stored.size() != computed.size()) {
-        raise<DataError>("{} has {} entries, expected {}", fields.where(name), stored.size(),
-                         computed.size());
-    }
-    for (std::size_t i = 0; i < stored.size(); ++i)
-        compare(fields, fmt::format("{}[{}]", name, i), stored[i], computed[i], figure_tolerance);
+// Figures for people, which follow from the notches: written to the digits on which processors agree, and
+// compared with what the notches give.
+template <class Archive>
+void describe_figure(Archive& archive, std::string_view name, double computed,
+                     double tolerance = figure_tolerance) {
+    if constexpr (Archive::reading)
+        compare(archive, name, archive.number(name), computed, tolerance);
+    else
+        archive(name, computed, fitted);
 }
 
-CandidateNotch notch_from_json(const Json& json, const std::string& source, const std::string& path,
-                               const TableSpec& spec) {
-    Fields fields(json, source, path);
-    CandidateNotch notch;
-    notch.order = Order(fields.number("order"));
-    notch.notch.center = Hertz(fields.number("center_hz"));
-    notch.notch.q = fields.number("q");
-    notch.notch.depth_db = fields.find("depth_db") == nullptr ? infinite_depth_db : fields.number("depth_db");
-    notch.notch.width = spec.width;
-    const std::vector<double> sos = fields.numbers("sos");
-    if (sos.size() != 6) {
-        raise<DataError>("{} has {} numbers, expected 6: b0, b1, b2, 1, a1, a2", fields.where("sos"),
-                         sos.size());
+template <class Archive>
+void describe_figures(Archive& archive, std::string_view name, const std::vector<double>& computed) {
+    if constexpr (Archive::reading) {
+        const std::vector<double> stored = archive.numbers(name);
+        if (stored.size() != computed.size())
+            raise<DataError>("{} has {} entries, expected {}", archive.where(name), stored.size(),
+                             computed.size());
+        for (std::size_t i = 0; i < stored.size(); ++i)
+            compare(archive, fmt::format("{}[{}]", name, i), stored[i], computed[i], figure_tolerance);
+    } else {
+        archive(name, computed, fitted);
     }
+}
+
+// Calls work(), which says UsageError of what is wrong data where it comes from a file.
+template <class Work>
+void as_data(const std::string& where, const Work& work) {
     try {
-        notch.section = design_notch(notch.notch, spec.sample_rate);
+        work();
     } catch (const UsageError& error) {
-        raise<DataError>("{}: {}: {}", source, path, error.what());
+        raise<DataError>("{}: {}", where, error.what());
     }
-    const Biquad& f = notch.section;
-    const std::array<double, 6> computed = {f.b0, f.b1, f.b2, 1.0, f.a1, f.a2};
-    for (std::size_t i = 0; i < computed.size(); ++i) {
-        compare(fields, fmt::format("sos[{}]", i), sos[i], computed[i], section_tolerance);
-    }
-    // The stored digits are what runs, so that a table filters alike on every machine.
-    notch.section = {sos[0], sos[1], sos[2], sos[4], sos[5]};
-    fields.finish();
-    return notch;
 }
 
-Band band_from_json(const Json& json, const std::string& source, const std::string& path, TableSpec& spec,
-                    TableWork& work) {
-    Fields fields(json, source, path);
-    Band band;
-    const double number = fields.number("number");
-    if (number < 1.0 || number > 1e6 || number != std::floor(number)) {
-        raise<DataError>("{} is {}, expected 1, 2, 3, ...", fields.where("number"), shortest(number));
+template <class Archive>
+void describe_notch(Archive& archive, auto& notch, const TableSpec& spec) {
+    archive("order", notch.order);
+    archive("center_hz", notch.notch.center);
+    archive("q", notch.notch.q);
+    auto& depth_db = notch.notch.depth_db;
+    const bool limited = archive.known("depth_db", depth_db < infinite_depth_db, depth_db);
+    const auto sos_of = [](const Biquad& f) { return std::array{f.b0, f.b1, f.b2, 1.0, f.a1, f.a2}; };
+    auto sos = sos_of(notch.section);
+    archive("sos", sos);
+    if constexpr (Archive::reading) {
+        if (!limited) depth_db = infinite_depth_db;
+        notch.notch.width = spec.width;
+        as_data(archive.place(), [&] { notch.section = design_notch(notch.notch, spec.sample_rate); });
+        const auto computed = sos_of(notch.section);
+        for (std::size_t i = 0; i < computed.size(); ++i)
+            compare(archive, fmt::format("sos[{}]", i), sos[i], computed[i], section_tolerance);
+        // The stored digits are what runs, so that a table filters alike on every machine.
+        notch.section = {sos[0], sos[1], sos[2], sos[4], sos[5]};
     }
-    band.number = static_cast<int>(number);
-    band.from = DegPerSec(fields.number("speed_from_deg_s"));
-    band.to = DegPerSec(fields.number("speed_to_deg_s"));
-    const Json& notches = fields.list("notches", most_orders);
-    for (std::size_t i = 0; i < notches.size(); ++i) {
-        band.notches.push_back(
-            notch_from_json(notches[i], source, fmt::format("{}.notches[{}]", path, i), spec));
+}
+
+template <class Archive>
+void describe_band(Archive& archive, auto& band, auto& spec, TableWork& work) {
+    archive("number", band.number, Limits{1.0, 1e6});
+    archive("speed_from_deg_s", band.from);
+    archive("speed_to_deg_s", band.to);
+    archive.each(
+        "notches", band.notches, [&](Archive& entry, auto& notch) { describe_notch(entry, notch, spec); },
+        AtMost{most_orders});
+    if constexpr (Archive::reading) {
+        archive("settle_band_percent", spec.settle_band_percent);
+        as_data(archive.place(), [&] {
+            check_ripple(spec);
+            work.add(band, spec.settle_band_percent);
+            measure_band(band, spec);
+        });
     }
-    spec.settle_band_percent = fields.number("settle_band_percent");
-    try {
-        check_ripple(spec);
-        work.add(band, spec.settle_band_percent);
-        measure_band(band, spec);
-    } catch (const UsageError& error) {
-        raise<DataError>("{}: {}: {}", source, path, error.what());
-    }
-    compare(fields, "dc_delay_ms", fields.number("dc_delay_ms"), 1e3 * band.dc_delay.value(),
-            figure_tolerance);
+    describe_figure(archive, "dc_delay_ms", 1e3 * band.dc_delay.value());
     // Rounding may move the settling time by a sample.
-    compare(fields, "settle_ms", fields.number("settle_ms"), 1e3 * band.settle.value(),
-            1.5e3 / spec.sample_rate.value());
-    compare(fields, "overshoot_percent", fields.number("overshoot_percent"), band.overshoot_percent,
-            figure_tolerance);
-    compare_list(fields, "worst_attenuation_db", band.worst_attenuation_db);
-    if (fields.has("held_attenuation_db")) {
-        compare(fields, "held_attenuation_db", fields.number("held_attenuation_db"), band.held_attenuation_db,
-                figure_tolerance);
-    }
-    if (fields.has("predicted_residual_nm"))
-        compare_list(fields, "predicted_residual_nm", band.predicted_residual_nm);
-    fields.finish();
-    return band;
+    describe_figure(archive, "settle_ms", 1e3 * band.settle.value(), 1.5e3 / spec.sample_rate.value());
+    archive("settle_band_percent", band.settle_band_percent);
+    describe_figure(archive, "overshoot_percent", band.overshoot_percent);
+    describe_figures(archive, "worst_attenuation_db", band.worst_attenuation_db);
+    if (archive.holds("held_attenuation_db", true))
+        describe_figure(archive, "held_attenuation_db", band.held_attenuation_db);
+    if (archive.holds("predicted_residual_nm", !band.predicted_residual_nm.empty()))
+        describe_figures(archive, "predicted_residual_nm", band.predicted_residual_nm);
+}
+
+template <class Archive>
+void describe_table(Archive& archive, auto& spec, auto&& bands, const DesignNote& note) {
+    archive("sample_rate_hz", spec.sample_rate);
+    archive("gear_ratio", spec.gear_ratio);
+    archive("orders", spec.orders, AtMost{most_orders});
+    archive.told(
+        "gear", [&] { return note.gear; }, if_any);
+    archive("gear_ratio_error_percent", spec.ratio_error, in_percent, if_any);
+    archive("amplitude_nm", spec.amplitude_nm, if_any);
+    archive.told(
+        "designed_for", [&] { return note.reason.empty() ? nullptr : &note; }, if_any);
+    archive("width", spec.width, Names{width_rule_name, WidthRule::digital});
+    TableWork work;
+    archive.each(
+        "bands", bands, [&](Archive& entry, auto& band) { describe_band(entry, band, spec, work); },
+        AtMost{most_bands});
+    archive("below_first_band", spec.below, Names{outside_rule_name, OutsideRule::fade});
+    archive("above_last_band", spec.above, Names{outside_rule_name, OutsideRule::fade});
 }
 
 }  // namespace
 
+void describe(JsonWriter& json, const DesignNote& note) {
+    json("min_attenuation_db", note.min_attenuation_db);
+    json("max_delay_ms", note.max_delay, in_ms);
+    json("reason", note.reason);
+    json("no_notch_below_deg_s", note.slowest);
+}
+
 std::string table_to_json(const CandidateTable& table, const Provenance& provenance, const DesignNote& note) {
-    const TableSpec& spec = table.spec();
-    Json json = document_head("table", provenance);
-    json["sample_rate_hz"] = spec.sample_rate.value();
-    json["gear_ratio"] = spec.gear_ratio.value();
-    json["orders"] = Json::array();
-    for (const Order order : spec.orders) list_in(json, "orders").push_back(order.value());
-    if (note.gear) json["gear"] = gear_to_json(note.gear);
-    if (spec.ratio_error > 0.0) json["gear_ratio_error_percent"] = 100.0 * spec.ratio_error;
-    if (!spec.amplitude_nm.empty()) json["amplitude_nm"] = spec.amplitude_nm;
-    if (!note.reason.empty()) json["designed_for"] = note_to_json(note);
-    json["width"] = width_rule_name(spec.width);
-    json["bands"] = Json::array();
-    for (const Band& band : table.bands()) list_in(json, "bands").push_back(band_to_json(band));
-    json["below_first_band"] = outside_rule_name(spec.below);
-    json["above_last_band"] = outside_rule_name(spec.above);
-    return to_text(json);
+    return to_text(document_of("table", provenance, [&](JsonWriter& json) {
+        describe_table(json, table.spec(), table.bands(), note);
+    }));
 }
 
 CandidateTable table_from_json(std::string_view text, const std::string& source) {
-    const Json json = parse_document(text, source, "table");
-    Fields fields(json, source, "");
-    fields.ignore_head();
-    fields.ignore({"gear", "designed_for"});
     TableSpec spec;
-    spec.sample_rate = Hertz(fields.number("sample_rate_hz"));
-    spec.gear_ratio = GearRatio(fields.number("gear_ratio"));
-    static_cast<void>(fields.list("orders", most_orders));
-    for (const double order : fields.numbers("orders")) spec.orders.emplace_back(order);
-    if (fields.has("gear_ratio_error_percent"))
-        spec.ratio_error = fields.number("gear_ratio_error_percent") / 100.0;
-    if (fields.has("amplitude_nm")) spec.amplitude_nm = fields.numbers("amplitude_nm");
-    spec.width =
-        choice_at(fields, "width", std::array{WidthRule::analog, WidthRule::digital}, width_rule_name);
-    constexpr std::array rules = {OutsideRule::pass, OutsideRule::hold, OutsideRule::fade};
-    spec.below = choice_at(fields, "below_first_band", rules, outside_rule_name);
-    spec.above = choice_at(fields, "above_last_band", rules, outside_rule_name);
-    const Json& rows = fields.list("bands", most_bands);
-    fields.finish();
     std::vector<Band> bands;
-    TableWork work;
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-        bands.push_back(band_from_json(rows[i], source, fmt::format("bands[{}]", i), spec, work));
-    }
+    read_document(text, source, "table",
+                  [&](JsonReader& reader) { describe_table(reader, spec, bands, {}); });
     if (!bands.empty() && !bands.front().notches.empty()) {
         spec.q = bands.front().notches.front().notch.q;
         spec.depth_db = bands.front().notches.front().notch.depth_db;
     }
-    try {
-        return CandidateTable::from_bands(std::move(spec), std::move(bands));
-    } catch (const UsageError& error) {
-        raise<DataError>("{}: {}", source, error.what());
-    }
+    std::optional<CandidateTable> table;
+    as_data(source, [&] { table = CandidateTable::from_bands(std::move(spec), std::move(bands)); });
+    return std::move(*table);
 }
 
 CandidateTable load_table(const std::string& path) {

@@ -1,225 +1,240 @@
 // SPDX-License-Identifier: MIT
+#include "ripplenotch/document/trend_json.hpp"
+
 #include <fmt/ranges.h>
 
 #include <map>
+#include <utility>
 
 #include "document/fields/fields.hpp"
-#include "document/json/json.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/visible_text.hpp"
-#include "ripplenotch/document/trend_json.hpp"
 #include "ripplenotch/fleet/features.hpp"
 
 namespace ripplenotch {
 
 namespace {
 
-constexpr std::size_t most_rows = 200000;  // of a table: joints times months
+constexpr AtMost most_rows{200000};  // of a table: joints times months
 
-using JointName = std::pair<std::string, std::string>;
-
-class TrendReader {
-  public:
-    explicit TrendReader(Fields& fields) : fields_(fields) {}
-
-    [[nodiscard]] Trend read() {
-        trend_.joint_months = fields_.number("joint_months");
-        fields_.each(
-            "joints", [&](Fields& row) { joint(row); }, most_rows);
-        fields_.each(
-            "months", [&](Fields& row) { month(row); }, most_rows);
-        fields_.each(
-            "alerts", [&](Fields& row) { alert(row); }, most_rows);
-        fields_.each(
-            "courses", [&](Fields& row) { course(row); }, most_rows);
-        return std::move(trend_);
-    }
-
-  private:
-    static JointName name_of(Fields& row) { return {row.text("robot"), row.text("joint")}; }
-    static std::string date_of(Fields& row, std::string_view name) {
-        std::string date = row.text(name);
-        if (!date_seconds(date))
-            raise<DataError>("{} is '{}', expected a date such as 2026-01-05T12:30:00Z", row.where(name),
-                             date);
-        return date;
-    }
-    JointTrend& joint_of(Fields& row) {
-        const auto found = places_.find(name_of(row));
-        if (found == places_.end())
-            raise<DataError>("{} is '{}', which is none of the joints", row.where("joint"),
-                             row.text("joint"));
-        return trend_.joints[found->second];
-    }
-
-    void joint(Fields& row) {
-        JointTrend& one = trend_.joints.emplace_back();
-        std::tie(one.robot, one.joint) = name_of(row);
-        places_[{one.robot, one.joint}] = trend_.joints.size() - 1;
-        one.from = row.text("from");
-        row.ignore({"alerts", "lines", "to", "months", "conditions", "notes"});
-    }
-    void month(Fields& row) {
-        JointMonth one{row.text("month"), row.text("descriptor"), row.number("deviations")};
-        joint_of(row).course.push_back(std::move(one));
-    }
-    void alert(Fields& row) {
-        JointChange one;
-        one.cause = row.text("cause");
-        one.drift = row.text("kind") == "drift";
-        one.date = date_of(row, "date");
-        one.earliest = date_of(row, "earliest");
-        one.latest = date_of(row, "latest");
-        if (row.has("descriptor")) one.descriptors.push_back({row.text("descriptor"), 0.0, {}, {}});
-        row.ignore({"p", "limit", "kin", "size", "size_ci95_low", "size_ci95_high", "percent",
-                    "last_log_before", "last_page_before", "first_log_after", "first_page_after"});
-        joint_of(row).changes.push_back(std::move(one));
-    }
-    void course(Fields& row) {
-        const std::string alert = row.text("alert"), descriptor = row.text("descriptor");
-        AdjustedValue value{date_of(row, "date"), row.number("value"), row.text("log"), {}};
-        row.ignore({"page"});
-        for (JointChange& one : joint_of(row).changes)
-            if (one.date == alert && !one.descriptors.empty() && one.descriptors.front().name == descriptor)
-                return one.course.push_back(std::move(value));
-        raise<DataError>("{} is '{}', which is the date of no alert of this joint", row.where("alert"),
-                         alert);
-    }
-
-    Fields& fields_;
-    Trend trend_;
-    std::map<JointName, std::size_t> places_;
+// What belongs to a joint as a row of a table: trend.json is flat, since a page shows it so.
+template <class Part>
+struct Row {
+    std::string robot, joint;
+    Part part;
 };
+
+template <class Value>
+concept IsRow = requires(Value& value) {
+    value.part;
+};
+
+// A value in the course of an alert, which its date and descriptor name.
+struct CourseValue {
+    std::string alert, descriptor;
+    AdjustedValue value;
+};
+
+// A descriptor that took part in an alert of this date.
+struct DatedDescriptor {
+    std::string date;
+    ChangedDescriptor changed;
+};
+
+template <class Part>
+std::vector<Row<Part>> rows_of(const Trend& trend, std::vector<Part> JointTrend::*parts) {
+    std::vector<Row<Part>> rows;
+    for (const JointTrend& joint : trend.joints)
+        for (const Part& part : joint.*parts) rows.push_back({joint.robot, joint.joint, part});
+    return rows;
+}
+
+// Of the worst alerts, which are those of the joints that stand first.
+std::vector<Row<CourseValue>> course_rows(const Trend& trend) {
+    std::vector<Row<CourseValue>> rows;
+    std::size_t shown = 0;
+    for (const JointTrend& joint : trend.joints)
+        for (const JointChange& change : joint.changes) {
+            if (change.course.empty() || shown++ >= most_trend_courses) continue;
+            for (const AdjustedValue& value : change.course)
+                rows.push_back(
+                    {joint.robot, joint.joint, {change.date, change.descriptors.front().name, value}});
+        }
+    return rows;
+}
+
+std::vector<Row<DatedDescriptor>> changed_rows(const Trend& trend) {
+    std::vector<Row<DatedDescriptor>> rows;
+    for (const JointTrend& joint : trend.joints)
+        for (const JointChange& change : joint.changes)
+            for (const ChangedDescriptor& part : change.descriptors)
+                rows.push_back({joint.robot, joint.joint, {change.date, part}});
+    return rows;
+}
+
+template <class Archive>
+void describe_date(Archive& archive, std::string_view name, auto& date) {
+    archive(name, date);
+    if constexpr (Archive::reading) {
+        if (!date_seconds(date))
+            raise<DataError>("{} is '{}', expected a date such as 2026-01-05T12:30:00Z", archive.where(name),
+                             date);
+    }
+}
 
 }  // namespace
 
-Trend trend_from_json(std::string_view text, const std::string& source) {
-    const Json json = parse_document(text, source, "trend");
-    Fields fields(json, source, "");
-    return TrendReader(fields).read();
+void describe(JsonWriter& json, const ChangedDescriptor& changed) {
+    json("descriptor", changed.name);
+    json("size", changed.size, six);
+    json("size_ci95_low", changed.ci95.low, six);
+    json("size_ci95_high", changed.ci95.high, six);
+    json("percent", changed.percent, six);
+}
+
+void describe(JsonWriter& json, const DatedDescriptor& one) {
+    json("date", one.date);
+    describe(json, one.changed);
+}
+
+void describe(JsonWriter& json, const OddDescriptor& odd) {
+    json("descriptor", odd.name);
+    json("baseline", odd.baseline, six);
+    json("median_of_kind", odd.of_kind, six);
+    json("deviations", odd.deviations, six);
+}
+
+void describe(JsonWriter& json, const DescriptorTrend& one) {
+    json("descriptor", one.name);
+    json("lines", one.lines);
+    json("baseline", one.baseline, six);
+    json("slope_per_month", one.slope_per_month, six);
+    const Interval slope = one.slope_ci95.value_or(Interval{});
+    json.known("slope_ci95_low", one.slope_ci95.has_value(), slope.low, six);
+    json.known("slope_ci95_high", one.slope_ci95.has_value(), slope.high, six);
+    json.known("spread", one.baseline.has_value(), one.spread, six);
+    json("reason", one.reason);
+}
+
+// A picture needs no more of an alert than is read of it.
+template <class Archive>
+void describe(Archive& archive, Is<JointChange> auto& change) {
+    archive("cause", change.cause);
+    std::string kind = change.drift ? "drift" : "step";
+    archive("kind", kind);
+    describe_date(archive, "date", change.date);
+    describe_date(archive, "earliest", change.earliest);
+    describe_date(archive, "latest", change.latest);
+    if constexpr (Archive::reading) {
+        change.drift = kind == "drift";
+        if (archive.has("descriptor"))
+            change.descriptors.push_back({archive.text("descriptor"), 0.0, {}, {}});
+        archive.ignore({"p", "limit", "kin", "size", "size_ci95_low", "size_ci95_high", "percent",
+                        "last_log_before", "last_page_before", "first_log_after", "first_page_after"});
+    } else {
+        archive("p", change.p, six);
+        archive("limit", change.limit, six);
+        archive("kin", change.kin);
+        if (!change.descriptors.empty()) describe(archive, change.descriptors.front());
+        archive("last_log_before", change.last_log);
+        archive("last_page_before", change.last_page, null_if_empty);
+        archive("first_log_after", change.first_log);
+        archive("first_page_after", change.first_page, null_if_empty);
+    }
+}
+
+void describe(auto& archive, Is<CourseValue> auto& one) {
+    archive("alert", one.alert);
+    archive("descriptor", one.descriptor);
+    describe_date(archive, "date", one.value.date);
+    archive("value", one.value.value, six);
+    archive("log", one.value.log);
+    archive.told(
+        "page", [&] { return one.value.page; }, null_if_empty);
+}
+
+void describe(auto& archive, Is<JointMonth> auto& month) {
+    archive("month", month.month);
+    archive("deviations", month.deviations, six);
+    archive("descriptor", month.descriptor);
+}
+
+void describe(auto& archive, IsRow auto& row) {
+    archive("robot", row.robot);
+    archive("joint", row.joint);
+    describe(archive, row.part);
+}
+
+void describe(auto& archive, Is<JointTrend> auto& joint) {
+    archive("robot", joint.robot);
+    archive("joint", joint.joint);
+    archive.told("alerts", [&] { return joint.changes.size(); });
+    archive.told("lines", [&] { return joint.lines; });
+    archive("from", joint.from);
+    archive.told("to", [&] { return joint.to; });
+    archive.told(
+        "months", [&] { return joint.months; }, six);
+    archive.told("conditions", [&] { return fmt::format("{}", fmt::join(joint.conditions, ", ")); });
+    archive.told("notes", [&] { return fmt::format("{}", fmt::join(joint.notes, "; ")); });
 }
 
 namespace {
 
-Json head_of(const JointTrend& joint) { return {{"robot", joint.robot}, {"joint", joint.joint}}; }
+using JointsByName = std::map<std::pair<std::string, std::string>, JointTrend*>;
 
-Json page_or_null(const std::string& page) { return page.empty() ? Json(nullptr) : Json(page); }
-
-void add_interval(Json& json, const std::string& name, const Interval& interval) {
-    json[name + "_ci95_low"] = six_digits(interval.low);
-    json[name + "_ci95_high"] = six_digits(interval.high);
+JointTrend& joint_of(const JsonReader& reader, std::string_view table, const JointsByName& joints,
+                     const auto& row) {
+    const auto found = joints.find({row.robot, row.joint});
+    if (found == joints.end())
+        raise<DataError>("{}: joint is '{}', which is none of the joints", reader.where(table), row.joint);
+    return *found->second;
 }
 
-Json alert_to_json(const JointTrend& joint, const JointChange& change) {
-    Json json = head_of(joint);
-    json["cause"] = change.cause;
-    json["kind"] = change.drift ? "drift" : "step";
-    json["date"] = change.date;
-    json["earliest"] = change.earliest;
-    json["latest"] = change.latest;
-    json["p"] = six_digits(change.p);
-    json["limit"] = six_digits(change.limit);
-    json["kin"] = change.kin;
-    if (!change.descriptors.empty()) {
-        const ChangedDescriptor& surest = change.descriptors.front();
-        json["descriptor"] = surest.name;
-        json["size"] = six_digits(surest.size);
-        add_interval(json, "size", surest.ci95);
-        json["percent"] = six_digits(surest.percent);
-    }
-    json["last_log_before"] = change.last_log;
-    json["last_page_before"] = page_or_null(change.last_page);
-    json["first_log_after"] = change.first_log;
-    json["first_page_after"] = page_or_null(change.first_page);
-    return json;
-}
-
-Json part_to_json(const JointTrend& joint, const JointChange& change, const ChangedDescriptor& part) {
-    Json json = head_of(joint);
-    json["date"] = change.date;
-    json["descriptor"] = part.name;
-    json["size"] = six_digits(part.size);
-    add_interval(json, "size", part.ci95);
-    json["percent"] = six_digits(part.percent);
-    return json;
-}
-
-Json descriptor_to_json(const JointTrend& joint, const DescriptorTrend& one) {
-    Json json = head_of(joint);
-    json["descriptor"] = one.name;
-    json["lines"] = one.lines;
-    json["baseline"] = six_digits(one.baseline);
-    json["slope_per_month"] = six_digits(one.slope_per_month);
-    json["slope_ci95_low"] = one.slope_ci95 ? six_digits(one.slope_ci95->low) : Json(nullptr);
-    json["slope_ci95_high"] = one.slope_ci95 ? six_digits(one.slope_ci95->high) : Json(nullptr);
-    json["spread"] = one.baseline ? six_digits(one.spread) : Json(nullptr);
-    json["reason"] = one.reason;
-    return json;
-}
-
-Json joint_to_json(const JointTrend& joint) {
-    Json json = head_of(joint);
-    json["alerts"] = joint.changes.size();
-    json["lines"] = joint.lines;
-    json["from"] = joint.from;
-    json["to"] = joint.to;
-    json["months"] = six_digits(joint.months);
-    json["conditions"] = fmt::format("{}", fmt::join(joint.conditions, ", "));
-    json["notes"] = fmt::format("{}", fmt::join(joint.notes, "; "));
-    return json;
-}
-
-// Of the worst alerts, which are those of the joints that stand first.
-void add_courses(const Trend& trend, Json& json) {
-    std::size_t shown = 0;
-    for (const JointTrend& joint : trend.joints) {
-        for (const JointChange& change : joint.changes) {
-            if (change.course.empty() || shown++ >= most_trend_courses) continue;
-            for (const AdjustedValue& value : change.course) {
-                Json one = head_of(joint);
-                one["alert"] = change.date;
-                one["descriptor"] = change.descriptors.front().name;
-                one["date"] = value.date;
-                one["value"] = six_digits(value.value);
-                one["log"] = value.log;
-                one["page"] = page_or_null(value.page);
-                json["courses"].push_back(std::move(one));
-            }
-        }
-    }
-}
-
-void add_lists(const Trend& trend, Json& json) {
-    for (const char* name : {"alerts", "courses", "changed", "odd", "joints", "descriptors", "months"})
-        json[name] = Json::array();
-    for (const JointTrend& joint : trend.joints) {
-        for (const JointChange& change : joint.changes) {
-            json["alerts"].push_back(alert_to_json(joint, change));
-            for (const ChangedDescriptor& part : change.descriptors)
-                json["changed"].push_back(part_to_json(joint, change, part));
-        }
-        for (const OddDescriptor& one : joint.odd) {
-            Json odd = head_of(joint);
-            odd["descriptor"] = one.name;
-            odd["baseline"] = six_digits(one.baseline);
-            odd["median_of_kind"] = six_digits(one.of_kind);
-            odd["deviations"] = six_digits(one.deviations);
-            json["odd"].push_back(std::move(odd));
-        }
-        json["joints"].push_back(joint_to_json(joint));
-        for (const DescriptorTrend& one : joint.descriptors)
-            json["descriptors"].push_back(descriptor_to_json(joint, one));
-        for (const JointMonth& month : joint.course) {
-            Json one = head_of(joint);
-            one["month"] = month.month;
-            one["deviations"] = six_digits(month.deviations);
-            one["descriptor"] = month.descriptor;
-            json["months"].push_back(std::move(one));
-        }
-    }
+void add_course(const JsonReader& reader, JointTrend& joint, CourseValue one) {
+    for (JointChange& change : joint.changes)
+        if (change.date == one.alert && !change.descriptors.empty() &&
+            change.descriptors.front().name == one.descriptor)
+            return change.course.push_back(std::move(one.value));
+    raise<DataError>("{}: alert is '{}', which is the date of no alert of this joint",
+                     reader.where("courses"), one.alert);
 }
 
 }  // namespace
+
+template <class Archive>
+void describe(Archive& archive, Is<Trend> auto& trend) {
+    std::vector<Row<JointChange>> alerts;
+    std::vector<Row<CourseValue>> courses;
+    std::vector<Row<JointMonth>> months;
+    if constexpr (!Archive::reading) {
+        alerts = rows_of(trend, &JointTrend::changes);
+        courses = course_rows(trend);
+        months = rows_of(trend, &JointTrend::course);
+    }
+    archive.told("verdict", [&] { return trend_verdict(trend); });
+    archive.told("false_alarms_per_joint_month", [&] { return trend.options.false_alarms; });
+    archive.told(
+        "expected_false_alarms", [&] { return trend.expected_false_alarms; }, six);
+    archive("joint_months", trend.joint_months, six);
+    archive.told("seed", [&] { return trend.options.seed; });
+    archive.told("lines", [&] { return trend.lines; });
+    archive.told("failed_lines", [&] { return trend.failed; });
+    archive.told("notes", [&] { return trend.notes; });
+    archive("alerts", alerts, most_rows);
+    archive("courses", courses, most_rows);
+    archive.told("changed", [&] { return changed_rows(trend); });
+    archive.told("odd", [&] { return rows_of(trend, &JointTrend::odd); });
+    archive("joints", trend.joints, most_rows);
+    archive.told("descriptors", [&] { return rows_of(trend, &JointTrend::descriptors); });
+    archive("months", months, most_rows);
+    if constexpr (Archive::reading) {
+        JointsByName joints;
+        for (JointTrend& joint : trend.joints) joints[{joint.robot, joint.joint}] = &joint;
+        for (auto& row : months) joint_of(archive, "months", joints, row).course.push_back(row.part);
+        for (auto& row : alerts) joint_of(archive, "alerts", joints, row).changes.push_back(row.part);
+        for (auto& row : courses) add_course(archive, joint_of(archive, "courses", joints, row), row.part);
+    }
+}
 
 std::string trend_verdict(const Trend& trend) {
     std::size_t changed = 0, looked_at = 0;
@@ -239,27 +254,17 @@ std::string trend_verdict(const Trend& trend) {
 }
 
 std::string trend_text(const Trend& trend, const Provenance& provenance) {
-    Json json = document_head("trend", provenance);
-    json["verdict"] = trend_verdict(trend);
-    json["false_alarms_per_joint_month"] = trend.options.false_alarms;
-    json["expected_false_alarms"] = six_digits(trend.expected_false_alarms);
-    json["joint_months"] = six_digits(trend.joint_months);
-    json["seed"] = trend.options.seed;
-    json["lines"] = trend.lines;
-    json["failed_lines"] = trend.failed;
-    json["notes"] = trend.notes;
-    add_lists(trend, json);
-    add_courses(trend, json);
-    return to_text(json);
+    return to_text(document_of("trend", provenance, trend));
+}
+
+Trend trend_from_json(std::string_view text, const std::string& source) {
+    return result_of<Trend>(text, source, "trend");
 }
 
 std::string alert_lines(const Trend& trend) {
     std::string text;
-    for (const JointTrend& joint : trend.joints)
-        for (const JointChange& change : joint.changes)
-            text += visible_json(
-                        alert_to_json(joint, change).dump(-1, ' ', false, Json::error_handler_t::replace)) +
-                    "\n";
+    for (const Row<JointChange>& row : rows_of(trend, &JointTrend::changes))
+        text += visible_json(to_json(row).dump(-1, ' ', false, Json::error_handler_t::replace)) + "\n";
     return text;
 }
 
