@@ -43,7 +43,7 @@ void describe(auto& archive, Is<Whole> auto& whole) {
     archive("parts", whole.parts, AtMost{3});
     archive("multiples", whole.multiples, Limits{1.0, 9.0});
     archive("late", whole.late, if_there);
-    archive.told("sum", [&] { return whole.parts.size(); });
+    archive.derived("sum", [&] { return whole.parts.size(); });
 }
 
 }  // namespace ripplenotch

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// The gear of a command: which of its sources is believed. Options first, then keys of the method, the joint
+// The gear of a command: which of its sources counts. Options first, then keys of the method, the joint
 // file, the method's table.
 
 #include <functional>
@@ -140,7 +140,7 @@ class JointMethods {
 
     /// Throws the same, and what with_joint throws.
     [[nodiscard]] std::shared_ptr<const Contender> of(const std::string& joint) const;
-    /// Of all joints; empty where each has its own, or nobody says it.
+    /// The gear of all joints; empty where each has its own, or none is stated.
     [[nodiscard]] std::optional<GearAccount> common_gear() const;
     /// Whether the method looks at the whole log before it filters.
     [[nodiscard]] bool learns() const;

@@ -124,11 +124,11 @@ struct GivenTerms {
     std::optional<SimulatedTerm> simulated;  ///< as stated
     std::optional<StatedArm> arm;            ///< as stated, or as --arm has it
     std::optional<ArmAccount> account;       ///< of the arm
-    std::vector<std::string> files;          ///< that were read beside the logs
+    std::vector<std::string> files;          ///< that were read in addition to the logs
     std::optional<SetupAnswer> setup;        ///< of simulation and log, where it was asked for
     std::shared_ptr<GivenArm> fitted_arm;    ///< whose values are found with the rest; null: all are stated
 
-    /// "simulated.scale", "arm.links": values that nobody states yet; empty: none.
+    /// "simulated.scale", "arm.links": values that are not stated yet; empty: none.
     [[nodiscard]] std::vector<std::string> open() const;
 };
 

@@ -42,7 +42,7 @@ namespace ripplenotch {
                                   const std::vector<std::vector<double>>& temperatures_degc = {});
 
 /// Throws DataError, naming what settles it, where the log may mean several motions: its units are open, or
-/// it was measured before the gear and nobody states the ratio.
+/// it was measured before the gear and its ratio is not stated.
 void refuse_open_readings(const Log& log);
 
 }  // namespace ripplenotch

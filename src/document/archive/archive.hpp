@@ -43,7 +43,7 @@ constexpr bool is_array_of_numbers = false;
 template <std::size_t size>
 constexpr bool is_array_of_numbers<std::array<double, size>> = true;
 
-// What may be said of a field beside its name and value. Each is for the archive that can do something with
+// Options of a field, after its name and value. Each is for the archive that can do something with
 // it; the other passes over it.
 
 /// Older files do not have it: then the value stays what it is. It is always written.

@@ -39,7 +39,7 @@ class JsonReader {
     }
 
     template <class ValueOf, class... Marks>
-    void told(std::string_view name, const ValueOf& /*of the writer*/, const Marks&... /*as well*/) {
+    void derived(std::string_view name, const ValueOf& /*of the writer*/, const Marks&... /*as well*/) {
         ignore({name});
     }
 
@@ -95,7 +95,7 @@ class JsonReader {
     }
     void ignore(std::initializer_list<std::string_view> names);    ///< known, not used
     [[nodiscard]] std::vector<std::string> not_asked_for() const;  ///< names so far
-    void finish() const;                                           ///< throws on fields nobody asked for
+    void finish() const;  ///< throws on fields that no description has read
     [[nodiscard]] std::string where(std::string_view name) const;  ///< "table.json: bands[2].q"
     [[nodiscard]] std::string place() const { return fmt::format("{}: {}", source_, path_); }
     [[nodiscard]] const std::string& source() const { return source_; }

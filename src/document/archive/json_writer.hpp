@@ -26,7 +26,7 @@ class JsonWriter {
 
     /// What a reader passes over, since it follows from the rest: value() is asked for by the writer alone.
     template <class ValueOf, class... Marks>
-    void told(std::string_view name, const ValueOf& value, const Marks&... marks) {
+    void derived(std::string_view name, const ValueOf& value, const Marks&... marks) {
         (*this)(name, value(), marks...);
     }
 

@@ -67,7 +67,7 @@ void describe_term(Archive& archive, Is<Term> auto& term, const Model& model) {
     }
 }
 
-/// "gear_ratio" and "effects"; whether it stands beside a simulation is known before.
+/// "gear_ratio" and "effects"; the caller knows whether the model has a simulation.
 template <class Archive>
 void describe(Archive& archive, Is<Model> auto& model) {
     archive("gear_ratio", model.gear_ratio, above_zero_up_to(largest_gear_ratio.value()));

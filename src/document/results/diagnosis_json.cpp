@@ -98,11 +98,16 @@ void describe(auto& archive, Is<RivalFinding> auto& rival) {
     archive("margin", rival.margin, six_or_unknown);
 }
 
-void describe(auto& archive, Is<Finding> auto& finding) {
+// An effect with its status and its values.
+void describe_named(auto& archive, auto& finding) {
     describe_effect(archive, finding.term.effect);
     archive("status", finding.status, statuses);
     archive("reason", finding.reason, if_any);
     describe_parameters(archive, finding.term, finding.values);
+}
+
+void describe(auto& archive, Is<Finding> auto& finding) {
+    describe_named(archive, finding);
     archive("where", finding.where);
     archive("evidence", finding.evidence);
     archive("alternatives", finding.alternatives);
@@ -112,12 +117,7 @@ void describe(auto& archive, Is<Finding> auto& finding) {
     archive("gap_after_nm", finding.gap_after_nm, six_or_unknown);
 }
 
-void describe(auto& archive, Is<AcceptedFinding> auto& one) {
-    describe_effect(archive, one.term.effect);
-    archive("status", one.status, statuses);
-    archive("reason", one.reason, if_any);
-    describe_parameters(archive, one.term, one.values);
-}
+void describe(auto& archive, Is<AcceptedFinding> auto& one) { describe_named(archive, one); }
 
 void describe(auto& archive, Is<Fault> auto& fault) {
     std::vector<FittedValue> none;
@@ -362,7 +362,7 @@ void describe(JsonWriter& json, const PlanQuestion& question) {
 
 namespace {
 
-// Written beside a diagnosis, where it was asked for.
+// Files that were written with a diagnosis on request.
 void put_written(JsonWriter& json, const DiagnosisWritten& written) {
     json("mjcf", written.mjcf, if_any);
     if (written.plan == nullptr) {
@@ -378,14 +378,14 @@ void put_written(JsonWriter& json, const DiagnosisWritten& written) {
     });
 }
 
-// `told`: what is written with a diagnosis and is no part of it; nullptr where it is read.
+// `joint`: what is written with a diagnosis and is no part of it; nullptr where it is read.
 template <class Archive>
-void describe_diagnosis(Archive& archive, auto& diagnosis, const DiagnosedJoint* told) {
+void describe_diagnosis(Archive& archive, auto& diagnosis, const DiagnosedJoint* joint) {
     archive("verdict", diagnosis.verdict, Names{verdict_name, DiagnosisVerdict::undecided});
     archive("doubt", diagnosis.doubt, if_any);
-    archive.told("gear", [&] { return &told->gear; });
+    archive.derived("gear", [&] { return &joint->gear; });
     archive("named", diagnosis.named);
-    archive.told(
+    archive.derived(
         "wrong_percent", [&] { return wrong_percent(diagnosis); }, six);
     archive("rounds", diagnosis.rounds);
     describe_decisions(archive, diagnosis);
@@ -395,7 +395,7 @@ void describe_diagnosis(Archive& archive, auto& diagnosis, const DiagnosedJoint*
     archive("disagreement", diagnosis.disagreement);
     archive("undecidable", diagnosis.undecidable);
     archive("gap", diagnosis.gap);
-    // An arm's values are of combinations of links, which nobody reads one by one.
+    // An arm's values are of combinations of links, which have no meaning one by one.
     const auto given = std::find_if(diagnosis.given.begin(), diagnosis.given.end(),
                                     [](const GivenValue& value) { return value.name == simulated; });
     double scale = given == diagnosis.given.end() ? 1.0 : given->value;
@@ -404,19 +404,19 @@ void describe_diagnosis(Archive& archive, auto& diagnosis, const DiagnosedJoint*
         if constexpr (Archive::reading) diagnosis.given.push_back({std::string(simulated), scale, {}});
     }
     archive("residual_in_noise", diagnosis.residual_in_noise, if_any);
-    archive.told(
+    archive.derived(
         "setup", [&] { return diagnosis.setup; }, if_any);
-    archive.told(
+    archive.derived(
         "alignment", [&] { return diagnosis.alignment; }, if_any);
     archive("bands", diagnosis.bands, if_any);
     archive("accepted", diagnosis.accepted, if_any);
     archive("next", diagnosis.next, if_any);
-    archive.told(
-        "arm", [&] { return told->arm; }, if_any);
+    archive.derived(
+        "arm", [&] { return joint->arm; }, if_any);
     if constexpr (Archive::reading)
         archive.ignore({"mjcf", "plan"});
     else
-        put_written(archive, told->written);
+        put_written(archive, joint->written);
     describe_own_terms(archive, diagnosis);
     archive("samples", diagnosis.samples);
     archive("samples_used", diagnosis.samples_used);
@@ -433,7 +433,7 @@ void describe_diagnosis(Archive& archive, auto& diagnosis, const DiagnosedJoint*
     archive("noise_color", diagnosis.noise_color, six);
     archive("false_alarm", diagnosis.false_alarm);
     archive.group("model", [&](Archive& model) {
-        model.told("schema", [] { return "ripplenotch/model/1"; });
+        model.derived("schema", [] { return "ripplenotch/model/1"; });
         if constexpr (Archive::reading)
             diagnosis.model.beside_simulation = is_given(diagnosis.given, simulated);
         describe(model, diagnosis.model);
@@ -460,9 +460,9 @@ Json place_json(const Place& place) { return to_json(place); }
 
 std::string write_diagnosis(const Diagnosis& diagnosis, const GearAccount& gear, const Provenance& provenance,
                             const ArmAccount* arm, const DiagnosisWritten& written) {
-    const DiagnosedJoint told{{}, diagnosis, gear, arm, written};
-    return to_fitted_text(document_of("diagnosis", provenance,
-                                      [&](JsonWriter& json) { describe_diagnosis(json, diagnosis, &told); }));
+    const DiagnosedJoint joint{{}, diagnosis, gear, arm, written};
+    return to_fitted_text(document_of(
+        "diagnosis", provenance, [&](JsonWriter& json) { describe_diagnosis(json, diagnosis, &joint); }));
 }
 
 std::string write_diagnoses(std::span<const DiagnosedJoint> joints, const Provenance& provenance) {

@@ -25,7 +25,7 @@ std::string reason_of(JsonReader& line, const std::string& name) {
     return found->get<std::string>();
 }
 
-// Who says a condition, or why nobody does.
+// The source of a condition, or the reason why it is unknown.
 template <class Archive>
 void describe_source(Archive& archive, const std::string& name, bool is_told, auto& source) {
     const std::string field = name.substr(0, name.find('_')) + "_source";
@@ -119,7 +119,7 @@ void describe(Archive& archive, Is<FeatureLine> auto& line) {
 
 template <class Archive>
 void describe(Archive& archive, Is<ShardRecord> auto& record) {
-    archive.told("schema", [] { return "ripplenotch/shard/1"; });
+    archive.derived("schema", [] { return "ripplenotch/shard/1"; });
     archive("version", record.version);
     archive("settings", record.settings);
     archive("manifest_sha256", record.manifest_sha256);

@@ -120,7 +120,7 @@ void describe(auto& archive, Is<Identification> auto& found) {
     archive("evidence", found.evidence);
     archive("searched", found.searched);
     archive("gear_ratio", found.gear_ratio);
-    archive.told("gear", [&] { return found_gear(found); });
+    archive.derived("gear", [&] { return found_gear(found); });
     archive("lines", found.lines, AtMost{most_lines});
     archive("velocity_error", found.velocity_error);
     archive("families", found.families, if_there);

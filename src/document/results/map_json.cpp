@@ -48,8 +48,8 @@ auto ends_of(Is<MapRange> auto& range) { return std::tie(range.from, range.to); 
 
 template <class Archive>
 void describe(Archive& archive, Is<Coefficient> auto& one) {
-    archive.told("order", [&] { return one.order; });
-    archive.told("column", [&] { return one.column; });
+    archive.derived("order", [&] { return one.order; });
+    archive.derived("column", [&] { return one.column; });
     double cosine_error = one.error.real(), sine_error = one.error.imag(), cosine = one.value.real(),
            sine = one.value.imag();
     archive("cosine_nm", cosine);
@@ -61,7 +61,7 @@ void describe(Archive& archive, Is<Coefficient> auto& one) {
 
 template <class Archive>
 void describe(Archive& archive, Is<MapForm> auto& form) {
-    archive.told("words", [&] { return map_form_words(form); });
+    archive.derived("words", [&] { return map_form_words(form); });
     describe_rising(archive, "speeds_deg_s", form.speeds_deg_s, {0.0, 1, most_speeds});
     archive("directions", form.directions, Limits{1, 2});
     archive("turn_harmonics", form.turn_harmonics, Limits{0, most_turn_harmonics});
@@ -134,7 +134,7 @@ std::string_view angle_name(bool anchored) { return anchored ? "position" : "int
 template <class Archive>
 void describe(Archive& archive, Is<MapFit> auto& fit) {
     auto& map = fit.map;
-    archive.told("verdict", [&] { return map_verdict(fit); });
+    archive.derived("verdict", [&] { return map_verdict(fit); });
     archive("finding", fit.finding, Names{map_finding_name, MapFinding::too_little});
     archive("doubt", fit.doubt);
     archive("conclusive", fit.conclusive);

@@ -116,11 +116,11 @@ void describe_table(Archive& archive, auto& spec, auto&& bands, const DesignNote
     archive("sample_rate_hz", spec.sample_rate);
     archive("gear_ratio", spec.gear_ratio);
     archive("orders", spec.orders, AtMost{most_orders});
-    archive.told(
+    archive.derived(
         "gear", [&] { return note.gear; }, if_any);
     archive("gear_ratio_error_percent", spec.ratio_error, in_percent, if_any);
     archive("amplitude_nm", spec.amplitude_nm, if_any);
-    archive.told(
+    archive.derived(
         "designed_for", [&] { return note.reason.empty() ? nullptr : &note; }, if_any);
     archive("width", spec.width, Names{width_rule_name, WidthRule::digital});
     TableWork work;

@@ -149,7 +149,7 @@ void describe(auto& archive, Is<CourseValue> auto& one) {
     describe_date(archive, "date", one.value.date);
     archive("value", one.value.value, six);
     archive("log", one.value.log);
-    archive.told(
+    archive.derived(
         "page", [&] { return one.value.page; }, null_if_empty);
 }
 
@@ -168,14 +168,14 @@ void describe(auto& archive, IsRow auto& row) {
 void describe(auto& archive, Is<JointTrend> auto& joint) {
     archive("robot", joint.robot);
     archive("joint", joint.joint);
-    archive.told("alerts", [&] { return joint.changes.size(); });
-    archive.told("lines", [&] { return joint.lines; });
+    archive.derived("alerts", [&] { return joint.changes.size(); });
+    archive.derived("lines", [&] { return joint.lines; });
     archive("from", joint.from);
-    archive.told("to", [&] { return joint.to; });
-    archive.told(
+    archive.derived("to", [&] { return joint.to; });
+    archive.derived(
         "months", [&] { return joint.months; }, six);
-    archive.told("conditions", [&] { return fmt::format("{}", fmt::join(joint.conditions, ", ")); });
-    archive.told("notes", [&] { return fmt::format("{}", fmt::join(joint.notes, "; ")); });
+    archive.derived("conditions", [&] { return fmt::format("{}", fmt::join(joint.conditions, ", ")); });
+    archive.derived("notes", [&] { return fmt::format("{}", fmt::join(joint.notes, "; ")); });
 }
 
 namespace {
@@ -211,21 +211,21 @@ void describe(Archive& archive, Is<Trend> auto& trend) {
         courses = course_rows(trend);
         months = rows_of(trend, &JointTrend::course);
     }
-    archive.told("verdict", [&] { return trend_verdict(trend); });
-    archive.told("false_alarms_per_joint_month", [&] { return trend.options.false_alarms; });
-    archive.told(
+    archive.derived("verdict", [&] { return trend_verdict(trend); });
+    archive.derived("false_alarms_per_joint_month", [&] { return trend.options.false_alarms; });
+    archive.derived(
         "expected_false_alarms", [&] { return trend.expected_false_alarms; }, six);
     archive("joint_months", trend.joint_months, six);
-    archive.told("seed", [&] { return trend.options.seed; });
-    archive.told("lines", [&] { return trend.lines; });
-    archive.told("failed_lines", [&] { return trend.failed; });
-    archive.told("notes", [&] { return trend.notes; });
+    archive.derived("seed", [&] { return trend.options.seed; });
+    archive.derived("lines", [&] { return trend.lines; });
+    archive.derived("failed_lines", [&] { return trend.failed; });
+    archive.derived("notes", [&] { return trend.notes; });
     archive("alerts", alerts, most_rows);
     archive("courses", courses, most_rows);
-    archive.told("changed", [&] { return changed_rows(trend); });
-    archive.told("odd", [&] { return rows_of(trend, &JointTrend::odd); });
+    archive.derived("changed", [&] { return changed_rows(trend); });
+    archive.derived("odd", [&] { return rows_of(trend, &JointTrend::odd); });
     archive("joints", trend.joints, most_rows);
-    archive.told("descriptors", [&] { return rows_of(trend, &JointTrend::descriptors); });
+    archive.derived("descriptors", [&] { return rows_of(trend, &JointTrend::descriptors); });
     archive("months", months, most_rows);
     if constexpr (Archive::reading) {
         JointsByName joints;

@@ -106,7 +106,7 @@ std::string reason_for_none(const Identification& found) {
     return ratios.empty() ? "found none" : "could not decide between " + ratios;
 }
 
-// What the file says beside the statements that go before it. A file that is asked and knows nothing is
+// The statement of the file, after those that take precedence. A file that is asked and knows nothing is
 // refused: it was measured, and nothing was found.
 GearStatement statement_of(const JointFile& file, const GearStatement& options, const GearStatement& method) {
     JointFacts facts = file.facts(options.ratio ? options.ratio : method.ratio);

@@ -49,7 +49,7 @@ std::vector<Doubt> log_doubts(const Log& log, const OtherReading& reading) {
                        : "a unit is wrong, or one of the two is the motor's: --unit would mend it")}};
 }
 
-/// The ratio that motion of the motor's shaft is divided by where nobody knows the real one, so that its
+/// The ratio that motion of the motor's shaft is divided by where the real one is unknown, so that its
 /// lines stand where those of a joint would.
 constexpr double stand_in_ratio = 100.0;
 
@@ -64,8 +64,8 @@ std::string lower_first(std::string text) {
     return text;
 }
 
-// What tells one reading's verdict from another's: up to the ratio's error. The notes have it whole. That one
-// of them cannot tell is said in other words than that nobody can.
+// A verdict in short, up to the error of the ratio; the notes have it whole. An undecided ratio of one
+// reading is worded differently from an undecided log.
 std::string briefly(const std::string& verdict) {
     constexpr std::string_view doubtful = "Cannot tell the gear ratio: ";
     if (verdict.starts_with(doubtful))
@@ -269,6 +269,7 @@ Identification identify_readings(std::span<const Log> logs, const IdentifyOption
 namespace {
 
 std::string gap_in_words(const Diagnosis& diagnosis) {
+    if (diagnosis.verdict == DiagnosisVerdict::matches) return "the model matches the log";
     const std::string named = fmt::format("{}", fmt::join(diagnosis.named, ", "));
     return fmt::format("the log is {}{}{}", verdict_name(diagnosis.verdict), named.empty() ? "" : " with ",
                        named);
@@ -323,7 +324,7 @@ MapFit map_under(const OtherReading& reading, std::span<const Log> logs, const G
 }  // namespace
 
 // A reading under which something turns with the motor is confirmed by that; where two have it, or none of
-// several, nobody knows which one holds.
+// several, the log does not decide which one holds.
 MapFit map_readings(std::span<const Log> logs, const GearAccount& gear, Degrees zero,
                     const std::vector<std::vector<double>>& temperatures_degc) {
     MapFit fit = map_under({}, logs, gear, zero, temperatures_degc);

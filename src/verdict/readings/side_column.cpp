@@ -35,7 +35,7 @@ std::string named_for(std::string column, const std::string& joint) {
 }
 
 // The column is read in the place of the torque.
-ReadOptions beside(std::string& column, const std::string& joint, ReadOptions read) {
+ReadOptions read_as_torque(std::string& column, const std::string& joint, ReadOptions read) {
     column = named_for(column, joint);
     std::erase_if(read.columns, [](const std::string& entry) { return entry.starts_with("torque="); });
     read.columns.push_back("torque=" + column);
@@ -65,7 +65,7 @@ std::string held_in_words(const std::string& log, const std::string& column, std
 
 std::vector<double> side_column(const std::string& path, std::string column, const std::string& joint,
                                 ReadOptions read, std::size_t most_rows) {
-    return read_log_in_part(path, beside(column, joint, std::move(read)), most_rows).trace.torque_nm;
+    return read_log_in_part(path, read_as_torque(column, joint, std::move(read)), most_rows).trace.torque_nm;
 }
 
 void require_beside(const std::vector<double>& values, const Trace& motion, const std::string& path,
@@ -84,7 +84,7 @@ double mean_of_side_column(const std::string& path, const std::string& column, c
 
 std::vector<double> held_side_column(const std::string& path, std::string column, const std::string& joint,
                                      const ReadOptions& read, std::vector<std::string>& notes) {
-    Log side = read_log_in_part(path, held(beside(column, joint, read)));
+    Log side = read_log_in_part(path, held(read_as_torque(column, joint, read)));
     if (side.held_bad_values > 0) notes.push_back(held_in_words(path, column, side.held_bad_values));
     return std::move(side.trace.torque_nm);
 }
@@ -153,7 +153,7 @@ std::unique_ptr<FollowedRows> followed_rows(const Contender& method, const std::
                                             const ReadOptions& read) {
     if (!follows_temperature(method)) return nullptr;
     std::string column = method.map->temperature_column;
-    const ReadOptions side = held(beside(column, joint_of(*method.map, read), read));
+    const ReadOptions side = held(read_as_torque(column, joint_of(*method.map, read), read));
     return std::make_unique<FollowedRows>(log, column, side);
 }
 
