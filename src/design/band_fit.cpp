@@ -76,9 +76,9 @@ Bracket bracket(const Delay& delay_at, double most_s, Bracket known, std::array<
 
 }  // namespace
 
-BandFit::BandFit(const TableSpec& spec, bool shaped)
+BandFit::BandFit(const TableSpec& spec, const Shape& how)
     : spec_(spec),
-      shaped_(shaped),
+      shaped_(how.q_by_amplitude && how.together),
       shape_(spec.orders.size(), 1.0),
       hz_per_deg_s_(spec.orders.size()),
       floor_gain_(portable::pow(10.0, -spec.depth_db / 20.0)) {
@@ -86,11 +86,11 @@ BandFit::BandFit(const TableSpec& spec, bool shaped)
     for (const double amplitude : spec.amplitude_nm) all += amplitude * amplitude;
     for (std::size_t i = 0; i < spec.orders.size(); ++i) {
         hz_per_deg_s_[i] = spec.orders[i].value() * spec.gear_ratio.value() / 360.0;
-        if (spec.amplitude_nm.empty()) continue;
+        if (spec.amplitude_nm.empty() || !how.together) continue;
         weight_.push_back(spec.amplitude_nm[i] * spec.amplitude_nm[i] / all);
         // Least delay sum 1/(n Q) for a given remaining ripple sum (a Q)^2: Q is proportional to (n
         // a^2)^(-1/3).
-        if (shaped) {
+        if (shaped_) {
             const double order = spec.orders[i].value() / spec.orders[0].value();
             shape_[i] = 1.0 / portable::cbrt(order * weight_[i] / weight_[0]);
         }
@@ -196,7 +196,7 @@ double BandFit::power(const Tuning& tuning, double speed_deg_s) const {
 }
 
 double BandFit::speed_in(double from_deg_s, double to_deg_s, int point) const {
-    const double from = from_deg_s * (1.0 - spec_.ratio_error), to = to_deg_s * (1.0 + spec_.ratio_error);
+    const auto [from, to] = speeds_in_force(spec_, from_deg_s, to_deg_s);
     const double share = static_cast<double>(point) / (points_a_side - 1);
     return from + share * (to - from);
 }
@@ -296,7 +296,12 @@ Band band_of(const TableSpec& spec, int number, DegPerSec from, DegPerSec to, co
 }
 
 BandSearch::BandSearch(const TableSpec& spec, const DesignGoal& goal)
-    : spec_(spec), fit_(spec_, !goal.q), from_(goal.from.value()), to_(goal.to.value()), q_(goal.q) {}
+    : spec_(spec),
+      fit_(spec_, {.together = goal.together(), .q_by_amplitude = !goal.q}),
+      together_(goal.together()),
+      from_(goal.from.value()),
+      to_(goal.to.value()),
+      q_(goal.q) {}
 
 QRule BandSearch::rule(std::optional<double> delay_s) const {
     if (q_) return {q_, std::nullopt};
@@ -404,13 +409,13 @@ namespace {
 constexpr std::array attenuations_db = {6.0, 10.0, 15.0, 20.0, 25.0, 30.0, 35.0, 40.0, 45.0, 50.0, 60.0};
 constexpr double step_of_bands = 1.26;  // ten points a decade
 
-TradePoint point_of(const CandidateTable& table) {
+TradePoint point_of(const CandidateTable& table, bool together) {
     TradePoint point;
     point.bands = table.bands().size();
-    point.attenuation_db = table.bands().front().held_attenuation_db;
+    point.attenuation_db = held_db(table.bands().front(), together);
     point.least_q = point.largest_q = table.bands().front().notches.front().notch.q;
     for (const Band& band : table.bands()) {
-        point.attenuation_db = std::min(point.attenuation_db, band.held_attenuation_db);
+        point.attenuation_db = std::min(point.attenuation_db, held_db(band, together));
         point.delay = std::max(point.delay, band.dc_delay);
         point.settle = std::max(point.settle, band.settle);
         point.overshoot_percent = std::max(point.overshoot_percent, band.overshoot_percent);
@@ -429,7 +434,7 @@ std::optional<TradePoint> best(const BandSearch& search, std::size_t bands, doub
     const auto held = search.attenuation_db(bands, rule, 0.0, held_db);
     if (!held) return std::nullopt;
     held_db = *held;
-    return point_of(search.table(*held, rule));
+    return point_of(search.table(*held, rule), search.together());
 }
 
 std::vector<std::size_t> counts(std::size_t from, std::size_t to) {
@@ -518,7 +523,7 @@ Frontier design_frontier(TableSpec spec, DesignGoal goal) {
     if (goal.q) raise<UsageError>("the frontier is found by varying Q; leave --q out");
     if (!spec.bands.empty())
         raise<UsageError>("the frontier is found by varying the bands; give the speeds as FROM:TO");
-    const bool by_attenuation = !goal.min_attenuation_db && !goal.max_delay;
+    const bool by_attenuation = !goal.attenuation_db() && !goal.max_delay;
     DesignGoal probe = goal;
     // Any value, to have the other parts of the goal checked.
     if (by_attenuation) probe.max_delay = Seconds(1e9);
@@ -532,13 +537,13 @@ Frontier design_frontier(TableSpec spec, DesignGoal goal) {
         goal.most_bands ? std::optional(static_cast<std::size_t>(*goal.most_bands)) : std::nullopt;
     if (by_attenuation) {
         add_by_attenuation(points, search, most.value_or(frontier_bands));
-    } else if (goal.min_attenuation_db) {
-        add_by_bands(points, search, *goal.min_attenuation_db,
+    } else if (goal.attenuation_db()) {
+        add_by_bands(points, search, *goal.attenuation_db(),
                      goal.max_delay ? std::optional(goal.max_delay->value()) : std::nullopt, most);
     } else {
         add_by_delay(points, search, goal.max_delay->value(), most.value_or(2 * choice.table.bands().size()));
     }
-    const TradePoint chosen = point_of(choice.table);
+    const TradePoint chosen = point_of(choice.table, search.together());
     frontier.recommended = insert(points, chosen, by_attenuation);
     frontier.slowest = slowest_within(spec, chosen.delay);
     return frontier;

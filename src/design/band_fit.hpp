@@ -35,9 +35,12 @@ struct Tuning {
 class BandFit {
   public:
     /// `spec` without bands; its gear ratio, orders, rate, depth, width, ratio_error and amplitudes count.
-    /// With `shaped` each order gets a Q of its own, by its amplitude, within widest_q and narrowest_q;
-    /// without it all have the rule's.
-    BandFit(const TableSpec& spec, bool shaped);
+    /// `together`: the ripple of all orders counts, by their amplitudes; else each order does. Only then can
+    /// orders have a Q each (`q_by_amplitude`), within widest_q and narrowest_q; else all have the rule's.
+    struct Shape {
+        bool together = false, q_by_amplitude = false;
+    };
+    BandFit(const TableSpec& spec, const Shape& how);
 
     /// Empty when the rule's delay cannot be met with narrowest_q.
     [[nodiscard]] std::optional<Tuning> tune(double center_deg_s, const QRule& rule) const;
@@ -100,6 +103,7 @@ class BandSearch {
     BandSearch(const TableSpec& spec, const DesignGoal& goal);
 
     [[nodiscard]] const BandFit& fit() const { return fit_; }
+    [[nodiscard]] bool together() const { return together_; }
     [[nodiscard]] QRule rule(std::optional<double> delay_s) const;
     /// Fewest bands; empty when no number (up to most_bands_ever) holds it.
     [[nodiscard]] std::optional<std::size_t> bands(double attenuation_db, const QRule& rule) const;
@@ -133,9 +137,15 @@ class BandSearch {
   private:
     TableSpec spec_;
     BandFit fit_;
+    bool together_;
     double from_, to_;
     std::optional<double> q_;
 };
+
+/// What a band holds: of its ripple together, or of each order.
+[[nodiscard]] inline double held_db(const Band& band, bool together) {
+    return together ? band.held_attenuation_db : band.least_attenuation_db();
+}
 
 /// A band with its notches as they are written: Q to seven digits, never so that it delays more.
 [[nodiscard]] Band band_of(const TableSpec& spec, int number, DegPerSec from, DegPerSec to,

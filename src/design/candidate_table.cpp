@@ -167,8 +167,7 @@ Left largest_left(std::span<const Biquad> cascade, const TableSpec& spec, const 
     const bool weighed = spec.amplitude_nm.size() == lines && lines > 0;
     double all = 0.0;
     for (const double amplitude : spec.amplitude_nm) all += amplitude * amplitude;
-    const double from = band.from.value() * (1.0 - spec.ratio_error),
-                 to = band.to.value() * (1.0 + spec.ratio_error);
+    const auto [from, to] = speeds_in_force(spec, band.from.value(), band.to.value());
     Left left{std::vector<double>(lines)};
     for (int i = 0; i <= grid_points; ++i) {
         const double speed = from + (to - from) * static_cast<double>(i) / grid_points;
@@ -189,6 +188,12 @@ Left largest_left(std::span<const Biquad> cascade, const TableSpec& spec, const 
 }
 
 }  // namespace
+
+std::pair<double, double> speeds_in_force(const TableSpec& spec, double from_deg_s, double to_deg_s) {
+    const double beyond = spec.hysteresis.value();
+    return {std::max(from_deg_s - beyond, 0.0) * (1.0 - spec.ratio_error),
+            (to_deg_s + beyond) * (1.0 + spec.ratio_error)};
+}
 
 void check_ripple(const TableSpec& spec) {
     if (!(spec.gear_ratio.value() > 0.0) || !std::isfinite(spec.gear_ratio.value())) {
@@ -215,6 +220,8 @@ void check_ripple(const TableSpec& spec) {
         raise<UsageError>("an error of {} % of the gear ratio is outside 0 to 50 %",
                           shortest(100.0 * spec.ratio_error));
     }
+    if (!(spec.hysteresis.value() >= 0.0) || !std::isfinite(spec.hysteresis.value()))
+        raise<UsageError>("a hysteresis of {} deg/s is below 0", shortest(spec.hysteresis.value()));
     if (!spec.amplitude_nm.empty() && spec.amplitude_nm.size() != spec.orders.size()) {
         raise<UsageError>("{} ripple amplitudes for {} orders", spec.amplitude_nm.size(), spec.orders.size());
     }

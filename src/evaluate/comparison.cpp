@@ -279,6 +279,7 @@ void fill_levels(MethodFigures& figures, const RippleLevels& levels, std::size_t
     figures.ripple_rms_nm = ripple_rms_nm(levels, signal);
     figures.residual_rms_nm = levels.residual_rms_nm[signal];
     figures.residual_peak_to_peak_nm = levels.residual_peak_to_peak_nm[signal];
+    figures.distortion_rms_nm = levels.distortion_rms_nm[signal];
 }
 
 double largest_jump_nm(const CausalFilter& filter) {

@@ -182,4 +182,84 @@ std::optional<DegPerSec> within_from(const Contender& contender, Hertz sample_ra
     return DegPerSec(0.0);
 }
 
+namespace {
+
+constexpr double growth_db = 1.0;  // chosen, not derived: less is within what noise does to two estimates
+// Chosen, not derived: three times the prediction, and at least a tenth of what there was, since the noise of
+// the log is in what is measured and not in what is predicted.
+constexpr double far_from_predicted = 3.0, share_that_counts = 0.1;
+
+/// Rms of all orders together.
+double ripple_rms_nm(const RippleLevels& levels, std::size_t signal) {
+    double power = 0.0;
+    for (const OrderLevel& order : levels.orders)
+        if (order.windows > 0) power += 0.5 * order.amplitude_nm[signal] * order.amplitude_nm[signal];
+    return std::sqrt(power);
+}
+
+const TimedSwitch* largest_jump(const StreamReport& stream) {
+    const auto by_jump = [](const TimedSwitch& a, const TimedSwitch& b) {
+        return std::abs(a.change.jump_nm) < std::abs(b.change.jump_nm);
+    };
+    const auto largest = std::max_element(stream.switches.begin(), stream.switches.end(), by_jump);
+    return largest == stream.switches.end() ? nullptr : &*largest;
+}
+
+std::string band_text(int band) { return band == 0 ? "no filter" : fmt::format("band {}", band); }
+
+}  // namespace
+
+std::vector<std::string> harm_done(const FilterMetrics& metrics) {
+    std::vector<std::string> found;
+    if (!metrics.levels || metrics.levels->windows == 0) return found;
+    const RippleLevels& levels = *metrics.levels;
+    for (const OrderLevel& level : levels.orders) {
+        const auto db = level.windows > 0 ? attenuation_db(level) : std::nullopt;
+        if (!db || *db > -growth_db) continue;
+        found.push_back(
+            fmt::format("order {:g} grew from {:.3g} to {:.3g} Nm; see other methods with "
+                        "'ripplenotch recommend'",
+                        level.order, level.amplitude_nm[0], level.amplitude_nm[1]));
+    }
+    const double before = ripple_rms_nm(levels, 0), after = ripple_rms_nm(levels, 1);
+    const double taken = std::sqrt(std::max(before * before - after * after, 0.0));
+    if (const double moved = levels.distortion_rms_nm[1]; moved > taken) {
+        found.push_back(
+            fmt::format("its delay moves the torque itself by {:.3g} Nm rms, more than the {:.3g} Nm "
+                        "rms of ripple that it takes out; narrower notches (--q) delay less, and "
+                        "'ripplenotch recommend' tries other methods",
+                        moved, taken));
+    }
+    const TimedSwitch* const jump = largest_jump(metrics.stream);
+    const double ripple = levels.ripple_peak_to_peak_nm[0];
+    if (jump != nullptr && std::abs(jump->change.jump_nm) > ripple) {
+        const Switch& change = jump->change;
+        const bool outside = change.from_band == 0 || change.to_band == 0;
+        found.push_back(fmt::format(
+            "the switch from {} to {} at {:.6g} s moves the output by {:.3g} Nm, more than the ripple "
+            "({:.3g} Nm "
+            "peak to peak); try {}",
+            band_text(change.from_band), band_text(change.to_band), jump->time_s, std::abs(change.jump_nm),
+            ripple, outside ? "below=fade" : "transition=keep-state-variable or hysteresis=1deg/s"));
+    }
+    return found;
+}
+
+std::vector<std::string> short_of_prediction(const FilterMetrics& metrics) {
+    std::vector<std::string> found;
+    if (!metrics.levels) return found;
+    for (std::size_t i = 0; i < metrics.levels->orders.size(); ++i) {
+        const OrderLevel& level = metrics.levels->orders[i];
+        const auto predicted = level.windows > 0 ? predicted_nm(metrics, i) : std::nullopt;
+        if (!predicted) continue;
+        const double before = level.amplitude_nm[0], after = level.amplitude_nm[1];
+        if (!(after > far_from_predicted * *predicted && after > share_that_counts * before)) continue;
+        found.push_back(
+            fmt::format("order {:g}: {:.3g} Nm are left where {:.3g} Nm were predicted; the gear ratio "
+                        "may be off, or the speed changes faster than the filter settles",
+                        level.order, after, *predicted));
+    }
+    return found;
+}
+
 }  // namespace ripplenotch

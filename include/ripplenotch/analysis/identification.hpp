@@ -165,6 +165,7 @@ struct Identification {
     /// The velocity error of a log without position, if ripple in changing motion determines it; the orders
     /// are corrected for it.
     std::optional<VelocityError> velocity_error;
+    DegPerSec velocity_noise{0.0};  ///< standard deviation; of the log where it is largest
     std::vector<ToneFamily> families;
     std::vector<Hum> hums;  ///< most torque first
     std::vector<Disagreement> disagreements;

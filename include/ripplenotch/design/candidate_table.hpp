@@ -32,13 +32,17 @@ struct Band {
     double settle_band_percent = 0.5;
     double overshoot_percent = 0.0;
     std::vector<double> worst_attenuation_db;  ///< per order, anywhere in the band
-    /// Attenuation of all orders, weighted by TableSpec::amplitude_nm; without amplitudes, of the order least
-    /// attenuated.
+    /// Reduction of the ripple of all orders together, by TableSpec::amplitude_nm; without amplitudes the
+    /// same as least_attenuation_db().
     double held_attenuation_db = 0.0;
     std::vector<double>
         predicted_residual_nm;  ///< per order, the most that is left; empty without amplitudes
 
     [[nodiscard]] Cascade cascade() const;
+    /// The attenuation of the band: the least of any order anywhere in it.
+    [[nodiscard]] double least_attenuation_db() const {
+        return *std::min_element(worst_attenuation_db.begin(), worst_attenuation_db.end());
+    }
 };
 
 /// What happens where no band applies: the torque passes, the nearest band's filter stays, or a blend of both
@@ -60,18 +64,25 @@ struct TableSpec {
     double settle_band_percent = 0.5;  ///< the one that fits the paper's figures (docs/theory.md)
     OutsideRule below = OutsideRule::pass;
     OutsideRule above = OutsideRule::hold;
+    /// A band is left only when |v| is this far outside it, so that it is in force, and measured, as far.
+    DegPerSec hysteresis{0.0};
 };
 
 /// Bands of equal width, e.g. 18:180:18. Throws UsageError on an empty, backward, non-finite or uneven range.
 [[nodiscard]] std::vector<std::pair<DegPerSec, DegPerSec>> bands_by_spacing(const SpeedSpan& speeds,
                                                                             DegPerSec spacing);
 
+/// The speeds at which a band of this range can be in force, its hysteresis included; multiplied by the share
+/// by which the gear ratio may be off, since that moves the lines alike.
+[[nodiscard]] std::pair<double, double> speeds_in_force(const TableSpec& spec, double from_deg_s,
+                                                        double to_deg_s);
+
 /// Throws UsageError unless everything in `spec` but its bands and notches makes sense.
 void check_ripple(const TableSpec& spec);
 
 /// Fills in what follows from a band's edges and notches: dc_delay, settle, overshoot_percent, and how far
-/// the whole cascade attenuates the line of each order, over speeds from..to and gear ratios within
-/// ratio_error.
+/// the whole cascade attenuates the line of each order, over speeds from..to, the hysteresis beyond them, and
+/// gear ratios within ratio_error.
 void measure_band(Band& band, const TableSpec& spec);
 
 /// Sorted, non-overlapping bands with their filters; an object of this type is always valid.

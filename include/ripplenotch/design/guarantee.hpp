@@ -14,12 +14,19 @@ namespace ripplenotch {
 
 /// Requirements for a table. At least one of attenuation and delay; values that are not stated are chosen.
 struct DesignGoal {
-    std::optional<double>
-        min_attenuation_db;            ///< held at every speed of every band (Band::held_attenuation_db)
+    /// Of each order, at every speed of every band: Band::least_attenuation_db.
+    std::optional<double> min_attenuation_db;
+    /// Instead: of the ripple of all orders together, by TableSpec::amplitude_nm.
+    std::optional<double> min_ripple_reduction_db;
     std::optional<Seconds> max_delay;  ///< DC group delay of every band
     std::optional<double> q;           ///< Q of all notches; else each band and order gets its own
     std::optional<int> most_bands;     ///< at least 1
     DegPerSec from, to;                ///< speeds to cover, when TableSpec::bands is empty
+
+    [[nodiscard]] bool together() const { return min_ripple_reduction_db.has_value(); }
+    [[nodiscard]] std::optional<double> attenuation_db() const {
+        return together() ? min_ripple_reduction_db : min_attenuation_db;
+    }
 };
 
 /// A table and why it is this one of those that hold the goal: a clause, "because ..." left out.

@@ -35,7 +35,8 @@ struct MethodFigures {
     std::vector<OrderAttenuation> attenuation;
     std::optional<double> ripple_rms_nm;  ///< ripple of the orders alone, over the measured windows
     std::optional<double> residual_rms_nm,
-        residual_peak_to_peak_nm;  ///< torque minus its trend, as RippleMeter does
+        residual_peak_to_peak_nm;             ///< torque minus its trend, as RippleMeter does
+    std::optional<double> distortion_rms_nm;  ///< how far it moves that trend
     std::optional<std::size_t> switches;
     std::optional<double> largest_jump_nm;  ///< at a change of filter; empty for methods that do not switch
     std::vector<SwitchEntry>

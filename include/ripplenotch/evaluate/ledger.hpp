@@ -75,6 +75,12 @@ struct FilterMetrics {
 /// Attenuation of one order in dB; empty when there was nothing to attenuate or nothing was left.
 [[nodiscard]] std::optional<double> attenuation_db(const OrderLevel& level);
 
+/// What the filter made worse, one sentence each with the remedy: an order that grew, more torque moved than
+/// ripple taken out, a jump at a switch larger than the ripple. Empty where nothing was measured.
+[[nodiscard]] std::vector<std::string> harm_done(const FilterMetrics& metrics);
+/// Orders of which far more is left than was predicted, one sentence each.
+[[nodiscard]] std::vector<std::string> short_of_prediction(const FilterMetrics& metrics);
+
 /// The remaining ripple of one order at the speeds of this log, predicted from the filter's response: from
 /// the amplitude in the table or joint if stated, else from the measured one before filtering. Empty when it
 /// was not computed.

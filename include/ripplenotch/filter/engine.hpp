@@ -24,6 +24,11 @@ namespace ripplenotch {
 // The supervisor of the switching filter: from the joint speed to the candidate that should be active (Kim,
 // Kim, Song 2011, fig. 3 and 4), with the rules for speeds that no band covers.
 
+/// What becomes of the filters' memories at a switch, unless it is stated: in `filter` and `compare` as in
+/// exported code. On the six moving joints of a robot's log this one leaves the least error of all for each
+/// joint, Q and rule (docs/methods/switching.md), and it runs one filter, whatever the number of bands.
+inline constexpr std::string_view default_transition = "keep-state-variable";
+
 struct SupervisorSettings {
     OutsideRule below = OutsideRule::pass;  ///< below the first band, and in a hole between bands
     OutsideRule above = OutsideRule::hold;
@@ -110,6 +115,9 @@ class RowValues {
 struct JointRun {
     CausalFilter* filter = nullptr;
     RippleMeter* meter = nullptr;
+    /// The meter gets stretches of a long log only, ever further apart: enough for a warning, at a cost that
+    /// grows with the logarithm of the log's length.
+    bool sparsely = false;
     RowValues* temperature = nullptr;
 };
 

@@ -33,6 +33,7 @@ struct JointFacts : GearStatement {
     Hertz sample_rate;           ///< nominal: what filter designs for on the same log
     double ratio_error = 0.0;    ///< share: the further end of the file's 95 % interval; 0 for a given ratio
     DegPerSec slowest, fastest;  ///< |v| at which those lines were seen; both 0 without lines
+    DegPerSec velocity_noise;    ///< standard deviation; 0 where the file does not state it
 };
 
 struct JointFile {

@@ -318,6 +318,8 @@ Identification identify_together(std::span<const TraceView> logs, const Identify
     for (std::size_t i = 0; i < motion.lines.size(); ++i)
         reported.push_back(from_motion(motion, i, result.sample_rate.value()));
     result.velocity_error = motion.velocity_error;
+    for (const TraceView& log : logs)
+        result.velocity_noise = std::max(result.velocity_noise, velocity_noise(log));
     if (motion.sweeps > 0) result.evidence = "order spectrum";
     add_ratio(reported, {options.hint, options.hinted_orders}, result);
     result.families = families_among(reported);

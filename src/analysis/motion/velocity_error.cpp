@@ -587,7 +587,7 @@ double of_steps(std::span<const double> velocity_deg_s, Hertz rate) {
 /// ms, which motion hardly bends, times their length. From third differences of neighbouring means (the
 /// squares of 1, 3, 3, 1 are 20 together), by their median, so that a few jerks do not count; plus the error
 /// of a velocity in coarse steps where it turns. 0 for a log of fewer than a hundred means.
-double velocity_noise(const TraceView& log) {
+double summed_noise(const TraceView& log) {
     // Chosen, not derived: long enough for the noise that a filter passes, short enough for motion of some
     // hertz.
     constexpr double mean_over_s = 0.025;
@@ -660,12 +660,32 @@ double deviation(const MatrixXd& covariance, Eigen::Index one) { return std::sqr
 
 }  // namespace
 
+DegPerSec velocity_noise(const TraceView& log) {
+    constexpr double apart_s = 0.01;       // chosen, not derived: sine motion of 2 Hz adds 0.05 % of itself
+    constexpr double moving_share = 0.05;  // of the fastest speed: at rest an encoder has no noise
+    constexpr std::size_t fewest_rows = 100;  // chosen, not derived: their median is within a tenth
+    constexpr double normal_median = 0.6745;  // median magnitude of a normal variable, in standard deviations
+    const auto apart = static_cast<std::size_t>(std::max(1.0, std::round(apart_s * log.sample_rate.value())));
+    double fastest = 0.0;
+    for (const double v : log.velocity_deg_s) fastest = std::max(fastest, std::abs(v));
+    std::vector<double> differences;
+    std::size_t run = 0;  // first row of the run
+    for (std::size_t k = 0; k < log.size(); ++k) {
+        if (log.starts_run(k)) run = k;
+        if (k < run + 3 * apart || std::abs(log.velocity_deg_s[k]) < moving_share * fastest) continue;
+        const auto v = [&](std::size_t back) { return log.velocity_deg_s[k - back * apart]; };
+        differences.push_back(std::abs(v(0) - 3.0 * v(1) + 3.0 * v(2) - v(3)));
+    }
+    if (differences.size() < fewest_rows) return DegPerSec(0.0);
+    return DegPerSec(median_in(differences) / normal_median / std::sqrt(20.0));
+}
+
 std::optional<VelocityFit> fit_velocity_error(std::span<const TraceView> logs, std::span<const Sweep> sweeps,
                                               const Stack& angle, std::span<const double> orders) {
     orders = orders.first(std::min(orders.size(), most_orders));
     double fastest = 0.0;
     std::vector<double> noise_of_log;
-    for (const TraceView& log : logs) noise_of_log.push_back(log.has_position() ? 0.0 : velocity_noise(log));
+    for (const TraceView& log : logs) noise_of_log.push_back(log.has_position() ? 0.0 : summed_noise(log));
     std::vector<DemodulatedSweep> all;
     for (std::size_t i = 0; i < sweeps.size(); ++i) {
         const Sweep& sweep = sweeps[i];

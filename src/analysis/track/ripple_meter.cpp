@@ -12,10 +12,10 @@ namespace {
 
 constexpr std::size_t most_rows_held = 65536;  // chosen, not derived: a minute of motion and more
 
-double root_mean_square(std::span<const SegmentResidual> segments) {
+double root_mean_square(std::span<const SegmentResidual> segments, double SegmentResidual::*square_nm2) {
     double sum = 0.0, weight = 0.0;
     for (const SegmentResidual& one : segments) {
-        sum += one.weight * one.square_nm2;
+        sum += one.weight * one.*square_nm2;
         weight += one.weight;
     }
     return weight > 0.0 ? std::sqrt(sum / weight) : 0.0;
@@ -118,7 +118,8 @@ RippleLevels RippleMeter::levels() const {
         levels.orders.push_back(std::move(level));
     }
     for (const std::vector<SegmentResidual>& signal : all.residuals()) {
-        levels.residual_rms_nm.push_back(root_mean_square(signal));
+        levels.residual_rms_nm.push_back(root_mean_square(signal, &SegmentResidual::square_nm2));
+        levels.distortion_rms_nm.push_back(root_mean_square(signal, &SegmentResidual::moved_nm2));
         std::vector<double> peaks;
         double ripple = 0.0;
         for (const SegmentResidual& one : signal) {

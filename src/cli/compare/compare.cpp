@@ -191,6 +191,8 @@ std::vector<ViewColumn> result_columns(const Comparison& comparison) {
     }
     columns.push_back(
         {"ripple", "Nm rms", [](const MethodFigures& f) { return fixed_or_empty(f.ripple_rms_nm, 4); }});
+    columns.push_back({"torque moved", "Nm rms",
+                       [](const MethodFigures& f) { return fixed_or_empty(f.distortion_rms_nm, 4); }});
     columns.push_back({"residual", "Nm rms",
                        [](const MethodFigures& f) { return fixed_or_empty(f.residual_rms_nm, 4); }, true});
     columns.push_back(
@@ -296,7 +298,8 @@ std::string conditions(const Comparison& comparison) {
         on = fmt::format("Log: {} rows at {:.6g} Hz.", comparison.rows, comparison.sample_rate.value());
         if (comparison.windows > 0) {
             on += fmt::format(
-                " Orders, ripple and residual (torque minus its trend) are measured in {} window{}, "
+                " Orders, ripple, how far the torque's trend is moved, and residual (torque minus its trend) "
+                "are measured in {} window{}, "
                 "{:.0f} % of the log.",
                 comparison.windows, comparison.windows == 1 ? "" : "s", 100.0 * comparison.measured_share);
         }

@@ -38,8 +38,10 @@ struct DesignRequest {
     std::string joint;
     GearOptions gear;
     std::optional<double> ratio_error_percent, depth_db, q, max_bands;
-    std::optional<double> min_attenuation_db;  ///< a goal, and only a check where bands and Q are stated
-    std::optional<Seconds> max_delay;          ///< the same
+    /// Goals, and only checks where bands and Q are stated: of each order, or of all together.
+    std::optional<double> min_attenuation_db, min_ripple_reduction_db;
+    std::optional<Seconds> max_delay;  ///< the same
+    std::optional<DegPerSec> hysteresis;
     std::vector<double> amplitudes_nm;
     std::optional<Hertz> sample_rate, spacing;
     std::optional<std::string> speed, bands;
@@ -49,7 +51,7 @@ struct DesignRequest {
 
     /// Something is left to the tool: it chooses bands, Q, or both.
     [[nodiscard]] bool has_goal() const {
-        return frontier || ((min_attenuation_db || max_delay) && !only_checks());
+        return frontier || ((min_attenuation_db || min_ripple_reduction_db || max_delay) && !only_checks());
     }
     /// Limits are what the stated table is held against.
     [[nodiscard]] bool only_checks() const {
@@ -174,12 +176,24 @@ bool leaves_bands(const DesignRequest& request) {
     return !request.speed || !parse_speed_range(*request.speed, "--speed").width;
 }
 
+// Noise takes the speed back over an edge that it has passed only when it changes by twice the hysteresis. At
+// six standard deviations a sample does so with a chance of 1e-5 (a difference of two normal variables),
+// where the edge itself is crossed at the noise's own rate.
+constexpr double hysteresis_in_noise = 3.0;
+
+DegPerSec hysteresis_of(const DesignRequest& request, const std::optional<JointFacts>& joint) {
+    if (request.hysteresis) return *request.hysteresis;
+    if (!joint) return DegPerSec(0.0);
+    return two_digits(hysteresis_in_noise * joint->velocity_noise);
+}
+
 // Without bands when they are left to a goal. Throws what GearChoice::of throws, and UsageError that names
 // the option which is missing or wrong.
 TableSpec design_spec(const DesignRequest& request, const GearChoice& gear) {
     const auto joint = gear.facts();
     TableSpec spec;
     fill_gear_of_table(spec, request, gear, joint);
+    spec.hysteresis = hysteresis_of(request, joint);
     spec.q = request.q.value_or(spec.q);
     if (request.depth_db) spec.depth_db = *request.depth_db;
     spec.width = request.width == "digital" ? WidthRule::digital : WidthRule::analog;
@@ -211,6 +225,7 @@ DesignGoal design_goal(const DesignRequest& request, const TableSpec& spec, cons
     const auto joint = gear.facts();
     DesignGoal goal;
     goal.min_attenuation_db = request.min_attenuation_db;
+    goal.min_ripple_reduction_db = request.min_ripple_reduction_db;
     goal.max_delay = request.max_delay;
     goal.q = request.q;
     if (request.max_bands) {
@@ -253,6 +268,8 @@ std::string as_if_options(const TableSpec& spec) {
         fmt::format("--gear-ratio {} --orders {} --sample-rate {}Hz --bands {}",
                     shortest(spec.gear_ratio.value()), orders, shortest(spec.sample_rate.value()), bands);
     if (spec.ratio_error > 0.0) line += fmt::format(" --ratio-error {}", shortest(100.0 * spec.ratio_error));
+    if (spec.hysteresis.value() > 0.0)
+        line += fmt::format(" --hysteresis {}deg/s", shortest(spec.hysteresis.value()));
     std::string amplitudes;
     for (const double amplitude : spec.amplitude_nm)
         amplitudes += (amplitudes.empty() ? " --amplitudes " : ",") + shortest(amplitude);
@@ -284,6 +301,12 @@ std::vector<std::string> violations_of(const DesignRequest& request, const Candi
             sentences.push_back(fmt::format("{} delays by {:.1f} ms, more than --max-delay {:.6g}ms", label,
                                             delay_ms, 1e3 * request.max_delay->value()));
         }
+        if (request.min_ripple_reduction_db && band.held_attenuation_db < *request.min_ripple_reduction_db) {
+            sentences.push_back(
+                fmt::format("{} takes as little as {:.1f} dB off the ripple of all orders, less than "
+                            "--min-ripple-reduction {}dB",
+                            label, band.held_attenuation_db, shortest(*request.min_ripple_reduction_db)));
+        }
         for (std::size_t i = 0; request.min_attenuation_db && i < band.notches.size(); ++i) {
             const double worst_db = band.worst_attenuation_db[i];
             if (worst_db >= *request.min_attenuation_db) continue;
@@ -314,6 +337,7 @@ Drawn draw(const DesignRequest& request, const TableSpec& spec, const GearChoice
     const DesignGoal goal = design_goal(request, spec, gear);
     DesignChoice choice = design_for(spec, goal);
     note.min_attenuation_db = goal.min_attenuation_db;
+    note.min_ripple_reduction_db = goal.min_ripple_reduction_db;
     note.max_delay = goal.max_delay;
     note.reason = choice.reason;
     if (goal.max_delay) note.slowest = slowest_within(spec, *goal.max_delay);
@@ -383,8 +407,13 @@ std::function<ExitCode()> attach_design(Options& options) {
                  "bands one by one in deg/s, e.g. 18:36,36:60,60:100");
     options.number(
         "--min-attenuation", request->min_attenuation_db, Dimension::decibel,
-        "choose bands and Q that hold this at every speed of every band, e.g. 20dB; where both are "
-        "stated, exit code 1 when a line is attenuated less");
+        "choose bands and Q that attenuate every order by this at every speed, e.g. 20dB; where both are "
+        "stated, exit code 1 when an order is attenuated less");
+    options.number("--min-ripple-reduction", request->min_ripple_reduction_db, Dimension::decibel,
+                   "the same for the ripple of all orders together, by their amplitudes");
+    options.quantity("--hysteresis", request->hysteresis, Dimension::speed,
+                     "a band is left only when the speed is this far outside it (default: three times the "
+                     "noise of the speed in JOINT, else 0)");
     options.duration("--max-delay", request->max_delay,
                      "choose bands and Q whose DC delay is no longer, e.g. 20ms; where both are stated, exit "
                      "code 1 when a band's is");

@@ -35,9 +35,11 @@ std::string q_range(const TradePoint& point) {
 std::string heading(const Frontier& frontier) {
     const DesignGoal& goal = frontier.goal;
     std::string limits;
-    if (goal.min_attenuation_db) limits += fmt::format(", at least {} dB", four(*goal.min_attenuation_db));
+    if (goal.attenuation_db())
+        limits += fmt::format(", at least {} dB{}", four(*goal.attenuation_db()),
+                              goal.together() ? " of all orders together" : "");
     if (goal.max_delay) limits += fmt::format(", at most {} ms", four(1e3 * goal.max_delay->value()));
-    if (!goal.min_attenuation_db && !goal.max_delay)
+    if (!goal.attenuation_db() && !goal.max_delay)
         limits += fmt::format(", up to {} bands", goal.most_bands.value_or(frontier_bands));
     const std::string doubt =
         frontier.spec.ratio_error > 0.0
@@ -298,6 +300,9 @@ std::string table_to_text(const CandidateTable& table, const DesignNote& note) {
     text += "\nWorst: the least attenuation of that order's line anywhere in the band";
     if (spec.ratio_error >= 5e-5)
         text += fmt::format(", the gear ratio being up to {} % off", percent_text(100.0 * spec.ratio_error));
+    if (spec.hysteresis.value() > 0.0)
+        text += fmt::format(", and {} deg/s beyond it, the hysteresis with which it is left",
+                            plain(spec.hysteresis.value()));
     text += ". ";
     if (extra.held) text += "Together: of all orders by their amplitudes. ";
     if (extra.left) text += "Left: what that leaves of each at most. ";

@@ -99,6 +99,9 @@ std::vector<std::string> filter_warnings(const FilterMetrics& metrics) {
             table_rate_warning({.table = *metrics.table_rate, .log = metrics.sample_rate}, metrics.source);
         if (warning) warnings.push_back(*warning);
     }
+    for (const auto& sentences : {harm_done(metrics), short_of_prediction(metrics)})
+        for (const std::string& sentence : sentences)
+            warnings.push_back(fmt::format("{}: {}", metrics.source, sentence));
     if (metrics.levels && metrics.levels->windows == 0) {
         warnings.push_back(fmt::format(
             "{}: ripple could not be measured: no four periods of an order in one direction, slow enough for "
@@ -132,6 +135,9 @@ std::vector<std::string> filter_summary(const FilterMetrics& metrics) {
             levels.ripple_peak_to_peak_nm[0], levels.ripple_peak_to_peak_nm[1], levels.residual_rms_nm[0],
             levels.residual_rms_nm[1], how_many(levels.windows, "window"), 100.0 * levels.measured_share));
     }
+    if (metrics.levels && metrics.levels->windows > 0)
+        lines.push_back(
+            fmt::format("the torque itself is moved by {:.3g} Nm rms", metrics.levels->distortion_rms_nm[1]));
     if (!metrics.delays.empty()) lines.push_back(delay_line(metrics.delays));
     if (metrics.crossover && !metrics.delays.empty())
         lines.push_back(crossover_line(metrics.delays, *metrics.crossover));
@@ -304,7 +310,8 @@ bool run_job(const FilterRequest& request, const FilterJob& job, JointMethods& m
     std::vector<std::unique_ptr<FollowedRows>> followed;
     for (JointWork& work : works) {
         followed.push_back(followed_rows(*work.method, job.log, read));
-        runs.push_back({work.filter.get(), work.meter ? &*work.meter : nullptr, followed.back().get()});
+        runs.push_back({work.filter.get(), work.meter ? &*work.meter : nullptr, !must_measure(request, job),
+                        followed.back().get()});
     }
     std::vector<StreamReport> reports = stream.run(runs, writer.get(), threads_of(request));
     for (const auto& rows : followed) {
@@ -364,6 +371,9 @@ std::function<ExitCode()> attach_filter(Options& options) {
     options.quantity("--crossover", request->crossover, Dimension::frequency,
                      "the control loop's: phase lag and gain there, for -v and the metrics, e.g. 12Hz");
     attach_gates(options, request->gates);
+    options.flag("--require-improvement", request->require_improvement,
+                 "exit code 1 when the filter makes the torque worse: an order grows, its delay moves the "
+                 "torque by more than the ripple that it takes out, or a switch makes a jump larger than it");
     options.number("--gap", request->gap_steps, Dimension::none,
                    "a step in time of more than this many median steps starts a new run");
     options.count("--threads", request->threads, 0, most_threads,

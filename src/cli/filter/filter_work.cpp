@@ -20,8 +20,9 @@ constexpr double faster_than_seen = 1.2;  ///< than any window of a map's logs, 
 bool tells(const FilterRequest& request, const FilterJob& job) {
     return job.metrics || request.common.json || request.common.verbose || request.crossover;
 }
+/// Where a gear is known the warnings are worth it, too.
 bool measures(const FilterRequest& request, const FilterJob& job) {
-    return tells(request, job) || request.gates.min_attenuation_db;
+    return must_measure(request, job) || !request.common.quiet;
 }
 
 /// Sentences about one joint among several say which.
@@ -118,6 +119,10 @@ void start_filter(const FilterRequest& request, JointWork& work) {
 
 }  // namespace
 
+bool must_measure(const FilterRequest& request, const FilterJob& job) {
+    return tells(request, job) || request.gates.min_attenuation_db || request.require_improvement;
+}
+
 ReadOptions FilterRequest::read_options(const JointMethods& methods) const {
     ReadOptions options = ripplenotch::read_options(log, methods.common_gear());
     options.gear_ratio_of = [&methods](const std::string& joint) -> std::optional<double> {
@@ -147,7 +152,7 @@ bool tell(const FilterRequest& request, const FilterJob& job, JointWork& work,
     if (work.meter) metrics.levels = work.meter->levels();
     std::vector<std::string> warnings = filter_warnings(metrics);
     for (std::string& warning : beyond_map(work)) warnings.push_back(std::move(warning));
-    if (measures(request, job) && !metrics.gear) {
+    if (must_measure(request, job) && !metrics.gear) {
         warnings.emplace_back(
             "no gear ratio is known, so no ripple was measured; give --gear-ratio or --joint-file");
     }
@@ -164,7 +169,7 @@ bool tell(const FilterRequest& request, const FilterJob& job, JointWork& work,
         const std::string sentence = request.every_joint() ? about(work, one) : one;
         say_warnings(request.common, {&sentence, 1});
     }
-    return broken.empty();
+    return broken.empty() && !(request.require_improvement && !harm_done(metrics).empty());
 }
 
 std::vector<JointWork> start_works(const FilterRequest& request, const FilterJob& job,

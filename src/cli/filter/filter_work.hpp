@@ -29,7 +29,7 @@ struct FilterRequest {
     Gates gates;
     double gap_steps = default_gap_steps;
     int threads = 0;
-    bool append = false, exact = false, in_place = false;
+    bool append = false, exact = false, in_place = false, require_improvement = false;
 
     [[nodiscard]] bool every_joint() const { return log.joint == "all"; }
     /// Beside the gear of the methods, where they have one in common.
@@ -51,6 +51,9 @@ struct JointWork {
     std::optional<std::string> metrics_path;
     std::unique_ptr<ByteSink> metrics_sink;
 };
+
+/// Whether something is told, or decided, by how large the ripple is; else it is measured for warnings alone.
+[[nodiscard]] bool must_measure(const FilterRequest& request, const FilterJob& job);
 
 /// The work of each joint that `stream` reads, with its filter ready and its outputs open. `spool` holds the
 /// log for a method that looks at all of it first.

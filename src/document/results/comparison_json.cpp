@@ -48,6 +48,7 @@ void write_levels(JsonWriter& json, const FilterMetrics& metrics) {
     pair("residual_rms_nm", &RippleLevels::residual_rms_nm);
     pair("residual_peak_to_peak_nm", &RippleLevels::residual_peak_to_peak_nm);
     pair("ripple_peak_to_peak_nm", &RippleLevels::ripple_peak_to_peak_nm);
+    json.known("distortion_rms_nm", measured, measured ? levels->distortion_rms_nm[1] : 0.0);
     json.group_if("windows", levels, [](JsonWriter& windows, const RippleLevels& of) {
         windows("measured", of.windows);
         windows("measured_share", of.measured_share);
@@ -155,6 +156,7 @@ void describe(JsonWriter& json, const MethodFigures& figures) {
     json("ripple_rms_nm", figures.ripple_rms_nm);
     json("residual_rms_nm", figures.residual_rms_nm);
     json("residual_peak_to_peak_nm", figures.residual_peak_to_peak_nm);
+    json("distortion_rms_nm", figures.distortion_rms_nm);
     json("switches", figures.switches);
     json("largest_jump_nm", figures.largest_jump_nm);
     json("error_rms_nm", figures.error_rms_nm);
@@ -214,6 +216,7 @@ std::string frontier_to_json(const Frontier& frontier, const GearAccount& gear,
         json("speed_deg_s", std::tie(goal.from, goal.to));
         json("settle_band_percent", spec.settle_band_percent);
         json("min_attenuation_db", goal.min_attenuation_db);
+        json("min_ripple_reduction_db", goal.min_ripple_reduction_db, if_any);
         json("max_delay_ms", goal.max_delay, in_ms);
         json("max_bands", goal.most_bands);
         json("points", frontier.points);

@@ -123,6 +123,7 @@ void describe(auto& archive, Is<Identification> auto& found) {
     archive.derived("gear", [&] { return found_gear(found); });
     archive("lines", found.lines, AtMost{most_lines});
     archive("velocity_error", found.velocity_error);
+    archive("velocity_noise_deg_s", found.velocity_noise, if_any);
     archive("families", found.families, if_there);
     archive("hums", found.hums, if_there);
     archive("disagreements", found.disagreements, if_there);

@@ -123,6 +123,7 @@ void describe_table(Archive& archive, auto& spec, auto&& bands, const DesignNote
     archive.derived(
         "designed_for", [&] { return note.reason.empty() ? nullptr : &note; }, if_any);
     archive("width", spec.width, Names{width_rule_name, WidthRule::digital});
+    archive("hysteresis_deg_s", spec.hysteresis, if_any);
     TableWork work;
     archive.each(
         "bands", bands, [&](Archive& entry, auto& band) { describe_band(entry, band, spec, work); },
@@ -135,6 +136,7 @@ void describe_table(Archive& archive, auto& spec, auto&& bands, const DesignNote
 
 void describe(JsonWriter& json, const DesignNote& note) {
     json("min_attenuation_db", note.min_attenuation_db);
+    json("min_ripple_reduction_db", note.min_ripple_reduction_db, if_any);
     json("max_delay_ms", note.max_delay, in_ms);
     json("reason", note.reason);
     json("no_notch_below_deg_s", note.slowest);

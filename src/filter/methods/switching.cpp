@@ -35,7 +35,7 @@ constexpr std::array keys = {
     Key{.name = "table", .kind = KeyKind::text, .required = true, .help = "table.json, as design writes it"},
     Key{.name = "transition",
         .kind = KeyKind::choice,
-        .default_text = "parallel",
+        .default_text = default_transition,
         .choices = transition_names,
         .help = "what becomes of the filters' memories at a switch"},
     Key{.name = "crossfade",
@@ -46,9 +46,8 @@ constexpr std::array keys = {
         .help = "how long transition=crossfade blends"},
     Key{.name = "hysteresis",
         .dimension = Dimension::speed,
-        .default_text = "0",
         .at_least = 0.0,
-        .help = "a band is left only when the speed is this far outside it"},
+        .help = "a band is left only when the speed is this far outside it; else the table's"},
     Key{.name = "dwell",
         .dimension = Dimension::time,
         .default_text = "0",
@@ -81,7 +80,8 @@ SupervisorSettings supervisor_settings(const Settings& settings, Hertz sample_ra
                                        const CandidateTable& table) {
     return {.below = rule(settings, "below", table.spec().below),
             .above = rule(settings, "above", table.spec().above),
-            .hysteresis = DegPerSec(settings.number("hysteresis")),
+            .hysteresis = settings.has("hysteresis") ? DegPerSec(settings.number("hysteresis"))
+                                                     : table.spec().hysteresis,
             .dwell_samples = samples(settings, "dwell", sample_rate)};
 }
 

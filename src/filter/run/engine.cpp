@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <span>
 #include <utility>
@@ -46,8 +47,9 @@ class StreamPass {
     /// `temperature_degc`: of the block's rows, or empty.
     void filter_part(const RowBlock& block, std::size_t joint, const RunPart& part,
                      std::span<const double> temperature_degc, std::vector<double>& torque_nm);
-    static void meter_rows(const TraceView& rows, bool begins_run, std::span<const double> torque_nm,
-                           Lane& lane);
+    /// `first`: the place of the rows in the log.
+    static void meter_rows(const TraceView& rows, std::size_t first, bool begins_run,
+                           std::span<const double> torque_nm, Lane& lane);
     static void note_switches(const RowBlock& block, Lane& lane);
     static void note_motion(const JointRows& rows, Lane& lane);
 
@@ -90,14 +92,24 @@ void StreamPass::filter_part(const RowBlock& block, std::size_t joint, const Run
         temperature_degc.empty() ? temperature_degc : temperature_degc.subspan(part.first, part.count);
     lane.run.filter->process({rows.velocity_deg_s, rows.torque_nm, rows.position_deg, warmth}, out);
     note_switches(block, lane);
-    if (lane.run.meter != nullptr) meter_rows(rows, part.begins_run, out, lane);
+    if (lane.run.meter != nullptr) meter_rows(rows, lane.rows + part.first, part.begins_run, out, lane);
 }
 
-void StreamPass::meter_rows(const TraceView& rows, bool begins_run, std::span<const double> torque_nm,
-                            Lane& lane) {
+// Stretches 0, 1, 3, 7, 15, ...: all of a short log.
+bool in_measured_stretch(std::size_t row) {
+    constexpr std::size_t stretch = 16384;  // chosen, not derived: several turns of a motor at most rates
+    return std::has_single_bit(row / stretch + 1);
+}
+
+void StreamPass::meter_rows(const TraceView& rows, std::size_t first, bool begins_run,
+                            std::span<const double> torque_nm, Lane& lane) {
     RippleMeter& meter = *lane.run.meter;
     if (begins_run) meter.split();
     for (std::size_t k = 0; k < rows.size(); ++k) {
+        if (lane.run.sparsely && !in_measured_stretch(first + k)) {
+            if (in_measured_stretch(first + k - 1)) meter.split();
+            continue;
+        }
         const double* const position = rows.has_position() ? &rows.position_deg[k] : nullptr;
         const std::array torque = {rows.torque_nm[k], torque_nm[k]};
         meter.add(Seconds(rows.time_s[k]), rows.velocity_deg_s[k], position, torque);

@@ -51,6 +51,7 @@ JointFacts JointFile::facts(std::optional<GearRatio> given) const {
     JointFacts facts;
     facts.source = source;
     facts.sample_rate = nominal_rate(found.sample_rate);
+    facts.velocity_noise = found.velocity_noise;
     facts.ratio = given;
     if (!given && found.gear_ratio.value) {
         facts.ratio = GearRatio(*found.gear_ratio.value);
