@@ -169,7 +169,7 @@ std::string MapCode::factors() const {
     return text;
 }
 
-// A cosine or sine amplitude, as map_run.hpp adds it up.
+// A cosine or sine amplitude, as MapRun adds it up.
 std::string MapCode::sum(std::size_t part) const {
     const MapForm& form = apart_.form;
     const std::size_t parts = 2 * apart_.orders.size(), speeds = form.speeds_deg_s.size();
@@ -244,7 +244,7 @@ std::string MapCode::definitions() const {
                 "        {\n" + side(0, "            ", "z[{0}] = {1};") + "        }\n" +
                 side(1, "        ", "z[{0}] = @name@_fma(share, {1} - z[{0}], z[{0}]);") + "    }\n";
     }
-    return text + style_.filled(code + combined() + "}\n");
+    return text + code + combined() + "}\n";
 }
 
 std::string order_angles_code(const std::vector<double>& orders, std::string_view turns) {

@@ -81,6 +81,7 @@ struct OnCircle {
     return (quarter & 2) != 0 ? OnCircle<float>{-x, -y} : OnCircle<float>{x, y};
 }
 
+/// The body of a header, for CodeStyle::header().
 [[nodiscard]] std::string tracking_header(const TrackingDesign& design, const CodeStyle& style);
 [[nodiscard]] LoadedCode tracking_loaded(TextReader& reader, const TrackingDesign& design,
                                          const CodeStyle& style);
@@ -93,7 +94,7 @@ struct OnCircle {
 namespace ripplenotch::c_code {
 
 // The fixed parts of the C header, with @fields@ to fill in. Its arithmetic is that of
-// export/run/structure.hpp, operation by operation.
+// export/run/bank.cpp, operation by operation.
 
 /// Declarations that identify the form of a header to a reader.
 inline constexpr std::string_view svf_fields = "a1, a2, a3, m0, m1, m2;";

@@ -112,7 +112,7 @@ std::string step_of(const OscillatorDesign& d, const CodeStyle& style) {
                          "depends on them."
                        : ""}});
     if (d.map) text += MapCode(*d.map, style).amplitudes_here("torque_nm");
-    return style.filled(text + oscillator_step_code(d) + "}\n");
+    return text + oscillator_step_code(d) + "}\n";
 }
 
 }  // namespace
@@ -122,11 +122,11 @@ std::string oscillator_header(const OscillatorDesign& d, const CodeStyle& style)
     std::vector<double> priors;
     for (const auto& prior : d.priors)
         priors.insert(priors.end(), {prior.cosine, prior.sine, prior.deviation});
-    std::string text =
-        style.filled(fmt::format("enum {{ @NAME@_ORDERS = {}, @NAME@_STATES = {}, @NAME@_COVARIANCES = {}, "
-                                 "@NAME@_MINUS_RIPPLE = {},\n       @NAME@_SAMPLE_RATE_HZ = {} }};\n",
-                                 d.orders.size(), states, states * (states + 1) / 2, d.minus_ripple ? 1 : 0,
-                                 std::lround(1.0 / d.step_s)));
+    std::string text = fmt::format(
+        "enum {{ @NAME@_ORDERS = {}, @NAME@_STATES = {}, @NAME@_COVARIANCES = {}, "
+        "@NAME@_MINUS_RIPPLE = {},\n       @NAME@_SAMPLE_RATE_HZ = {} }};\n",
+        d.orders.size(), states, states * (states + 1) / 2, d.minus_ripple ? 1 : 0,
+        std::lround(1.0 / d.step_s));
     text += style.array("orders", d.orders);
     text += "/* of each order, in units of the noise: cosine, sine, how far off they may be */\n";
     text += style.array("priors", priors);
@@ -135,10 +135,11 @@ std::string oscillator_header(const OscillatorDesign& d, const CodeStyle& style)
         "that of "
         "torque and\n   rate, of rate, and the rate's at the start; deviation that a motor turn adds to an "
         "amplitude; 0.25 / memory in\n   turns, jump, largest slip, 1 / turns of return, 1 / noise */\n";
-    text += style.array("values", code_values(d)) + style.filled(turn_code(style.is_float));
+    text += style.array("values", code_values(d));
+    text += turn_code(style.is_float);
     if (d.map) text += "\n/* the map that is taken off before */\n" + MapCode(*d.map, style).definitions();
-    text += style.filled(state_code);
-    if (d.return_turns > 0.0) text += style.filled(back_code);
+    text += state_code;
+    if (d.return_turns > 0.0) text += back_code;
     return text + step_of(d, style);
 }
 
@@ -285,10 +286,10 @@ Real warped(Real center_hz, Real relative, Real sample_rate_hz) {
 }  // namespace
 
 std::string tracking_header(const TrackingDesign& d, const CodeStyle& style) {
-    std::string text = style.filled(
-        fmt::format("enum {{ @NAME@_ORDERS = {}, @NAME@_NOTCHES = {}, @NAME@_PARKS = {}, "
-                    "@NAME@_SAMPLE_RATE_HZ = {} }};\n",
-                    d.orders.size(), d.spread.size(), d.parks ? 1 : 0, std::lround(d.sample_rate_hz)));
+    std::string text = fmt::format(
+        "enum {{ @NAME@_ORDERS = {}, @NAME@_NOTCHES = {}, @NAME@_PARKS = {}, "
+        "@NAME@_SAMPLE_RATE_HZ = {} }};\n",
+        d.orders.size(), d.spread.size(), d.parks ? 1 : 0, std::lround(d.sample_rate_hz));
     text +=
         style.array("orders", d.orders) + style.array("weights", d.weights) + style.array("spread", d.spread);
     text +=
@@ -297,7 +298,8 @@ std::string tracking_header(const TrackingDesign& d, const CodeStyle& style) {
     std::vector<double> values;
     for (const auto value : tracking_values) values.push_back(d.*value);
     text += style.array("values", values);
-    return text + style.filled(code) + style.filled(turn_code(style.is_float)) + style.filled(tune_code);
+    for (const std::string_view part : {code, turn_code(style.is_float), tune_code}) text += part;
+    return text;
 }
 
 LoadedCode tracking_loaded(TextReader& reader, const TrackingDesign& d, const CodeStyle& style) {
