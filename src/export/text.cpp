@@ -225,9 +225,7 @@ std::string hexadecimal(double value) {
     return fmt::format("{}0x{:d}{}p{:+d}", std::signbit(value) ? "-" : "", normal, digits, power);
 }
 
-std::string hexadecimal_float(double value) {
-    return hexadecimal(static_cast<double>(static_cast<float>(value))) + "f";
-}
+std::string hexadecimal_float(double value) { return hexadecimal(as_float(value)) + "f"; }
 
 std::string describe(const ExportSection& section) {
     if (!section.notch) return fmt::format("low-pass section at {:.6g} Hz", section.center.value());
@@ -243,6 +241,28 @@ std::string describe(const ExportBand& band) {
     if (band.number == 0) return "one filter";
     return fmt::format("band {}: {} < |v| <= {} deg/s", band.number, shortest(band.from.value()),
                        shortest(band.to.value()));
+}
+
+std::string listed(std::span<const double> values, std::string (*write)(double), std::string_view separator) {
+    std::string text;
+    for (const double value : values) {
+        if (!text.empty()) text += separator;
+        text += write(value);
+    }
+    return text;
+}
+
+std::vector<double> edges(const FilterSet& filters, DegPerSec ExportBand::*edge) {
+    std::vector<double> values;
+    for (const ExportBand& band : filters.bands) values.push_back((band.*edge).value());
+    return values;
+}
+
+std::string filled(std::string text, const Fields& fields) {
+    for (const auto& [field, value] : fields)
+        for (std::size_t at = 0; (at = text.find(field, at)) != std::string::npos; at += value.size())
+            text.replace(at, field.size(), value);
+    return text;
 }
 
 std::string comment_lines(std::span<const std::string> lines, std::string_view mark) {

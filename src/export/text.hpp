@@ -7,10 +7,12 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "ripplenotch/core/spec.hpp"
 #include "ripplenotch/export/filter_set.hpp"
+#include "ripplenotch/export/target.hpp"
 
 namespace ripplenotch {
 
@@ -46,6 +48,30 @@ class TextReader {
     Precision precision_;
     std::size_t at_ = 0;
 };
+
+/// The bands of a file: `enter` reads what stands before the sections of one, `section` each of them in turn.
+template <class Enter, class Section>
+[[nodiscard]] LoadedFilters read_bands(const FilterSet& filters, const Enter& enter, const Section& section) {
+    LoadedFilters found;
+    for (const ExportBand& band : filters.bands) {
+        enter(band);
+        auto& sections = found.bands.emplace_back();
+        for (std::size_t i = 0; i < band.sections.size(); ++i) sections.push_back(section(i));
+    }
+    return found;
+}
+
+/// A row b0 b1 b2 1 a1 a2, as SciPy and MATLAB run it.
+[[nodiscard]] inline LoadedSection loaded_row(const double* v) {
+    return loaded(Biquad{v[0], v[1], v[2], v[4], v[5]}, {Form::df2t, Precision::float64});
+}
+
+/// make(0.0F) or make(0.0): what runs in the target's own numbers.
+template <class Make>
+auto in_precision(Precision precision, const Make& make) {
+    return precision == Precision::float32 ? make(0.0F) : make(0.0);
+}
+[[nodiscard]] inline double as_float(double value) { return static_cast<double>(static_cast<float>(value)); }
 
 // Filters as firmware and drives describe them: by frequency, width and depth instead of coefficients.
 
@@ -83,6 +109,18 @@ inline constexpr Key limits_key = {.name = "limits",
 void check_range(const Settings& settings, std::string_view parameter, double value, double lowest,
                  double highest, std::string_view remedy);
 
+inline constexpr std::array<std::string_view, 2> precision_choices = {"float", "double"};
+[[nodiscard]] constexpr Key precision_key(std::string_view help) {
+    return {.name = "precision",
+            .kind = KeyKind::choice,
+            .default_text = "float",
+            .choices = precision_choices,
+            .help = help};
+}
+[[nodiscard]] constexpr Key name_key(std::string_view name, std::string_view help = "prefix of all names") {
+    return {.name = "name", .kind = KeyKind::text, .default_text = name, .help = help};
+}
+
 /// Shortest text that reads back exactly, with a decimal point so that C takes it for a double.
 [[nodiscard]] std::string decimal(double value);
 /// Nine significant digits, enough for any float, and the f that keeps C from making it a double.
@@ -95,6 +133,16 @@ void check_range(const Settings& settings, std::string_view parameter, double va
 [[nodiscard]] std::string describe(const ExportSection& section);
 /// "band 3: 54 < |v| <= 72 deg/s", or "at every speed"
 [[nodiscard]] std::string describe(const ExportBand& band);
+
+/// The numbers as `write` writes them, `separator` between them.
+[[nodiscard]] std::string listed(std::span<const double> values, std::string (*write)(double),
+                                 std::string_view separator = ", ");
+/// The speeds at which bands begin, or end: values of one edge, in the order of the bands.
+[[nodiscard]] std::vector<double> edges(const FilterSet& filters, DegPerSec ExportBand::*edge);
+
+/// The text with every @field@ filled in.
+using Fields = std::vector<std::pair<std::string_view, std::string>>;
+[[nodiscard]] std::string filled(std::string text, const Fields& fields);
 
 /// Each line after `mark`; a line cannot end the comment or start another line.
 [[nodiscard]] std::string comment_lines(std::span<const std::string> lines, std::string_view mark);

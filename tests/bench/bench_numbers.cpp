@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Text to numbers and numbers to text, as the readers and writers of logs do it.
-#include <algorithm>
 #include <memory>
 #include <optional>
-#include <span>
 #include <stdexcept>
 
 #include "benchmark.hpp"
-#include "core/text/print_fixed.hpp"
 #include "core/vectors/dispatch.hpp"
 #include "log/text/quick_rows.hpp"
 #include "ripplenotch/core/number.hpp"
@@ -74,30 +71,12 @@ Benchmark::Pass print_numbers(Digits digits) {
     };
 }
 
-Benchmark::Pass print_side_by_side() {
-    auto log = std::make_shared<BenchLog>(static_cast<std::size_t>(numbers));
-    auto text = std::make_shared<std::string>(16 * log->torque_nm.size() + number_room, ' ');
-    return [log, text] {
-        FixedTexts texts;
-        const std::span<const double> values = log->torque_nm;
-        char* into = text->data();
-        for (std::size_t first = 0; first < values.size(); first += FixedTexts::most) {
-            const std::size_t count = std::min(FixedTexts::most, values.size() - first);
-            texts.prepare(values.subspan(first, count), 1.0, 6);
-            for (std::size_t i = 0; i < count; ++i) into = texts.put(into, i);
-        }
-        keep(static_cast<double>(into - text->data()));
-    };
-}
-
 const Benchmark parse_six("numbers: read, 6 decimals", numbers, [] { return parse_rows(Digits::six, true); });
 const Benchmark parse_shortest("numbers: read, 17 digits", numbers,
                                [] { return parse_rows(Digits::shortest, true); });
 const Benchmark parse_six_scalar("numbers: read, 6 decimals, without vectors", numbers,
                                  [] { return parse_rows(Digits::six, false); });
 const Benchmark print_six("numbers: print, 6 decimals", numbers, [] { return print_numbers(Digits::six); });
-const Benchmark print_six_side_by_side("numbers: print side by side, 6 decimals", numbers,
-                                       [] { return print_side_by_side(); });
 const Benchmark print_shortest("numbers: print, shortest", numbers,
                                [] { return print_numbers(Digits::shortest); });
 

@@ -158,7 +158,7 @@ TEST_CASE("the exported bank passes, holds and fades where the table says") {
 TEST_CASE("the test vector goes through every region and is not the identity") {
     const FilterSet filters = table(OutsideRule::pass, OutsideRule::fade);
     const auto regions = bank_regions(filters);
-    const GoldenVector golden = golden_vector(regions, as_svf(filters), {Form::svf, Precision::float64});
+    const GoldenVector golden = golden_vector(regions, as_svf(filters));
     std::vector<bool> visited(regions.size());
     std::size_t changed = 0;
     for (std::size_t k = 0; k < golden.torque_nm.size(); ++k) {

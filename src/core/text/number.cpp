@@ -11,7 +11,6 @@
 #include <cstring>
 
 #include "core/functions/powers_of_ten.hpp"
-#include "core/text/print_fixed.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
@@ -26,6 +25,31 @@ std::string percent_text(double percent) {
 }
 
 namespace {
+
+// Eight decimal digits at a time, in a register.
+
+/// From numbers side by side, each split into quotient (in its lower half) and remainder (in its upper half)
+/// by `divisor`: parts << half | quotients, less divisor times the quotients in the upper half.
+constexpr std::uint64_t split(std::uint64_t parts, std::uint64_t quotients, std::uint64_t divisor, int half) {
+    return (parts << half) - quotients * ((divisor << half) - 1);
+}
+
+/// The eight digits of a number below 1e8, one a byte, the first in the lowest: halves of it side by side,
+/// then halves of these, each division by 10000, 100 and 10 a multiplication.
+constexpr std::uint64_t eight_digits(std::uint32_t value) {
+    const std::uint64_t fours = split(value, value / 10000, 10000, 32);
+    const std::uint64_t twos = split(fours, ((fours * 10486) >> 20) & 0x0000007F0000007FU, 100, 16);
+    return split(twos, ((twos * 103) >> 10) & 0x000F000F000F000FU, 10, 8);
+}
+
+/// Digits as characters.
+constexpr std::uint64_t eight_zeros = 0x3030303030303030U;
+
+/// Eight characters, the first in the lowest byte.
+void put_eight(char* into, std::uint64_t text) {
+    if constexpr (std::endian::native == std::endian::big) text = __builtin_bswap64(text);
+    std::memcpy(into, &text, sizeof text);
+}
 
 // A double is c * 2^q, and every number between (c - 1/2) * 2^q and (c + 1/2) * 2^q reads back as it. Scaled
 // by the 10^n for which 1 <= 2^q * 10^n < 10, this interval holds a whole number, and at most one multiple of

@@ -23,38 +23,17 @@
 namespace ripplenotch {
 
 using Bytes = Wide<std::uint8_t>;
-using Words = Wide<std::uint16_t>;
-using Doublewords = Wide<std::uint32_t>;
-using Quadwords = Wide<std::uint64_t>;
-using Doubles = Wide<double>;  ///< the lanes of lanes.hpp, four of them
 
 RIPPLENOTCH_INLINED_WIDE Bytes load_bytes(const void* from) {
     Bytes bytes;
     __builtin_memcpy(&bytes, from, sizeof bytes);
     return bytes;
 }
-RIPPLENOTCH_INLINED_WIDE void store_bytes(void* to, const Bytes& bytes) {
-    __builtin_memcpy(to, &bytes, sizeof bytes);
-}
 
 /// The same number in each lane.
 template <class Number>
 RIPPLENOTCH_INLINED_WIDE Wide<Number> all(Number value) {
     return Wide<Number>{} + value;
-}
-RIPPLENOTCH_INLINED_WIDE Doubles all(double value) {
-    Doubles lanes;
-    fill(lanes, value);
-    return lanes;
-}
-
-/// A constant that the compiler does not see through: it would make five shifts and additions of one
-/// multiplication, and every constant anew for each number.
-template <class Number>
-RIPPLENOTCH_INLINED_WIDE Wide<Number> opaque(Number value) {
-    Wide<Number> lanes = all(value);
-    hide(lanes);
-    return lanes;
 }
 
 }  // namespace ripplenotch

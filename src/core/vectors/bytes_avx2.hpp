@@ -25,26 +25,11 @@ RIPPLENOTCH_INLINED_WIDE __m256i whole(const Lanes& lanes) {
     return reinterpret_cast<__m256i>(lanes);
 }
 
-template <class Lanes>
-RIPPLENOTCH_INLINED_WIDE void hide(Lanes& lanes) {
-    __asm__("" : "+x"(lanes));
-}
-
 /// Halves from sixteen bytes each.
 RIPPLENOTCH_INLINED_WIDE Wide<std::uint8_t> load_halves(const void* low, const void* high) {
     const auto load = [](const void* from)
                           RIPPLENOTCH_WIDE { return _mm_loadu_si128(static_cast<const __m128i*>(from)); };
     return as<std::uint8_t>(_mm256_inserti128_si256(_mm256_castsi128_si256(load(low)), load(high), 1));
-}
-
-/// The low halves of both, and the high ones.
-RIPPLENOTCH_INLINED_WIDE Wide<std::uint8_t> low_halves(const Wide<std::uint8_t>& a,
-                                                       const Wide<std::uint8_t>& b) {
-    return as<std::uint8_t>(_mm256_permute2x128_si256(whole(a), whole(b), 0x20));
-}
-RIPPLENOTCH_INLINED_WIDE Wide<std::uint8_t> high_halves(const Wide<std::uint8_t>& a,
-                                                        const Wide<std::uint8_t>& b) {
-    return as<std::uint8_t>(_mm256_permute2x128_si256(whole(a), whole(b), 0x31));
 }
 
 /// In each half: byte from[i] of it, or zero where that is 0x80 or more.
@@ -67,23 +52,6 @@ template <class Lanes>
 RIPPLENOTCH_INLINED_WIDE bool every(const Lanes& mask) {
     return _mm256_testc_si256(whole(mask), _mm256_set1_epi8(-1)) != 0;
 }
-
-/// The lower half of each number times that of the other.
-RIPPLENOTCH_INLINED_WIDE Wide<std::uint64_t> low_products(const Wide<std::uint64_t>& a,
-                                                          const Wide<std::uint64_t>& b) {
-    return as<std::uint64_t>(_mm256_mul_epu32(whole(a), whole(b)));
-}
-/// The upper half of the products.
-RIPPLENOTCH_INLINED_WIDE Wide<std::uint16_t> high_products(const Wide<std::uint16_t>& a,
-                                                           const Wide<std::uint16_t>& b) {
-    return as<std::uint16_t>(_mm256_mulhi_epu16(whole(a), whole(b)));
-}
-/// Of the eight bytes of each number.
-RIPPLENOTCH_INLINED_WIDE Wide<std::uint64_t> byte_sums(const Wide<std::uint8_t>& bytes) {
-    return as<std::uint64_t>(_mm256_sad_epu8(whole(bytes), _mm256_setzero_si256()));
-}
-
-RIPPLENOTCH_INLINED_WIDE Wide<double> floors(const Wide<double>& values) { return _mm256_floor_pd(values); }
 
 /// Of each half's sixteen digits, the most significant first: the whole number, by sums of neighbours (10,
 /// 100, 10000, 100000000).

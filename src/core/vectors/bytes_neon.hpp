@@ -20,23 +20,9 @@ RIPPLENOTCH_INLINED_WIDE Wide<To> as(const Wide<From>& lanes) {
     return {reinterpret_cast<HalfRegister<To>>(lanes.low), reinterpret_cast<HalfRegister<To>>(lanes.high)};
 }
 
-template <class Number>
-RIPPLENOTCH_INLINED_WIDE void hide(Wide<Number>& lanes) {
-    __asm__("" : "+w"(lanes.low), "+w"(lanes.high));
-}
-
 RIPPLENOTCH_INLINED_WIDE Wide<std::uint8_t> load_halves(const void* low, const void* high) {
     return {vld1q_u8(static_cast<const std::uint8_t*>(low)),
             vld1q_u8(static_cast<const std::uint8_t*>(high))};
-}
-
-RIPPLENOTCH_INLINED_WIDE Wide<std::uint8_t> low_halves(const Wide<std::uint8_t>& a,
-                                                       const Wide<std::uint8_t>& b) {
-    return {a.low, b.low};
-}
-RIPPLENOTCH_INLINED_WIDE Wide<std::uint8_t> high_halves(const Wide<std::uint8_t>& a,
-                                                        const Wide<std::uint8_t>& b) {
-    return {a.high, b.high};
 }
 
 RIPPLENOTCH_INLINED_WIDE Wide<std::uint8_t> shuffle(const Wide<std::uint8_t>& bytes,
@@ -62,27 +48,6 @@ template <class Number>
 RIPPLENOTCH_INLINED_WIDE bool every(const Wide<Number>& mask) {
     const Wide<std::uint8_t> bytes = as<std::uint8_t>(mask);
     return vminvq_u8(bytes.low & bytes.high) == 0xFF;
-}
-
-RIPPLENOTCH_INLINED_WIDE Wide<std::uint64_t> low_products(const Wide<std::uint64_t>& a,
-                                                          const Wide<std::uint64_t>& b) {
-    return {vmull_u32(vmovn_u64(a.low), vmovn_u64(b.low)), vmull_u32(vmovn_u64(a.high), vmovn_u64(b.high))};
-}
-RIPPLENOTCH_INLINED_WIDE Wide<std::uint16_t> high_products(const Wide<std::uint16_t>& a,
-                                                           const Wide<std::uint16_t>& b) {
-    const auto high = [](uint16x8_t x, uint16x8_t y) {
-        return vuzp2q_u16(vreinterpretq_u16_u32(vmull_u16(vget_low_u16(x), vget_low_u16(y))),
-                          vreinterpretq_u16_u32(vmull_high_u16(x, y)));
-    };
-    return {high(a.low, b.low), high(a.high, b.high)};
-}
-RIPPLENOTCH_INLINED_WIDE Wide<std::uint64_t> byte_sums(const Wide<std::uint8_t>& bytes) {
-    return {vpaddlq_u32(vpaddlq_u16(vpaddlq_u8(bytes.low))),
-            vpaddlq_u32(vpaddlq_u16(vpaddlq_u8(bytes.high)))};
-}
-
-RIPPLENOTCH_INLINED_WIDE Wide<double> floors(const Wide<double>& values) {
-    return {vrndmq_f64(values.low), vrndmq_f64(values.high)};
 }
 
 /// In two sums of up to eight digits.

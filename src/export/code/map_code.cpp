@@ -138,8 +138,6 @@ std::string MapCode::arguments(bool with_types, std::string_view torque) const {
     return text;
 }
 
-std::string MapCode::parameters() const { return "@real@ speed_deg_s, @real@ joint_deg"; }
-
 std::string MapCode::amplitudes_here(std::string_view torque) const {
     std::string text;
     if (map_.form.speeds_deg_s.size() == 1 && map_.form.directions == 1) text += "    (void)speed_deg_s;\n";
@@ -153,10 +151,8 @@ std::string MapCode::amplitudes_here(std::string_view torque) const {
 std::string MapCode::factors() const {
     const MapForm& form = map_.form;
     std::string text;
-    if (form.speeds_deg_s.size() > 1) {
-        text += along_code;
-        text.replace(text.find("@speeds@"), 8, std::to_string(form.speeds_deg_s.size()));
-    }
+    if (form.speeds_deg_s.size() > 1)
+        text += filled(std::string(along_code), {{"@speeds@", std::to_string(form.speeds_deg_s.size())}});
     if (form.turn_harmonics > 0)
         text += std::string(held_code) + "    @real@ c1, s1;\n    @name@_on_circle(joint, &c1, &s1);\n";
     for (std::size_t k = 2; k <= form.turn_harmonics; ++k) {
@@ -173,7 +169,7 @@ std::string MapCode::factors() const {
     return text;
 }
 
-// A cosine or sine amplitude, as map_run.hpp adds it up.
+// A cosine or sine amplitude, as MapRun adds it up.
 std::string MapCode::sum(std::size_t part) const {
     const MapForm& form = apart_.form;
     const std::size_t parts = 2 * apart_.orders.size(), speeds = form.speeds_deg_s.size();
@@ -248,7 +244,7 @@ std::string MapCode::definitions() const {
                 "        {\n" + side(0, "            ", "z[{0}] = {1};") + "        }\n" +
                 side(1, "        ", "z[{0}] = @name@_fma(share, {1} - z[{0}], z[{0}]);") + "    }\n";
     }
-    return text + style_.filled(code + combined() + "}\n");
+    return text + code + combined() + "}\n";
 }
 
 std::string order_angles_code(const std::vector<double>& orders, std::string_view turns) {

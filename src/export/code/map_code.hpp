@@ -48,9 +48,6 @@ class MapCode {
 
     /// Tables, and the function NAME_at where amplitudes are not the same everywhere.
     [[nodiscard]] std::string definitions() const;
-    /// Arguments of a public function in addition to torque and motor angle: "speed_deg_s, joint_deg" with
-    /// types.
-    [[nodiscard]] std::string parameters() const;
     /// Lines that declare z[], the amplitudes here, cosine before sine. `torque` is the load's expression.
     [[nodiscard]] std::string amplitudes_here(std::string_view torque) const;
 

@@ -204,29 +204,13 @@ static inline @name@_real @name@_self_test(void)
 )";
 }
 
-std::string filled(std::string text, std::span<const std::pair<std::string_view, std::string>> fields) {
-    for (const auto& [field, value] : fields) {
-        for (std::size_t at = 0; (at = text.find(field, at)) != std::string::npos; at += value.size()) {
-            text.replace(at, field.size(), value);
-        }
-    }
-    return text;
-}
-
 }  // namespace ripplenotch::c_code
 
 namespace ripplenotch {
 
 namespace {
 
-constexpr std::array<std::string_view, 2> precisions = {"float", "double"};
-constexpr std::array keys = {
-    Key{.name = "name", .kind = KeyKind::text, .default_text = "ripplenotch", .help = "prefix of all names"},
-    Key{.name = "precision",
-        .kind = KeyKind::choice,
-        .default_text = "float",
-        .choices = precisions,
-        .help = "of numbers and arithmetic"}};
+constexpr std::array keys = {name_key("ripplenotch"), precision_key("of numbers and arithmetic")};
 
 // Polynomials in the square of the quarter turns from the nearest whole one, by interpolation at Chebyshev
 // points: within 2.5e-9 except for rounding. Where a processor has a fused multiplication and addition it is
@@ -286,23 +270,24 @@ std::string sum_code(std::string first, std::span<const std::pair<std::string, s
 }
 
 std::string CodeStyle::array(std::string_view what, const std::vector<double>& values) const {
-    std::string text;
-    for (const double value : values)
-        text += (text.empty() ? "" : ", ") + (is_float ? decimal_float(value) : decimal(value));
     return fmt::format("static const {} {}_{}[{}] = {{{}}};\n", is_float ? "float" : "double", name, what,
-                       values.size(), text);
+                       values.size(), listed(values, is_float ? decimal_float : decimal));
 }
 
 std::string CodeStyle::filled(std::string_view code) const {
-    const std::array<std::pair<std::string_view, std::string>, 7> fields = {
-        {{"@name@", name},
-         {"@NAME@", upper_case(name)},
-         {"@real@", is_float ? "float" : "double"},
-         {"@abs@", is_float ? "fabsf" : "fabs"},
-         {"@sqrt@", is_float ? "sqrtf" : "sqrt"},
-         {"@full@", decimal(full_below_rate)},
-         {"@none@", decimal(none_above_rate)}}};
-    return c_code::filled(std::string(code), fields);
+    return ripplenotch::filled(std::string(code), {{"@name@", name},
+                                                   {"@NAME@", upper_case(name)},
+                                                   {"@real@", is_float ? "float" : "double"},
+                                                   {"@abs@", is_float ? "fabsf" : "fabs"},
+                                                   {"@sqrt@", is_float ? "sqrtf" : "sqrt"},
+                                                   {"@full@", decimal(full_below_rate)},
+                                                   {"@none@", decimal(none_above_rate)}});
+}
+
+std::string CodeStyle::header(std::span<const std::string> heading, std::string_view body) const {
+    return comment_lines(heading, "// ") +
+           filled(fmt::format(
+               "#ifndef @NAME@_H\n#define @NAME@_H\n#include <math.h>\n\n{}#endif  // @NAME@_H\n", body));
 }
 
 std::vector<double> CodeStyle::read(TextReader& reader, std::string_view what, std::size_t count) const {
@@ -319,19 +304,17 @@ std::span<const Key> method_code_keys() { return keys; }
 Written write_method_code(const RunningDesign& design, const Settings& settings,
                           std::span<const std::string> heading) {
     const CodeStyle style = style_of(settings);
-    std::string text = comment_lines(heading, "// ");
-    text += style.filled("#ifndef @NAME@_H\n#define @NAME@_H\n#include <math.h>\n\n");
-    if (const auto* tracking = std::get_if<TrackingDesign>(&design))
-        text += tracking_header(*tracking, style);
-    if (const auto* oscillator = std::get_if<OscillatorDesign>(&design))
-        text += oscillator_header(*oscillator, style);
-    return {text + style.filled("\n#endif  // @NAME@_H\n"), {}};
+    const auto* const tracking = std::get_if<TrackingDesign>(&design);
+    const std::string body = tracking != nullptr
+                                 ? tracking_header(*tracking, style)
+                                 : oscillator_header(std::get<OscillatorDesign>(design), style);
+    return {style.header(heading, body + "\n"), {}};
 }
 
 LoadedCode read_method_code(std::string_view bytes, const std::string& source, const RunningDesign& design,
                             const Settings& settings) {
     const CodeStyle style = style_of(settings);
-    TextReader reader(bytes, source, Comments::c, style.is_float ? Precision::float32 : Precision::float64);
+    TextReader reader(bytes, source, Comments::c, style.precision());
     LoadedCode loaded = std::holds_alternative<TrackingDesign>(design)
                             ? tracking_loaded(reader, std::get<TrackingDesign>(design), style)
                             : oscillator_loaded(reader, std::get<OscillatorDesign>(design), style);

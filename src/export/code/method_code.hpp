@@ -22,6 +22,13 @@ struct CodeStyle {
     std::string name;
     bool is_float = true;
 
+    [[nodiscard]] Precision precision() const { return is_float ? Precision::float32 : Precision::float64; }
+    [[nodiscard]] std::string number(double value) const {
+        return is_float ? decimal_float(value) : decimal(value);
+    }
+    /// A whole header: its origin, its guard, and between them `body`, filled in.
+    [[nodiscard]] std::string header(std::span<const std::string> heading, std::string_view body) const;
+
     /// "static const float NAME_what[3] = {...};"
     [[nodiscard]] std::string array(std::string_view what, const std::vector<double>& values) const;
     /// Fields @name@, @NAME@, @real@ and mathematics functions filled in.
@@ -74,6 +81,7 @@ struct OnCircle {
     return (quarter & 2) != 0 ? OnCircle<float>{-x, -y} : OnCircle<float>{x, y};
 }
 
+/// The body of a header, for CodeStyle::header().
 [[nodiscard]] std::string tracking_header(const TrackingDesign& design, const CodeStyle& style);
 [[nodiscard]] LoadedCode tracking_loaded(TextReader& reader, const TrackingDesign& design,
                                          const CodeStyle& style);
@@ -86,7 +94,7 @@ struct OnCircle {
 namespace ripplenotch::c_code {
 
 // The fixed parts of the C header, with @fields@ to fill in. Its arithmetic is that of
-// export/run/structure.hpp, operation by operation.
+// export/run/bank.cpp, operation by operation.
 
 /// Declarations that identify the form of a header to a reader.
 inline constexpr std::string_view svf_fields = "a1, a2, a3, m0, m1, m2;";
@@ -98,7 +106,5 @@ inline constexpr std::string_view df1_memory = "x1, x2, y1, y2;";
 [[nodiscard]] std::string step_function(bool by_speed);
 [[nodiscard]] std::string self_test_open();
 [[nodiscard]] std::string self_test_function(bool by_speed);
-[[nodiscard]] std::string filled(std::string text,
-                                 std::span<const std::pair<std::string_view, std::string>> fields);
 
 }  // namespace ripplenotch::c_code

@@ -3,10 +3,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <array>
 #include <memory>
 #include <utility>
 
+#include "design/tracking_run.hpp"
 #include "export/code/map_code.hpp"
 #include "export/code/method_code.hpp"
 #include "export/run/oscillator_run.hpp"
@@ -102,37 +103,16 @@ std::vector<double> code_values(const OscillatorDesign& d) {
     return values;
 }
 
-void replace(std::string& text, std::string_view mark, const std::string& value) {
-    text.replace(text.find(mark), mark.size(), value);
-}
-
 std::string step_of(const OscillatorDesign& d, const CodeStyle& style) {
-    std::string text(step_code);
-    std::string here;
-    if (d.map) {
-        const MapCode map(*d.map, style);
-        here = map.amplitudes_here("torque_nm");
-        replace(text, "@parameters@", ", " + map.parameters());
-        replace(text, "@more@",
-                " speed_deg_s and joint_deg: the joint's\n   velocity and position, where its map depends on "
-                "them.");
-    } else {
-        replace(text, "@parameters@", "");
-        replace(text, "@more@", "");
-    }
-    return style.filled(text + here + oscillator_step_code(d) + "}\n");
-}
-
-template <class Real>
-LoadedCode loaded_code(TextReader& reader, const OscillatorDesign& d, const CodeStyle& style,
-                       bool minus_ripple) {
-    const auto orders = style.read(reader, "orders", d.orders.size());
-    const auto priors = style.read(reader, "priors", 3 * d.orders.size());
-    const auto values = style.read(reader, "values", Value::count);
-    std::optional<MapRun<Real>> map;
-    if (d.map) map.emplace(*d.map, MapTables(reader, *d.map, style));
-    auto run = std::make_shared<OscillatorRun<Real>>(orders, priors, values, minus_ripple, std::move(map));
-    return {"", [run](const CodeInput& in) { return run->step(in); }};
+    std::string text =
+        filled(std::string(step_code),
+               {{"@parameters@", d.map ? ", @real@ speed_deg_s, @real@ joint_deg" : ""},
+                {"@more@",
+                 d.map ? " speed_deg_s and joint_deg: the joint's\n   velocity and position, where its map "
+                         "depends on them."
+                       : ""}});
+    if (d.map) text += MapCode(*d.map, style).amplitudes_here("torque_nm");
+    return text + oscillator_step_code(d) + "}\n";
 }
 
 }  // namespace
@@ -142,11 +122,11 @@ std::string oscillator_header(const OscillatorDesign& d, const CodeStyle& style)
     std::vector<double> priors;
     for (const auto& prior : d.priors)
         priors.insert(priors.end(), {prior.cosine, prior.sine, prior.deviation});
-    std::string text =
-        style.filled(fmt::format("enum {{ @NAME@_ORDERS = {}, @NAME@_STATES = {}, @NAME@_COVARIANCES = {}, "
-                                 "@NAME@_MINUS_RIPPLE = {},\n       @NAME@_SAMPLE_RATE_HZ = {} }};\n",
-                                 d.orders.size(), states, states * (states + 1) / 2, d.minus_ripple ? 1 : 0,
-                                 std::lround(1.0 / d.step_s)));
+    std::string text = fmt::format(
+        "enum {{ @NAME@_ORDERS = {}, @NAME@_STATES = {}, @NAME@_COVARIANCES = {}, "
+        "@NAME@_MINUS_RIPPLE = {},\n       @NAME@_SAMPLE_RATE_HZ = {} }};\n",
+        d.orders.size(), states, states * (states + 1) / 2, d.minus_ripple ? 1 : 0,
+        std::lround(1.0 / d.step_s));
     text += style.array("orders", d.orders);
     text += "/* of each order, in units of the noise: cosine, sine, how far off they may be */\n";
     text += style.array("priors", priors);
@@ -155,18 +135,29 @@ std::string oscillator_header(const OscillatorDesign& d, const CodeStyle& style)
         "that of "
         "torque and\n   rate, of rate, and the rate's at the start; deviation that a motor turn adds to an "
         "amplitude; 0.25 / memory in\n   turns, jump, largest slip, 1 / turns of return, 1 / noise */\n";
-    text += style.array("values", code_values(d)) + style.filled(turn_code(style.is_float));
+    text += style.array("values", code_values(d));
+    text += turn_code(style.is_float);
     if (d.map) text += "\n/* the map that is taken off before */\n" + MapCode(*d.map, style).definitions();
-    text += style.filled(state_code);
-    if (d.return_turns > 0.0) text += style.filled(back_code);
+    text += state_code;
+    if (d.return_turns > 0.0) text += back_code;
     return text + step_of(d, style);
 }
 
 LoadedCode oscillator_loaded(TextReader& reader, const OscillatorDesign& d, const CodeStyle& style) {
     reader.expect("_MINUS_RIPPLE");
     const bool minus_ripple = reader.number() > 0.0;
-    return style.is_float ? loaded_code<float>(reader, d, style, minus_ripple)
-                          : loaded_code<double>(reader, d, style, minus_ripple);
+    const auto orders = style.read(reader, "orders", d.orders.size());
+    const auto priors = style.read(reader, "priors", 3 * d.orders.size());
+    const auto values = style.read(reader, "values", Value::count);
+    const auto tables = d.map ? std::optional(MapTables(reader, *d.map, style)) : std::nullopt;
+    return in_precision(style.precision(), [&](auto real) -> LoadedCode {
+        using Real = decltype(real);
+        std::optional<MapRun<Real>> map;
+        if (tables) map.emplace(*d.map, *tables);
+        auto run =
+            std::make_shared<OscillatorRun<Real>>(orders, priors, values, minus_ripple, std::move(map));
+        return {"", [run](const CodeInput& in) { return run->step(in); }};
+    });
 }
 
 namespace {
@@ -279,140 +270,55 @@ static inline @real@ @name@_step(@name@_state* s, @real@ torque_nm, @real@ speed
 }
 )c";
 
-// The code above, operation by operation.
+/// The header's array of values, in its order.
+constexpr std::array tracking_values = {
+    &TrackingDesign::gear_ratio, &TrackingDesign::sample_rate_hz, &TrackingDesign::q_each,
+    &TrackingDesign::narrow_hz,  &TrackingDesign::depth_gain,     &TrackingDesign::min_hz,
+    &TrackingDesign::fade_hz,    &TrackingDesign::speed_pole,     &TrackingDesign::slew};
+
+// How the header comes to the tangent; all else it does as TrackingRun does it.
 template <class Real>
-class Runner {
-  public:
-    Runner(std::vector<double> orders, std::vector<double> weights, std::vector<double> spread,
-           const std::vector<double>& values, bool parks)
-        : orders_(orders.begin(), orders.end()),
-          weights_(weights.begin(), weights.end()),
-          spread_(spread.begin(), spread.end()),
-          c_(values.begin(), values.end()),
-          parks_(parks),
-          lines_(orders_.size()) {
-        for (Line& line : lines_) line.notches.resize(spread_.size());
-    }
-
-    double step(double torque_nm, double speed_deg_s) {
-        const Real torque = static_cast<Real>(torque_nm), speed = static_cast<Real>(speed_deg_s);
-        if (!started_) {
-            started_ = true;
-            origin_ = torque;
-            speed_ = speed;
-            follow(true);
-        } else {
-            speed_ = speed + c_[7] * (speed_ - speed);
-            if (speed_ != tuned_for_ || !arrived_) follow(false);
-        }
-        Real y = torque - origin_;
-        for (Line& line : lines_) {
-            for (Notch& n : line.notches) {
-                const Real v3 = y - n.s2;
-                const Real v1 = n.a1 * n.s1 + n.a2 * v3;
-                const Real v2 = n.s2 + n.a2 * n.s1 + n.a3 * v3;
-                n.s1 = v1 + v1 - n.s1;
-                n.s2 = v2 + v2 - n.s2;
-                y -= line.taken * (n.damping * v1);
-            }
-        }
-        return static_cast<double>(origin_ + y);
-    }
-
-  private:
-    struct Notch {
-        Real a1 = 0, a2 = 0, a3 = 0, damping = 0, s1 = 0, s2 = 0;
-    };
-    struct Line {
-        Real center = 0, taken = 0;
-        std::vector<Notch> notches;
-    };
-
-    void follow(bool starts) {
-        arrived_ = true;
-        for (std::size_t i = 0; i < lines_.size(); ++i) {
-            Line& line = lines_[i];
-            const Real hz = orders_[i] * c_[0] * std::abs(speed_) / 360;
-            const Real wanted = std::clamp(hz, c_[5], static_cast<Real>(none_above_rate) * c_[1]);
-            Real center = wanted;
-            if (!starts && c_[8] < 1)
-                center = std::clamp(wanted, line.center * (1 - c_[8]), line.center / (1 - c_[8]));
-            if (center != wanted) arrived_ = false;
-            if (starts || center != line.center) tune(line, center);
-            line.taken = 1 - left(i, hz);
-        }
-        tuned_for_ = speed_;
-    }
-    void tune(Line& line, Real center) {
-        line.center = center;
-        const Real q = c_[2] * std::max(c_[3] / center, Real(1));
-        for (std::size_t j = 0; j < spread_.size(); ++j) {
-            const auto at = on_circle(static_cast<Real>(0.5) * center * spread_[j] / c_[1]);
-            const Real warped = at.sine / at.cosine, damping = 1 / q;
-            const Real a1 = 1 / (1 + warped * (warped + damping));
-            Notch& n = line.notches[j];
-            n.a1 = a1;
-            n.a2 = warped * a1;
-            n.a3 = warped * warped * a1;
-            n.damping = damping;
-        }
-    }
-    [[nodiscard]] Real left(std::size_t i, Real hz) const {
-        const auto share_of = [](Real value) { return std::clamp(value, Real(0), Real(1)); };
-        const Real none = static_cast<Real>(none_above_rate), full = static_cast<Real>(full_below_rate);
-        Real gain = c_[4], share = weights_[i] * share_of((none - hz / c_[1]) / (none - full));
-        if (parks_) {
-            const Real on = share_of((hz / c_[5] - static_cast<Real>(0.25)) / static_cast<Real>(0.75));
-            const Real root = 1 - on * (1 - std::sqrt(c_[4]));
-            gain = root * root;
-        } else if (c_[6] > 0) {
-            share *= share_of((hz - c_[5]) / c_[6]);
-        } else if (hz < c_[5]) {
-            share = 0;
-        }
-        return 1 - share * (1 - gain);
-    }
-
-    std::vector<Real> orders_, weights_, spread_, c_;
-    bool parks_;
-    std::vector<Line> lines_;
-    Real origin_ = 0, speed_ = 0, tuned_for_ = 0;
-    bool started_ = false, arrived_ = false;
-};
+Real warped(Real center_hz, Real relative, Real sample_rate_hz) {
+    const auto at = on_circle(static_cast<Real>(0.5) * center_hz * relative / sample_rate_hz);
+    return at.sine / at.cosine;
+}
 
 }  // namespace
 
 std::string tracking_header(const TrackingDesign& d, const CodeStyle& style) {
-    std::string text = style.filled(
-        fmt::format("enum {{ @NAME@_ORDERS = {}, @NAME@_NOTCHES = {}, @NAME@_PARKS = {}, "
-                    "@NAME@_SAMPLE_RATE_HZ = {} }};\n",
-                    d.orders.size(), d.spread.size(), d.parks ? 1 : 0, std::lround(d.sample_rate_hz)));
+    std::string text = fmt::format(
+        "enum {{ @NAME@_ORDERS = {}, @NAME@_NOTCHES = {}, @NAME@_PARKS = {}, "
+        "@NAME@_SAMPLE_RATE_HZ = {} }};\n",
+        d.orders.size(), d.spread.size(), d.parks ? 1 : 0, std::lround(d.sample_rate_hz));
     text +=
         style.array("orders", d.orders) + style.array("weights", d.weights) + style.array("spread", d.spread);
     text +=
         "/* gear ratio, sample rate, Q, narrow below, gain at the centre, lowest centre, fade, speed pole, "
         "slew */\n";
-    text += style.array("values", {d.gear_ratio, d.sample_rate_hz, d.q_each, d.narrow_hz, d.depth_gain,
-                                   d.min_hz, d.fade_hz, d.speed_pole, d.slew});
-    return text + style.filled(code) + style.filled(turn_code(style.is_float)) + style.filled(tune_code);
+    std::vector<double> values;
+    for (const auto value : tracking_values) values.push_back(d.*value);
+    text += style.array("values", values);
+    for (const std::string_view part : {code, turn_code(style.is_float), tune_code}) text += part;
+    return text;
 }
 
 LoadedCode tracking_loaded(TextReader& reader, const TrackingDesign& d, const CodeStyle& style) {
     reader.expect("_PARKS");
-    const bool parks = reader.number() > 0.0;
-    const auto orders = style.read(reader, "orders", d.orders.size());
-    const auto weights = style.read(reader, "weights", d.orders.size());
-    const auto spread = style.read(reader, "spread", d.spread.size());
-    const auto values = style.read(reader, "values", 9);
-    LoadedCode loaded;
-    if (style.is_float) {
-        auto runner = std::make_shared<Runner<float>>(orders, weights, spread, values, parks);
-        loaded.step = [runner](const CodeInput& in) { return runner->step(in.torque_nm, in.speed_deg_s); };
-    } else {
-        auto runner = std::make_shared<Runner<double>>(orders, weights, spread, values, parks);
-        loaded.step = [runner](const CodeInput& in) { return runner->step(in.torque_nm, in.speed_deg_s); };
-    }
-    return loaded;
+    TrackingDesign found;
+    found.parks = reader.number() > 0.0;
+    found.orders = style.read(reader, "orders", d.orders.size());
+    found.weights = style.read(reader, "weights", d.orders.size());
+    found.spread = style.read(reader, "spread", d.spread.size());
+    const auto values = style.read(reader, "values", tracking_values.size());
+    for (std::size_t i = 0; i < values.size(); ++i) found.*tracking_values[i] = values[i];
+    return in_precision(style.precision(), [&](auto real) -> LoadedCode {
+        using Real = decltype(real);
+        auto run = std::make_shared<TrackingRun<Real>>(found, warped<Real>);
+        return {"", [run](const CodeInput& in) {
+                    return static_cast<double>(
+                        run->next(static_cast<Real>(in.torque_nm), static_cast<Real>(in.speed_deg_s)));
+                }};
+    });
 }
 
 }  // namespace ripplenotch

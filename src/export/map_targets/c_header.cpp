@@ -15,14 +15,7 @@
 namespace ripplenotch {
 namespace {
 
-constexpr std::array<std::string_view, 2> precisions = {"float", "double"};
-constexpr std::array keys = {
-    Key{.name = "name", .kind = KeyKind::text, .default_text = "ripple_map", .help = "prefix of all names"},
-    Key{.name = "precision",
-        .kind = KeyKind::choice,
-        .default_text = "float",
-        .choices = precisions,
-        .help = "of numbers and arithmetic"}};
+constexpr std::array keys = {name_key("ripple_map"), precision_key("of numbers and arithmetic")};
 
 constexpr std::string_view torque_code = R"c(
 /* Ripple of the joint's torque in Nm: subtract it from the sensor. motor_turns: the motor's angle in turns, 0 where the
@@ -42,19 +35,17 @@ Written write(const RippleMap& map, const Settings& settings, std::span<const st
     const CodeStyle style = style_of(settings);
     const MapCode code(map, style);
     const std::vector<double> orders = orders_of(map);
-    std::string text = comment_lines(heading, "// ");
-    text += style.filled("#ifndef @NAME@_H\n#define @NAME@_H\n#include <math.h>\n\n");
-    text += style.array("orders", orders) + style.filled(turn_code(style.is_float)) + code.definitions();
-    std::string signature(torque_code);
-    signature.replace(signature.find("@temperature@"), 13,
-                      map.form.by_temperature ? ", @real@ temperature_degc" : "");
-    std::string body = signature + code.amplitudes_here("torque_nm");
+    std::string body =
+        style.array("orders", orders) + std::string(turn_code(style.is_float)) + code.definitions() +
+        filled(std::string(torque_code),
+               {{"@temperature@", map.form.by_temperature ? ", @real@ temperature_degc" : ""}});
+    body += code.amplitudes_here("torque_nm");
     if (!map.form.by_load) body += "    (void)torque_nm;\n";
     std::vector<std::pair<std::string, std::string>> products;
     for (std::size_t i = 1; i < 2 * orders.size(); ++i)
         products.emplace_back(fmt::format("z[{}]", i), fmt::format("{}{}", i % 2 == 0 ? 'c' : 's', i / 2));
     body += order_angles_code(orders, "motor_turns") + "    return " + sum_code("z[0] * c0", products);
-    return {text + style.filled(body + ";\n}\n#endif  // @NAME@_H\n"), {}};
+    return {style.header(heading, body + ";\n}\n"), {}};
 }
 
 // The header's function, operation by operation.
@@ -88,15 +79,14 @@ class TorqueRun {
 LoadedMap read(std::string_view bytes, const std::string& source, const RippleMap& map,
                const Settings& settings) {
     const CodeStyle style = style_of(settings);
-    TextReader reader(bytes, source, Comments::c, style.is_float ? Precision::float32 : Precision::float64);
+    TextReader reader(bytes, source, Comments::c, style.precision());
     const std::vector<double> orders = style.read(reader, "orders", map.orders.size());
     const MapTables tables(reader, map, style);
-    if (style.is_float) {
-        const auto run = std::make_shared<TorqueRun<float>>(map, orders, tables);
-        return {"float32", map, [run](const MapState& state) { return (*run)(state); }};
-    }
-    const auto run = std::make_shared<TorqueRun<double>>(map, orders, tables);
-    return {"float64", map, [run](const MapState& state) { return (*run)(state); }};
+    return in_precision(style.precision(), [&](auto real) -> LoadedMap {
+        const auto run = std::make_shared<TorqueRun<decltype(real)>>(map, orders, tables);
+        return {style.is_float ? "float32" : "float64", map,
+                [run](const MapState& state) { return (*run)(state); }};
+    });
 }
 
 }  // namespace

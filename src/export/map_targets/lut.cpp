@@ -57,7 +57,7 @@ Written write(const RippleMap& map, const Settings& settings, std::span<const st
                                    interpolation_bound_nm(flat, table.size())));
     std::string text = comment_lines(heading, c ? "// " : "# ") + (c ? "// " : "# ") + what + "\n";
     if (c) return {text + c_text(table, settings.text("name")), warnings};
-    for (const double value : table) text += shortest(static_cast<double>(static_cast<float>(value))) + "\n";
+    for (const double value : table) text += shortest(as_float(value)) + "\n";
     return {text, warnings};
 }
 

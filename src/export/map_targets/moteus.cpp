@@ -36,8 +36,7 @@ Written write(const RippleMap& map, const Settings& settings, std::span<const st
         value *= amperes_per_nm(map, settings);
         largest = std::max(largest, std::abs(value));
     }
-    const double scale =
-        largest > 0.0 ? static_cast<double>(static_cast<float>(largest / largest_byte)) : 0.0;
+    const double scale = largest > 0.0 ? as_float(largest / largest_byte) : 0.0;
     std::string text = comment_lines(heading, "# ");
     text += fmt::format("# the commutation encoder's turn begins where the joint is at {} deg\n",
                         shortest(map.zero_deg));

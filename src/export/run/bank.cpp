@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -161,95 +162,55 @@ std::vector<std::string> export_violations(const std::vector<SectionCheck>& chec
 
 namespace {
 
-// The three structures in which targets compute a section, over float or double: the same operations in the
-// same order as the code that is exported, so that both give the same bits where nothing is contracted.
+// A section in each of the structures in which targets compute it, over float or double: the same operations
+// in the same order as the code that is exported, so that both give the same bits where nothing is
+// contracted.
 
 template <class Real>
-struct DirectForm1 {
-    struct Coefficients {
-        Real b0, b1, b2, a1, a2;
-    };
-    struct State {
-        Real x1{}, x2{}, y1{}, y2{};
-    };
-    static Coefficients coefficients(const LoadedSection& s) {
-        return {static_cast<Real>(s.biquad.b0), static_cast<Real>(s.biquad.b1),
-                static_cast<Real>(s.biquad.b2), static_cast<Real>(s.biquad.a1),
-                static_cast<Real>(s.biquad.a2)};
+using Memory = std::array<Real, 4>;
+
+/// Values as c_header.cpp writes them: b0 b1 b2 a1 a2, or a1 a2 a3 m0 m1 m2 of the state-variable form.
+template <class Real>
+struct RunSection {
+    Form form;
+    std::array<Real, 6> c{};
+
+    explicit RunSection(const LoadedSection& section) : form(section.arithmetic.form) {
+        const Biquad& f = section.biquad;
+        const SvfSection& s = section.svf;
+        const std::array<double, 6> values = form == Form::svf
+                                                 ? std::array{s.a1, s.a2, s.a3, s.m0, s.m1, s.m2}
+                                                 : std::array{f.b0, f.b1, f.b2, f.a1, f.a2, 0.0};
+        std::transform(values.begin(), values.end(), c.begin(),
+                       [](double value) { return static_cast<Real>(value); });
     }
-    static State settled(const Coefficients&, Real x) { return {x, x, x, x}; }
-    static Real step(const Coefficients& c, State& s, Real x) {
-        const Real y = c.b0 * x + c.b1 * s.x1 + c.b2 * s.x2 - c.a1 * s.y1 - c.a2 * s.y2;
-        s.x2 = s.x1;
-        s.x1 = x;
-        s.y2 = s.y1;
-        s.y1 = y;
+    /// As if x had been there for ever.
+    [[nodiscard]] Memory<Real> settled(Real x) const {
+        if (form == Form::df1) return {x, x, x, x};
+        if (form == Form::svf) return {Real{}, x};
+        const Real s2 = (c[2] - c[4]) * x;
+        return {(c[1] - c[3]) * x + s2, s2};
+    }
+    Real step(Memory<Real>& m, Real x) const {
+        if (form == Form::svf) {
+            const Real v3 = x - m[1];
+            const Real v1 = c[0] * m[0] + c[1] * v3;
+            const Real v2 = m[1] + c[1] * m[0] + c[2] * v3;
+            m[0] = v1 + v1 - m[0];
+            m[1] = v2 + v2 - m[1];
+            return c[3] * x + c[4] * v1 + c[5] * v2;
+        }
+        if (form == Form::df1) {
+            const Real y = c[0] * x + c[1] * m[0] + c[2] * m[1] - c[3] * m[2] - c[4] * m[3];
+            m = {x, m[0], y, m[2]};
+            return y;
+        }
+        const Real y = c[0] * x + m[0];
+        m[0] = c[1] * x - c[3] * y + m[1];
+        m[1] = c[2] * x - c[4] * y;
         return y;
     }
 };
-
-template <class Real>
-struct TransposedForm2 {
-    using Coefficients = typename DirectForm1<Real>::Coefficients;
-    struct State {
-        Real s1{}, s2{};
-    };
-    static Coefficients coefficients(const LoadedSection& s) { return DirectForm1<Real>::coefficients(s); }
-    static State settled(const Coefficients& c, Real x) {
-        const Real s2 = (c.b2 - c.a2) * x;
-        return {(c.b1 - c.a1) * x + s2, s2};
-    }
-    static Real step(const Coefficients& c, State& s, Real x) {
-        const Real y = c.b0 * x + s.s1;
-        s.s1 = c.b1 * x - c.a1 * y + s.s2;
-        s.s2 = c.b2 * x - c.a2 * y;
-        return y;
-    }
-};
-
-template <class Real>
-struct StateVariable {
-    struct Coefficients {
-        Real a1, a2, a3, m0, m1, m2;
-    };
-    struct State {
-        Real s1{}, s2{};
-    };
-    static Coefficients coefficients(const LoadedSection& s) {
-        return {static_cast<Real>(s.svf.a1), static_cast<Real>(s.svf.a2), static_cast<Real>(s.svf.a3),
-                static_cast<Real>(s.svf.m0), static_cast<Real>(s.svf.m1), static_cast<Real>(s.svf.m2)};
-    }
-    static State settled(const Coefficients&, Real x) { return {Real{}, x}; }
-    static Real step(const Coefficients& c, State& s, Real x) {
-        const Real v3 = x - s.s2;
-        const Real v1 = c.a1 * s.s1 + c.a2 * v3;
-        const Real v2 = s.s2 + c.a2 * s.s1 + c.a3 * v3;
-        s.s1 = v1 + v1 - s.s1;
-        s.s2 = v2 + v2 - s.s2;
-        return c.m0 * x + c.m1 * v1 + c.m2 * v2;
-    }
-};
-
-template <class Real, template <class> class Structure>
-void run(const LoadedSection& section, std::span<const double> in, std::span<double> out) {
-    const auto coefficients = Structure<Real>::coefficients(section);
-    typename Structure<Real>::State state{};
-    for (std::size_t k = 0; k < in.size(); ++k) {
-        out[k] = static_cast<double>(Structure<Real>::step(coefficients, state, static_cast<Real>(in[k])));
-    }
-}
-
-template <class Real>
-void run_in(const LoadedSection& section, std::span<const double> in, std::span<double> out) {
-    switch (section.arithmetic.form) {
-        case Form::df1:
-            return run<Real, DirectForm1>(section, in, out);
-        case Form::df2t:
-            return run<Real, TransposedForm2>(section, in, out);
-        case Form::svf:
-            return run<Real, StateVariable>(section, in, out);
-    }
-}
 
 }  // namespace
 
@@ -312,11 +273,13 @@ LoadedSection loaded(const SvfSection& section, Precision precision) {
 }
 
 void run_section(const LoadedSection& section, std::span<const double> in, std::span<double> out) {
-    if (section.arithmetic.precision == Precision::float32) {
-        run_in<float>(section, in, out);
-    } else {
-        run_in<double>(section, in, out);
-    }
+    in_precision(section.arithmetic.precision, [&](auto real) {
+        using Real = decltype(real);
+        const RunSection<Real> run(section);
+        Memory<Real> memory{};
+        std::transform(in.begin(), in.end(), out.begin(),
+                       [&](double x) { return static_cast<double>(run.step(memory, static_cast<Real>(x))); });
+    });
 }
 
 namespace {
@@ -325,16 +288,15 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t samples_a_region = 6;
 constexpr std::size_t most_regions_visited = 24;
 
-template <class Real, template <class> class Structure>
+template <class Real>
 class Bank {
   public:
     Bank(const std::vector<BankRegion>& regions, const LoadedFilters& filters) : regions_(regions) {
         for (const auto& band : filters.bands) {
             auto& sections = bands_.emplace_back();
-            for (const LoadedSection& section : band)
-                sections.push_back(Structure<Real>::coefficients(section));
+            for (const LoadedSection& section : band) sections.emplace_back(section);
         }
-        states_.resize(bands_.front().size());
+        memories_.resize(bands_.front().size());
     }
 
     Real step(Real torque, Real velocity) {
@@ -344,14 +306,14 @@ class Bank {
         const BankRegion& region = regions_[at];
         const int band = region.band == region_holds ? band_ : region.band;
         if (band != region_passes && band_ == region_passes) {
-            for (std::size_t i = 0; i < states_.size(); ++i)
-                states_[i] = Structure<Real>::settled(bands_[static_cast<std::size_t>(band)][i], torque);
+            for (std::size_t i = 0; i < memories_.size(); ++i)
+                memories_[i] = bands_[static_cast<std::size_t>(band)][i].settled(torque);
         }
         band_ = band;
         if (band == region_passes) return torque;
         Real filtered = torque;
-        for (std::size_t i = 0; i < states_.size(); ++i)
-            filtered = Structure<Real>::step(bands_[static_cast<std::size_t>(band)][i], states_[i], filtered);
+        for (std::size_t i = 0; i < memories_.size(); ++i)
+            filtered = bands_[static_cast<std::size_t>(band)][i].step(memories_[i], filtered);
         const Real full = static_cast<Real>(region.full_deg_s), none = static_cast<Real>(region.none_deg_s);
         if (full == none) return filtered;
         Real share = (speed - none) / (full - none);
@@ -361,8 +323,8 @@ class Bank {
 
   private:
     const std::vector<BankRegion>& regions_;
-    std::vector<std::vector<typename Structure<Real>::Coefficients>> bands_;
-    std::vector<typename Structure<Real>::State> states_;
+    std::vector<std::vector<RunSection<Real>>> bands_;
+    std::vector<Memory<Real>> memories_;
     int band_ = region_passes;
 };
 
@@ -373,28 +335,6 @@ double speed_in(const std::vector<BankRegion>& regions, std::size_t at) {
     const double middle =
         std::isinf(to) ? std::round(1.25 * from) + 1.0 : std::round(4.0 * (from + to)) / 8.0;
     return middle > from && middle <= to ? middle : static_cast<double>(static_cast<float>(to));
-}
-
-template <class Real, template <class> class Structure>
-void run_bank(GoldenVector& golden, const std::vector<BankRegion>& regions, const LoadedFilters& filters) {
-    Bank<Real, Structure> bank(regions, filters);
-    for (std::size_t k = 0; k < golden.torque_nm.size(); ++k) {
-        golden.expected_nm.push_back(static_cast<double>(
-            bank.step(static_cast<Real>(golden.torque_nm[k]), static_cast<Real>(golden.speed_deg_s[k]))));
-    }
-}
-
-template <class Real>
-void run_bank_in(GoldenVector& golden, const std::vector<BankRegion>& regions, const LoadedFilters& filters,
-                 Form form) {
-    switch (form) {
-        case Form::df1:
-            return run_bank<Real, DirectForm1>(golden, regions, filters);
-        case Form::df2t:
-            return run_bank<Real, TransposedForm2>(golden, regions, filters);
-        case Form::svf:
-            return run_bank<Real, StateVariable>(golden, regions, filters);
-    }
 }
 
 }  // namespace
@@ -413,8 +353,8 @@ std::vector<BankRegion> bank_regions(const FilterSet& filters) {
     return regions;
 }
 
-GoldenVector golden_vector(const std::vector<BankRegion>& regions, const LoadedFilters& filters,
-                           Arithmetic arithmetic) {
+GoldenVector golden_vector(const std::vector<BankRegion>& regions, const LoadedFilters& filters) {
+    const Precision precision = filters.bands.front().front().arithmetic.precision;
     std::vector<std::size_t> visits;
     const std::size_t stride = (regions.size() + most_regions_visited - 1) / most_regions_visited;
     for (std::size_t r = 0; r < regions.size(); r += stride) visits.push_back(r);
@@ -431,11 +371,13 @@ GoldenVector golden_vector(const std::vector<BankRegion>& regions, const LoadedF
             golden.torque_nm.push_back(4.0 + (static_cast<double>(k * 37 % 64) - 32.0) / 16.0);
         }
     }
-    if (arithmetic.precision == Precision::float32) {
-        run_bank_in<float>(golden, regions, filters, arithmetic.form);
-    } else {
-        run_bank_in<double>(golden, regions, filters, arithmetic.form);
-    }
+    in_precision(precision, [&](auto real) {
+        using Real = decltype(real);
+        Bank<Real> bank(regions, filters);
+        for (std::size_t k = 0; k < golden.torque_nm.size(); ++k)
+            golden.expected_nm.push_back(static_cast<double>(
+                bank.step(static_cast<Real>(golden.torque_nm[k]), static_cast<Real>(golden.speed_deg_s[k]))));
+    });
     return golden;
 }
 

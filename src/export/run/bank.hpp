@@ -156,7 +156,7 @@ struct GoldenVector {
 
 /// Torque and speed that float holds exactly, going through the regions up and down, and the output of the
 /// bank in its own arithmetic.
-[[nodiscard]] GoldenVector golden_vector(const std::vector<BankRegion>& regions, const LoadedFilters& filters,
-                                         Arithmetic arithmetic);
+[[nodiscard]] GoldenVector golden_vector(const std::vector<BankRegion>& regions,
+                                         const LoadedFilters& filters);
 
 }  // namespace ripplenotch

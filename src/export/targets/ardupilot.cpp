@@ -113,8 +113,7 @@ LoadedSection notch_in_float(double center_hz, double q, double attenuation, Her
     const double alpha = portable::sin(omega) / (2.0 * q), scale = 1.0 / (1.0 + alpha);
     Biquad f{(1.0 + alpha * gain * gain) * scale, -2.0 * portable::cos(omega) * scale,
              (1.0 - alpha * gain * gain) * scale, -2.0 * portable::cos(omega) * scale, (1.0 - alpha) * scale};
-    for (double* value : {&f.b0, &f.b1, &f.b2, &f.a1, &f.a2})
-        *value = static_cast<double>(static_cast<float>(*value));
+    for (double* value : {&f.b0, &f.b1, &f.b2, &f.a1, &f.a2}) *value = as_float(*value);
     return loaded(f, {Form::df1, Precision::float32});
 }
 

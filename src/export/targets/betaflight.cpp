@@ -26,8 +26,7 @@ LoadedSection notch_in_float(double center_hz, double q, double weight, Hertz sa
     const ExportSection section{std::nullopt, NotchSpec{Hertz(center_hz), q}, Hertz(center_hz), {}};
     SvfSection svf = svf_of(section, sample_rate);
     svf.m1 *= weight;
-    for (double* value : {&svf.a1, &svf.a2, &svf.a3, &svf.m1})
-        *value = static_cast<double>(static_cast<float>(*value));
+    for (double* value : {&svf.a1, &svf.a2, &svf.a3, &svf.m1}) *value = as_float(*value);
     return loaded(svf, Precision::float32);
 }
 
@@ -135,16 +134,14 @@ LoadedFilters read(std::string_view bytes, const std::string& source, const Filt
                    const Settings&) {
     TextReader reader(bytes, source, Comments::hash, Precision::float64);
     if (filters.by_speed()) return read_rpm_filter(reader, filters);
-    LoadedFilters found;
-    auto& sections = found.bands.emplace_back();
-    for (std::size_t i = 0; i < filters.sections_per_band(); ++i) {
-        reader.expect(fmt::format("gyro_notch{}_hz", i + 1));
-        const double center = reader.number();
-        reader.expect(fmt::format("gyro_notch{}_cutoff", i + 1));
-        sections.push_back(
-            notch_in_float(center, q_from_cutoff(center, reader.number()), 1.0, filters.sample_rate));
-    }
-    return found;
+    return read_bands(
+        filters, [](const ExportBand&) {},
+        [&](std::size_t i) {
+            reader.expect(fmt::format("gyro_notch{}_hz", i + 1));
+            const double center = reader.number();
+            reader.expect(fmt::format("gyro_notch{}_cutoff", i + 1));
+            return notch_in_float(center, q_from_cutoff(center, reader.number()), 1.0, filters.sample_rate);
+        });
 }
 
 }  // namespace

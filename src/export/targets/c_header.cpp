@@ -2,6 +2,7 @@
 // One header without dependencies: tables, a step function, and a test vector to assert after pasting.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -15,21 +16,16 @@
 namespace ripplenotch {
 namespace {
 
-constexpr std::array<std::string_view, 2> precisions = {"float", "double"};
 constexpr std::array<std::string_view, 3> forms = {"svf", "df1", "df2t"};
 
 constexpr std::array keys = {
-    Key{.name = "precision",
-        .kind = KeyKind::choice,
-        .default_text = "float",
-        .choices = precisions,
-        .help = "type of every number in the header"},
+    precision_key("type of every number in the header"),
     Key{.name = "form",
         .kind = KeyKind::choice,
         .default_text = "svf",
         .choices = forms,
         .help = "svf: state-variable; df1: direct form I; df2t: transposed direct form II"},
-    Key{.name = "name", .kind = KeyKind::text, .default_text = "ripplenotch", .help = "prefix of all names"},
+    name_key("ripplenotch"),
 };
 
 Arithmetic arithmetic_of(const Settings& settings) {
@@ -38,10 +34,6 @@ Arithmetic arithmetic_of(const Settings& settings) {
             : form == "df1" ? Form::df1
                             : Form::df2t,
             settings.text("precision") == "float" ? Precision::float32 : Precision::float64};
-}
-
-double rounded(double value, Precision precision) {
-    return precision == Precision::float32 ? static_cast<double>(static_cast<float>(value)) : value;
 }
 
 std::vector<double> values_of(const ExportSection& section, Hertz sample_rate, Arithmetic arithmetic) {
@@ -53,7 +45,8 @@ std::vector<double> values_of(const ExportSection& section, Hertz sample_rate, A
         const Biquad& f = section.section;
         values = {f.b0, f.b1, f.b2, f.a1, f.a2};
     }
-    for (double& value : values) value = rounded(value, arithmetic.precision);
+    if (arithmetic.precision == Precision::float32)
+        std::transform(values.begin(), values.end(), values.begin(), as_float);
     return values;
 }
 
@@ -63,25 +56,14 @@ LoadedSection section_from(const std::vector<double>& v, Arithmetic arithmetic) 
     return loaded(Biquad{v[0], v[1], v[2], v[3], v[4]}, arithmetic);
 }
 
+/// A literal that is exact, and the number as people read it.
 struct Writer {
-    Precision precision;
-
-    [[nodiscard]] std::string exact(double value) const {
-        return precision == Precision::float32 ? hexadecimal_float(value) : hexadecimal(value);
-    }
-    [[nodiscard]] std::string readable(double value) const {
-        return precision == Precision::float32 ? fmt::format("{:.9g}", static_cast<float>(value))
-                                               : shortest(value);
-    }
-    [[nodiscard]] std::string row(const std::vector<double>& values, std::string_view indent) const {
-        std::string hex, text;
-        for (const double value : values) {
-            hex += (hex.empty() ? "" : ", ") + exact(value);
-            text += (text.empty() ? "" : ", ") + readable(value);
-        }
-        return fmt::format("{0}{{{1}}},\n{0}/* {2} */\n", indent, hex, text);
-    }
+    std::string (*exact)(double);
+    std::string (*readable)(double);
 };
+constexpr Writer in_double = {hexadecimal, shortest};
+constexpr Writer in_float = {hexadecimal_float,
+                             [](double value) { return fmt::format("{:.9g}", static_cast<float>(value)); }};
 
 std::string bands_text(const FilterSet& filters, const Writer& writer, Arithmetic arithmetic,
                        LoadedFilters& loaded_filters) {
@@ -92,7 +74,8 @@ std::string bands_text(const FilterSet& filters, const Writer& writer, Arithmeti
         for (const ExportSection& section : band.sections) {
             const auto values = values_of(section, filters.sample_rate, arithmetic);
             sections.push_back(section_from(values, arithmetic));
-            text += fmt::format("        /* {} */\n{}", describe(section), writer.row(values, "        "));
+            text += fmt::format("        /* {} */\n        {{{}}},\n        /* {} */\n", describe(section),
+                                listed(values, writer.exact), listed(values, writer.readable));
         }
         text += "    },\n";
     }
@@ -121,27 +104,23 @@ std::string regions_text(const std::vector<BankRegion>& regions, const Writer& w
 std::string golden_text(const GoldenVector& golden, const Writer& writer) {
     std::string text;
     for (std::size_t k = 0; k < golden.torque_nm.size(); ++k) {
-        text += fmt::format("    {{{}, {}, {}}}, /* {}, {}, {} */\n", writer.exact(golden.torque_nm[k]),
-                            writer.exact(golden.speed_deg_s[k]), writer.exact(golden.expected_nm[k]),
-                            writer.readable(golden.torque_nm[k]), writer.readable(golden.speed_deg_s[k]),
-                            writer.readable(golden.expected_nm[k]));
+        const std::array row = {golden.torque_nm[k], golden.speed_deg_s[k], golden.expected_nm[k]};
+        text +=
+            fmt::format("    {{{}}}, /* {} */\n", listed(row, writer.exact), listed(row, writer.readable));
     }
     return text;
 }
 
 Written write(const FilterSet& filters, const Settings& settings, std::span<const std::string> heading) {
-    const std::string name = settings.text("name");
-    check_identifier(name, "target c-header, name");
+    const CodeStyle style = style_of(settings);
     const Arithmetic arithmetic = arithmetic_of(settings);
-    const bool single = arithmetic.precision == Precision::float32;
-    const Writer writer{arithmetic.precision};
+    const Writer& writer = style.is_float ? in_float : in_double;
     const auto regions = bank_regions(filters);
     LoadedFilters held;
     const std::string bands = bands_text(filters, writer, arithmetic, held);
-    const GoldenVector golden = golden_vector(regions, held, arithmetic);
+    const GoldenVector golden = golden_vector(regions, held);
 
-    std::string text = "/*\n" + comment_lines(heading, " * ");
-    text += fmt::format(
+    std::string text = fmt::format(
         " * Harmonic-drive ripple filter, {}: {} bands of {} sections for {} Hz.\n"
         " * Literals are exact; the comment below each row has them in decimal.\n */\n",
         arithmetic_name(arithmetic), filters.bands.size(), filters.sections_per_band(),
@@ -153,19 +132,13 @@ Written write(const FilterSet& filters, const Settings& settings, std::span<cons
     text += c_code::section_functions(arithmetic.form) + c_code::step_function(filters.by_speed());
     text += c_code::self_test_open() + golden_text(golden, writer) + "};\n\n" +
             c_code::self_test_function(filters.by_speed()) + "#endif\n";
-    const std::array<std::pair<std::string_view, std::string>, 9> fields = {{
-        {"@name@", name},
-        {"@NAME@", upper_case(name)},
-        {"@real@", single ? "float" : "double"},
-        {"@rate@",
-         single ? decimal_float(filters.sample_rate.value()) : decimal(filters.sample_rate.value())},
-        {"@bands@", std::to_string(filters.bands.size())},
-        {"@sections@", std::to_string(filters.sections_per_band())},
-        {"@regions@", std::to_string(regions.size())},
-        {"@golden@", std::to_string(golden.torque_nm.size())},
-        {"@tolerance@", single ? "1e-4f" : "1e-9"},
-    }};
-    return {c_code::filled(text, fields), {}};
+    text = filled(text, {{"@rate@", style.number(filters.sample_rate.value())},
+                         {"@bands@", std::to_string(filters.bands.size())},
+                         {"@sections@", std::to_string(filters.sections_per_band())},
+                         {"@regions@", std::to_string(regions.size())},
+                         {"@golden@", std::to_string(golden.torque_nm.size())},
+                         {"@tolerance@", style.is_float ? "1e-4f" : "1e-9"}});
+    return {"/*\n" + comment_lines(heading, " * ") + style.filled(text), {}};
 }
 
 LoadedFilters read(std::string_view bytes, const std::string& source, const FilterSet& filters,
@@ -189,18 +162,12 @@ LoadedFilters read(std::string_view bytes, const std::string& source, const Filt
         reader.fail(fmt::format("{} bands of {} sections", band_count, section_count),
                     fmt::format("{} of {}", filters.bands.size(), filters.sections_per_band()));
     }
-    LoadedFilters found;
     reader.expect("_bands[");
     reader.expect("= {");
-    for (std::size_t b = 0; b < filters.bands.size(); ++b) {
-        reader.expect("{");
-        auto& sections = found.bands.emplace_back();
-        for (std::size_t i = 0; i < filters.sections_per_band(); ++i) {
-            sections.push_back(
-                section_from(reader.numbers('{', '}', arithmetic.form == Form::svf ? 6 : 5), arithmetic));
-        }
-    }
-    return found;
+    const auto enter = [&](const ExportBand&) { reader.expect("{"); };
+    return read_bands(filters, enter, [&](std::size_t) {
+        return section_from(reader.numbers('{', '}', arithmetic.form == Form::svf ? 6 : 5), arithmetic);
+    });
 }
 
 std::string usage(const FilterSet& filters, const Settings& settings, const std::string& path) {

@@ -19,25 +19,11 @@ constexpr std::array keys = {
         .default_text = "df1",
         .choices = forms,
         .help = "which of arm_biquad_cascade_df1_f32 and arm_biquad_cascade_df2T_f32 will run it"},
-    Key{.name = "name", .kind = KeyKind::text, .default_text = "ripplenotch", .help = "prefix of all names"},
+    name_key("ripplenotch"),
 };
 
 // Where the library loads four floats from the third of the last stage, it reads one past the stage.
 constexpr std::size_t padding = 1;
-
-std::string row(const Biquad& f) {
-    std::string text;
-    for (const double value : {f.b0, f.b1, f.b2, -f.a1, -f.a2}) text += " " + decimal_float(value) + ",";
-    return text;
-}
-
-std::string edges(const FilterSet& filters, const std::string& name, DegPerSec ExportBand::*edge) {
-    std::string values;
-    for (const ExportBand& band : filters.bands) {
-        values += (values.empty() ? "" : ", ") + decimal_float((band.*edge).value());
-    }
-    return fmt::format("static const float32_t {}[] = {{{}}};\n", name, values);
-}
 
 Written write(const FilterSet& filters, const Settings& settings, std::span<const std::string> heading) {
     const std::string name = settings.text("name");
@@ -58,15 +44,21 @@ Written write(const FilterSet& filters, const Settings& settings, std::span<cons
                         macro, filters.bands.size(), stages, stages * (df1 ? 4 : 2));
     if (filters.by_speed()) {
         text += "/* A band is in force while from < |v| <= to, joint speed in deg/s. */\n";
-        text += edges(filters, name + "_from_deg_s", &ExportBand::from);
-        text += edges(filters, name + "_to_deg_s", &ExportBand::to) + "\n";
+        text += fmt::format(
+            "static const float32_t {0}_from_deg_s[] = {{{1}}};\n"
+            "static const float32_t {0}_to_deg_s[] = {{{2}}};\n\n",
+            name, listed(edges(filters, &ExportBand::from), decimal_float),
+            listed(edges(filters, &ExportBand::to), decimal_float));
     }
     text += fmt::format("static const float32_t {0}_coefficients[{1}_BANDS][5 * {1}_STAGES + {2}] = {{\n",
                         name, macro, padding);
     for (const ExportBand& band : filters.bands) {
         text += fmt::format("    {{ /* {} */\n", describe(band));
         for (const ExportSection& section : band.sections) {
-            text += fmt::format("       {} /* {} */\n", row(section.section), describe(section));
+            const Biquad& f = section.section;
+            text += fmt::format("        {}, /* {} */\n",
+                                listed(std::array{f.b0, f.b1, f.b2, -f.a1, -f.a2}, decimal_float),
+                                describe(section));
         }
         text += "        0.0f},\n";
     }
@@ -78,17 +70,16 @@ LoadedFilters read(std::string_view bytes, const std::string& source, const Filt
     TextReader reader(bytes, source, Comments::c, Precision::float32);
     const bool df1 = bytes.find("arm_biquad_cascade_df1_f32") != std::string_view::npos;
     const Arithmetic arithmetic{df1 ? Form::df1 : Form::df2t, Precision::float32};
-    LoadedFilters found;
     reader.expect("_coefficients[");
     reader.expect("= {");
-    for (std::size_t b = 0; b < filters.bands.size(); ++b) {
-        const auto v = reader.numbers('{', '}', 5 * filters.sections_per_band() + padding);
-        auto& sections = found.bands.emplace_back();
-        for (std::size_t i = 0; i + 4 < v.size(); i += 5) {
-            sections.push_back(loaded(Biquad{v[i], v[i + 1], v[i + 2], -v[i + 3], -v[i + 4]}, arithmetic));
-        }
-    }
-    return found;
+    std::vector<double> values;
+    const auto enter = [&](const ExportBand& band) {
+        values = reader.numbers('{', '}', 5 * band.sections.size() + padding);
+    };
+    return read_bands(filters, enter, [&](std::size_t i) {
+        const double* const v = values.data() + 5 * i;
+        return loaded(Biquad{v[0], v[1], v[2], -v[3], -v[4]}, arithmetic);
+    });
 }
 
 std::string usage(const FilterSet&, const Settings& settings, const std::string& path) {

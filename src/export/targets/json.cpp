@@ -22,13 +22,11 @@ std::string in_quotes(std::string_view text) {
 }
 
 std::string list_of(const Biquad& f) {
-    return fmt::format("[{}, {}, {}, 1.0, {}, {}]", decimal(f.b0), decimal(f.b1), decimal(f.b2),
-                       decimal(f.a1), decimal(f.a2));
+    return "[" + listed(std::array{f.b0, f.b1, f.b2, 1.0, f.a1, f.a2}, decimal) + "]";
 }
 
 std::string list_of(const SvfSection& s) {
-    return fmt::format("[{}, {}, {}, {}, {}, {}]", decimal(s.a1), decimal(s.a2), decimal(s.a3), decimal(s.m0),
-                       decimal(s.m1), decimal(s.m2));
+    return "[" + listed(std::array{s.a1, s.a2, s.a3, s.m0, s.m1, s.m2}, decimal) + "]";
 }
 
 std::string section_text(const ExportSection& section, Hertz sample_rate) {
@@ -87,19 +85,13 @@ LoadedFilters read(std::string_view bytes, const std::string& source, const Filt
                    const Settings&) {
     TextReader reader(bytes, source, Comments::none, Precision::float64);
     reader.expect("\"bands\": [");
-    LoadedFilters found;
-    for (const ExportBand& band : filters.bands) {
-        auto& sections = found.bands.emplace_back();
-        reader.expect("\"sections\":");
-        for (std::size_t i = 0; i < band.sections.size(); ++i) {
-            reader.expect("\"sos\":");
-            const auto v = reader.numbers('[', ']', 6);
-            if (v[3] != 1.0) reader.fail(shortest(v[3]), "a0 of 1");
-            sections.push_back(
-                loaded(Biquad{v[0], v[1], v[2], v[4], v[5]}, {Form::df2t, Precision::float64}));
-        }
-    }
-    return found;
+    const auto enter = [&](const ExportBand&) { reader.expect("\"sections\":"); };
+    return read_bands(filters, enter, [&](std::size_t) {
+        reader.expect("\"sos\":");
+        const auto v = reader.numbers('[', ']', 6);
+        if (v[3] != 1.0) reader.fail(shortest(v[3]), "a0 of 1");
+        return loaded_row(v.data());
+    });
 }
 
 }  // namespace

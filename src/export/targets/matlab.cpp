@@ -12,19 +12,8 @@ namespace ripplenotch {
 namespace {
 
 constexpr std::array keys = {
-    Key{.name = "name",
-        .kind = KeyKind::text,
-        .default_text = "ripplenotch",
-        .help = "the structure it sets"},
+    name_key("ripplenotch", "the structure it sets"),
 };
-
-std::string edges(const FilterSet& filters, DegPerSec ExportBand::*edge) {
-    std::string values;
-    for (const ExportBand& band : filters.bands) {
-        values += (values.empty() ? "" : " ") + shortest((band.*edge).value());
-    }
-    return values;
-}
 
 Written write(const FilterSet& filters, const Settings& settings, std::span<const std::string> heading) {
     const std::string name = settings.text("name");
@@ -37,7 +26,8 @@ Written write(const FilterSet& filters, const Settings& settings, std::span<cons
         text += fmt::format(
             "% A band is in force while from < |v| <= to, joint speed in deg/s.\n"
             "{0}.from_deg_s = [{1}];\n{0}.to_deg_s = [{2}];\n",
-            name, edges(filters, &ExportBand::from), edges(filters, &ExportBand::to));
+            name, listed(edges(filters, &ExportBand::from), shortest, " "),
+            listed(edges(filters, &ExportBand::to), shortest, " "));
     }
     for (std::size_t b = 0; b < filters.bands.size(); ++b) {
         text += fmt::format("% {}\n{}.sos{{{}}} = [\n", describe(filters.bands[b]), name, b + 1);
@@ -57,17 +47,12 @@ LoadedFilters read(std::string_view bytes, const std::string& source, const Filt
     reader.expect(".g =");
     const double gain = reader.number();
     if (gain != 1.0) reader.fail(shortest(gain), "a gain of 1");
-    LoadedFilters found;
-    for (const ExportBand& band : filters.bands) {
+    std::vector<double> values;
+    const auto enter = [&](const ExportBand& band) {
         reader.expect(".sos{");
-        const auto values = reader.numbers('[', ']', 6 * band.sections.size());
-        auto& sections = found.bands.emplace_back();
-        for (auto v = values.begin(); v != values.end(); v += 6) {
-            sections.push_back(
-                loaded(Biquad{v[0], v[1], v[2], v[4], v[5]}, {Form::df2t, Precision::float64}));
-        }
-    }
-    return found;
+        values = reader.numbers('[', ']', 6 * band.sections.size());
+    };
+    return read_bands(filters, enter, [&](std::size_t i) { return loaded_row(values.data() + 6 * i); });
 }
 
 std::string usage(const FilterSet&, const Settings& settings, const std::string&) {

@@ -45,8 +45,9 @@ Written write(const FilterSet& filters, const Settings& settings, std::span<cons
         text += fmt::format(
             "      filter{0}:  # {1}\n        name: ripple_{0}\n        type: {2}\n        params:\n", i + 1,
             describe(band.sections[i]), type_of(settings));
-        text += fmt::format("          a: [1.0, {}, {}]\n          b: [{}, {}, {}]\n", decimal(f.a1),
-                            decimal(f.a2), decimal(f.b0), decimal(f.b1), decimal(f.b2));
+        text += fmt::format("          a: [{}]\n          b: [{}]\n",
+                            listed(std::array{1.0, f.a1, f.a2}, decimal),
+                            listed(std::array{f.b0, f.b1, f.b2}, decimal));
     }
     return {text, {}};
 }
@@ -54,19 +55,17 @@ Written write(const FilterSet& filters, const Settings& settings, std::span<cons
 LoadedFilters read(std::string_view bytes, const std::string& source, const FilterSet& filters,
                    const Settings&) {
     TextReader reader(bytes, source, Comments::hash, Precision::float64);
-    const ExportBand& band = only_band(filters, "ros-filters");
-    LoadedFilters found;
-    auto& sections = found.bands.emplace_back();
-    for (std::size_t i = 0; i < band.sections.size(); ++i) {
-        reader.expect("TransferFunctionFilterDouble");
-        reader.expect("a:");
-        const auto a = reader.numbers('[', ']', 3);
-        if (a[0] != 1.0) reader.fail(shortest(a[0]), "a0 of 1");
-        reader.expect("b:");
-        const auto b = reader.numbers('[', ']', 3);
-        sections.push_back(loaded(Biquad{b[0], b[1], b[2], a[1], a[2]}, {Form::df1, Precision::float64}));
-    }
-    return found;
+    return read_bands(
+        filters, [](const ExportBand&) {},
+        [&](std::size_t) {
+            reader.expect("TransferFunctionFilterDouble");
+            reader.expect("a:");
+            const auto a = reader.numbers('[', ']', 3);
+            if (a[0] != 1.0) reader.fail(shortest(a[0]), "a0 of 1");
+            reader.expect("b:");
+            const auto b = reader.numbers('[', ']', 3);
+            return loaded(Biquad{b[0], b[1], b[2], a[1], a[2]}, {Form::df1, Precision::float64});
+        });
 }
 
 }  // namespace

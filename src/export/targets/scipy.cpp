@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "export/target.hpp"
+#include "export/text.hpp"
 #include "ripplenotch/core/error.hpp"
 
 namespace ripplenotch {
@@ -71,22 +72,17 @@ LoadedFilters read(std::string_view bytes, const std::string& source, const Filt
             "file again with ripplenotch export",
             source, bytes.size(), shape_of(filters), header.size() + 8 * row_length * rows);
     }
-    LoadedFilters found;
     std::size_t at = header.size();
-    for (const ExportBand& band : filters.bands) {
-        auto& sections = found.bands.emplace_back();
-        for (std::size_t i = 0; i < band.sections.size(); ++i) {
-            double v[row_length];
-            for (double& value : v) {
-                value = little_endian_at(bytes, at);
-                at += 8;
-            }
-            if (v[3] != 1.0) raise<DataError>("{}: read a0 {}, expected 1", source, v[3]);
-            sections.push_back(
-                loaded(Biquad{v[0], v[1], v[2], v[4], v[5]}, {Form::df2t, Precision::float64}));
+    const auto enter = [](const ExportBand&) {};
+    return read_bands(filters, enter, [&](std::size_t) {
+        double v[row_length];
+        for (double& value : v) {
+            value = little_endian_at(bytes, at);
+            at += 8;
         }
-    }
-    return found;
+        if (v[3] != 1.0) raise<DataError>("{}: read a0 {}, expected 1", source, v[3]);
+        return loaded_row(v);
+    });
 }
 
 std::string usage(const FilterSet& filters, const Settings&, const std::string& path) {

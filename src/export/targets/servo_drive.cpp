@@ -88,25 +88,21 @@ LoadedFilters read(std::string_view bytes, const std::string& source, const Filt
                    const Settings&) {
     TextReader reader(bytes, source, Comments::hash, Precision::float64);
     reader.expect("depth_code\n");
-    LoadedFilters found;
-    for (const ExportBand& band : filters.bands) {
-        auto& sections = found.bands.emplace_back();
-        for (std::size_t i = 0; i < band.sections.size(); ++i) {
-            for (const double expected : {static_cast<double>(band.number), band.from.value(),
-                                          band.to.value(), static_cast<double>(i + 1)}) {
-                const double value = reader.number();
-                if (value != expected) reader.fail(shortest(value), shortest(expected));
-            }
-            const Hertz center(reader.number());
-            const double q = q_of_width(reader.number());
-            const double gain = gain_of_depth(reader.number());
-            const NotchSpec notch{center, q, gain > 0.0 ? -20.0 * portable::log10(gain) : infinite_depth_db};
-            // How a drive computes is not published; its filter is taken as exact.
-            sections.push_back(
-                loaded(design_notch(notch, filters.sample_rate), {Form::df2t, Precision::float64}));
+    const ExportBand* in = nullptr;
+    const auto enter = [&](const ExportBand& band) { in = &band; };
+    return read_bands(filters, enter, [&](std::size_t i) {
+        for (const double expected : {static_cast<double>(in->number), in->from.value(), in->to.value(),
+                                      static_cast<double>(i + 1)}) {
+            const double value = reader.number();
+            if (value != expected) reader.fail(shortest(value), shortest(expected));
         }
-    }
-    return found;
+        const Hertz center(reader.number());
+        const double q = q_of_width(reader.number());
+        const double gain = gain_of_depth(reader.number());
+        const NotchSpec notch{center, q, gain > 0.0 ? -20.0 * portable::log10(gain) : infinite_depth_db};
+        // How a drive computes is not published; its filter is taken as exact.
+        return loaded(design_notch(notch, filters.sample_rate), {Form::df2t, Precision::float64});
+    });
 }
 
 }  // namespace

@@ -8,9 +8,9 @@
 #include <numbers>
 #include <utility>
 
+#include "design/tracking_run.hpp"
 #include "filter/method.hpp"
 #include "filter/ripple/ripple_keys.hpp"
-#include "ripplenotch/core/biquad.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
@@ -80,44 +80,6 @@ constexpr std::array keys = {
 // Measured: the table of docs/methods/tracking.md.
 constexpr double usual_q = 1.7, usual_max_delay_s = 0.0045;
 
-struct Plan {
-    RippleOrders ripple;
-    std::vector<double> weights;
-    std::vector<double> spread;  ///< centres of the composite's notches, relative to the order's
-    double sample_rate_hz = 0.0;
-    double q_each = 0.0;
-    double narrow_hz = 0.0;   ///< lines below this get a narrower notch, in proportion: one of constant delay
-    double depth_gain = 0.0;  ///< at the centre, with full share
-    double min_hz = 0.0, fade_hz = 0.0;
-    bool parks = false;
-    double speed_pole = 0.0;  ///< pole of the low-pass on the speed, 0 for none
-    double slew = 1.0;
-
-    /// Where the notch of a line at `hz` is put.
-    [[nodiscard]] double center_hz(double hz) const noexcept {
-        return std::clamp(hz, min_hz, none_above_rate * sample_rate_hz);
-    }
-    [[nodiscard]] double q_at(double center_hz) const noexcept {
-        return q_each * std::max(1.0, narrow_hz / center_hz);
-    }
-    /// The remaining share of the line at the centre, for a line at `hz`.
-    [[nodiscard]] double left_at_center(std::size_t line, double hz) const noexcept {
-        double share = weights[line] * share_below_rate(hz / sample_rate_hz);
-        double gain = depth_gain;
-        if (parks) {
-            // The square root of the gain moves linearly, as ArduPilot has it.
-            const double on = std::clamp((hz / min_hz - 0.25) / 0.75, 0.0, 1.0);
-            const double root = 1.0 - on * (1.0 - std::sqrt(depth_gain));
-            gain = root * root;
-        } else if (fade_hz > 0.0) {
-            share *= std::clamp((hz - min_hz) / fade_hz, 0.0, 1.0);
-        } else if (hz < min_hz) {
-            share = 0.0;
-        }
-        return 1.0 - share * (1.0 - gain);
-    }
-};
-
 // n notches of bandwidth B/n side by side have the width of one of bandwidth B. ArduPilot's definition of the
 // bandwidth, B = 2 (f - f_low) with f_low the lower -3 dB edge: Q = f f_low / (f^2 - f_low^2).
 double q_of_each(double q, double count) {
@@ -134,10 +96,14 @@ std::vector<double> spread_of(double q, std::size_t count) {
     return {1.0 - aside, 1.0, 1.0 + aside};
 }
 
-Plan plan(const Settings& settings, Hertz sample_rate) {
-    Plan p;
-    p.ripple = ripple_orders("tracking", settings);
-    p.weights = per_order("tracking", settings, "weights", p.ripple, 1.0);
+}  // namespace
+
+TrackingDesign tracking_design(const Settings& settings, Hertz sample_rate) {
+    const RippleOrders ripple = ripple_orders("tracking", settings);
+    TrackingDesign p;
+    p.gear_ratio = ripple.gear_ratio;
+    p.orders = ripple.orders;
+    p.weights = per_order("tracking", settings, "weights", ripple, 1.0);
     p.sample_rate_hz = sample_rate.value();
     const double q = settings.has("q") ? settings.number("q") : usual_q;
     // A notch delays by 1 / (2 pi f Q).
@@ -167,99 +133,44 @@ Plan plan(const Settings& settings, Hertz sample_rate) {
     return p;
 }
 
+namespace {
+
+double warped(double center_hz, double relative, double sample_rate_hz) {
+    return portable::tan(std::numbers::pi * center_hz * relative / sample_rate_hz);
+}
+
 class TrackingFilter final : public CausalFilter {
   public:
-    explicit TrackingFilter(Plan plan) : plan_(std::move(plan)), lines_(plan_.ripple.orders.size()) {
-        for (Line& line : lines_) line.notches.resize(plan_.spread.size());
-    }
+    explicit TrackingFilter(TrackingDesign design) : run_(std::move(design), warped) {}
 
     void process(const Samples& in, std::span<double> out) override {
-        for (std::size_t k = 0; k < out.size(); ++k) {
-            if (!started_) start(in.velocity_deg_s[k], in.torque_nm[k]);
-            follow(in.velocity_deg_s[k]);
-            double y = in.torque_nm[k] - origin_nm_;
-            for (Line& line : lines_) {
-                for (Notch& notch : line.notches) y -= line.taken * step(notch.tuning, notch.state, y);
-            }
-            out[k] = origin_nm_ + y;
-        }
+        for (std::size_t k = 0; k < out.size(); ++k)
+            out[k] = run_.next(in.torque_nm[k], in.velocity_deg_s[k]);
     }
-    void restart() override { started_ = false; }
+    void restart() override { run_.restart(); }
 
   private:
-    struct Notch {
-        BandPassTuning tuning;
-        BandPassState state;
-    };
-    struct Line {
-        double center_hz = 0.0;
-        double taken = 0.0;  ///< share of the band-pass that is subtracted
-        std::vector<Notch> notches;
-    };
-
-    void start(double velocity_deg_s, double torque_nm) {
-        started_ = true;
-        origin_nm_ = torque_nm;
-        speed_deg_s_ = velocity_deg_s;
-        for (std::size_t i = 0; i < lines_.size(); ++i) {
-            tune(i, plan_.center_hz(plan_.ripple.hz(i, velocity_deg_s)));
-            for (Notch& notch : lines_[i].notches) notch.state = {};
-        }
-        tuned_for_deg_s_ = std::nan("");
-    }
-
-    // Signed speed is smoothed, so that a joint that turns round goes through zero.
-    void follow(double velocity_deg_s) {
-        speed_deg_s_ = velocity_deg_s + plan_.speed_pole * (speed_deg_s_ - velocity_deg_s);
-        if (speed_deg_s_ == tuned_for_deg_s_) return;
-        bool arrived = true;
-        for (std::size_t i = 0; i < lines_.size(); ++i) {
-            const double hz = plan_.ripple.hz(i, speed_deg_s_);
-            const double wanted = plan_.center_hz(hz), now = lines_[i].center_hz;
-            double center = wanted;
-            if (plan_.slew < 1.0)
-                center = std::clamp(wanted, now * (1.0 - plan_.slew), now / (1.0 - plan_.slew));
-            arrived = arrived && center == wanted;
-            if (center != now) tune(i, center);
-            lines_[i].taken = 1.0 - plan_.left_at_center(i, hz);
-        }
-        tuned_for_deg_s_ = arrived ? speed_deg_s_ : std::nan("");
-    }
-
-    void tune(std::size_t line, double center_hz) {
-        lines_[line].center_hz = center_hz;
-        for (std::size_t j = 0; j < plan_.spread.size(); ++j) {
-            const double at = std::numbers::pi * center_hz * plan_.spread[j] / plan_.sample_rate_hz;
-            lines_[line].notches[j].tuning =
-                BandPassTuning::at({.warped = portable::tan(at), .q = plan_.q_at(center_hz)});
-        }
-    }
-
-    Plan plan_;
-    std::vector<Line> lines_;
-    double origin_nm_ = 0.0, speed_deg_s_ = 0.0;
-    double tuned_for_deg_s_ = 0.0;  ///< nothing to do while the speed is this
-    bool started_ = false;
+    TrackingRun<double> run_;
 };
 
 std::unique_ptr<CausalFilter> start(const Settings& settings, Hertz sample_rate, const CandidateTable*) {
-    return std::make_unique<TrackingFilter>(plan(settings, sample_rate));
+    return std::make_unique<TrackingFilter>(tracking_design(settings, sample_rate));
 }
 
 FrozenFilter frozen(const Settings& settings, Hertz sample_rate, const CandidateTable*, DegPerSec speed) {
-    const Plan p = plan(settings, sample_rate);
+    const TrackingDesign p = tracking_design(settings, sample_rate);
+    const TrackingRun<double> run(p, warped);
     FrozenFilter filter;
-    for (std::size_t i = 0; i < p.ripple.orders.size(); ++i) {
-        const double hz = p.ripple.hz(i, speed.value());
-        const double left = p.left_at_center(i, hz);
+    for (std::size_t i = 0; i < p.orders.size(); ++i) {
+        const double hz = run.hz(i, speed.value()), center_hz = run.center_hz(hz);
+        const double left = run.left_at_center(i, hz);
         if (left >= 1.0) continue;
         for (const double relative : p.spread) {
-            NotchSpec notch{.center = Hertz(p.center_hz(hz) * relative), .q = p.q_at(p.center_hz(hz))};
+            NotchSpec notch{.center = Hertz(center_hz * relative), .q = run.q_at(center_hz)};
             if (left > 0.0) notch.depth_db = -20.0 * portable::log10(left);
             filter.cascade.push_back(design_notch(notch, sample_rate));
         }
-        filter.note +=
-            fmt::format("{}{:.4g} Hz", filter.note.empty() ? "notches at " : ", ", p.center_hz(hz));
+        filter.note += fmt::format("{}{:.4g} Hz", filter.note.empty() ? "notches at " : ", ", center_hz);
         if (left > p.depth_gain) filter.note += fmt::format(" (gain {:.3g} at the centre)", left);
     }
     if (filter.note.empty()) filter.note = "too slow for any notch: passes";
@@ -267,23 +178,6 @@ FrozenFilter frozen(const Settings& settings, Hertz sample_rate, const Candidate
 }
 
 }  // namespace
-
-TrackingDesign tracking_design(const Settings& settings, Hertz sample_rate) {
-    const Plan p = plan(settings, sample_rate);
-    return {p.ripple.gear_ratio,
-            p.sample_rate_hz,
-            p.ripple.orders,
-            p.weights,
-            p.spread,
-            p.q_each,
-            p.narrow_hz,
-            p.depth_gain,
-            p.min_hz,
-            p.fade_hz,
-            p.parks,
-            p.speed_pole,
-            p.slew};
-}
 
 const Method filter_methods::tracking = {
     .name = "tracking",

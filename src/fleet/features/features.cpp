@@ -22,21 +22,120 @@ namespace ripplenotch {
 
 namespace {
 
-struct DescriptorKind {
-    std::string_view stem;  ///< "ripple_N_amplitude": with an order in the place of N
-    std::string_view unit;
-    bool scales_with_torque = false;
-    std::string_view what;
+constexpr double widest_phase_deg = 45.0;  // half of its interval
+
+/// What the descriptors of a log are told from.
+struct FeatureSource {
+    const Identification& found;
+    const JointFit& joint;
+    const RippleEstimate* ripple;  ///< of the order in question; nullptr for what belongs to none
+    bool has_position;
 };
 
-/// In the order of descriptors.def, which is that of a line.
-std::span<const DescriptorKind> descriptor_kinds() {
-    static constexpr std::array kinds = {
-#define DESCRIPTOR(stem, unit, torque, what) DescriptorKind{stem, unit, torque, what},
-#include "fleet/features/descriptors.def"
-#undef DESCRIPTOR
+void gear_ratio(const FeatureSource& from, Descriptor& one) {
+    const GearRatioFit& fit = from.found.gear_ratio;
+    one.value = fit.value;
+    if (fit.value)
+        one.ci95 = Interval{fit.ci95_low, fit.ci95_high};
+    else
+        one.reason = from.found.verdict;
+}
+
+void ripple_amplitude(const FeatureSource& from, Descriptor& one) {
+    const RippleEstimate& ripple = *from.ripple;
+    one.reason = ripple.insufficient;
+    const double half_nm = normal_95_errors * ripple.standard_error_nm;
+    if (ripple.present()) {
+        one.value = ripple.amplitude_nm;
+        one.ci95 = Interval{std::max(ripple.amplitude_nm - half_nm, 0.0), ripple.amplitude_nm + half_nm};
+    } else if (ripple.searched()) {
+        one.reason = fmt::format("no ripple above {:.2g} Nm", ripple.detectable_nm);
+    }
+}
+
+void ripple_phase(const FeatureSource& from, Descriptor& one) {
+    const RippleEstimate& ripple = *from.ripple;
+    one.reason = ripple.insufficient;
+    const double half_deg = normal_95_errors * ripple.phase_standard_error_deg;
+    if (ripple.searched() && !from.has_position)
+        one.reason = "the log has no position, and so no angle to count from";
+    else if (ripple.searched() && !(ripple.present() && ripple.phase_deg && half_deg < widest_phase_deg))
+        one.reason = ripple.present() ? "the phase is not the same along the log"
+                                      : "the amplitude is too small for a phase";
+    if (!one.reason.empty()) return;
+    one.value = ripple.phase_deg;
+    one.ci95 = Interval{*ripple.phase_deg - half_deg, *ripple.phase_deg + half_deg};
+}
+
+template <void (JointFit::*tell)(Descriptor&) const>
+void fitted(const FeatureSource& from, Descriptor& one) {
+    (from.joint.*tell)(one);
+}
+
+void noise_floor(const FeatureSource& from, Descriptor& one) {
+    const double noise_nm = from.joint.noise_nm();
+    if (noise_nm > 0.0)
+        one.value = noise_nm;
+    else
+        one.reason = "the torque holds its values from sample to sample";
+}
+
+void resonance(const FeatureSource& from, Descriptor& one) {
+    if (from.found.hums.empty()) {
+        one.reason = "no band of frequencies holds more torque than the lines";
+        return;
+    }
+    const Hum& hum = from.found.hums.front();
+    one.value = hum.peak_hz;
+    one.ci95 = Interval{hum.from_hz, hum.to_hz};
+}
+
+struct DescriptorKind {
+    std::string_view stem;    ///< "ripple_N_amplitude": with an order in the place of N
+    std::string_view unit;    ///< as it ends the name
+    bool scales_with_torque;  ///< whether a torque sensor of another gain shows another value
+    void (*tell)(const FeatureSource& from, Descriptor& one);
+
+    [[nodiscard]] bool is_of_order() const { return stem.starts_with("ripple_N"); }
+};
+
+/// All descriptors, in the order of a line of features. docs/commands/features.md says what they are.
+constexpr std::array descriptor_kinds = {
+    DescriptorKind{"gear_ratio", "", false, gear_ratio},
+    DescriptorKind{"ripple_N_amplitude", "nm", true, ripple_amplitude},
+    DescriptorKind{"ripple_N_phase", "deg", false, ripple_phase},
+    DescriptorKind{"coulomb_friction", "nm", true, fitted<&JointFit::coulomb_friction>},
+    DescriptorKind{"viscous_friction", "nm_per_deg_s", true, fitted<&JointFit::viscous_friction>},
+    DescriptorKind{"load_friction", "nm_per_nm", false, fitted<&JointFit::load_friction>},
+    DescriptorKind{"lost_motion", "deg", false, fitted<&JointFit::lost_motion>},
+    DescriptorKind{"inertia", "kgm2", true, fitted<&JointFit::inertia>},
+    DescriptorKind{"gravity", "nm", true, fitted<&JointFit::gravity>},
+    DescriptorKind{"sensor_zero", "nm", true, fitted<&JointFit::sensor_zero>},
+    DescriptorKind{"noise_floor", "nm", true, noise_floor},
+    DescriptorKind{"resonance", "hz", false, resonance},
+};
+
+/// Those of an order for one order after the other.
+std::vector<Descriptor> descriptors_of(FeatureSource from, std::span<const RippleEstimate> ripple) {
+    std::vector<Descriptor> all;
+    const auto add = [&](const DescriptorKind& kind) {
+        Descriptor& one = all.emplace_back();
+        one.stem = kind.stem;
+        if (from.ripple != nullptr) one.stem.replace(one.stem.find('N'), 1, shortest(from.ripple->order));
+        one.unit = kind.unit;
+        kind.tell(from, one);
     };
-    return kinds;
+    const auto is_of_order = [](const DescriptorKind& kind) { return kind.is_of_order(); };
+    const auto first = std::find_if(descriptor_kinds.begin(), descriptor_kinds.end(), is_of_order);
+    const auto last = std::find_if_not(first, descriptor_kinds.end(), is_of_order);
+    std::for_each(descriptor_kinds.begin(), first, add);
+    for (const RippleEstimate& one : ripple) {
+        from.ripple = &one;
+        std::for_each(first, last, add);
+    }
+    from.ripple = nullptr;
+    std::for_each(last, descriptor_kinds.end(), add);
+    return all;
 }
 
 // "ripple_2_amplitude" or "ripple_0.5_phase" -> "ripple_N_amplitude"
@@ -62,7 +161,7 @@ const Descriptor* FeatureLine::find(const std::string& name) const {
 
 Descriptor descriptor_named(const std::string& name) {
     std::string near;
-    for (const DescriptorKind& kind : descriptor_kinds()) {
+    for (const DescriptorKind& kind : descriptor_kinds) {
         const std::string ending = kind.unit.empty() ? "" : "_" + std::string(kind.unit);
         const bool ends = name.ends_with(ending);
         const std::string stem = ends ? name.substr(0, name.size() - ending.size()) : name;
@@ -76,7 +175,7 @@ Descriptor descriptor_named(const std::string& name) {
 
 bool scales_with_torque(const Descriptor& descriptor) {
     const std::string stem = without_order(descriptor.stem);
-    return std::any_of(descriptor_kinds().begin(), descriptor_kinds().end(), [&](const DescriptorKind& kind) {
+    return std::any_of(descriptor_kinds.begin(), descriptor_kinds.end(), [&](const DescriptorKind& kind) {
         return kind.stem == stem && kind.scales_with_torque;
     });
 }
@@ -211,58 +310,7 @@ namespace {
 
 // Chosen, not derived: bounds the time of a log.
 constexpr std::size_t most_feature_samples = std::size_t{1} << 14U;
-constexpr std::size_t most_orders = 6;     // chosen, not derived: bounds the time of a log
-constexpr double widest_phase_deg = 45.0;  // half of its interval
-
-Descriptor untold(std::string stem, std::string unit, std::string reason) {
-    return {std::move(stem), std::move(unit), {}, {}, std::move(reason)};
-}
-
-Descriptor ratio_of(const Identification& found) {
-    const GearRatioFit& fit = found.gear_ratio;
-    if (!fit.value) return untold("gear_ratio", "", found.verdict);
-    return {"gear_ratio", "", fit.value, Interval{fit.ci95_low, fit.ci95_high}, {}};
-}
-
-Descriptor resonance_of(const Identification& found) {
-    if (found.hums.empty())
-        return untold("resonance", "hz", "no band of frequencies holds more torque than the lines");
-    const Hum& hum = found.hums.front();
-    return {"resonance", "hz", hum.peak_hz, Interval{hum.from_hz, hum.to_hz}, {}};
-}
-
-Descriptor noise_of(const JointFit& joint) {
-    const double noise_nm = joint.noise_nm();
-    if (!(noise_nm > 0.0))
-        return untold("noise_floor", "nm", "the torque holds its values from sample to sample");
-    return {"noise_floor", "nm", noise_nm, {}, {}};
-}
-
-// Amplitude and phase at one order.
-void add_ripple(const RippleEstimate& one, bool has_position, std::vector<Descriptor>& all) {
-    const std::string stem = "ripple_" + shortest(one.order);
-    Descriptor amplitude = untold(stem + "_amplitude", "nm", one.insufficient);
-    Descriptor phase = untold(stem + "_phase", "deg", one.insufficient);
-    const double half_deg = normal_95_errors * one.phase_standard_error_deg;
-    if (one.present()) {
-        const double half_nm = normal_95_errors * one.standard_error_nm;
-        amplitude.value = one.amplitude_nm;
-        amplitude.ci95 = Interval{std::max(one.amplitude_nm - half_nm, 0.0), one.amplitude_nm + half_nm};
-    } else if (one.searched()) {
-        amplitude.reason = fmt::format("no ripple above {:.2g} Nm", one.detectable_nm);
-    }
-    if (one.searched() && !has_position)
-        phase.reason = "the log has no position, and so no angle to count from";
-    else if (one.searched() && !(one.present() && one.phase_deg && half_deg < widest_phase_deg))
-        phase.reason = one.present() ? "the phase is not the same along the log"
-                                     : "the amplitude is too small for a phase";
-    if (phase.reason.empty()) {
-        phase.value = one.phase_deg;
-        phase.ci95 = Interval{*one.phase_deg - half_deg, *one.phase_deg + half_deg};
-    }
-    all.push_back(std::move(amplitude));
-    all.push_back(std::move(phase));
-}
+constexpr std::size_t most_orders = 6;  // chosen, not derived: bounds the time of a log
 
 // The gear of the ripple: the stated one, else the one that was found.
 std::optional<GearAccount> gear_of_ripple(const Identification& found,
@@ -292,11 +340,7 @@ Features features_of(const TraceView& log, const Identification& found,
     const JointFit joint(samples, facts, std::move(gear));
     Features features{facts.mix, {}};
     features.mix.load_rms_nm = joint.load_rms_nm();
-    features.descriptors.push_back(ratio_of(found));
-    for (const RippleEstimate& one : ripple) add_ripple(one, log.has_position(), features.descriptors);
-    for (Descriptor& one : joint.torques()) features.descriptors.push_back(std::move(one));
-    features.descriptors.push_back(noise_of(joint));
-    features.descriptors.push_back(resonance_of(found));
+    features.descriptors = descriptors_of({found, joint, nullptr, log.has_position()}, ripple);
     return features;
 }
 

@@ -40,7 +40,7 @@ FitOptions fit_options(std::size_t samples, int most_iterations) {
 
 /// One value of the fit as a descriptor.
 struct JointFit::Wanted {
-    std::string stem, unit, effect, parameter;
+    std::string effect, parameter;
     double carrier = 1.0;  ///< rms torque in Nm of a value of 1
 };
 
@@ -159,9 +159,9 @@ const FittedValue* JointFit::fitted(const std::string& effect, const std::string
     return nullptr;
 }
 
-Descriptor JointFit::told(const Wanted& wanted, std::string reason) const {
-    Descriptor one{wanted.stem, wanted.unit, {}, {}, std::move(reason)};
-    if (!one.reason.empty()) return one;
+void JointFit::tell(Descriptor& one, const Wanted& wanted, std::string reason) const {
+    one.reason = std::move(reason);
+    if (!one.reason.empty()) return;
     const FittedValue* value = fitted(wanted.effect, wanted.parameter);
     if (value == nullptr) {
         one.reason = "the motion of this log does not show it";
@@ -181,48 +181,62 @@ Descriptor JointFit::told(const Wanted& wanted, std::string reason) const {
             one.ci95 = value->ci95;
         }
     }
-    return one;
 }
 
-std::vector<Descriptor> JointFit::torques() const {
-    std::string one_way, one_speed;
-    if (!facts_.both_directions()) one_way = "the joint does not move in both directions";
-    if (one_way.empty() && facts_.accelerations.like_friction)
-        one_way =
-            "the joint speeds up in one direction only as much as it slows down in the other, where "
-            "friction and inertia look alike";
-    if (one_way.empty() && !facts_.several_speeds())
-        one_speed = "the joint moves at one speed, where viscous and Coulomb friction look alike";
-    const std::string& friction = one_way.empty() ? one_speed : one_way;
-    const std::string short_way = facts_.mix.travel_deg >= least_travel_deg
-                                      ? ""
-                                      : fmt::format("the joint travels {:.3g} deg, and a weight needs {:g}",
-                                                    facts_.mix.travel_deg, least_travel_deg);
-    const double moving = std::sqrt(facts_.mix.moving_share);
-    const double load_nm = std::max(load_rms_nm().value_or(0.0), 1e-9);
-    std::vector<Descriptor> all;
-    all.push_back(told({"coulomb_friction", "nm",
-                        fitted("hysteresis", "torque_nm") != nullptr ? "hysteresis" : "coulomb-friction",
-                        "torque_nm", moving},
-                       friction));
-    all.push_back(told({"viscous_friction", "nm_per_deg_s", "viscous-friction", "coefficient_nm_per_deg_s",
-                        facts_.speed_rms_deg_s},
-                       friction));
-    all.push_back(told({"load_friction", "nm_per_nm", "load-friction", "torque_nm", load_nm},
-                       fitted("load-friction", "torque_nm") != nullptr || !one_way.empty()
-                           ? one_way
-                           : "the joint carries too little beside its friction"));
-    const FittedValue* const width = no_wind_.empty() ? fitted("hysteresis", "width_deg") : nullptr;
-    all.push_back({"lost_motion", "deg", {}, {}, no_wind_});
-    if (width != nullptr) {
-        all.back().value = width->value;
-        all.back().ci95 = width->ci95;
-    }
-    all.push_back(told({"inertia", "kgm2", "inertia", "inertia_kgm2", facts_.acceleration_rms_rad_s2}, ""));
-    all.push_back(told({"gravity", "nm", "gravity", "amplitude_nm", std::sqrt(0.5)}, short_way));
-    all.push_back(told({"sensor_zero", "nm", "offset", "torque_nm", 1.0}, one_way));
-    return all;
+// Why the joint's motion does not tell friction at all; empty: it does.
+std::string JointFit::one_way() const {
+    if (!facts_.both_directions()) return "the joint does not move in both directions";
+    if (facts_.accelerations.like_friction)
+        return "the joint speeds up in one direction only as much as it slows down in the other, where "
+               "friction and inertia look alike";
+    return "";
 }
+
+// The same of friction at rest beside friction that grows with the speed.
+std::string JointFit::one_speed() const {
+    const std::string reason = one_way();
+    if (!reason.empty() || facts_.several_speeds()) return reason;
+    return "the joint moves at one speed, where viscous and Coulomb friction look alike";
+}
+
+void JointFit::coulomb_friction(Descriptor& one) const {
+    const bool winds = fitted("hysteresis", "torque_nm") != nullptr;
+    tell(one, {winds ? "hysteresis" : "coulomb-friction", "torque_nm", std::sqrt(facts_.mix.moving_share)},
+         one_speed());
+}
+
+void JointFit::viscous_friction(Descriptor& one) const {
+    tell(one, {"viscous-friction", "coefficient_nm_per_deg_s", facts_.speed_rms_deg_s}, one_speed());
+}
+
+void JointFit::load_friction(Descriptor& one) const {
+    const std::string reason = one_way();
+    const bool is_told = fitted("load-friction", "torque_nm") != nullptr || !reason.empty();
+    tell(one, {"load-friction", "torque_nm", std::max(load_rms_nm().value_or(0.0), 1e-9)},
+         is_told ? reason : "the joint carries too little beside its friction");
+}
+
+void JointFit::lost_motion(Descriptor& one) const {
+    one.reason = no_wind_;
+    const FittedValue* const width = no_wind_.empty() ? fitted("hysteresis", "width_deg") : nullptr;
+    if (width == nullptr) return;
+    one.value = width->value;
+    one.ci95 = width->ci95;
+}
+
+void JointFit::inertia(Descriptor& one) const {
+    tell(one, {"inertia", "inertia_kgm2", facts_.acceleration_rms_rad_s2}, "");
+}
+
+void JointFit::gravity(Descriptor& one) const {
+    const bool far = facts_.mix.travel_deg >= least_travel_deg;
+    tell(one, {"gravity", "amplitude_nm", std::sqrt(0.5)},
+         far ? ""
+             : fmt::format("the joint travels {:.3g} deg, and a weight needs {:g}", facts_.mix.travel_deg,
+                           least_travel_deg));
+}
+
+void JointFit::sensor_zero(Descriptor& one) const { tell(one, {"offset", "torque_nm", 1.0}, one_way()); }
 
 // Second differences, of which the few at reversals and jumps do not count: their median.
 double JointFit::noise_nm() const {

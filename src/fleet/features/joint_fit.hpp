@@ -20,8 +20,14 @@ class JointFit {
     /// estimate_ripple(). Throws DataError for too few samples.
     JointFit(const FittedSamples& samples, const MotionFacts& facts, std::optional<GearAccount> gear);
 
-    /// Coulomb, viscous and load friction, lost motion, inertia, gravity, zero of the sensor.
-    [[nodiscard]] std::vector<Descriptor> torques() const;
+    // Each gives its descriptor value and interval, or the reason why it has none.
+    void coulomb_friction(Descriptor& one) const;
+    void viscous_friction(Descriptor& one) const;
+    void load_friction(Descriptor& one) const;
+    void lost_motion(Descriptor& one) const;
+    void inertia(Descriptor& one) const;
+    void gravity(Descriptor& one) const;
+    void sensor_zero(Descriptor& one) const;
     /// rms torque of inertia and gravity; empty where neither is fitted.
     [[nodiscard]] std::optional<double> load_rms_nm() const;
 
@@ -35,7 +41,9 @@ class JointFit {
     void refine();
     [[nodiscard]] bool winds(std::size_t place, double friction_nm, FitOptions options);
     [[nodiscard]] std::vector<unsigned char> near_samples() const;
-    [[nodiscard]] Descriptor told(const Wanted& wanted, std::string reason) const;
+    [[nodiscard]] std::string one_way() const;
+    [[nodiscard]] std::string one_speed() const;
+    void tell(Descriptor& one, const Wanted& wanted, std::string reason) const;
     [[nodiscard]] const FittedValue* fitted(const std::string& effect, const std::string& parameter) const;
 
     const Motion& motion_;

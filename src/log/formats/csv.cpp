@@ -18,21 +18,17 @@ namespace {
 
 constexpr std::array<std::string_view, 5> extensions = {".csv", ".txt", ".tsv", ".dat", ".log"};
 
-/// Some rows at a time: first all their numbers, then the text.
-template <typename Cells>
-void write_cells(TextRoom& room, std::span<const std::span<const double>> columns, int decimals) {
-    std::vector<Cells> cells(columns.size(), Cells('.', decimals));
+/// Some rows at a time, so that there is never room for more than some of the longest numbers.
+void write_cells(TextRoom& room, std::span<const std::span<const double>> columns, const CellText& cells) {
     const std::size_t rows = columns.empty() ? 0 : columns[0].size();
     const std::size_t at_once =
-        std::max<std::size_t>(FixedTexts::most / std::max<std::size_t>(columns.size(), 1), 1);
+        std::max<std::size_t>(CellText::at_once / std::max<std::size_t>(columns.size(), 1), 1);
     for (std::size_t first = 0; first < rows; first += at_once) {
         const std::size_t count = std::min(at_once, rows - first);
-        for (std::size_t c = 0; c < columns.size(); ++c)
-            cells[c].prepare({columns[c].subspan(first, count), 1.0});
         char* into = room.ensure(count * columns.size() * (number_room + 1));
-        for (std::size_t row = 0; row < count; ++row) {
-            for (const Cells& column : cells) {
-                into = column.put(into, row);
+        for (std::size_t row = first; row < first + count; ++row) {
+            for (const std::span<const double> column : columns) {
+                into = cells.put(into, column[row]);
                 *into++ = ',';
             }
             into[-1] = '\n';
@@ -51,10 +47,7 @@ class CsvTableWriter : public TableWriter {
     }
     void rows(std::span<const std::span<const double>> columns) override {
         TextRoom room(text_, 0);
-        if (options_.decimals == WriteOptions::Decimals::fixed)
-            write_cells<FixedCells>(room, columns, options_.fixed_decimals);
-        else
-            write_cells<ShortestCells>(room, columns, options_.fixed_decimals);
+        write_cells(room, columns, {options_.decimals, options_.fixed_decimals});
         sink_.write(room.text());
     }
     void end() override {}

@@ -10,18 +10,15 @@ namespace ripplenotch {
 
 namespace {
 
-/// Some rows at a time: first all their numbers, then all that stands between.
-template <typename Cells>
+/// Some rows at a time, so that there is never room for more than some of the longest numbers.
 class RowRewriter {
   public:
     RowRewriter(const RewritePlan& plan, const RowBlock& block, Torques torque_nm, TextRoom& room)
         : plan_(plan), block_(block), room_(room), pieces_(block.bytes) {
-        cells_.reserve(plan.joints.size());
         for (const std::size_t j : plan.joints) {
             const JointRows& joint = block.joints[j];
-            cells_.emplace_back(plan.rules.decimal_mark, plan.decimals);
-            columns_.push_back({&cells_.back(), torque_nm[j].data(), joint.torque_nm.data(),
-                                joint.torque_begin.data(), joint.torque_end.data(), plan.factors[j]});
+            columns_.push_back({torque_nm[j].data(), joint.torque_nm.data(), joint.torque_begin.data(),
+                                joint.torque_end.data(), plan.factors[j]});
         }
     }
 
@@ -36,7 +33,6 @@ class RowRewriter {
 
   private:
     struct Column {
-        Cells* cells;
         const double *torque_nm, *torque_before_nm;
         const std::uint32_t *begin, *end;
         double factor;
@@ -49,13 +45,9 @@ class RowRewriter {
     template <typename Rewrite>
     void stretch_by_stretch(const Rewrite& rewrite) {
         const std::size_t rows_at_once =
-            std::max<std::size_t>(FixedTexts::most / std::max<std::size_t>(columns_.size(), 1), 1);
+            std::max<std::size_t>(CellText::at_once / std::max<std::size_t>(columns_.size(), 1), 1);
         for (std::size_t first = 0; first < block_.size(); first += rows_at_once) {
             const Stretch rows = {first, std::min(first + rows_at_once, block_.size())};
-            for (Column& column : columns_) {
-                const std::span values(column.torque_nm + rows.first, rows.end - rows.first);
-                column.cells->prepare({values, column.factor});
-            }
             const std::size_t between = block_.row_end[rows.end - 1] - pieces_.done();
             const std::size_t numbers = (rows.end - rows.first) * columns_.size() * cell_room;
             room_.written_until(rewrite(rows, room_.ensure(between + numbers + PieceCopier::over)));
@@ -70,12 +62,13 @@ class RowRewriter {
         // does not have to fear.
         PieceCopier pieces = pieces_;
         // Cells whose bad values were replaced do not hold what the block's torque says.
-        const bool as_written = block_.held_bad_values == 0;
+        const bool keeps_unchanged =
+            plan_.cells.rule == WriteOptions::Decimals::shortest && block_.held_bad_values == 0;
+        const CellText cells = plan_.cells;
         const auto replace_one = [&](const Column& column, std::size_t row) {
-            if constexpr (Cells::keeps_unchanged)
-                if (as_written && column.torque_nm[row] == column.torque_before_nm[row]) return;
+            if (keeps_unchanged && column.torque_nm[row] == column.torque_before_nm[row]) return;
             into = pieces.copy_until(column.begin[row], into);
-            into = column.cells->put(into, row - rows.first);
+            into = cells.put(into, column.torque_nm[row] / column.factor);
             pieces.skip_until(column.end[row]);
         };
         if (columns_.size() == 1) {
@@ -97,7 +90,7 @@ class RowRewriter {
             for (const Column& column : columns_) {
                 *into++ = delimiter;
                 if (quoted) *into++ = '"';
-                into = column.cells->put(into, row - rows.first);
+                into = plan_.cells.put(into, column.torque_nm[row] / column.factor);
                 if (quoted) *into++ = '"';
             }
         }
@@ -108,7 +101,6 @@ class RowRewriter {
     const RowBlock& block_;
     TextRoom& room_;
     PieceCopier pieces_;
-    std::vector<Cells> cells_;
     std::vector<Column> columns_;
 };
 
@@ -145,7 +137,7 @@ std::vector<std::string> appended_names(const Layout& layout, const WriteOptions
 CsvWriter::CsvWriter(std::unique_ptr<ByteSink> sink, const CsvReader& reader, const WriteOptions& options)
     : sink_(std::move(sink)), options_(options) {
     plan_.rules = reader.dialect().rules;
-    plan_.decimals = options.fixed_decimals;
+    plan_.cells = {options.decimals, options.fixed_decimals, plan_.rules.decimal_mark};
     std::vector<std::size_t> columns;
     for (const JointColumns& joint : reader.layout().all_chosen()) {
         if (!joint.torque)
@@ -208,20 +200,11 @@ void CsvWriter::write_head(const CsvReader& reader) {
 
 std::string_view CsvWriter::prepare(RowBlock& block, Torques torque_nm, std::string& room) const {
     TextRoom text(room, block.bytes.size() + 16 * block.size() * plan_.joints.size());
-    const auto rewrite = [&](auto&& rows) {
-        if (options_.append)
-            rows.append();
-        else
-            rows.replace();
-    };
-    switch (options_.decimals) {
-        case WriteOptions::Decimals::shortest:
-            rewrite(RowRewriter<ShortestCells>(plan_, block, torque_nm, text));
-            break;
-        case WriteOptions::Decimals::fixed:
-            rewrite(RowRewriter<FixedCells>(plan_, block, torque_nm, text));
-            break;
-    }
+    RowRewriter rows(plan_, block, torque_nm, text);
+    if (options_.append)
+        rows.append();
+    else
+        rows.replace();
     return text.text();
 }
 

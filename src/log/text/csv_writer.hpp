@@ -5,11 +5,9 @@
 #include <algorithm>
 #include <cstddef>
 #include <memory>
-#include <span>
 #include <string>
 #include <vector>
 
-#include "core/text/print_fixed.hpp"
 #include "log/text/csv_reader.hpp"
 #include "log/text/quick_rows.hpp"
 #include "log/text/text_dialect.hpp"
@@ -18,45 +16,24 @@
 
 namespace ripplenotch {
 
-// Internal to the log room: a column's numbers as text, some at a time. One class for each answer to how many
-// decimals there are, all with the same functions; which of them it is, is known when loops are compiled.
+// Internal to the log room: numbers as the cells of a text log have them.
 
-/// Cells that are written: their numbers as they are to be written, times `factor`.
-struct NewNumbers {
-    std::span<const double> values;  ///< at most FixedTexts::most
-    double factor = 1.0;
-};
+/// How numbers are written: with fixed decimals, or the fewest digits that read back.
+struct CellText {
+    WriteOptions::Decimals rule = WriteOptions::Decimals::shortest;
+    int decimals = 6;  ///< where they are fixed
+    char decimal_mark = '.';
 
-class ShortestCells {
-  public:
-    /// A number that is the old one keeps its text.
-    static constexpr bool keeps_unchanged = true;
+    /// Numbers printed between two looks at the room for them, which each may need number_room bytes of.
+    static constexpr std::size_t at_once = 256;
 
-    explicit ShortestCells(char decimal_mark, int /*decimals*/) : mark_(decimal_mark) {}
-    void prepare(const NewNumbers& numbers) { numbers_ = numbers; }
-    /// Number i; there is room for number_room bytes at `into`. Returns its end.
-    char* put(char* into, std::size_t i) const {
-        char* const end = put_shortest(into, numbers_.values[i] / numbers_.factor);
-        if (mark_ != '.') std::replace(into, end, '.', mark_);
+    /// There is room for number_room bytes at `into`. Returns the text's end.
+    char* put(char* into, double value) const {
+        char* const end = rule == WriteOptions::Decimals::fixed ? put_fixed(into, value, decimals)
+                                                                : put_shortest(into, value);
+        if (decimal_mark != '.') std::replace(into, end, '.', decimal_mark);
         return end;
     }
-
-  private:
-    char mark_;
-    NewNumbers numbers_;
-};
-
-class FixedCells {
-  public:
-    static constexpr bool keeps_unchanged = false;
-
-    FixedCells(char decimal_mark, int decimals) : texts_(decimal_mark), decimals_(decimals) {}
-    void prepare(const NewNumbers& numbers) { texts_.prepare(numbers.values, numbers.factor, decimals_); }
-    char* put(char* into, std::size_t i) const { return texts_.put(into, i); }
-
-  private:
-    FixedTexts texts_;
-    int decimals_;
 };
 
 // Internal to the log room: a block's bytes with other numbers in the places of its torques, or behind its
@@ -65,7 +42,7 @@ class FixedCells {
 /// How the rows of a log are written anew.
 struct RewritePlan {
     CellRules rules;
-    int decimals = 6;                 ///< where they are fixed
+    CellText cells;
     std::vector<std::size_t> joints;  ///< in the order in which their numbers stand in a row
     std::vector<double> factors;      ///< by joint: newton-metres in one unit of its torque column
 };
