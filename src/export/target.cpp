@@ -26,9 +26,9 @@ Hertz natural_frequency(const Biquad& f, Hertz sample_rate) {
 
 }  // namespace
 
-FilterSet filter_set(const CandidateTable& table) {
+FilterSet filter_set(const CandidateTable& table, const SwitchingDesign& switching) {
     const TableSpec& spec = table.spec();
-    FilterSet set{spec.sample_rate, spec.gear_ratio, {}, spec.below, spec.above};
+    FilterSet set{spec.sample_rate, spec.gear_ratio, {}, switching};
     for (const Band& band : table.bands()) {
         ExportBand out{band.number, band.from, band.to, {}};
         for (const CandidateNotch& notch : band.notches) {
@@ -37,6 +37,11 @@ FilterSet filter_set(const CandidateTable& table) {
         set.bands.push_back(std::move(out));
     }
     return set;
+}
+
+FilterSet filter_set(const CandidateTable& table) {
+    const TableSpec& spec = table.spec();
+    return filter_set(table, {.below = spec.below, .above = spec.above, .hysteresis = spec.hysteresis});
 }
 
 FilterSet only_band(const FilterSet& table, int number) {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "export/run/bank.hpp"
+#include "export/run/switching_run.hpp"
 #include "export/text.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "support/catch.hpp"

@@ -12,6 +12,7 @@
 #include "ripplenotch/core/quantity.hpp"
 #include "ripplenotch/design/candidate_table.hpp"
 #include "ripplenotch/design/notch.hpp"
+#include "ripplenotch/design/running_design.hpp"
 
 namespace ripplenotch {
 
@@ -36,12 +37,14 @@ struct FilterSet {
     Hertz sample_rate;
     std::optional<GearRatio> gear_ratio;  ///< there exactly when the bands are chosen by joint speed
     std::vector<ExportBand> bands;
-    OutsideRule below = OutsideRule::pass, above = OutsideRule::hold;
+    SwitchingDesign switching = {};  ///< how the bands take turns
 
     [[nodiscard]] bool by_speed() const { return gear_ratio.has_value(); }
     [[nodiscard]] std::size_t sections_per_band() const { return bands.front().sections.size(); }
 };
 
+[[nodiscard]] FilterSet filter_set(const CandidateTable& table, const SwitchingDesign& switching);
+/// With the rules that the table itself holds.
 [[nodiscard]] FilterSet filter_set(const CandidateTable& table);
 /// One band of a table, to run at every speed. Throws UsageError when there is no band of that number.
 [[nodiscard]] FilterSet only_band(const FilterSet& table, int number);
@@ -58,11 +61,19 @@ enum class Form {
     df2t,  ///< transposed direct form II: two sums
     svf,   ///< state-variable filter of two trapezoidal integrators
 };
-enum class Precision { float32, float64 };
+/// q31 and q15: torques and coefficients of 32 and of 16 bits, sums and memories of 64.
+enum class Precision { float32, float64, q31, q15 };
+[[nodiscard]] constexpr bool is_fixed(Precision precision) {
+    return precision == Precision::q31 || precision == Precision::q15;
+}
 
 struct Arithmetic {
     Form form = Form::df2t;
     Precision precision = Precision::float64;
+    /// In fixed point: the torque of the largest word, and the bits of a signal above it, for what is larger
+    /// than the torque inside of a filter.
+    double full_scale_nm = 0.0;
+    int headroom_bits = 0;
 };
 [[nodiscard]] std::string arithmetic_name(Arithmetic arithmetic);  ///< "float32, state-variable form"
 

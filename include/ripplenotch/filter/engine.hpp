@@ -24,22 +24,14 @@ namespace ripplenotch {
 // The supervisor of the switching filter: from the joint speed to the candidate that should be active (Kim,
 // Kim, Song 2011, fig. 3 and 4), with the rules for speeds that no band covers.
 
-/// What becomes of the filters' memories at a switch, unless it is stated: in `filter` and `compare` as in
-/// exported code. On the six moving joints of a robot's log this one leaves the least error of all for each
-/// joint, Q and rule (docs/methods/switching.md), and it runs one filter, whatever the number of bands.
-inline constexpr std::string_view default_transition = "keep-state-variable";
-
-struct SupervisorSettings {
-    OutsideRule below = OutsideRule::pass;  ///< below the first band, and in a hole between bands
-    OutsideRule above = OutsideRule::hold;
-    DegPerSec hysteresis{0.0};      ///< a region is left only when |v| is this far outside it; 0 as the paper
-    std::size_t dwell_samples = 0;  ///< a candidate stays at least this long
-};
+/// The keys of method switching, with the table's own values where they are left out.
+[[nodiscard]] SwitchingDesign switching_design(const Settings& settings, Hertz sample_rate,
+                                               const CandidateTable& table);
 
 class Supervisor {
   public:
     /// Throws UsageError when the hysteresis is negative.
-    Supervisor(std::span<const Band> bands, const SupervisorSettings& settings);
+    Supervisor(std::span<const Band> bands, const SwitchingDesign& design);
 
     /// The first sample of a run: takes the region of its speed, with no regard to the past.
     void start(double velocity_deg_s) noexcept;

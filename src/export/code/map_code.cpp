@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <complex>
 
-#include "export/run/bank.hpp"
+#include "export/run/map_run.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {

@@ -90,21 +90,3 @@ struct OnCircle {
                                            const CodeStyle& style);
 
 }  // namespace ripplenotch
-
-namespace ripplenotch::c_code {
-
-// The fixed parts of the C header, with @fields@ to fill in. Its arithmetic is that of
-// export/run/bank.cpp, operation by operation.
-
-/// Declarations that identify the form of a header to a reader.
-inline constexpr std::string_view svf_fields = "a1, a2, a3, m0, m1, m2;";
-inline constexpr std::string_view df1_memory = "x1, x2, y1, y2;";
-
-[[nodiscard]] std::string declarations(Form form);
-[[nodiscard]] std::string regions_open();
-[[nodiscard]] std::string section_functions(Form form);
-[[nodiscard]] std::string step_function(bool by_speed);
-[[nodiscard]] std::string self_test_open();
-[[nodiscard]] std::string self_test_function(bool by_speed);
-
-}  // namespace ripplenotch::c_code

@@ -9,7 +9,7 @@
 #include "export/code/map_code.hpp"
 #include "export/code/method_code.hpp"
 #include "export/map/map_target.hpp"
-#include "export/run/bank.hpp"
+#include "export/run/map_run.hpp"
 #include "export/text.hpp"
 
 namespace ripplenotch {

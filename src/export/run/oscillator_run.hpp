@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "export/code/method_code.hpp"
-#include "export/run/bank.hpp"
+#include "export/run/map_run.hpp"
 #include "ripplenotch/design/candidate_table.hpp"
 #include "ripplenotch/design/running_design.hpp"
 

@@ -40,7 +40,7 @@ Written write_rpm_filter(const FilterSet& filters, const Settings& settings) {
     const double q = std::round(100.0 * shape.q);
     const Hertz first =
         ripple_frequency(Order(orders.front()), *filters.gear_ratio, filters.bands.front().from);
-    const bool fades = filters.below == OutsideRule::fade;
+    const bool fades = filters.switching.below == OutsideRule::fade;
     const double lowest = std::floor(fades ? first.value() / 2.0 : first.value());
     const double fade = fades ? std::floor(first.value() - lowest) : 0.0;
     check_range(settings, "rpm_filter_q", q, 250.0, 3000.0, "design with a --q from 2.5 to 30");

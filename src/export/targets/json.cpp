@@ -67,8 +67,8 @@ Written write(const FilterSet& filters, const Settings&, std::span<const std::st
     if (filters.by_speed()) {
         text += fmt::format(
             "  \"gear_ratio\": {},\n  \"below_first_band\": \"{}\",\n  \"above_last_band\": \"{}\",\n",
-            decimal(filters.gear_ratio->value()), outside_rule_name(filters.below),
-            outside_rule_name(filters.above));
+            decimal(filters.gear_ratio->value()), outside_rule_name(filters.switching.below),
+            outside_rule_name(filters.switching.above));
     }
     text +=
         "  \"sos_layout\": \"b0 b1 b2 1 a1 a2: y = b0 x + b1 x1 + b2 x2 - a1 y1 - a2 y2\",\n"

@@ -76,29 +76,17 @@ std::size_t samples(const Settings& settings, std::string_view key, Hertz sample
     return static_cast<std::size_t>(std::ceil(time_s * sample_rate.value() - 1e-6));
 }
 
-SupervisorSettings supervisor_settings(const Settings& settings, Hertz sample_rate,
-                                       const CandidateTable& table) {
-    return {.below = rule(settings, "below", table.spec().below),
-            .above = rule(settings, "above", table.spec().above),
-            .hysteresis = settings.has("hysteresis") ? DegPerSec(settings.number("hysteresis"))
-                                                     : table.spec().hysteresis,
-            .dwell_samples = samples(settings, "dwell", sample_rate)};
-}
-
-std::unique_ptr<Transition> transition(const Settings& settings, Hertz sample_rate,
-                                       const CandidateTable& table) {
+std::unique_ptr<Transition> transition(const SwitchingDesign& design, const CandidateTable& table) {
     Candidates candidates(table.bands());
-    const std::string name = settings.text("transition");
     const auto kind = std::find_if(std::begin(transition_kinds), std::end(transition_kinds),
-                                   [&](const TransitionKind* known) { return known->name == name; });
-    return (*kind)->make(std::move(candidates), samples(settings, "crossfade", sample_rate));
+                                   [&](const TransitionKind* known) { return known->name == design.transition; });
+    return (*kind)->make(std::move(candidates), design.crossfade_samples);
 }
 
 class SwitchingFilter final : public CausalFilter {
   public:
-    SwitchingFilter(const CandidateTable& table, const SupervisorSettings& settings,
-                    std::unique_ptr<Transition> transition)
-        : supervisor_(table.bands(), settings), transition_(std::move(transition)) {
+    SwitchingFilter(const CandidateTable& table, const SwitchingDesign& design)
+        : supervisor_(table.bands(), design), transition_(transition(design, table)) {
         for (const Band& band : table.bands()) numbers_.push_back(band.number);
     }
 
@@ -190,16 +178,14 @@ const CandidateTable& required(const CandidateTable* table) {
 std::unique_ptr<CausalFilter> start(const Settings& settings, Hertz sample_rate,
                                     const CandidateTable* table) {
     const CandidateTable& candidates = required(table);
-    return std::make_unique<SwitchingFilter>(candidates,
-                                             supervisor_settings(settings, sample_rate, candidates),
-                                             transition(settings, sample_rate, candidates));
+    return std::make_unique<SwitchingFilter>(candidates, switching_design(settings, sample_rate, candidates));
 }
 
 // Holding means the band that was passed through last: at a constant speed, the nearest one.
 FrozenFilter frozen(const Settings& settings, Hertz sample_rate, const CandidateTable* table,
                     DegPerSec speed) {
     const CandidateTable& candidates = required(table);
-    const auto used = supervisor_settings(settings, sample_rate, candidates);
+    const SwitchingDesign used = switching_design(settings, sample_rate, candidates);
     const double at = std::abs(speed.value());
     const auto bands = candidates.bands();
     const auto regions = speed_regions(bands, used.below, used.above);
@@ -219,6 +205,16 @@ FrozenFilter frozen(const Settings& settings, Hertz sample_rate, const Candidate
 }
 
 }  // namespace
+
+SwitchingDesign switching_design(const Settings& settings, Hertz sample_rate, const CandidateTable& table) {
+    return {.below = rule(settings, "below", table.spec().below),
+            .above = rule(settings, "above", table.spec().above),
+            .hysteresis = settings.has("hysteresis") ? DegPerSec(settings.number("hysteresis"))
+                                                     : table.spec().hysteresis,
+            .dwell_samples = samples(settings, "dwell", sample_rate),
+            .transition = settings.text("transition"),
+            .crossfade_samples = samples(settings, "crossfade", sample_rate)};
+}
 
 const Method filter_methods::switching = {
     .name = "switching",

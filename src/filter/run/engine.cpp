@@ -150,10 +150,10 @@ std::vector<StreamReport> StreamPass::reports(const Layout& layout) const {
 
 }  // namespace
 
-Supervisor::Supervisor(std::span<const Band> bands, const SupervisorSettings& settings)
-    : regions_(speed_regions(bands, settings.below, settings.above)),
-      hysteresis_deg_s_(settings.hysteresis.value()),
-      dwell_(settings.dwell_samples) {}
+Supervisor::Supervisor(std::span<const Band> bands, const SwitchingDesign& design)
+    : regions_(speed_regions(bands, design.below, design.above)),
+      hysteresis_deg_s_(design.hysteresis.value()),
+      dwell_(design.dwell_samples) {}
 
 std::size_t Supervisor::find(double speed_deg_s) const noexcept {
     const auto holds_speed = [speed_deg_s](const SpeedRegion& region) {

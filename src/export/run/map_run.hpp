@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// The speed-switched bank as exported code runs it: one cascade whose memory stays while the coefficients
-// change, a region of speed for every rule, and a test vector that goes through all of them.
+// Amplitudes of a map as its C computes them, operation by operation, in the header's precision.
 
 #include <algorithm>
 #include <cmath>
@@ -14,8 +13,6 @@
 #include "ripplenotch/export/target.hpp"
 
 namespace ripplenotch {
-
-// Amplitudes of a map as its C computes them, operation by operation, in the header's precision.
 
 /// The place of an earlier order that this one is twice of; its own where there is none.
 template <class Real>
@@ -135,28 +132,5 @@ class MapRun {
     std::size_t at_ = 0;
     Real along_ = 0;
 };
-
-inline constexpr int region_passes = -1;  ///< no filter: the torque passes
-inline constexpr int region_holds = -2;   ///< the active filter stays
-
-/// Active while |v| <= to and above the region before. With full and none apart, the share of the filtered
-/// signal in the output falls linearly from 1 at `full` to 0 at `none`.
-struct BankRegion {
-    double to_deg_s = 0.0;  ///< infinite in the last
-    int band = region_passes;
-    double full_deg_s = 0.0, none_deg_s = 0.0;
-};
-
-/// The same regions as the method `switching` runs (docs/methods/switching.md), slowest first.
-[[nodiscard]] std::vector<BankRegion> bank_regions(const FilterSet& filters);
-
-struct GoldenVector {
-    std::vector<double> torque_nm, speed_deg_s, expected_nm;
-};
-
-/// Torque and speed that float holds exactly, going through the regions up and down, and the output of the
-/// bank in its own arithmetic.
-[[nodiscard]] GoldenVector golden_vector(const std::vector<BankRegion>& regions,
-                                         const LoadedFilters& filters);
 
 }  // namespace ripplenotch

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "export/run/bank.hpp"
+#include "ripplenotch/export/verify.hpp"
 
 #include <fmt/format.h>
 
@@ -160,65 +160,12 @@ std::vector<std::string> export_violations(const std::vector<SectionCheck>& chec
     return found;
 }
 
-namespace {
-
-// A section in each of the structures in which targets compute it, over float or double: the same operations
-// in the same order as the code that is exported, so that both give the same bits where nothing is
-// contracted.
-
-template <class Real>
-using Memory = std::array<Real, 4>;
-
-/// Values as c_header.cpp writes them: b0 b1 b2 a1 a2, or a1 a2 a3 m0 m1 m2 of the state-variable form.
-template <class Real>
-struct RunSection {
-    Form form;
-    std::array<Real, 6> c{};
-
-    explicit RunSection(const LoadedSection& section) : form(section.arithmetic.form) {
-        const Biquad& f = section.biquad;
-        const SvfSection& s = section.svf;
-        const std::array<double, 6> values = form == Form::svf
-                                                 ? std::array{s.a1, s.a2, s.a3, s.m0, s.m1, s.m2}
-                                                 : std::array{f.b0, f.b1, f.b2, f.a1, f.a2, 0.0};
-        std::transform(values.begin(), values.end(), c.begin(),
-                       [](double value) { return static_cast<Real>(value); });
-    }
-    /// As if x had been there for ever.
-    [[nodiscard]] Memory<Real> settled(Real x) const {
-        if (form == Form::df1) return {x, x, x, x};
-        if (form == Form::svf) return {Real{}, x};
-        const Real s2 = (c[2] - c[4]) * x;
-        return {(c[1] - c[3]) * x + s2, s2};
-    }
-    Real step(Memory<Real>& m, Real x) const {
-        if (form == Form::svf) {
-            const Real v3 = x - m[1];
-            const Real v1 = c[0] * m[0] + c[1] * v3;
-            const Real v2 = m[1] + c[1] * m[0] + c[2] * v3;
-            m[0] = v1 + v1 - m[0];
-            m[1] = v2 + v2 - m[1];
-            return c[3] * x + c[4] * v1 + c[5] * v2;
-        }
-        if (form == Form::df1) {
-            const Real y = c[0] * x + c[1] * m[0] + c[2] * m[1] - c[3] * m[2] - c[4] * m[3];
-            m = {x, m[0], y, m[2]};
-            return y;
-        }
-        const Real y = c[0] * x + m[0];
-        m[0] = c[1] * x - c[3] * y + m[1];
-        m[1] = c[2] * x - c[4] * y;
-        return y;
-    }
-};
-
-}  // namespace
-
 std::string arithmetic_name(Arithmetic arithmetic) {
     const std::string_view form = arithmetic.form == Form::df1    ? "direct form I"
                                   : arithmetic.form == Form::df2t ? "transposed direct form II"
                                                                   : "state-variable form";
-    return fmt::format("{}, {}", arithmetic.precision == Precision::float32 ? "float32" : "float64", form);
+    constexpr std::string_view names[] = {"float32", "float64", "Q31", "Q15"};
+    return fmt::format("{}, {}", names[static_cast<std::size_t>(arithmetic.precision)], form);
 }
 
 SvfSection svf_of(const ExportSection& section, Hertz sample_rate) {
@@ -270,115 +217,6 @@ LoadedSection loaded(const Biquad& section, Arithmetic arithmetic) { return {ari
 
 LoadedSection loaded(const SvfSection& section, Precision precision) {
     return {{Form::svf, precision}, biquad_of(section), section};
-}
-
-void run_section(const LoadedSection& section, std::span<const double> in, std::span<double> out) {
-    in_precision(section.arithmetic.precision, [&](auto real) {
-        using Real = decltype(real);
-        const RunSection<Real> run(section);
-        Memory<Real> memory{};
-        std::transform(in.begin(), in.end(), out.begin(),
-                       [&](double x) { return static_cast<double>(run.step(memory, static_cast<Real>(x))); });
-    });
-}
-
-namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr std::size_t samples_a_region = 6;
-constexpr std::size_t most_regions_visited = 24;
-
-template <class Real>
-class Bank {
-  public:
-    Bank(const std::vector<BankRegion>& regions, const LoadedFilters& filters) : regions_(regions) {
-        for (const auto& band : filters.bands) {
-            auto& sections = bands_.emplace_back();
-            for (const LoadedSection& section : band) sections.emplace_back(section);
-        }
-        memories_.resize(bands_.front().size());
-    }
-
-    Real step(Real torque, Real velocity) {
-        const Real speed = velocity < Real{} ? -velocity : velocity;
-        std::size_t at = 0;
-        while (at + 1 < regions_.size() && speed > static_cast<Real>(regions_[at].to_deg_s)) ++at;
-        const BankRegion& region = regions_[at];
-        const int band = region.band == region_holds ? band_ : region.band;
-        if (band != region_passes && band_ == region_passes) {
-            for (std::size_t i = 0; i < memories_.size(); ++i)
-                memories_[i] = bands_[static_cast<std::size_t>(band)][i].settled(torque);
-        }
-        band_ = band;
-        if (band == region_passes) return torque;
-        Real filtered = torque;
-        for (std::size_t i = 0; i < memories_.size(); ++i)
-            filtered = bands_[static_cast<std::size_t>(band)][i].step(memories_[i], filtered);
-        const Real full = static_cast<Real>(region.full_deg_s), none = static_cast<Real>(region.none_deg_s);
-        if (full == none) return filtered;
-        Real share = (speed - none) / (full - none);
-        share = share < Real{} ? Real{} : share > Real{1} ? Real{1} : share;
-        return torque + share * (filtered - torque);
-    }
-
-  private:
-    const std::vector<BankRegion>& regions_;
-    std::vector<std::vector<RunSection<Real>>> bands_;
-    std::vector<Memory<Real>> memories_;
-    int band_ = region_passes;
-};
-
-// A speed inside the region that a float holds exactly; the upper edge belongs to the region.
-double speed_in(const std::vector<BankRegion>& regions, std::size_t at) {
-    const double from = at == 0 ? 0.0 : regions[at - 1].to_deg_s;
-    const double to = regions[at].to_deg_s;
-    const double middle =
-        std::isinf(to) ? std::round(1.25 * from) + 1.0 : std::round(4.0 * (from + to)) / 8.0;
-    return middle > from && middle <= to ? middle : static_cast<double>(static_cast<float>(to));
-}
-
-}  // namespace
-
-std::vector<BankRegion> bank_regions(const FilterSet& filters) {
-    if (!filters.by_speed()) return {{infinity, 0}};
-    std::vector<std::pair<DegPerSec, DegPerSec>> edges;
-    for (const ExportBand& band : filters.bands) edges.emplace_back(band.from, band.to);
-    std::vector<BankRegion> regions;
-    for (const SpeedRegion& region : speed_regions(edges, filters.below, filters.above)) {
-        const int band = region.holds                       ? region_holds
-                         : region.candidate == no_candidate ? region_passes
-                                                            : region.candidate;
-        regions.push_back({region.to_deg_s, band, region.full_deg_s, region.none_deg_s});
-    }
-    return regions;
-}
-
-GoldenVector golden_vector(const std::vector<BankRegion>& regions, const LoadedFilters& filters) {
-    const Precision precision = filters.bands.front().front().arithmetic.precision;
-    std::vector<std::size_t> visits;
-    const std::size_t stride = (regions.size() + most_regions_visited - 1) / most_regions_visited;
-    for (std::size_t r = 0; r < regions.size(); r += stride) visits.push_back(r);
-    if (visits.back() != regions.size() - 1) visits.push_back(regions.size() - 1);
-    for (std::size_t up = visits.size(); up-- > 0;) visits.push_back(visits[up]);
-
-    GoldenVector golden;
-    for (std::size_t v = 0; v < visits.size(); ++v) {
-        // Backward on the way down: the sign of the speed must not matter.
-        const double speed = speed_in(regions, visits[v]) * (2 * v < visits.size() ? 1.0 : -1.0);
-        for (std::size_t i = 0; i < samples_a_region; ++i) {
-            const std::size_t k = golden.torque_nm.size();
-            golden.speed_deg_s.push_back(speed);
-            golden.torque_nm.push_back(4.0 + (static_cast<double>(k * 37 % 64) - 32.0) / 16.0);
-        }
-    }
-    in_precision(precision, [&](auto real) {
-        using Real = decltype(real);
-        Bank<Real> bank(regions, filters);
-        for (std::size_t k = 0; k < golden.torque_nm.size(); ++k)
-            golden.expected_nm.push_back(static_cast<double>(
-                bank.step(static_cast<Real>(golden.torque_nm[k]), static_cast<Real>(golden.speed_deg_s[k]))));
-    });
-    return golden;
 }
 
 }  // namespace ripplenotch
