@@ -11,6 +11,7 @@
 #include "export/text.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/visible_text.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -74,12 +75,9 @@ struct Writer {
                                                : shortest(value);
     }
     [[nodiscard]] std::string row(const std::vector<double>& values, std::string_view indent) const {
-        std::string hex, text;
-        for (const double value : values) {
-            hex += (hex.empty() ? "" : ", ") + exact(value);
-            text += (text.empty() ? "" : ", ") + readable(value);
-        }
-        return fmt::format("{0}{{{1}}},\n{0}/* {2} */\n", indent, hex, text);
+        return fmt::format("{0}{{{1}}},\n{0}/* {2} */\n", indent,
+                           joined(values, ", ", [&](double value) { return exact(value); }),
+                           joined(values, ", ", [&](double value) { return readable(value); }));
     }
 };
 

@@ -7,6 +7,7 @@
 #include "export/target.hpp"
 #include "export/text.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/visible_text.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -32,10 +33,8 @@ std::string row(const Biquad& f) {
 }
 
 std::string edges(const FilterSet& filters, const std::string& name, DegPerSec ExportBand::*edge) {
-    std::string values;
-    for (const ExportBand& band : filters.bands) {
-        values += (values.empty() ? "" : ", ") + decimal_float((band.*edge).value());
-    }
+    const std::string values = joined(
+        filters.bands, ", ", [edge](const ExportBand& band) { return decimal_float((band.*edge).value()); });
     return fmt::format("static const float32_t {}[] = {{{}}};\n", name, values);
 }
 

@@ -7,6 +7,7 @@
 #include "export/target.hpp"
 #include "export/text.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/visible_text.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -19,11 +20,8 @@ constexpr std::array keys = {
 };
 
 std::string edges(const FilterSet& filters, DegPerSec ExportBand::*edge) {
-    std::string values;
-    for (const ExportBand& band : filters.bands) {
-        values += (values.empty() ? "" : " ") + shortest((band.*edge).value());
-    }
-    return values;
+    return joined(filters.bands, " ",
+                  [edge](const ExportBand& band) { return shortest((band.*edge).value()); });
 }
 
 Written write(const FilterSet& filters, const Settings& settings, std::span<const std::string> heading) {
