@@ -26,6 +26,7 @@
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/core/progress.hpp"
+#include "ripplenotch/core/visible_text.hpp"
 #include "ripplenotch/document/map_json.hpp"
 #include "ripplenotch/document/simulation_json.hpp"
 #include "ripplenotch/document/table_json.hpp"
@@ -280,12 +281,9 @@ struct ExportRequest {
 
 /// "fixed or lowpass": the methods that are coefficients, each as `words` has its name.
 std::string steady_methods(const char* words) {
-    std::string joined;
-    for (const Method* method : methods()) {
-        if (method->steady == nullptr) continue;
-        joined += (joined.empty() ? "" : " or ") + fmt::format(fmt::runtime(words), method->name);
-    }
-    return joined;
+    return joined(methods(), " or ", [words](const Method* method) {
+        return method->steady == nullptr ? "" : fmt::format(fmt::runtime(words), method->name);
+    });
 }
 
 void check_export(const ExportRequest& request) {
@@ -420,8 +418,8 @@ std::function<ExitCode()> attach_export(Options& options) {
     options.text("--method", request->method, "SPEC",
                  fmt::format("instead of a table: {} with its keys, for example fixed,centers=25Hz:50Hz,q=1",
                              steady_methods("{}")));
-    options.quantity("--sample-rate", request->sample_rate, Dimension::frequency,
-                     "with --method: rate at which the filter will run");
+    options.number("--sample-rate", request->sample_rate, Dimension::frequency,
+                   "with --method: rate at which the filter will run");
     options.count("--band", request->band, 0, 1000000,
                   "only this band of the table, to run at every speed; 0 is the whole table");
     options.flag("--verify", request->verify,

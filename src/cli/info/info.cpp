@@ -169,17 +169,16 @@ std::string info_to_text(const LogInfo& log) {
 
 struct InfoRequest {
     CommonOptions common;
-    LogOptions log;
+    ReadOptions log;
     std::vector<std::string> paths;
 };
 
 ExitCode run_info(const InfoRequest& request, const std::string& command_line) {
-    const ReadOptions options = request.log.resolve();
     hash_where_told(request.common);
     std::vector<LogInfo> logs;
     Provenance provenance{{}, command_line};
     for (const std::string& path : request.paths) {
-        logs.push_back(survey_log(path, options));
+        logs.push_back(survey_log(path, request.log));
         const LogInfo& log = logs.back();
         provenance.inputs.push_back({path, path == "-" ? "" : sha256_as_read(path), log.rows});
         say(request.common, log.source + ": read as if with " + log.layout.options);

@@ -46,9 +46,8 @@ ExitCode run_merge(const MergeRequest& request) {
     sink.finish();
     say(request.common, fmt::format("{} shards, {} logs, {} lines", of, logs, lines));
     if (failed > 0)
-        say_warnings(request.common,
-                     std::vector{fmt::format("{} of {} lines have an error in the place of descriptors",
-                                             failed, lines)});
+        warn(request.common,
+             fmt::format("{} of {} lines have an error in the place of descriptors", failed, lines));
     return ExitCode::done;
 }
 

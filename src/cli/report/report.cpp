@@ -41,11 +41,9 @@ std::optional<std::string> plotly_js_of(const ReportRequest& request) {
     if (!path) {
         CommonOptions common;
         common.quiet = request.quiet;
-        say_warnings(
-            common,
-            std::vector<std::string>{
-                "plotly.js is not installed (scripts/setup does it where there is npm), so the page carries "
-                "pictures instead of plots"});
+        warn(common,
+             "plotly.js is not installed (scripts/setup does it where there is npm), so the page carries "
+             "pictures instead of plots");
         return std::nullopt;
     }
     std::string text = read_all(*path);
