@@ -172,7 +172,7 @@ std::function<ExitCode()> attach_diagnose(Options& options) {
         "--plan", request->plan, "FILE",
         "the shortest motion, of 30 s at most, that would decide what the log leaves open: rows of time, "
         "position and velocity; needs --limits");
-    options.writes(&request->plan);
+    options.writes("--plan");
     options.text("--limits", request->limits, "KEY=VALUE,...",
                  "of --plan: speed=90deg/s,acceleration=300deg/s2,range=-90deg:90deg");
     options.flag("--explain", request->explain,

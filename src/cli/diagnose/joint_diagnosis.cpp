@@ -75,10 +75,7 @@ void add_given(JointMjcf& parts, const JointDiagnosis& one, const std::optional<
 }
 
 std::vector<std::string> mjcf_heading(const JointDiagnosis& one, const MjcfAccount& account) {
-    std::vector<std::string> lines = {fmt::format("Made by {} {}:", tool_name, version()),
-                                      one.provenance.command};
-    for (const InputRecord& input : one.provenance.inputs)
-        lines.push_back(fmt::format("from {}, SHA-256 {}", input.name, input.sha256));
+    std::vector<std::string> lines = heading_of(one.provenance);
     lines.push_back(fmt::format("measured less predicted torque: {} -> {} Nm rms with what is held",
                                 short_number(account.before_nm), short_number(account.after_nm)));
     return lines;

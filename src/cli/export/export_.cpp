@@ -159,9 +159,7 @@ ExitCode export_code(const CodeExport& request, const std::string& command_line)
     const Settings settings(fmt::format("target {}", spec.name), spec, method_code_keys());
     check_output_name(request.common.output, spec.name, ".h .hpp");
     const auto design = running_design(*request.method.method, request.method.settings, request.sample_rate);
-    const std::array<std::string, 2> heading = {fmt::format("Made by {} {}:", tool_name, version()),
-                                                command_line};
-    const Written written = write_method_code(*design, settings, heading);
+    const Written written = write_method_code(*design, settings, heading_of({{}, command_line}));
     write_export(written, request.common);
     if (!request.verify) return ExitCode::done;
     const ReadBack again = read_back(written, request.common);
@@ -206,11 +204,8 @@ ExitCode export_map(const MapExport& request, const std::string& command_line) {
     const Settings settings(fmt::format("target {}", spec.name), spec, target.keys);
     const RippleMap map = load_map(request.map).map;
     if (map.orders.empty()) raise<DataError>("{}: the map is empty: there is nothing to export", request.map);
-    const InputRecord input = input_record(request.map);
-    const std::vector<std::string> heading = {fmt::format("Made by {} {}:", tool_name, version()),
-                                              command_line,
-                                              fmt::format("from {}, SHA-256 {}", input.name, input.sha256)};
-    const Written written = target.write(map, settings, heading);
+    const Written written =
+        target.write(map, settings, heading_of({{input_record(request.map)}, command_line}));
     write_export(written, request.common);
     if (!request.verify) return ExitCode::done;
     const ReadBack again = read_back(written, request.common);
@@ -323,16 +318,6 @@ FilterSet filters_of_method(const ExportRequest& request) {
     const Contender chosen = choose_method(*request.method);
     return std::visit([&](const auto& design) { return filter_set(design, *request.sample_rate); },
                       method.steady(chosen.settings));
-}
-
-std::vector<std::string> heading_of(const Provenance& provenance) {
-    std::vector<std::string> lines = {fmt::format("Made by {} {}:", tool_name, version()),
-                                      provenance.command};
-    for (const InputRecord& input : provenance.inputs) {
-        lines.push_back(input.sha256.empty() ? fmt::format("from {}", input.name)
-                                             : fmt::format("from {}, SHA-256 {}", input.name, input.sha256));
-    }
-    return lines;
 }
 
 void verify(const ExportRequest& request, const Target& target, const Settings& settings,

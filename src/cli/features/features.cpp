@@ -395,7 +395,7 @@ ExitCode run_features(FeatureRequest& request, const std::string& command_line) 
 void attach_output(Options& options, FeatureRequest& request) {
     options.text("-o,--output", request.common.output, "FILE",
                  "where the lines go; - is standard output; with --shard the folder of the shards");
-    options.writes(&request.common.output);
+    options.writes("-o");
     options.flag("--ndjson", request.ndjson, "one JSON object a line; so it is unless --csv is given");
     options.flag("--json", request.common.json, "the same: a log of one joint is one JSON object");
     options.flag("--csv", request.csv, "a table with a header instead");

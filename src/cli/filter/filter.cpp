@@ -354,7 +354,7 @@ std::function<ExitCode()> attach_filter(Options& options) {
                  "log's), or a number");
     options.text("--metrics", request->metrics, "FILE",
                  "JSON about attenuation, residual, delays, switches, gaps; with --out-dir a folder");
-    options.writes(&request->metrics);
+    options.writes("--metrics");
     attach_gear(options, request->how.gear);
     options.number("--crossover", request->crossover, Dimension::frequency,
                    "the control loop's: phase lag and gain there, for -v and the metrics, e.g. 12Hz");

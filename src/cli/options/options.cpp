@@ -65,46 +65,23 @@ void Options::flag(std::string_view names, std::function<void()> set, std::strin
     implementation_.command->add_flag_callback(owned(names), std::move(set), owned(help));
 }
 
-void Options::text(std::string_view names, std::string& target, std::string_view type_name,
-                   std::string_view help) {
-    CLI::Option* option =
-        single(implementation_.command->add_option(owned(names), target, owned(help)), type_name);
-    if (!target.empty()) option->default_str(target);
-    names_file(names, type_name, &target, [&target] { return std::vector{target}; });
-}
-
-void Options::text(std::string_view names, std::optional<std::string>& target, std::string_view type_name,
-                   std::string_view help) {
-    parsed(
-        names, [&target](const std::string& value) { target = value; }, type_name, help);
-    names_file(names, type_name, &target,
-               [&target] { return target ? std::vector{*target} : std::vector<std::string>{}; });
-}
-
 void Options::parsed(std::string_view names, std::function<void(const std::string&)> read,
-                     std::string_view type_name, std::string_view help, bool repeats) {
+                     std::string_view type_name, std::string_view help, bool repeats,
+                     const std::string& standing) {
     CLI::App& command = *implementation_.command;
+    names_file(names, type_name);
     if (!repeats) {
-        single(command.add_option_function<std::string>(owned(names), std::move(read), owned(help)),
-               type_name);
+        CLI::Option* option = single(
+            command.add_option_function<std::string>(owned(names), std::move(read), owned(help)), type_name);
+        if (!standing.empty()) option->default_str(standing);
         return;
     }
-    command
-        .add_option_function<std::vector<std::string>>(
-            owned(names),
-            [read = std::move(read)](const std::vector<std::string>& values) {
-                for (const std::string& value : values) read(value);
-            },
-            owned(help))
+    const auto read_all = [read = std::move(read)](const std::vector<std::string>& values) {
+        for (const std::string& value : values) read(value);
+    };
+    command.add_option_function<std::vector<std::string>>(owned(names), read_all, owned(help))
         ->type_name(owned(type_name))
         ->allow_extra_args(false);
-}
-
-void Options::texts(std::string_view names, std::vector<std::string>& target, std::string_view type_name,
-                    std::string_view help) {
-    parsed(
-        names, [&target](const std::string& value) { target.push_back(value); }, type_name, help, true);
-    names_file(names, type_name, &target, [&target] { return target; });
 }
 
 void Options::choice(std::string_view names, std::string& target, std::span<const std::string_view> choices,
@@ -166,36 +143,32 @@ void Options::numbers(std::string_view names, std::vector<double>& target, Dimen
 
 void Options::argument(std::string_view name, std::string& target, bool required, std::string_view help) {
     implementation_.command->add_option(owned(name), target, owned(help))->required(required)->type_name("");
-    names_file(name, "LOG", &target, [&target] { return std::vector{target}; });
+    names_file(name, "LOG");
 }
 
 void Options::arguments(std::string_view name, std::vector<std::string>& target, bool required,
                         std::string_view help) {
     implementation_.command->add_option(owned(name), target, owned(help))->required(required)->type_name("");
-    names_file(name, "LOG", &target, [&target] { return target; });
+    names_file(name, "LOG");
 }
 
 void Options::after_parse(std::function<void()> check) {
     implementation_.after_parse.push_back(std::move(check));
 }
 
-void Options::names_file(std::string_view names, std::string_view type_name, const void* target,
-                         std::function<std::vector<std::string>()> values) {
+void Options::names_file(std::string_view names, std::string_view type_name) {
     constexpr std::array types = {"FILE", "LOG", "OTHER", "SPEC", "NAME,KEY=VALUE,..."};
-    if (std::find(types.begin(), types.end(), type_name) == types.end()) return;
-    const std::string shown = owned(names.substr(0, names.find(',')));
-    implementation_.files.push_back({shown, std::move(values), target});
+    if (std::find(types.begin(), types.end(), type_name) != types.end())
+        implementation_.files.emplace_back(names.substr(0, names.find(',')));
 }
 
-void Options::writes(const void* target) { implementation_.written.push_back(target); }
+void Options::writes(std::string_view name) { implementation_.written.insert(owned(name)); }
 
 void Options::Implementation::check_files() const {
     FileClaims claims;
-    for (const FileOption& option : files) {
-        const bool writes = std::find(written.begin(), written.end(), option.target) != written.end();
-        for (const std::string& value : option.values())
-            writes ? claims.writes(value, option.name) : claims.reads(value, option.name);
-    }
+    for (const std::string& name : files)
+        for (const std::string& value : command->get_option(name)->results())
+            written.contains(name) ? claims.writes(value, name) : claims.reads(value, name);
     claims.check(command->get_option_no_throw("--in-place") != nullptr ? ", or say --in-place" : "");
 }
 
@@ -273,6 +246,16 @@ std::string Options::log_words(const std::optional<std::string>& from,
     return line;
 }
 
+std::vector<std::string> heading_of(const Provenance& provenance) {
+    std::vector<std::string> lines = {fmt::format("Made by {} {}:", tool_name, version()),
+                                      provenance.command};
+    for (const InputRecord& input : provenance.inputs) {
+        lines.push_back(input.sha256.empty() ? fmt::format("from {}", input.name)
+                                             : fmt::format("from {}, SHA-256 {}", input.name, input.sha256));
+    }
+    return lines;
+}
+
 bool ends_with_json(std::string_view path) { return path.size() > 5 && path.ends_with(".json"); }
 
 void attach_manner(Options& options, CommonOptions& common) {
@@ -291,7 +274,7 @@ void attach_common(Options& options, CommonOptions& common, const OutputNames& n
         common.json = common.json || (names.json_is_option && ends_with_json(common.output));
     });
     options.text("-o,--output", common.output, "FILE", "where the result goes; - is standard output");
-    options.writes(&common.output);
+    options.writes("-o");
     options.flag("--json", common.json, "one JSON object instead of text");
     attach_manner(options, common);
 }

@@ -29,15 +29,24 @@ class Options {
 
     void flag(std::string_view names, bool& target, std::string_view help);
     void flag(std::string_view names, std::function<void()> set, std::string_view help);
-    void text(std::string_view names, std::string& target, std::string_view type_name, std::string_view help);
-    void text(std::string_view names, std::optional<std::string>& target, std::string_view type_name,
-              std::string_view help);
-    /// `read` takes the value, as often as it is given where the option repeats; it throws UsageError.
-    void parsed(std::string_view names, std::function<void(const std::string&)> read,
-                std::string_view type_name, std::string_view help, bool repeats = false);
+    /// A text, whose standing value is shown as the default, or an optional one.
+    template <class Text>
+    void text(std::string_view names, Text& target, std::string_view type_name, std::string_view help) {
+        std::string standing;
+        if constexpr (std::is_same_v<Text, std::string>) standing = target;
+        parsed(
+            names, [&target](const std::string& value) { target = value; }, type_name, help, false, standing);
+    }
     /// May be given several times; each occurrence takes exactly one value.
     void texts(std::string_view names, std::vector<std::string>& target, std::string_view type_name,
-               std::string_view help);
+               std::string_view help) {
+        parsed(
+            names, [&target](const std::string& value) { target.push_back(value); }, type_name, help, true);
+    }
+    /// `read` takes the value, as often as it is given where the option repeats; it throws UsageError.
+    void parsed(std::string_view names, std::function<void(const std::string&)> read,
+                std::string_view type_name, std::string_view help, bool repeats = false,
+                const std::string& standing = "");
     void choice(std::string_view names, std::string& target, std::span<const std::string_view> choices,
                 std::string_view help);
     template <class Integer>
@@ -67,9 +76,9 @@ class Options {
     void arguments(std::string_view name, std::vector<std::string>& target, bool required,
                    std::string_view help);
 
-    /// The file that this option's target names is written; of all others whose type says that they name
-    /// files (FILE, LOG, SPEC, ...), and of arguments, files are read. Those that collide are refused.
-    void writes(const void* target);
+    /// The file that the option of this first name takes is written; of all others whose type says that they
+    /// name files (FILE, LOG, SPEC, ...), and of arguments, files are read. Those that collide are refused.
+    void writes(std::string_view name);
     /// Runs when all options are read, before the work.
     void after_parse(std::function<void()> check);
 
@@ -83,8 +92,7 @@ class Options {
                                         const std::optional<std::string>& to = {}) const;
 
   private:
-    void names_file(std::string_view names, std::string_view type_name, const void* target,
-                    std::function<std::vector<std::string>()> values);
+    void names_file(std::string_view names, std::string_view type_name);
     void parsed_number(std::string_view names, Dimension dimension, std::string_view help,
                        std::optional<double> standing, std::function<void(double)> assign);
     void parsed_count(std::string_view names, int default_value, int lowest, int highest,
@@ -104,6 +112,8 @@ struct OutputNames {
     std::string_view endings;     ///< that fit it: ".txt .json"; empty where the command looks itself
     bool json_is_option = false;  ///< a name that ends in .json is the same as --json
 };
+/// How a file says where it is from, one line each: tool, command and inputs.
+[[nodiscard]] std::vector<std::string> heading_of(const Provenance& provenance);
 void attach_common(Options& options, CommonOptions& common, const OutputNames& names);
 /// How it writes and what it says: --force, --no-sync, --quiet and --verbose.
 void attach_manner(Options& options, CommonOptions& common);

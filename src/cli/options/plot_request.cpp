@@ -55,7 +55,7 @@ void attach_plot(Options& options, PlotRequest& request, const CommonOptions& co
                  fmt::format("the result as a picture ({}): FILE.svg, .png or .pdf by gnuplot, FILE.json for "
                              "the data of the figure; - draws it in the terminal",
                              figures_of(options.command_name())));
-    options.writes(&request.path);
+    options.writes("--plot");
     options.after_parse([&] { check_plot(request, common); });
 }
 

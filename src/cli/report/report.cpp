@@ -74,7 +74,7 @@ std::function<ExitCode()> attach_report(Options& options) {
         "JSON that commands wrote: joint.json, table.json, metrics, comparisons, diagnoses, figures "
         "(--plot FILE.json); - is standard input");
     options.text("-o,--output", request->output, "FILE", "where the page goes; - is standard output");
-    options.writes(&request->output);
+    options.writes("-o");
     options.text("--title", request->title, "TEXT", "of the page");
     options.text("--plotly", request->plotly, "FILE",
                  "plotly.js to put into the page, instead of the installed one");

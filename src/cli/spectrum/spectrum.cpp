@@ -150,11 +150,9 @@ std::string order_peaks(const OrderSpectrum& spectrum) {
     const MotionLines& found = spectrum.lines;
     std::string text = spectrum.doubt.empty() ? "" : fmt::format("Cannot tell: {}.\n", spectrum.doubt);
     text += fmt::format("{} in {} over {:.3g} output turns (resolution {:.3g} orders, floor {:.2g} Nm).\n",
-                        found.lines.empty() ? "No line"
-                                            : fmt::format("{} line{}", found.lines.size(),
-                                                          found.lines.size() == 1 ? "" : "s"),
-                        found.sweeps == 1 ? "1 sweep" : fmt::format("{} sweeps", found.sweeps), found.turns,
-                        found.resolution_orders, median_floor(spectrum.stack.floor_nm));
+                        found.lines.empty() ? "No line" : how_many(found.lines.size(), "line"),
+                        how_many(found.sweeps, "sweep"), found.turns, found.resolution_orders,
+                        median_floor(spectrum.stack.floor_nm));
     if (found.lines.empty()) return text;
     std::vector<std::vector<std::string>> rows{{"kind", "output order", "+/-", "Hz", "amplitude, Nm", "SNR"}};
     for (const MotionLine& line : found.lines) {
