@@ -136,9 +136,7 @@ constexpr std::size_t page_width = 100;
 
 // A sentence wrapped to lines that a terminal shows whole.
 std::string paragraph(const std::string& sentence) {
-    std::string text;
-    for (const std::string& line : wrapped(sentence, page_width)) text += line + "\n";
-    return text;
+    return joined(wrapped(sentence, page_width), "\n") + "\n";
 }
 
 struct ViewColumn {

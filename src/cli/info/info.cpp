@@ -14,6 +14,7 @@
 #include "cli/talk.hpp"
 #include "ripplenotch/core/files.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/visible_text.hpp"
 #include "ripplenotch/document/info_json.hpp"
 #include "ripplenotch/log/format.hpp"
 #include "ripplenotch/survey/survey.hpp"
@@ -187,7 +188,7 @@ ExitCode run_info(const InfoRequest& request, const std::string& command_line) {
     if (request.common.json) {
         text = info_to_json(logs, provenance);
     } else {
-        for (const LogInfo& log : logs) text += (text.empty() ? "" : "\n") + info_to_text(log);
+        text = joined(logs, "\n", info_to_text);
         if (const auto missing = formats_not_built(); !missing.empty())
             text += fmt::format("\nnot in this build: {}\n", fmt::join(missing, ", "));
     }

@@ -105,17 +105,19 @@ void Options::parsed_count(std::string_view names, int default_value, int lowest
 }
 
 void Options::parsed_number(std::string_view names, Dimension dimension, std::string_view help,
-                            std::optional<double> standing, std::function<void(double)> assign) {
+                            std::optional<double> standing, bool above_zero,
+                            std::function<void(double)> assign) {
     const std::string label =
         owned(names.substr(names.rfind(',') == std::string_view::npos ? 0 : names.rfind(',') + 1));
-    CLI::Option* option = single(implementation_.command->add_option_function<std::string>(
-                                     implementation_.names_for_parser(names),
-                                     [dimension, label, assign](const std::string& value) {
-                                         assign(parse_quantity(value, dimension, label));
-                                     },
-                                     owned(help)),
-                                 unit_type_name(dimension));
-    if (standing) option->default_str(shortest(*standing));
+    const auto read = [dimension, label, above_zero, assign](const std::string& text) {
+        const double value = parse_quantity(text, dimension, label);
+        if (above_zero && !(value > 0.0))
+            raise<UsageError>("{} must be above 0{}{}", label, base_unit(dimension).empty() ? "" : " ",
+                              base_unit(dimension));
+        assign(value);
+    };
+    parsed(implementation_.names_for_parser(names), read, unit_type_name(dimension), help, false,
+           standing ? shortest(*standing) : "");
 }
 
 void Options::duration(std::string_view names, std::optional<Seconds>& target, std::string_view help) {

@@ -56,12 +56,14 @@ class Options {
     }
     /// A double or a quantity, or an optional one, which has no default.
     template <class Target>
-    void number(std::string_view names, Target& target, Dimension dimension, std::string_view help) {
+    void number(std::string_view names, Target& target, Dimension dimension, std::string_view help,
+                bool above_zero = false) {
         if constexpr (requires { target.emplace(0.0); }) {
-            parsed_number(names, dimension, help, {}, [&target](double value) { target.emplace(value); });
+            parsed_number(names, dimension, help, {}, above_zero,
+                          [&target](double value) { target.emplace(value); });
         } else {
-            const auto standing = (target / Target(1.0));
-            parsed_number(names, dimension, help, standing,
+            const double standing = target / Target(1.0);
+            parsed_number(names, dimension, help, standing, above_zero,
                           [&target](double value) { target = Target(value); });
         }
     }
@@ -94,7 +96,7 @@ class Options {
   private:
     void names_file(std::string_view names, std::string_view type_name);
     void parsed_number(std::string_view names, Dimension dimension, std::string_view help,
-                       std::optional<double> standing, std::function<void(double)> assign);
+                       std::optional<double> standing, bool above_zero, std::function<void(double)> assign);
     void parsed_count(std::string_view names, int default_value, int lowest, int highest,
                       std::string_view help, std::function<void(int)> assign);
     Implementation& implementation_;

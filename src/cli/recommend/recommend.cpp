@@ -40,12 +40,6 @@ namespace {
 
 constexpr std::size_t report_width = 110, widest_name = 60;
 
-std::string wrapped_sentence(const std::string& sentence) {
-    std::string text;
-    for (const std::string& line : wrapped(sentence, report_width)) text += line + "\n";
-    return text;
-}
-
 std::string next_commands(std::string_view head, const std::vector<std::string>& lines) {
     if (lines.empty()) return "";
     return fmt::format("\n{}\n    {}\n", head, fmt::join(lines, "\n    "));
@@ -88,20 +82,15 @@ std::string methods_text(const Recommendation& found) {
 std::string bulleted(std::string_view head, const std::vector<std::string>& sentences) {
     if (sentences.empty()) return "";
     std::string text = fmt::format("\n{}\n", head);
-    for (const std::string& sentence : sentences) {
-        std::string lead = "* ";
-        for (const std::string& line : wrapped(sentence, report_width - 2)) {
-            text += lead + line + "\n";
-            lead = "  ";
-        }
-    }
+    for (const std::string& sentence : sentences)
+        text += "* " + joined(wrapped(sentence, report_width - 2), "\n  ") + "\n";
     return text;
 }
 
 // Verdict, commands to paste, what is in the log, all methods, and what was assumed.
 std::string recommendation_view(const RecommendationReport& report) {
     const Recommendation& found = report.found;
-    std::string text = wrapped_sentence(recommendation_verdict(found));
+    std::string text = joined(wrapped(recommendation_verdict(found), report_width), "\n") + "\n";
     text += next_commands("To take it:", report.take);
     text += next_commands("The other:", report.runner_up);
     if (!found.orders.empty()) text += orders_text(found);

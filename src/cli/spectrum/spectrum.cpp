@@ -525,9 +525,6 @@ ExitCode run_spectrum(SpectrumRequest& request, const std::string& command_line)
     if (!(request.false_alarm > 0.0) || request.false_alarm > 0.5) {
         raise<UsageError>("--false-alarm {} is not between 0 and 0.5", shortest(request.false_alarm));
     }
-    if (request.segment && !(request.segment->value() > 0.0))
-        raise<UsageError>("--segment must be above 0 s");
-    if (!(request.steady.at_least.value() > 0.0)) raise<UsageError>("--steady-for must be above 0 s");
     check_speed_map(request.map);
     hash_where_told(request.common, request.plot);
     if (request.map.map &&
@@ -550,7 +547,7 @@ std::function<ExitCode()> attach_spectrum(Options& options) {
     options.text("--stretch", request->stretch, "all|NUMBER",
                  "steady stretches instead of the whole log, each or one of them");
     options.number("--segment", request->segment, Dimension::time,
-                   "average half-overlapping pieces of this length (Welch)");
+                   "average half-overlapping pieces of this length (Welch)", true);
     options.flag("--peaks", request->peaks, "tables of the lines and humps instead of the bins");
     options.number("--false-alarm", request->false_alarm, Dimension::none,
                    "chance that noise gives any line in a spectrum");
@@ -558,7 +555,7 @@ std::function<ExitCode()> attach_spectrum(Options& options) {
                    "a stretch is steady while its speed stays within this many per cent ...");
     options.number("--steady-band-speed", request->steady.band_deg_s, Dimension::speed,
                    "... or within this speed, whichever is wider; none by default");
-    options.number("--steady-for", request->steady.at_least, Dimension::time, "for at least this long");
+    options.number("--steady-for", request->steady.at_least, Dimension::time, "for at least this long", true);
     attach_speed_map(options, request->map);
     attach_residual(options, request->residual);
     attach_plot(options, request->plot, request->common);

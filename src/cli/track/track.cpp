@@ -100,13 +100,6 @@ void check_track(const TrackRequest& request) {
     }
     if (request.window_turns && request.window)
         raise<UsageError>("--window and --window-turns exclude each other");
-    if (request.window && !(request.window->value() > 0.0)) raise<UsageError>("--window must be above 0 s");
-    if (request.window_turns && !(*request.window_turns > 0.0))
-        raise<UsageError>("--window-turns must be above 0");
-    if (request.rows_per_second && !(request.rows_per_second->value() > 0.0))
-        raise<UsageError>("--rows-per-second must be above 0 Hz");
-    if (request.speed_step && !(request.speed_step->value() > 0.0))
-        raise<UsageError>("--speed-step must be above 0 deg/s");
     if (request.speed_step && request.against != "speed")
         raise<UsageError>("--speed-step belongs to --against speed");
     if (request.log.joint == "all") raise<UsageError>("--joint all: track looks at one joint; name it");
@@ -311,18 +304,19 @@ std::function<ExitCode()> attach_track(Options& options) {
     options.number(
         "--window-turns", request->window_turns, Dimension::none,
         "ls: window in motor turns (output turns without a gear ratio); 8 periods of the lowest order, or 2 "
-        "beats of the closest");
-    options.number("--window", request->window, Dimension::time, "ls: window in time instead");
+        "beats of the closest",
+        true);
+    options.number("--window", request->window, Dimension::time, "ls: window in time instead", true);
     options.number("--bandwidth", request->bandwidth, Dimension::frequency,
                    "vold-kalman: -3 dB width of each line's envelope; 1 Hz");
     options.count("--poles", request->poles, 1, 4, "vold-kalman: steepness");
     options.number("--rows-per-second", request->rows_per_second, Dimension::frequency,
-                   "vold-kalman: rows of the result; 8 in 1/bandwidth");
+                   "vold-kalman: rows of the result; 8 in 1/bandwidth", true);
     options.choice("--amplitude", request->amplitude, amplitude_names,
                    "what amplitudes are; the column names say it");
     options.choice("--against", request->against, against_names, "rows by time, or gathered by signed speed");
     options.number("--speed-step", request->speed_step, Dimension::speed,
-                   "width of a row's speeds; about 24 rows when left out");
+                   "width of a row's speeds; about 24 rows when left out", true);
     attach_plot(options, request->plot, request->common);
     attach_log(options, request->log);
     attach_common(options, request->common, {"a track", ".csv .txt .npy .json", true});
