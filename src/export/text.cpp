@@ -243,15 +243,6 @@ std::string describe(const ExportBand& band) {
                        shortest(band.to.value()));
 }
 
-std::string listed(std::span<const double> values, std::string (*write)(double), std::string_view separator) {
-    std::string text;
-    for (const double value : values) {
-        if (!text.empty()) text += separator;
-        text += write(value);
-    }
-    return text;
-}
-
 std::vector<double> edges(const FilterSet& filters, DegPerSec ExportBand::*edge) {
     std::vector<double> values;
     for (const ExportBand& band : filters.bands) values.push_back((band.*edge).value());

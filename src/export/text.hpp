@@ -134,9 +134,6 @@ inline constexpr std::array<std::string_view, 2> precision_choices = {"float", "
 /// "band 3: 54 < |v| <= 72 deg/s", or "at every speed"
 [[nodiscard]] std::string describe(const ExportBand& band);
 
-/// The numbers as `write` writes them, `separator` between them.
-[[nodiscard]] std::string listed(std::span<const double> values, std::string (*write)(double),
-                                 std::string_view separator = ", ");
 /// The speeds at which bands begin, or end: values of one edge, in the order of the bands.
 [[nodiscard]] std::vector<double> edges(const FilterSet& filters, DegPerSec ExportBand::*edge);
 

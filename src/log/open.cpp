@@ -20,6 +20,7 @@
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/files.hpp"
 #include "ripplenotch/core/spec.hpp"
+#include "ripplenotch/core/visible_text.hpp"
 #include "ripplenotch/log/clock.hpp"
 #include "ripplenotch/log/log.hpp"
 
@@ -134,11 +135,8 @@ const LogFormat& find_log_format(std::string_view name) {
 }
 
 std::string written_log_formats() {
-    std::string names;
-    for (const LogFormat* format : log_formats()) {
-        if (format->is_written()) names += fmt::format("{}{}", names.empty() ? "" : ", ", format->name);
-    }
-    return names;
+    return joined(log_formats(), ", ",
+                  [](const LogFormat* format) { return format->is_written() ? format->name : ""; });
 }
 
 void require_written(const LogFormat& format, const std::string& output) {
@@ -155,12 +153,9 @@ namespace {
 
 /// ".csv .npy": one for each format that is written.
 std::string written_extensions() {
-    std::string extensions;
-    for (const LogFormat* format : log_formats()) {
-        if (!format->is_written()) continue;
-        extensions += (extensions.empty() ? "" : " ") + std::string(format->extensions.front());
-    }
-    return extensions;
+    return joined(log_formats(), " ", [](const LogFormat* format) {
+        return format->is_written() ? format->extensions.front() : "";
+    });
 }
 
 /// As `asked`, or by the extension; null where neither says it.

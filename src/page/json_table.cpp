@@ -15,6 +15,7 @@
 #include "document/json/json.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
+#include "ripplenotch/core/visible_text.hpp"
 
 namespace ripplenotch {
 
@@ -122,9 +123,8 @@ std::string value_text(const Json& json) {
     if (json.is_array() && !json.empty() && std::all_of(json.begin(), json.end(), is_span))
         return spans_text(json);
     if (json.is_array()) {
-        std::string joined;
-        for (const Json& entry : json) joined += (joined.empty() ? "" : ", ") + value_text(entry);
-        return joined.size() > most_cell ? fmt::format("{} values", json.size()) : joined;
+        const std::string all = joined(json, ", ", value_text);
+        return all.size() > most_cell ? fmt::format("{} values", json.size()) : all;
     }
     if (json.is_object()) {
         std::string joined;

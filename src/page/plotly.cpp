@@ -374,16 +374,12 @@ class PlotlyPanel {
     [[nodiscard]] std::vector<std::string> title_lines() const {
         return wrapped(visible_text(panel_.title), 44);
     }
-    [[nodiscard]] std::string title_text() const { return joined(title_lines()); }
+    [[nodiscard]] std::string title_text() const { return joined(title_lines(), "<br>", plotly_shown); }
     // No longer than the axis that it belongs to.
     [[nodiscard]] std::string axis_title(std::string_view which, const PlotAxis& axis) const {
         const double room_px = which == "yaxis" ? panel_px * panel_.height : 0.5 * plot_px;
-        return joined(wrapped(visible_text(axis_text(axis)), static_cast<std::size_t>(room_px / letter_px)));
-    }
-    static std::string joined(const std::vector<std::string>& lines) {
-        std::string text;
-        for (const std::string& line : lines) text += (text.empty() ? "" : "<br>") + plotly_shown(line);
-        return text;
+        return joined(wrapped(visible_text(axis_text(axis)), static_cast<std::size_t>(room_px / letter_px)),
+                      "<br>", plotly_shown);
     }
     void axis(const char* which, const PlotAxis& axis, const PlotRange& range) {
         const bool log = axis.scale == PlotScale::logarithmic;

@@ -18,6 +18,7 @@
 #include "ripplenotch/chart/track_figure.hpp"
 #include "ripplenotch/chart/trend_figure.hpp"
 #include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/visible_text.hpp"
 #include "ripplenotch/diagnose/diagnosis.hpp"
 #include "ripplenotch/document/diagnosis_json.hpp"
 #include "ripplenotch/document/figure_json.hpp"
@@ -280,9 +281,7 @@ Json row_of(const Finding& finding) {
     row["gap_nm"] = gap_from_to(finding.gap_before_nm, finding.gap_after_nm);
     if (finding.validation_before_nm)
         row["validation_nm"] = gap_from_to(*finding.validation_before_nm, *finding.validation_after_nm);
-    std::string rivals;
-    for (const RivalFinding& rival : finding.alternatives)
-        rivals += fmt::format("{}{}", rivals.empty() ? "" : ", ", rival.effect);
+    const std::string rivals = joined(finding.alternatives, ", ", &RivalFinding::effect);
     if (!rivals.empty()) row["rivals"] = rivals;
     return row;
 }

@@ -25,17 +25,14 @@ struct GearStatement {
     std::vector<Order> orders;         ///< lowest first, each once
     std::vector<double> amplitude_nm;  ///< one per order, or empty
     std::vector<double> phase_deg;     ///< one per order, or empty where one of them is not known
+    // Of a joint.json:
+    Hertz sample_rate = {};    ///< nominal: what filter designs for on the same log
+    double ratio_error = 0.0;  ///< share: the further end of the file's 95 % interval; 0 for a given ratio
+    DegPerSec slowest = {}, fastest = {};  ///< |v| at which its lines were seen; both 0 without lines
+    DegPerSec velocity_noise = {};         ///< standard deviation; 0 where the file does not state it
 };
 
-// A joint.json, and what it says about the gear: of the lines that follow the motor.
-
-struct JointFacts : GearStatement {
-    Hertz sample_rate;           ///< nominal: what filter designs for on the same log
-    double ratio_error = 0.0;    ///< share: the further end of the file's 95 % interval; 0 for a given ratio
-    DegPerSec slowest, fastest;  ///< |v| at which those lines were seen; both 0 without lines
-    DegPerSec velocity_noise;    ///< standard deviation; 0 where the file does not state it
-};
-
+/// A joint.json, and what it says about the gear: of the lines that follow the motor.
 struct JointFile {
     std::string path, source;  ///< the source is for messages
     Identification found;
@@ -43,7 +40,7 @@ struct JointFile {
     /// A line that was seen at one speed only counts when identify gave it an order: then the gear ratio
     /// rests on it. With a ratio from elsewhere the orders are those of the measured lines under that ratio,
     /// whole or half where they are within 0.5 % of it. Of two lines of one order the stronger one counts.
-    [[nodiscard]] JointFacts facts(std::optional<GearRatio> given = std::nullopt) const;
+    [[nodiscard]] GearStatement facts(std::optional<GearRatio> given = std::nullopt) const;
 };
 
 /// Reads joint.json, or standard input when the path is "-". Throws DataError, FileError, and UsageError for
@@ -82,7 +79,7 @@ class GearChoice {
     [[nodiscard]] const std::vector<double>& asked_orders() const { return options_.orders; }
     [[nodiscard]] const std::optional<JointFile>& joint() const { return joint_; }
     /// What the joint file says under --gear-ratio, where that is given.
-    [[nodiscard]] std::optional<JointFacts> facts() const;
+    [[nodiscard]] std::optional<GearStatement> facts() const;
 
   private:
     GearOptions options_;

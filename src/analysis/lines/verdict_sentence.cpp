@@ -8,6 +8,7 @@
 
 #include "ripplenotch/analysis/identification.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/visible_text.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -197,10 +198,8 @@ std::string candidates(const Identification& found) {
         else if (merged.size() < 4)
             merged.emplace_back(value, candidate.reason);
     }
-    std::string text;
-    for (const auto& [value, reason] : merged)
-        text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", value, reason);
-    return text;
+    return joined(merged, ", ",
+                  [](const auto& one) { return fmt::format("{} ({})", one.first, one.second); });
 }
 
 /// "cannot tell which of 100 and 200 is the gear ratio: 100.00 (why), 200.00 (why)"

@@ -136,9 +136,7 @@ constexpr std::size_t page_width = 100;
 
 // A sentence wrapped to lines that a terminal shows whole.
 std::string paragraph(const std::string& sentence) {
-    std::string text;
-    for (const std::string& line : wrapped(sentence, page_width)) text += line + "\n";
-    return text;
+    return joined(wrapped(sentence, page_width), "\n") + "\n";
 }
 
 struct ViewColumn {
@@ -369,9 +367,9 @@ std::optional<GearAccount> common_gear(const std::vector<Contender>& contenders)
 
 // The methods as they are on this log: at its temperature, where a map asks for one. The same without a log.
 std::vector<std::string> methods_at(const std::string& log, std::vector<std::string> methods,
-                                    const LogOptions& options) {
+                                    const ReadOptions& options) {
     if (log.empty()) return methods;
-    ReadOptions read = read_options(options, std::nullopt);
+    ReadOptions read = options;
     read.takes_motor_units = true;
     for (std::string& method : methods) method = at_log_temperature(method, log, read);
     return methods;
@@ -424,13 +422,13 @@ void check_table_rates(const Field& field, Hertz sample_rate, const std::string&
         if (!contender.table) continue;
         const auto warning =
             compare_table_rate({.table = contender.table->spec().sample_rate, .log = sample_rate}, source);
-        if (warning) say_warnings(common, {&*warning, 1});
+        if (warning) warn(common, *warning);
     }
 }
 
 void attach_costs(Options& options, CostRequest& request) {
-    options.quantity("--crossover", request.crossover, Dimension::frequency,
-                     "the control loop's: phase lag and gain there, e.g. 12Hz");
+    options.number("--crossover", request.crossover, Dimension::frequency,
+                   "the control loop's: phase lag and gain there, e.g. 12Hz");
     options.flag("--ledger", request.ledger,
                  "delay, settling and phase lag of every band of every method; on a log every switch");
     attach_gates(options, request.gates);
@@ -494,7 +492,7 @@ constexpr double default_step_nm = 10.0,
 struct CompareRequest {
     CommonOptions common;
     PlotRequest plot;
-    LogOptions log_options;
+    ReadOptions log_options;
     std::string log, truth;
     std::vector<std::string> methods;
     GearOptions gear;
@@ -563,7 +561,6 @@ Comparison compare_on_signals(const CompareRequest& request, const Field& field)
     } else {
         raise<UsageError>("the sample rate is missing; give --sample-rate, for example 1kHz");
     }
-    (void)request.log_options.resolve();  // refuses a rate that makes no sense
     if (!request.speed && (field.gear || field.table)) {
         raise<UsageError>(
             "attenuation and switching depend on the joint speed; give --speed, for example 90deg/s");
@@ -607,8 +604,7 @@ void add_methods(Comparison& comparison, const std::vector<Contender>& contender
     }
     if (!levels) return;
     if (levels->windows == 0 && comparison.windows == 0) {
-        say_warnings(common, std::vector{fmt::format("the ripple cannot be measured on this log: {}",
-                                                     levels->why_none)});
+        warn(common, fmt::format("the ripple cannot be measured on this log: {}", levels->why_none));
     }
     comparison.windows = levels->windows;
     comparison.measured_share = levels->measured_share;
@@ -648,11 +644,7 @@ Comparison compare_on_log(const CompareRequest& request, const Field& field, Pro
         raise<UsageError>("--joint all: compare looks at one joint; name it");
     const ReadOptions read = read_options(request.log_options, field.gear);
     const Log log = read_log_in_part(request.log, read);
-    say_layout(request.common, log.layout);
-    say_warnings(request.common, log.recording.warnings);
-    provenance.inputs.push_back(input_record(request.log));
-    provenance.inputs.back().rows = log.recording.rows();
-    provenance.recordings.push_back({log.recording});
+    take_log(request.common, request.log, log, provenance);
     for (const Contender& contender : field.contenders) refuse_other_joint(contender, log.trace.joint);
     ComparedLog compared{log.trace.view()};
     if (!request.truth.empty() && !field.gear) raise_no_gear("--truth");
@@ -680,9 +672,9 @@ Comparison compare_on_log(const CompareRequest& request, const Field& field, Pro
     comparison.ramp_nm_s = request.ramp_nm_s.value_or(default_ramp_nm_s);
     comparison.lines = field.gear;
     if (!comparison.lines)
-        say_warnings(request.common,
-                     std::vector<std::string>{"no gear ratio is known, so no ripple was measured; "
-                                              "give --gear-ratio or --joint-file"});
+        warn(request.common,
+             "no gear ratio is known, so no ripple was measured; "
+             "give --gear-ratio or --joint-file");
     add_methods(comparison, field.contenders, compared, request.common);
     compared.watch = {};  // what is matched is measured more than once
     if (wants_match(request)) add_match_on_log(comparison, request, compared);
@@ -690,8 +682,7 @@ Comparison compare_on_log(const CompareRequest& request, const Field& field, Pro
 }
 
 ExitCode run_compare(const CompareRequest& request, const std::string& command_line) {
-    check_plot(request.plot, request.common);
-    if (request.log.empty() && (request.log_options.from || request.log_options.to))
+    if (request.log.empty() && request.log_options.range.given())
         raise<UsageError>("--from and --to: there is no LOG to take rows of");
     Provenance provenance{{}, command_line};
     const Field field = load_contenders(methods_at(request.log, request.methods, request.log_options),
@@ -724,8 +715,8 @@ std::function<ExitCode()> attach_compare(Options& options) {
         "--method", request->methods, "NAME,KEY=VALUE,...",
         fmt::format("a method to compare; repeatable; methods: {}; see docs/methods", name_list(methods())));
     attach_gear(options, request->gear);
-    options.quantity("--speed", request->speed, Dimension::speed,
-                     "joint speed for attenuation and delays; on a log its median moving speed");
+    options.number("--speed", request->speed, Dimension::speed,
+                   "joint speed for attenuation and delays; on a log its median moving speed");
     options.number("--step", request->step_nm, Dimension::torque, "torque step to settle from");
     options.number("--ramp", request->ramp_nm_s, Dimension::torque_rate,
                    "torque ramp to measure the delay on");
@@ -738,7 +729,7 @@ std::function<ExitCode()> attach_compare(Options& options) {
     options.number("--match-attenuation", request->match_attenuation_db, Dimension::decibel,
                    "find the low-pass of this ripple attenuation instead");
     attach_costs(options, request->costs);
-    attach_plot(options, request->plot);
+    attach_plot(options, request->plot, request->common);
     attach_log(options, request->log_options);
     attach_common(options, request->common, {"a comparison", ".txt .json", true});
     return [request, &options] { return run_compare(*request, options.command_line()); };

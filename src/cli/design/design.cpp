@@ -21,6 +21,7 @@
 #include "ripplenotch/chart/comparison_figure.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/visible_text.hpp"
 #include "ripplenotch/design/guarantee.hpp"
 #include "ripplenotch/document/comparison_json.hpp"
 #include "ripplenotch/document/table_json.hpp"
@@ -80,7 +81,7 @@ DegPerSec two_digits(DegPerSec width) {
 
 // Bands about 5 Hz apart in the lowest order, as the paper's, over the speeds at which the lines were seen.
 std::vector<std::pair<DegPerSec, DegPerSec>> bands_seen(const DesignRequest& request, const TableSpec& spec,
-                                                        const JointFacts& joint) {
+                                                        const GearStatement& joint) {
     if (!(joint.fastest.value() > 0.0)) {
         raise<UsageError>("{} has no line that follows the speed; give --speed FROM:TO:WIDTH", joint.source);
     }
@@ -103,19 +104,18 @@ std::vector<std::pair<DegPerSec, DegPerSec>> bands_seen(const DesignRequest& req
             from + 0.5 * width);
     }
     if (count < wanted) {
-        say_warnings(
-            request.common,
-            std::vector{fmt::format(
-                "{}: lines were seen up to {:.6g} deg/s, but from {:.6g} deg/s on order {} "
-                "is not below half the sample rate; the bands end at {:.6g} deg/s",
-                joint.source, to, limit_deg_s, shortest(spec.orders.back().value()), from + count * width)});
+        warn(request.common,
+             fmt::format("{}: lines were seen up to {:.6g} deg/s, but from {:.6g} deg/s on order {} "
+                         "is not below half the sample rate; the bands end at {:.6g} deg/s",
+                         joint.source, to, limit_deg_s, shortest(spec.orders.back().value()),
+                         from + count * width));
     }
     to = from + count * width;
     return bands_by_spacing({DegPerSec(from), DegPerSec(to)}, DegPerSec(width));
 }
 
 std::vector<std::pair<DegPerSec, DegPerSec>> bands_of(const DesignRequest& request, const TableSpec& spec,
-                                                      const std::optional<JointFacts>& joint) {
+                                                      const std::optional<GearStatement>& joint) {
     if (request.bands) {
         if (request.speed || request.spacing) {
             raise<UsageError>("--bands lists the bands; it cannot be combined with --speed or --spacing");
@@ -145,7 +145,7 @@ std::vector<std::pair<DegPerSec, DegPerSec>> bands_of(const DesignRequest& reque
 }
 
 void fill_gear_of_table(TableSpec& spec, const DesignRequest& request, const GearChoice& choice,
-                        const std::optional<JointFacts>& joint) {
+                        const std::optional<GearStatement>& joint) {
     const auto gear = choice.of();
     if (!gear) raise_no_gear("a table");
     say(request.common, gear_in_words(*gear));
@@ -181,7 +181,7 @@ bool leaves_bands(const DesignRequest& request) {
 // where the edge itself is crossed at the noise's own rate.
 constexpr double hysteresis_in_noise = 3.0;
 
-DegPerSec hysteresis_of(const DesignRequest& request, const std::optional<JointFacts>& joint) {
+DegPerSec hysteresis_of(const DesignRequest& request, const std::optional<GearStatement>& joint) {
     if (request.hysteresis) return *request.hysteresis;
     if (!joint) return DegPerSec(0.0);
     return two_digits(hysteresis_in_noise * joint->velocity_noise);
@@ -205,7 +205,7 @@ TableSpec design_spec(const DesignRequest& request, const GearChoice& gear) {
 }
 
 // All speeds at which lines were seen, as far as the highest order stays below half the sample rate.
-std::pair<DegPerSec, DegPerSec> speeds_seen(const TableSpec& spec, const JointFacts& joint) {
+std::pair<DegPerSec, DegPerSec> speeds_seen(const TableSpec& spec, const GearStatement& joint) {
     if (!(joint.fastest.value() > 0.0))
         raise<UsageError>("{} has no line that follows the speed; give --speed FROM:TO", joint.source);
     const double limit_deg_s =
@@ -258,22 +258,17 @@ constexpr std::array<std::string_view, 3> form_names = {"text", "csv", "json"};
 
 // The options that would give this table without a joint.json and without arithmetic.
 std::string as_if_options(const TableSpec& spec) {
-    std::string orders, bands;
-    for (const Order order : spec.orders) orders += (orders.empty() ? "" : ",") + shortest(order.value());
-    for (const auto& [from, to] : spec.bands) {
-        bands +=
-            fmt::format("{}{}:{}", bands.empty() ? "" : ",", shortest(from.value()), shortest(to.value()));
-    }
-    std::string line =
-        fmt::format("--gear-ratio {} --orders {} --sample-rate {}Hz --bands {}",
-                    shortest(spec.gear_ratio.value()), orders, shortest(spec.sample_rate.value()), bands);
+    const std::string bands = joined(spec.bands, ",", [](const auto& band) {
+        return shortest(band.first.value()) + ":" + shortest(band.second.value());
+    });
+    std::string line = fmt::format("--gear-ratio {} --orders {} --sample-rate {}Hz --bands {}",
+                                   shortest(spec.gear_ratio.value()), joined(spec.orders, ","),
+                                   shortest(spec.sample_rate.value()), bands);
     if (spec.ratio_error > 0.0) line += fmt::format(" --ratio-error {}", shortest(100.0 * spec.ratio_error));
     if (spec.hysteresis.value() > 0.0)
         line += fmt::format(" --hysteresis {}deg/s", shortest(spec.hysteresis.value()));
-    std::string amplitudes;
-    for (const double amplitude : spec.amplitude_nm)
-        amplitudes += (amplitudes.empty() ? " --amplitudes " : ",") + shortest(amplitude);
-    return line + amplitudes;
+    if (!spec.amplitude_nm.empty()) line += " --amplitudes " + joined(spec.amplitude_nm, ",");
+    return line;
 }
 
 // Asked for by name, else by --json, else by the name of the output file.
@@ -367,7 +362,6 @@ ExitCode print_frontier(const DesignRequest& request, const std::string& form, c
 
 ExitCode run_design(const DesignRequest& request, const std::string& command_line) {
     const std::string form = form_of(request);
-    check_plot(request.plot, request.common);
     Provenance provenance{{}, command_line};
     GearOptions options = request.gear;
     if (!request.joint.empty()) {
@@ -397,12 +391,12 @@ std::function<ExitCode()> attach_design(Options& options) {
     attach_gear(options, request->gear);
     options.numbers("--amplitudes", request->amplitudes_nm, Dimension::torque,
                     "of the ripple, zero to peak, one per order (default: those in JOINT)");
-    options.quantity("--sample-rate", request->sample_rate, Dimension::frequency,
-                     "rate at which the filter will run");
+    options.number("--sample-rate", request->sample_rate, Dimension::frequency,
+                   "rate at which the filter will run");
     options.text("--speed", request->speed, "FROM:TO[:WIDTH]",
                  "bands of equal width in deg/s, e.g. 18:180:18; without WIDTH for a goal to divide");
-    options.quantity("--spacing", request->spacing, Dimension::frequency,
-                     "instead of WIDTH: distance of the lowest order's centres");
+    options.number("--spacing", request->spacing, Dimension::frequency,
+                   "instead of WIDTH: distance of the lowest order's centres");
     options.text("--bands", request->bands, "FROM:TO,...",
                  "bands one by one in deg/s, e.g. 18:36,36:60,60:100");
     options.number(
@@ -411,7 +405,7 @@ std::function<ExitCode()> attach_design(Options& options) {
         "stated, exit code 1 when an order is attenuated less");
     options.number("--min-ripple-reduction", request->min_ripple_reduction_db, Dimension::decibel,
                    "the same for the ripple of all orders together, by their amplitudes");
-    options.quantity("--hysteresis", request->hysteresis, Dimension::speed,
+    options.number("--hysteresis", request->hysteresis, Dimension::speed,
                      "a band is left only when the speed is this far outside it (default: three times the "
                      "noise of the speed in JOINT, else 0)");
     options.duration("--max-delay", request->max_delay,
@@ -436,7 +430,7 @@ std::function<ExitCode()> attach_design(Options& options) {
     options.choice("--above", request->above, rule_names, "rule above the last band");
     options.choice("--format", request->form, form_names,
                    "form of the result (default: by the name of -o, else text)");
-    attach_plot(options, request->plot);
+    attach_plot(options, request->plot, request->common);
     attach_common(options, request->common, {"a table", ".txt .csv .json"});
     return [request, &options] { return run_design(*request, options.command_line()); };
 }

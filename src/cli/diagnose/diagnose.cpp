@@ -128,7 +128,7 @@ ExitCode run_all(const DiagnoseRequest& request, GivenSource& given, const std::
     for (const std::string& joint : joints) {
         JointDiagnosis& one = all.emplace_back(diagnosed_joint(request, joint, given, command_line));
         for (const std::string& why : one.diagnosis.not_accepted)
-            say_warnings(request.common, std::vector{fmt::format("joint {}: {}", joint, why)});
+            warn(request.common, fmt::format("joint {}: {}", joint, why));
         write_improved(request, one);
         text += fmt::format("joint {}\n{}\n", joint, story(one, request.explain));
         let_columns_go(one);
@@ -172,7 +172,7 @@ std::function<ExitCode()> attach_diagnose(Options& options) {
         "--plan", request->plan, "FILE",
         "the shortest motion, of 30 s at most, that would decide what the log leaves open: rows of time, "
         "position and velocity; needs --limits");
-    options.writes(&request->plan);
+    options.writes("--plan");
     options.text("--limits", request->limits, "KEY=VALUE,...",
                  "of --plan: speed=90deg/s,acceleration=300deg/s2,range=-90deg:90deg");
     options.flag("--explain", request->explain,
@@ -181,11 +181,11 @@ std::function<ExitCode()> attach_diagnose(Options& options) {
                   "for studies: a limit that a diagnosis decides by; may be given several times");
     options.flag("--rules", request->list_rules,
                  "list these limits, their bounds, units and reasons, and end; needs no LOG");
-    options.quantity("--smoothing", request->smoothing, Dimension::time,
-                     "window in which the log's velocity is fitted to give speed and acceleration");
+    options.number("--smoothing", request->smoothing, Dimension::time,
+                   "window in which the log's velocity is fitted to give speed and acceleration");
     options.flag("--require-conclusive", request->require_conclusive,
                  "exit with 5 unless the log is explained in the end");
-    attach_plot(options, request->plot);
+    attach_plot(options, request->plot, request->common);
     attach_log(options, request->log);
     attach_common(options, request->common, {"a model", ""});
     return [request, &options] { return run_diagnose(*request, options.command_line()); };

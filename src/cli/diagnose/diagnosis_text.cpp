@@ -11,6 +11,7 @@
 
 #include "cli/talk.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/visible_text.hpp"
 #include "ripplenotch/diagnose/diagnosis.hpp"
 
 namespace ripplenotch {
@@ -100,15 +101,7 @@ std::string where_text(const Place& place) {
     if (place.direction == Direction::both) parts.emplace_back("while it moves");
     if (place.direction == Direction::positive || place.direction == Direction::negative)
         parts.push_back(fmt::format("in {} direction", direction_name(place.direction)));
-    std::string text;
-    for (const std::string& part : parts) text += (text.empty() ? "" : "; ") + part;
-    return text.empty() ? "all over the log" : text;
-}
-
-std::string joined(const std::vector<std::string>& words, std::string_view between) {
-    std::string text;
-    for (const std::string& word : words) text += fmt::format("{}{}", text.empty() ? "" : between, word);
-    return text;
+    return parts.empty() ? "all over the log" : joined(parts, "; ");
 }
 
 // "1.500 +/- 0.010 Nm": the size of a finding with half of its 95 % interval.

@@ -21,6 +21,7 @@
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/progress.hpp"
 #include "ripplenotch/core/spec.hpp"
+#include "ripplenotch/core/visible_text.hpp"
 #include "ripplenotch/diagnose/plan.hpp"
 #include "ripplenotch/export/joint_mjcf.hpp"
 #include "ripplenotch/model/model.hpp"
@@ -74,10 +75,7 @@ void add_given(JointMjcf& parts, const JointDiagnosis& one, const std::optional<
 }
 
 std::vector<std::string> mjcf_heading(const JointDiagnosis& one, const MjcfAccount& account) {
-    std::vector<std::string> lines = {fmt::format("Made by {} {}:", tool_name, version()),
-                                      one.provenance.command};
-    for (const InputRecord& input : one.provenance.inputs)
-        lines.push_back(fmt::format("from {}, SHA-256 {}", input.name, input.sha256));
+    std::vector<std::string> lines = heading_of(one.provenance);
     lines.push_back(fmt::format("measured less predicted torque: {} -> {} Nm rms with what is held",
                                 short_number(account.before_nm), short_number(account.after_nm)));
     return lines;
@@ -110,9 +108,9 @@ MjcfAccount write_improved_mjcf(const DiagnoseRequest& request, const JointDiagn
 }
 
 std::string mjcf_text(const MjcfAccount& account) {
-    std::string held;
-    for (const MjcfPart& part : account.holds)
-        held += fmt::format("{}{} ({})", held.empty() ? "" : ", ", part.effect, part.words);
+    const std::string held = joined(account.holds, ", ", [](const MjcfPart& part) {
+        return fmt::format("{} ({})", part.effect, part.words);
+    });
     std::string text = fmt::format("{}: MuJoCo holds {}; gap {} -> {} Nm with that alone\n", account.file,
                                    held.empty() ? "nothing of it" : held, short_number(account.before_nm),
                                    short_number(account.after_nm));
@@ -251,8 +249,7 @@ bool speed_changes(const Trace& trace) {
 // Gear ratio and ripple orders as identify finds them in the log of the request (--gear-ratio goes before
 // what it finds), and an inertia where the speed changes. All values are left out, to be fitted. Throws
 // DataError, with identify's own verdict, where the log tells no gear ratio.
-Model identified_model(const DiagnoseRequest& request, const LogOptions& words) {
-    ReadOptions reading = words.resolve();
+Model identified_model(const DiagnoseRequest& request, ReadOptions reading) {
     reading.gear_ratio = request.gear.ratio;
     reading.takes_motor_units = true;
     std::vector<Log> logs;
@@ -261,7 +258,7 @@ Model identified_model(const DiagnoseRequest& request, const LogOptions& words) 
     std::optional<GearRatio> stated;
     if (request.gear.ratio) options.hint = stated = GearRatio(*request.gear.ratio);
     const JointFile joint{request.path, request.path, identify_readings(logs, options)};
-    const JointFacts facts = joint.facts(stated);
+    const GearStatement facts = joint.facts(stated);
     if (!facts.ratio)
         raise<DataError>(
             "{}: --model auto: identify tells no gear ratio from it ({}); give --gear-ratio N, or --model "
@@ -333,7 +330,6 @@ void check(const DiagnoseRequest& request) {
     check_output_name(request.common.output, "a model", ".json .xml .mjcf");
     check_joints(request);
     check_plan(request);
-    check_plot(request.plot, request.common);
     if (request.plot.path == "-" && request.common.json)
         raise<UsageError>("--plot - and --json would both go to standard output; name a file with --plot");
 }
@@ -352,10 +348,10 @@ constexpr std::size_t most_rows_diagnosed = std::size_t{1} << 17, most_rows_with
 
 std::string model_source(const std::string& model) { return model == "-" ? "standard input" : model; }
 
-ModelWithGiven model_of(const DiagnoseRequest& request, const std::string& path, const LogOptions& words,
+ModelWithGiven model_of(const DiagnoseRequest& request, const std::string& path, const ReadOptions& reading,
                         Provenance& provenance) {
     if (path == model_from_log) {
-        ModelWithGiven model{identified_model(request, words)};
+        ModelWithGiven model{identified_model(request, reading)};
         say(request.common, fmt::format("the model is made of the log: {}; its values are fitted",
                                         model_in_words(model.model)));
         return model;
@@ -497,16 +493,16 @@ JointDiagnosis diagnosed_joint(const DiagnoseRequest& request, const std::option
                                GivenSource& source, const std::string& command_line) {
     JointDiagnosis one;
     one.provenance.command = command_line;
-    LogOptions words = request.log;
-    if (joint) words.joint = *joint;
+    ReadOptions reading = request.log;
+    if (joint) reading.joint = *joint;
     const std::string path = joint ? with_joint(request.model, *joint) : request.model;
-    ModelWithGiven model = model_of(request, path, words, one.provenance);
-    take_joint_of(model, words.joint);
+    ModelWithGiven model = model_of(request, path, reading, one.provenance);
+    take_joint_of(model, reading.joint);
     one.gear = gear_of(model.model, path.empty()             ? "--gear-ratio"
                                     : path == model_from_log ? "identify"
                                                              : model_source(path));
     say(request.common, gear_in_words(one.gear));
-    const ReadOptions reading = read_options(words, one.gear);
+    reading.gear_ratio = one.gear.ratio.value();
     const std::size_t most = most_rows(request.given, model);
     if (most == all_rows) require_memory(request, reading);
     one.log = read(request, most, reading, request.path, one.provenance);
@@ -523,9 +519,9 @@ JointDiagnosis diagnosed_joint(const DiagnoseRequest& request, const std::option
 }
 
 std::vector<std::string> joints_of(const DiagnoseRequest& request, GivenSource& given) {
-    LogOptions words = request.log;
-    words.joint.reset();
-    ReadOptions reading = words.resolve(), survey = reading;
+    ReadOptions reading = request.log;
+    reading.joint.reset();
+    ReadOptions survey = reading;
     survey.needs_torque = false;
     survey.takes_motor_units = true;
     std::vector<std::string> joints = open_log(request.path, survey)->layout().joints;

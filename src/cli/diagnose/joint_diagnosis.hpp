@@ -24,7 +24,7 @@ namespace ripplenotch {
 struct DiagnoseRequest {
     CommonOptions common;
     PlotRequest plot;
-    LogOptions log;
+    ReadOptions log;
     std::string path, model;
     GearOptions gear;  ///< a ratio alone, in place of a model
     GivenOptions given;
@@ -35,7 +35,7 @@ struct DiagnoseRequest {
     Seconds smoothing = default_smoothing;
     bool require_conclusive = false;
 
-    [[nodiscard]] bool all_joints() const { return log.joint && *log.joint == "all"; }
+    [[nodiscard]] bool all_joints() const { return log.joint == "all"; }
 };
 
 /// Throws UsageError, before anything is read.

@@ -20,12 +20,14 @@
 #include "cli/command.hpp"
 #include "cli/options/lists.hpp"
 #include "cli/options/options.hpp"
+#include "cli/options/verdict_options.hpp"
 #include "cli/talk.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/files.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/core/progress.hpp"
+#include "ripplenotch/core/visible_text.hpp"
 #include "ripplenotch/document/map_json.hpp"
 #include "ripplenotch/document/simulation_json.hpp"
 #include "ripplenotch/document/table_json.hpp"
@@ -158,9 +160,7 @@ ExitCode export_code(const CodeExport& request, const std::string& command_line)
     const Settings settings(fmt::format("target {}", spec.name), spec, method_code_keys());
     check_output_name(request.common.output, spec.name, ".h .hpp");
     const auto design = running_design(*request.method.method, request.method.settings, request.sample_rate);
-    const std::array<std::string, 2> heading = {fmt::format("Made by {} {}:", tool_name, version()),
-                                                command_line};
-    const Written written = write_method_code(*design, settings, heading);
+    const Written written = write_method_code(*design, settings, heading_of({{}, command_line}));
     write_export(written, request.common);
     if (!request.verify) return ExitCode::done;
     const ReadBack again = read_back(written, request.common);
@@ -205,11 +205,8 @@ ExitCode export_map(const MapExport& request, const std::string& command_line) {
     const Settings settings(fmt::format("target {}", spec.name), spec, target.keys);
     const RippleMap map = load_map(request.map).map;
     if (map.orders.empty()) raise<DataError>("{}: the map is empty: there is nothing to export", request.map);
-    const InputRecord input = input_record(request.map);
-    const std::vector<std::string> heading = {fmt::format("Made by {} {}:", tool_name, version()),
-                                              command_line,
-                                              fmt::format("from {}, SHA-256 {}", input.name, input.sha256)};
-    const Written written = target.write(map, settings, heading);
+    const Written written =
+        target.write(map, settings, heading_of({{input_record(request.map)}, command_line}));
     write_export(written, request.common);
     if (!request.verify) return ExitCode::done;
     const ReadBack again = read_back(written, request.common);
@@ -270,7 +267,8 @@ constexpr std::size_t most_violations_said = 5;
 
 struct ExportRequest {
     std::string table, to;
-    std::optional<std::string> method;
+    std::optional<std::string> method, transition;
+    GearOptions gear;
     std::optional<Hertz> sample_rate;
     int band = 0;
     bool verify = false;
@@ -278,14 +276,20 @@ struct ExportRequest {
     CommonOptions common;
 };
 
-/// "fixed or lowpass": the methods that are coefficients, each as `words` has its name.
-std::string steady_methods(const char* words) {
-    std::string joined;
-    for (const Method* method : methods()) {
-        if (method->steady == nullptr) continue;
-        joined += (joined.empty() ? "" : " or ") + fmt::format(fmt::runtime(words), method->name);
-    }
-    return joined;
+/// Methods that an export can hold: coefficients, a table of them, or code.
+bool can_export(const Method& method) {
+    return method.steady != nullptr || method.needs_table || has_code(method.name);
+}
+std::string exported_methods() {
+    std::vector<const Method*> all;
+    for (const Method* method : methods())
+        if (can_export(*method)) all.push_back(method);
+    return name_list(std::span<const Method* const>(all));
+}
+
+/// As `filter` would run it: a table alone is method switching with its defaults.
+bool switches(const ExportRequest& request) {
+    return !request.method || find_method(parse_spec(*request.method).name).needs_table;
 }
 
 void check_export(const ExportRequest& request) {
@@ -296,11 +300,20 @@ void check_export(const ExportRequest& request) {
                                     : "nothing to export; name a table.json, or give --method, for example "
                                       "--method fixed,centers=25Hz:50Hz --sample-rate 1kHz");
     }
-    if (request.method && !request.sample_rate)
+    if (request.method) {
+        const Method& method = find_method(parse_spec(*request.method).name);
+        if (!can_export(method))
+            raise<UsageError>("method {} is no set of coefficients and has no code; export takes a table.json, {}",
+                              method.name, exported_methods());
+    }
+    if (!switches(request) && !request.sample_rate)
         raise<UsageError>(
             "--method needs --sample-rate, the rate at which the filter will run, for example 1kHz");
-    if (!request.method && request.sample_rate)
-        raise<UsageError>("a table has its own sample rate; --sample-rate goes with --method");
+    if (switches(request) && request.sample_rate)
+        raise<UsageError>("a table has its own sample rate; --sample-rate goes with other methods");
+    if (request.transition && request.method)
+        raise<UsageError>("--transition is for a table; of a method it is a key: switching,table=...,transition={}",
+                          *request.transition);
     if (request.common.json && request.common.output == "-")
         raise<UsageError>(
             "the exported file and --json would both go to standard output; name a file with -o");
@@ -316,25 +329,30 @@ void check_export(const ExportRequest& request) {
     }
 }
 
-FilterSet filters_of_method(const ExportRequest& request) {
-    const Method& method = find_method(parse_spec(*request.method).name);
-    if (method.steady == nullptr) {
-        raise<UsageError>("method {} is no set of coefficients; export takes a table.json, {}", method.name,
-                          steady_methods("--method {},..."));
-    }
-    const Contender chosen = choose_method(*request.method);
-    return std::visit([&](const auto& design) { return filter_set(design, *request.sample_rate); },
-                      method.steady(chosen.settings));
+Contender method_of(const ExportRequest& request) {
+    const GearChoice gear(request.gear);
+    if (request.method) return choose_method(*request.method, std::nullopt, gear);
+    return choose_method(request.transition ? "switching,transition=" + *request.transition : "switching",
+                         request.table, gear);
 }
 
-std::vector<std::string> heading_of(const Provenance& provenance) {
-    std::vector<std::string> lines = {fmt::format("Made by {} {}:", tool_name, version()),
-                                      provenance.command};
-    for (const InputRecord& input : provenance.inputs) {
-        lines.push_back(input.sha256.empty() ? fmt::format("from {}", input.name)
-                                             : fmt::format("from {}, SHA-256 {}", input.name, input.sha256));
+FilterSet filters_of(const Contender& method, const std::optional<Hertz>& sample_rate) {
+    if (method.table != nullptr) {
+        const Hertz rate = method.table->spec().sample_rate;
+        return filter_set(*method.table, switching_design(method.settings, rate, *method.table));
     }
-    return lines;
+    return std::visit([&](const auto& design) { return filter_set(design, *sample_rate); },
+                      method.method->steady(method.settings));
+}
+
+// What a target without code of its own leaves to whoever switches its filters.
+std::optional<std::string> left_to_caller(const Target& target, const FilterSet& filters) {
+    const SwitchingDesign& design = filters.switching;
+    if (target.runs_supervisor || !filters.by_speed()) return std::nullopt;
+    if (design.hysteresis.value() == 0.0 && design.dwell_samples == 0) return std::nullopt;
+    return fmt::format("target {} holds the filters alone: hysteresis={}deg/s and dwell={} samples are left to the "
+                       "code that switches them",
+                       target.name, shortest(design.hysteresis.value()), design.dwell_samples);
 }
 
 void verify(const ExportRequest& request, const Target& target, const Settings& settings,
@@ -361,10 +379,10 @@ ExitCode run_export(const ExportRequest& request, const std::string& command_lin
     check_export(request);
     if (is_map(request.table))
         return export_map({request.table, request.to, request.verify, request.common}, command_line);
-    if (request.method && has_code(parse_spec(*request.method).name)) {
+    const Contender method = method_of(request);
+    if (has_code(method.method->name)) {
         if (request.limits.any())
             raise<UsageError>("limits are on coefficients, and those of this method change");
-        const Contender method = choose_method(*request.method);
         return export_code({method, *request.sample_rate, request.to, request.verify, request.common},
                            command_line);
     }
@@ -376,11 +394,12 @@ ExitCode run_export(const ExportRequest& request, const std::string& command_lin
     check_output_name(request.common.output, target.name, target.endings);
     const Settings settings(fmt::format("target {}", spec.name), spec, target.keys);
     Provenance provenance{{}, command_line};
-    FilterSet filters = request.method ? filters_of_method(request) : filter_set(load_table(request.table));
-    if (!request.method) provenance.inputs.push_back(input_record(request.table));
+    FilterSet filters = filters_of(method, request.sample_rate);
+    for (const std::string& file : method.files) provenance.inputs.push_back(input_record(file));
     if (request.band != 0) filters = only_band(filters, request.band);
 
-    const Written written = target.write(filters, settings, heading_of(provenance));
+    Written written = target.write(filters, settings, heading_of(provenance));
+    if (auto left = left_to_caller(target, filters)) written.warnings.push_back(std::move(*left));
     write_export(written, request.common, target.binary);
 
     ExportReport report{spec.text(),
@@ -418,10 +437,15 @@ std::function<ExitCode()> attach_export(Options& options) {
                  fmt::format("{}; of a map {}; see docs/export", name_list(export_targets()),
                              name_list(map_targets())));
     options.text("--method", request->method, "SPEC",
-                 fmt::format("instead of a table: {} with its keys, for example fixed,centers=25Hz:50Hz,q=1",
-                             steady_methods("{}")));
-    options.quantity("--sample-rate", request->sample_rate, Dimension::frequency,
-                     "with --method: rate at which the filter will run");
+                 fmt::format("instead of a table: {} with its keys, as filter has them, for example "
+                             "switching,table=table.json,hysteresis=1deg/s",
+                             exported_methods()));
+    options.text("--transition", request->transition, "NAME",
+                 "of a table: what becomes of the filters' memories at a switch, as the key of method switching "
+                 "(default: as there)");
+    attach_gear(options, request->gear);
+    options.number("--sample-rate", request->sample_rate, Dimension::frequency,
+                   "with --method: rate at which the filter will run");
     options.count("--band", request->band, 0, 1000000,
                   "only this band of the table, to run at every speed; 0 is the whole table");
     options.flag("--verify", request->verify,

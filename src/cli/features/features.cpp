@@ -254,7 +254,7 @@ namespace {
 
 struct FeatureRequest {
     CommonOptions common;
-    LogOptions log;
+    ReadOptions log;
     GearOptions gear;
     std::vector<std::string> logs;
     std::optional<std::string> manifest, shard, missing;
@@ -285,7 +285,7 @@ void do_shard(const FeatureRequest& request, const FeatureWork& work, const Mani
             ++record.lines;
             if (line.failed()) {
                 ++record.failed;
-                say_warnings(request.common, std::vector{line.error});
+                warn(request.common, line.error);
             }
             text += feature_line_text(line);
         }
@@ -359,7 +359,7 @@ ExitCode print_lines(const FeatureRequest& request, const FeatureWork& work,
         for (FeatureLine& line : feature_lines(entry, work)) {
             if (line.failed()) {
                 ++failed;
-                say_warnings(request.common, std::vector{line.error});
+                warn(request.common, line.error);
             }
             if (request.csv)
                 all.push_back(std::move(line));
@@ -371,9 +371,8 @@ ExitCode print_lines(const FeatureRequest& request, const FeatureWork& work,
     if (request.csv) text = features_csv(all);
     write_all(request.common.output, text, request.common.overwrite());
     if (failed > 0 && (entries.size() > 1 || failed > 1))
-        say_warnings(
-            request.common,
-            std::vector{fmt::format("{} of the lines have an error in the place of descriptors", failed)});
+        warn(request.common,
+             fmt::format("{} of the lines have an error in the place of descriptors", failed));
     return failed > 0 ? ExitCode::data : ExitCode::done;
 }
 
@@ -396,14 +395,11 @@ ExitCode run_features(FeatureRequest& request, const std::string& command_line) 
 void attach_output(Options& options, FeatureRequest& request) {
     options.text("-o,--output", request.common.output, "FILE",
                  "where the lines go; - is standard output; with --shard the folder of the shards");
-    options.writes(&request.common.output);
+    options.writes("-o");
     options.flag("--ndjson", request.ndjson, "one JSON object a line; so it is unless --csv is given");
     options.flag("--json", request.common.json, "the same: a log of one joint is one JSON object");
     options.flag("--csv", request.csv, "a table with a header instead");
-    options.flag("--force", request.common.force, "overwrite existing files");
-    options.flag("--no-sync", request.common.no_sync, "do not wait until written files are on the disk");
-    options.flag("-q,--quiet", request.common.quiet, "no warnings on standard error");
-    options.flag("-v,--verbose", request.common.verbose, "say on standard error what was decided");
+    attach_manner(options, request.common);
 }
 
 std::function<ExitCode()> attach_features(Options& options) {

@@ -192,9 +192,9 @@ void check_jobs(const FilterRequest& request, const std::vector<FilterJob>& jobs
     if (jobs.size() > 1 && !own_names)
         raise<UsageError>("{} logs need --out-dir DIR, where each gets a file of its own name", jobs.size());
     FileClaims claims;
-    claims.reads(request.method, "--method");
-    if (request.table) claims.reads(*request.table, "--table");
-    if (request.gear.joint_file) claims.reads(*request.gear.joint_file, "--joint-file");
+    if (request.how.method != "switching") claims.reads(request.how.method, "--method");
+    if (request.how.table) claims.reads(*request.how.table, "--table");
+    if (request.how.gear.joint_file) claims.reads(*request.how.gear.joint_file, "--joint-file");
     for (const FilterJob& job : jobs) {
         if (own_names && job.log == "-")
             raise<UsageError>("--out-dir and --in-place: standard input has no name; use -o FILE");
@@ -231,7 +231,7 @@ void check_every_joint(const FilterRequest& request) {
 }
 
 void check_filter(const FilterRequest& request) {
-    if (request.method.empty() && !request.table) {
+    if (request.how.method.empty() && !request.how.table) {
         raise<UsageError>(
             "--method is missing, for example --method lowpass,cutoff=13rad/s or --table table.json");
     }
@@ -249,9 +249,8 @@ void check_filter(const FilterRequest& request) {
     if (request.common.json && request.logs.size() > 1) {
         raise<UsageError>("--json prints the metrics of one log; for several use --metrics DIR");
     }
-    if (request.in_place && (request.log.from || request.log.to))
+    if (request.in_place && request.log.range.given())
         raise<UsageError>("--in-place with --from or --to: the rows outside would be lost; use -o FILE");
-    check_plot(request.plot, request.common);
     if (request.plot.path == "-" && request.metrics == "-")
         raise<UsageError>(
             "--plot - and --metrics - would both go to standard output; name a file for one of them");
@@ -269,18 +268,12 @@ std::size_t threads_of(const FilterRequest& request) {
     return std::clamp(std::thread::hardware_concurrency(), 1U, enough);
 }
 
-MethodRequest method_request(const FilterRequest& request) {
-    return {request.method.empty() ? "switching" : request.method, request.table, request.gear,
-            request.gates.min_attenuation_db.has_value()};
-}
-
 /// The methods of one log: those of all of them, unless a map has to be looked up at this log's temperature.
 std::optional<JointMethods> methods_at_temperature(const FilterRequest& request, const FilterJob& job,
                                                    const JointMethods& methods) {
-    MethodRequest own = method_request(request);
+    MethodRequest own = request.how;
     own.method = at_log_temperature(own.method, job.log, request.read_options(methods));
-    return own.method == method_request(request).method ? std::nullopt
-                                                        : std::optional<JointMethods>(JointMethods(own));
+    return own.method == request.how.method ? std::nullopt : std::optional<JointMethods>(JointMethods(own));
 }
 
 /// True when everything is within the limits.
@@ -330,11 +323,13 @@ bool run_job(const FilterRequest& request, const FilterJob& job, JointMethods& m
     return within;
 }
 
-ExitCode run_filter(const FilterRequest& request, const std::string& command_line) {
+ExitCode run_filter(FilterRequest& request, const std::string& command_line) {
     check_filter(request);
+    if (request.how.method.empty()) request.how.method = "switching";
+    request.how.needs_gear = request.gates.min_attenuation_db.has_value();
     const bool told = request.metrics || request.common.json || request.plot.wanted();
     hash_inputs(told ? Hashing::here : Hashing::none);  // threads are the pipeline's, which --threads counts
-    JointMethods methods(method_request(request));
+    JointMethods methods(request.how);
     bool within = true;
     for (const FilterJob& job : jobs_of(request)) {
         auto own = methods_at_temperature(request, job, methods);
@@ -346,9 +341,9 @@ ExitCode run_filter(const FilterRequest& request, const std::string& command_lin
 std::function<ExitCode()> attach_filter(Options& options) {
     auto request = std::make_shared<FilterRequest>();
     options.arguments("LOG", request->logs, true, "logs to filter; - is standard input");
-    options.text("--method", request->method, "SPEC",
+    options.text("--method", request->how.method, "SPEC",
                  fmt::format("name,key=value,...: {}; see docs/methods", name_list(methods())));
-    options.text("--table", request->table, "FILE",
+    options.text("--table", request->how.table, "FILE",
                  "table.json of method switching, which is then the default");
     options.text("--out-dir", request->out_directory, "DIR", "folder for the outputs of several logs");
     options.text("--output-format", request->output_format, "NAME",
@@ -366,10 +361,10 @@ std::function<ExitCode()> attach_filter(Options& options) {
                  "log's), or a number");
     options.text("--metrics", request->metrics, "FILE",
                  "JSON about attenuation, residual, delays, switches, gaps; with --out-dir a folder");
-    options.writes(&request->metrics);
-    attach_gear(options, request->gear);
-    options.quantity("--crossover", request->crossover, Dimension::frequency,
-                     "the control loop's: phase lag and gain there, for -v and the metrics, e.g. 12Hz");
+    options.writes("--metrics");
+    attach_gear(options, request->how.gear);
+    options.number("--crossover", request->crossover, Dimension::frequency,
+                   "the control loop's: phase lag and gain there, for -v and the metrics, e.g. 12Hz");
     attach_gates(options, request->gates);
     options.flag("--require-improvement", request->require_improvement,
                  "exit code 1 when the filter makes the torque worse: an order grows, its delay moves the "
@@ -378,7 +373,7 @@ std::function<ExitCode()> attach_filter(Options& options) {
                    "a step in time of more than this many median steps starts a new run");
     options.count("--threads", request->threads, 0, most_threads,
                   "threads for long logs; the output is the same for any number; 0 is one a core, at most 4");
-    attach_plot(options, request->plot);
+    attach_plot(options, request->plot, request->common);
     attach_log(options, request->log);
     attach_common(options, request->common, {});
     return [request, &options] { return run_filter(*request, options.command_line()); };

@@ -129,7 +129,7 @@ ReadOptions FilterRequest::read_options(const JointMethods& methods) const {
         const std::optional<GearAccount> own = methods.of(joint)->gear;
         return own ? std::optional(own->ratio.value()) : std::nullopt;
     };
-    if (!options.gear_ratio) options.gear_ratio = gear.ratio;
+    if (!options.gear_ratio) options.gear_ratio = how.gear.ratio;
     options.needs_velocity = methods.follows_motion();
     options.every_joint = every_joint();
     if (options.every_joint) options.joint.reset();
@@ -167,7 +167,7 @@ bool tell(const FilterRequest& request, const FilterJob& job, JointWork& work,
     }
     for (const std::string& one : broken) {
         const std::string sentence = request.every_joint() ? about(work, one) : one;
-        say_warnings(request.common, {&sentence, 1});
+        warn(request.common, sentence);
     }
     return broken.empty() && !(request.require_improvement && !harm_done(metrics).empty());
 }

@@ -20,11 +20,11 @@ namespace ripplenotch {
 struct FilterRequest {
     CommonOptions common;
     PlotRequest plot;
-    LogOptions log;
+    ReadOptions log;
     std::vector<std::string> logs;
-    std::string method, decimals = "shortest";
-    std::optional<std::string> table, output_format, metrics, out_directory;
-    GearOptions gear;
+    MethodRequest how;
+    std::string decimals = "shortest";
+    std::optional<std::string> output_format, metrics, out_directory;
     std::optional<Hertz> crossover;
     Gates gates;
     double gap_steps = default_gap_steps;

@@ -48,13 +48,22 @@ std::string_view kind_text(const Line& line) {
     return line.kind == LineKind::unknown ? "order or tone" : line_kind_name(line.kind);
 }
 
+// Columns of fixed width, so that the tables of several joints stand below one another.
+std::string row(std::size_t kind_width, const std::array<std::string, 9>& cells) {
+    constexpr std::array<std::size_t, 9> widths = {0, 5, 13, 13, 10, 8, 6, 12, 0};
+    std::string text = fmt::format("{:<{}}", cells[0], kind_width);
+    for (std::size_t i = 1; i < cells.size(); ++i) text += fmt::format(" {:>{}}", cells[i], widths[i]);
+    return text.substr(0, text.find_last_not_of(' ') + 1) + "\n";
+}
+
 std::string line_row(const Line& line, std::size_t kind_width) {
-    return fmt::format("{:<{}} {:>5} {:>13} {:>13} {:>10.3g} {:>8} {:>6.1f} {:>12}  {}", kind_text(line),
-                       kind_width, line.order ? fmt::format("{:.4g}", *line.order) : "-",
-                       line.order_output ? fmt::format("{:.3f}", *line.order_output) : "-", hz_range(line),
-                       line.amplitude_nm,
-                       line.phase_known ? fmt::format("{:.0f}", std::round(line.phase_deg) + 0.0) : "-",
-                       line.snr, range(line.speed_from_deg_s, line.speed_to_deg_s, 3), line.note);
+    return row(kind_width,
+               {std::string(kind_text(line)), line.order ? fmt::format("{:.4g}", *line.order) : "-",
+                line.order_output ? fmt::format("{:.3f}", *line.order_output) : "-", hz_range(line),
+                fmt::format("{:.3g}", line.amplitude_nm),
+                line.phase_known ? fmt::format("{:.0f}", std::round(line.phase_deg) + 0.0) : "-",
+                fmt::format("{:.1f}", line.snr), range(line.speed_from_deg_s, line.speed_to_deg_s, 3),
+                " " + line.note});
 }
 
 /// One recording a row, with the line's amplitude or the ratio as it alone tells it.
@@ -79,11 +88,6 @@ std::string disagreement_table(const Disagreement& one, const std::vector<std::s
     return text;
 }
 
-std::string trimmed(std::string text) {
-    while (!text.empty() && text.back() == ' ') text.pop_back();
-    return text;
-}
-
 // Verdict first, then ratio, lines, rivals, what the recordings disagree about, notes. `recordings` are
 // their names.
 std::string identification_report(const Identification& found, const std::vector<std::string>& recordings) {
@@ -97,14 +101,10 @@ std::string identification_report(const Identification& found, const std::vector
     if (!found.lines.empty()) {
         std::size_t width = 8;
         for (const Line& line : found.lines) width = std::max(width, kind_text(line).size());
-        text += "\n" +
-                trimmed(fmt::format("{:<{}} {:>5} {:>13} {:>13} {:>10} {:>8} {:>6} {:>12}", "kind", width,
-                                    "order", "output order", "Hz", "amplitude", "phase", "SNR", "speed")) +
-                "\n";
-        text += trimmed(fmt::format("{:<{}} {:>5} {:>13} {:>13} {:>10} {:>8} {:>6} {:>12}", "", width, "",
-                                    "per turn", "", "Nm", "deg", "", "deg/s")) +
-                "\n";
-        for (const Line& line : found.lines) text += trimmed(line_row(line, width)) + "\n";
+        text +=
+            "\n" + row(width, {"kind", "order", "output order", "Hz", "amplitude", "phase", "SNR", "speed"});
+        text += row(width, {"", "", "per turn", "", "Nm", "deg", "", "deg/s"});
+        for (const Line& line : found.lines) text += line_row(line, width);
     }
     if (ratio.second_comb)
         text += fmt::format("second comb: {:.4f} turns of the wave generator against the other spline\n",
@@ -128,7 +128,7 @@ constexpr std::size_t fewest_rows_held = most_rows_held / 4;  // of each of many
 struct IdentifyRequest {
     CommonOptions common;
     PlotRequest plot;
-    LogOptions log;
+    ReadOptions log;
     std::vector<std::string> logs;
     GearOptions gear;  ///< a ratio to check
     std::vector<double> order_hint;
@@ -145,9 +145,8 @@ struct Joint {
 
 std::vector<Joint> read_all_joints(const IdentifyRequest& request, Provenance& provenance) {
     std::vector<Joint> joints;
-    LogOptions words = request.log;
-    take_joint_of(request.residual, words.joint);
-    ReadOptions read = words.resolve();
+    ReadOptions read = request.log;
+    take_joint_of(request.residual, read.joint);
     read.gear_ratio = request.gear.ratio;
     read.takes_motor_units = true;
     const bool each = read.joint && *read.joint == "all";
@@ -208,11 +207,9 @@ void say_other_ratio(const IdentifyRequest& request, const Identification& found
     if (!request.gear.ratio || !fit.value) return;
     const double doubt = std::max(fit.ci95_high - *fit.value, rounding * *request.gear.ratio);
     if (std::abs(*fit.value - *request.gear.ratio) <= doubt) return;
-    say_warnings(
-        request.common,
-        std::vector{fmt::format("{}--gear-ratio {}: the lines say {:.6g} (95 %: {:.6g} to {:.6g})",
-                                found.joint.empty() ? "" : "joint " + found.joint + ": ",
-                                shortest(*request.gear.ratio), *fit.value, fit.ci95_low, fit.ci95_high)});
+    warn(request.common, fmt::format("{}--gear-ratio {}: the lines say {:.6g} (95 %: {:.6g} to {:.6g})",
+                                     found.joint.empty() ? "" : "joint " + found.joint + ": ",
+                                     shortest(*request.gear.ratio), *fit.value, fit.ci95_low, fit.ci95_high));
 }
 
 void check_identify(IdentifyRequest& request) {
@@ -239,7 +236,6 @@ std::string logs_in_words(const std::vector<std::string>& logs) {
 
 ExitCode run_identify(IdentifyRequest& request, const std::string& command_line) {
     check_identify(request);
-    check_plot(request.plot, request.common);
     hash_where_told(request.common, request.plot);
     Provenance provenance{{}, command_line};
     std::vector<Identification> found;
@@ -258,20 +254,17 @@ ExitCode run_identify(IdentifyRequest& request, const std::string& command_line)
     for (std::size_t i = 0; i < found.size(); ++i)
         text += (text.empty() ? "" : "\n") + identification_report(found[i], log_names(joints[i]));
     const bool json_file = ends_with_json(request.common.output);
-    if (request.common.json || json_file) {
-        if (names_joint(request.common.output)) {
-            for (const Identification& one : found)
-                write_text(with_joint(request.common.output, one.joint), identification_text(one, provenance),
-                           request.common.overwrite());
-        } else {
-            const std::string json = found.size() == 1 ? identification_text(found.front(), provenance)
-                                                       : identifications_text(found, provenance);
-            write_text(request.common.output, json, request.common.overwrite());
-        }
-        // The file is for the next command; people still want to read what came out.
+    if ((request.common.json || json_file) && names_joint(request.common.output)) {
+        for (const Identification& one : found)
+            write_text(with_joint(request.common.output, one.joint), identification_text(one, provenance),
+                       request.common.overwrite());
         if (json_file && !request.common.json) write_text("-", text, ByteSink::Overwrite::yes);
     } else {
-        write_text(request.common.output, text, request.common.overwrite());
+        const auto json = [&] {
+            return found.size() == 1 ? identification_text(found.front(), provenance)
+                                     : identifications_text(found, provenance);
+        };
+        write_result(request.common, json, text);
     }
     draw_plot(request.plot, request.common, provenance,
               [&] { return identification_figure(logs_in_words(request.logs), found.front()); });
@@ -294,7 +287,7 @@ std::function<ExitCode()> attach_identify(Options& options) {
     options.flag("--require-conclusive", request->require_conclusive,
                  "exit with code 5 when the logs do not settle it");
     attach_residual(options, request->residual);
-    attach_plot(options, request->plot);
+    attach_plot(options, request->plot, request->common);
     attach_log(options, request->log);
     attach_common(options, request->common, {"what identify found", ".txt .json"});
     return [request, &options] { return run_identify(*request, options.command_line()); };

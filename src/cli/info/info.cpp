@@ -14,6 +14,7 @@
 #include "cli/talk.hpp"
 #include "ripplenotch/core/files.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/visible_text.hpp"
 #include "ripplenotch/document/info_json.hpp"
 #include "ripplenotch/log/format.hpp"
 #include "ripplenotch/survey/survey.hpp"
@@ -169,17 +170,16 @@ std::string info_to_text(const LogInfo& log) {
 
 struct InfoRequest {
     CommonOptions common;
-    LogOptions log;
+    ReadOptions log;
     std::vector<std::string> paths;
 };
 
 ExitCode run_info(const InfoRequest& request, const std::string& command_line) {
-    const ReadOptions options = request.log.resolve();
     hash_where_told(request.common);
     std::vector<LogInfo> logs;
     Provenance provenance{{}, command_line};
     for (const std::string& path : request.paths) {
-        logs.push_back(survey_log(path, options));
+        logs.push_back(survey_log(path, request.log));
         const LogInfo& log = logs.back();
         provenance.inputs.push_back({path, path == "-" ? "" : sha256_as_read(path), log.rows});
         say(request.common, log.source + ": read as if with " + log.layout.options);
@@ -188,7 +188,7 @@ ExitCode run_info(const InfoRequest& request, const std::string& command_line) {
     if (request.common.json) {
         text = info_to_json(logs, provenance);
     } else {
-        for (const LogInfo& log : logs) text += (text.empty() ? "" : "\n") + info_to_text(log);
+        text = joined(logs, "\n", info_to_text);
         if (const auto missing = formats_not_built(); !missing.empty())
             text += fmt::format("\nnot in this build: {}\n", fmt::join(missing, ", "));
     }

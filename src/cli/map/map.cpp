@@ -109,7 +109,7 @@ std::string map_report(const MapFit& fit, const std::vector<std::string>& logs) 
 struct MapRequest {
     CommonOptions common;
     PlotRequest plot;
-    LogOptions log;
+    ReadOptions log;
     std::vector<std::string> logs;
     GearOptions gear;
     Degrees zero;
@@ -138,11 +138,7 @@ Read read_map_logs(const MapRequest& request, const GearAccount& gear, Provenanc
                 side_column(path, *request.temperature, log.trace.joint, options, most));
             require_beside(read.temperatures_degc.back(), log.trace, path, *request.temperature);
         }
-        say_layout(request.common, log.layout);
-        say_warnings(request.common, log.recording.warnings);
-        provenance.inputs.push_back(input_record(path));
-        provenance.inputs.back().rows = log.recording.rows();
-        provenance.recordings.push_back({log.recording});
+        take_log(request.common, path, log, provenance);
     }
     return read;
 }
@@ -162,15 +158,8 @@ ExitCode run_map_once(const MapRequest& request, const std::string& command_line
     fit.map.temperature_column = request.temperature.value_or("");
     for (const std::string& note : fit.notes) say(request.common, note);
     const std::string heading = request.heads ? fit.map.joint + ": " : "";
-    const std::string text = heading + map_report(fit, request.logs);
-    const bool json_file = ends_with_json(request.common.output);
-    if (request.common.json || json_file) {
-        write_text(request.common.output, map_text(fit, provenance), request.common.overwrite());
-        // The file is for the next command; people still want to read what came out.
-        if (json_file && !request.common.json) write_text("-", text, ByteSink::Overwrite::yes);
-    } else {
-        write_text(request.common.output, text, request.common.overwrite());
-    }
+    write_result(
+        request.common, [&] { return map_text(fit, provenance); }, heading + map_report(fit, request.logs));
     draw_plot(request.plot, request.common, provenance, [&] {
         if (fit.map.orders.empty())
             raise<DataError>("--plot: the map is empty, there is nothing to draw: {}", map_verdict(fit));
@@ -209,7 +198,7 @@ ExitCode run_or_complain(const MapRequest& request, const std::string& command_l
 ExitCode run_each(const MapRequest& request, const std::string& command_line) {
     constexpr std::size_t for_names = 4096;  // rows
     check_each(request);
-    ReadOptions options = request.log.resolve();
+    ReadOptions options = request.log;
     options.takes_motor_units = true;
     ExitCode maps = ExitCode::done;
     std::optional<ExitCode> failed;
@@ -239,13 +228,13 @@ std::function<ExitCode()> attach_map(Options& options) {
     options.arguments("LOG", request->logs, true,
                       "logs of one joint; several make one map, and are held together");
     attach_gear(options, request->gear);
-    options.quantity("--zero", request->zero, Dimension::angle,
-                     "joint position at which the wave generator's angle counts as 0");
+    options.number("--zero", request->zero, Dimension::angle,
+                   "joint position at which the wave generator's angle counts as 0");
     options.text("--temperature", request->temperature, "COLUMN",
                  "the joint's temperature: a column in degrees Celsius, {joint} in it for a joint's name");
     options.flag("--require-conclusive", request->require_conclusive,
                  "exit with code 5 when the logs do not settle it");
-    attach_plot(options, request->plot);
+    attach_plot(options, request->plot, request->common);
     attach_log(options, request->log);
     attach_common(options, request->common, {"a ripple map", ".txt .json"});
     return [request, &options] { return run_map(*request, options.command_line()); };

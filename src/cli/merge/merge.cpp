@@ -46,9 +46,8 @@ ExitCode run_merge(const MergeRequest& request) {
     sink.finish();
     say(request.common, fmt::format("{} shards, {} logs, {} lines", of, logs, lines));
     if (failed > 0)
-        say_warnings(request.common,
-                     std::vector{fmt::format("{} of {} lines have an error in the place of descriptors",
-                                             failed, lines)});
+        warn(request.common,
+             fmt::format("{} of {} lines have an error in the place of descriptors", failed, lines));
     return ExitCode::done;
 }
 
@@ -57,7 +56,7 @@ std::function<ExitCode()> attach_merge(Options& options) {
     options.arguments("DIR", request->folders, true, "folders that 'features --shard' wrote into");
     CommonOptions& common = request->common;
     options.text("-o,--output", common.output, "FILE", "where the lines go; - is standard output");
-    options.writes(&common.output);
+    options.writes("-o");
     options.flag("--json", common.json, "one JSON object a line, which is what shards hold: as without it");
     options.flag("--force", common.force, "overwrite existing files");
     options.flag("--no-sync", common.no_sync, "do not wait until written files are on the disk");

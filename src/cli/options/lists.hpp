@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "ripplenotch/core/quantity.hpp"
+#include "ripplenotch/core/visible_text.hpp"
 
 namespace ripplenotch {
 
@@ -17,10 +18,7 @@ namespace ripplenotch {
 /// "csv, npy": the names of a registry's entries, in its order.
 template <class Entry>
 [[nodiscard]] std::string name_list(std::span<const Entry* const> entries) {
-    std::string names;
-    for (const Entry* entry : entries)
-        names += std::string(names.empty() ? "" : ", ") + std::string(entry->name);
-    return names;
+    return joined(entries, ", ", &Entry::name);
 }
 
 // Words of command lines that people paste.

@@ -61,29 +61,27 @@ void Options::flag(std::string_view names, bool& target, std::string_view help) 
     implementation_.command->add_flag(owned(names), target, owned(help));
 }
 
-void Options::text(std::string_view names, std::string& target, std::string_view type_name,
-                   std::string_view help) {
-    CLI::Option* option =
-        single(implementation_.command->add_option(owned(names), target, owned(help)), type_name);
-    if (!target.empty()) option->default_str(target);
-    names_file(names, type_name, &target, [&target] { return std::vector{target}; });
+void Options::flag(std::string_view names, std::function<void()> set, std::string_view help) {
+    implementation_.command->add_flag_callback(owned(names), std::move(set), owned(help));
 }
 
-void Options::text(std::string_view names, std::optional<std::string>& target, std::string_view type_name,
-                   std::string_view help) {
-    single(implementation_.command->add_option_function<std::string>(
-               owned(names), [&target](const std::string& value) { target = value; }, owned(help)),
-           type_name);
-    names_file(names, type_name, &target,
-               [&target] { return target ? std::vector{*target} : std::vector<std::string>{}; });
-}
-
-void Options::texts(std::string_view names, std::vector<std::string>& target, std::string_view type_name,
-                    std::string_view help) {
-    implementation_.command->add_option(owned(names), target, owned(help))
+void Options::parsed(std::string_view names, std::function<void(const std::string&)> read,
+                     std::string_view type_name, std::string_view help, bool repeats,
+                     const std::string& standing) {
+    CLI::App& command = *implementation_.command;
+    names_file(names, type_name);
+    if (!repeats) {
+        CLI::Option* option = single(
+            command.add_option_function<std::string>(owned(names), std::move(read), owned(help)), type_name);
+        if (!standing.empty()) option->default_str(standing);
+        return;
+    }
+    const auto read_all = [read = std::move(read)](const std::vector<std::string>& values) {
+        for (const std::string& value : values) read(value);
+    };
+    command.add_option_function<std::vector<std::string>>(owned(names), read_all, owned(help))
         ->type_name(owned(type_name))
         ->allow_extra_args(false);
-    names_file(names, type_name, &target, [&target] { return target; });
 }
 
 void Options::choice(std::string_view names, std::string& target, std::span<const std::string_view> choices,
@@ -98,98 +96,81 @@ void Options::choice(std::string_view names, std::string& target, std::span<cons
     if (!target.empty()) option->default_str(target);
 }
 
-void Options::count(std::string_view names, int& target, int lowest, int highest, std::string_view help) {
-    single(implementation_.command->add_option(owned(names), target, owned(help)), "INTEGER")
+void Options::parsed_count(std::string_view names, int default_value, int lowest, int highest,
+                           std::string_view help, std::function<void(int)> assign) {
+    single(implementation_.command->add_option_function<int>(owned(names), std::move(assign), owned(help)),
+           "INTEGER")
         ->check(CLI::Range(lowest, highest))
-        ->default_str(std::to_string(target));
+        ->default_str(std::to_string(default_value));
 }
 
 void Options::parsed_number(std::string_view names, Dimension dimension, std::string_view help,
-                            double default_value, bool has_default, std::function<void(double)> assign) {
+                            std::optional<double> standing, bool above_zero,
+                            std::function<void(double)> assign) {
     const std::string label =
         owned(names.substr(names.rfind(',') == std::string_view::npos ? 0 : names.rfind(',') + 1));
-    CLI::Option* option = single(implementation_.command->add_option_function<std::string>(
-                                     implementation_.names_for_parser(names),
-                                     [dimension, label, assign](const std::string& value) {
-                                         assign(parse_quantity(value, dimension, label));
-                                     },
-                                     owned(help)),
-                                 unit_type_name(dimension));
-    if (has_default) option->default_str(shortest(default_value));
-}
-
-void Options::number(std::string_view names, double& target, Dimension dimension, std::string_view help) {
-    parsed_number(names, dimension, help, target, true, [&target](double value) { target = value; });
-}
-
-void Options::number(std::string_view names, std::optional<double>& target, Dimension dimension,
-                     std::string_view help) {
-    parsed_number(names, dimension, help, 0.0, false, [&target](double value) { target = value; });
+    const auto read = [dimension, label, above_zero, assign](const std::string& text) {
+        const double value = parse_quantity(text, dimension, label);
+        if (above_zero && !(value > 0.0))
+            raise<UsageError>("{} must be above 0{}{}", label, base_unit(dimension).empty() ? "" : " ",
+                              base_unit(dimension));
+        assign(value);
+    };
+    parsed(implementation_.names_for_parser(names), read, unit_type_name(dimension), help, false,
+           standing ? shortest(*standing) : "");
 }
 
 void Options::duration(std::string_view names, std::optional<Seconds>& target, std::string_view help) {
     const std::string label = owned(names);
-    single(implementation_.command->add_option_function<std::string>(
-               owned(names),
-               [&target, label](const std::string& value) {
-                   target = Seconds(parse_quantity(value, Dimension::time, label));
-                   if (parse_number(value) && *target != Seconds(0.0))
-                       raise<UsageError>("{0} {1}: ms or s? write {0} {1}ms or {0} {1}s", label, value);
-               },
-               owned(help)),
-           "TIME");
+    const auto read = [&target, label](const std::string& value) {
+        target = Seconds(parse_quantity(value, Dimension::time, label));
+        if (parse_number(value) && *target != Seconds(0.0))
+            raise<UsageError>("{0} {1}: ms or s? write {0} {1}ms or {0} {1}s", label, value);
+    };
+    parsed(names, read, "TIME", help);
 }
 
 void Options::numbers(std::string_view names, std::vector<double>& target, Dimension dimension,
                       std::string_view help) {
     const std::string label = owned(names);
-    single(implementation_.command->add_option_function<std::string>(
-               owned(names),
-               [&target, dimension, label, &words = implementation_.words](const std::string& value) {
-                   refuse_split_list(words, label, dimension);
-                   if (value.find_first_of(" :;") != std::string::npos)
-                       refuse_other_marks(label, value, dimension);
-                   target.clear();
-                   for (const std::string& piece : split_commas(value)) {
-                       target.push_back(parse_quantity(piece, dimension, label));
-                   }
-               },
-               owned(help)),
-           unit_type_name(dimension) + ",...");
+    const auto read = [&target, dimension, label, &words = implementation_.words](const std::string& value) {
+        refuse_split_list(words, label, dimension);
+        if (value.find_first_of(" :;") != std::string::npos) refuse_other_marks(label, value, dimension);
+        target.clear();
+        for (const std::string& piece : split_commas(value))
+            target.push_back(parse_quantity(piece, dimension, label));
+    };
+    parsed(names, read, unit_type_name(dimension) + ",...", help);
 }
 
 void Options::argument(std::string_view name, std::string& target, bool required, std::string_view help) {
     implementation_.command->add_option(owned(name), target, owned(help))->required(required)->type_name("");
-    names_file(name, "LOG", &target, [&target] { return std::vector{target}; });
+    names_file(name, "LOG");
 }
 
 void Options::arguments(std::string_view name, std::vector<std::string>& target, bool required,
                         std::string_view help) {
     implementation_.command->add_option(owned(name), target, owned(help))->required(required)->type_name("");
-    names_file(name, "LOG", &target, [&target] { return target; });
+    names_file(name, "LOG");
 }
 
 void Options::after_parse(std::function<void()> check) {
     implementation_.after_parse.push_back(std::move(check));
 }
 
-void Options::names_file(std::string_view names, std::string_view type_name, const void* target,
-                         std::function<std::vector<std::string>()> values) {
+void Options::names_file(std::string_view names, std::string_view type_name) {
     constexpr std::array types = {"FILE", "LOG", "OTHER", "SPEC", "NAME,KEY=VALUE,..."};
-    if (std::find(types.begin(), types.end(), type_name) == types.end()) return;
-    const std::string shown = owned(names.substr(0, names.find(',')));
-    implementation_.files.push_back({shown, std::move(values), target});
+    if (std::find(types.begin(), types.end(), type_name) != types.end())
+        implementation_.files.emplace_back(names.substr(0, names.find(',')));
 }
 
-void Options::writes(const void* target) { implementation_.written.push_back(target); }
+void Options::writes(std::string_view name) { implementation_.written.insert(owned(name)); }
 
 void Options::Implementation::check_files() const {
     FileClaims claims;
-    for (const FileOption& option : files) {
-        const bool writes = std::find(written.begin(), written.end(), option.target) != written.end();
-        for (const std::string& value : option.values())
-            writes ? claims.writes(value, option.name) : claims.reads(value, option.name);
-    }
+    for (const std::string& name : files)
+        for (const std::string& value : command->get_option(name)->results())
+            written.contains(name) ? claims.writes(value, name) : claims.reads(value, name);
     claims.check(command->get_option_no_throw("--in-place") != nullptr ? ", or say --in-place" : "");
 }
 
@@ -236,7 +217,55 @@ std::string Options::command_line() const {
     return line;
 }
 
+std::string Options::log_words(const std::optional<std::string>& from,
+                               const std::optional<std::string>& to) const {
+    std::vector<CLI::Option*> all = implementation_.command->get_options();
+    const auto at = [&](const char* name) {
+        return std::find(all.begin(), all.end(), implementation_.command->get_option(name));
+    };
+    all.erase(at("--hold-bad-values") + 1, all.end());
+    all.erase(all.begin(), at("--format"));
+    // The rows first, which differ between the lines of one log; then what the columns are and their clock.
+    std::rotate(all.begin(), at("--from"), at("--joint"));
+    std::rotate(at("--sample-rate"), at("--sample-rate") + 1, at("--side"));
+    std::rotate(at("--side"), at("--constant-speed"), at("--delimiter"));
+    std::string line;
+    for (const CLI::Option* option : all) {
+        const std::string name = option->get_name();
+        std::vector<std::string> values = option->results();
+        if (name == "--from" && from) values = {*from};
+        if (name == "--to" && to) values = {*to};
+        for (std::string& value : values) {
+            if (name == "--sample-rate")
+                value = shortest(parse_quantity(value, Dimension::frequency, name)) + "Hz";
+            if (name == "--constant-speed")
+                value = shortest(parse_quantity(value, Dimension::speed, name)) + "deg/s";
+            line += " " + name;
+            const bool is_flag = option->get_items_expected_max() == 0;
+            if (!is_flag) line += " " + shell_quoted(value);
+        }
+    }
+    return line;
+}
+
+std::vector<std::string> heading_of(const Provenance& provenance) {
+    std::vector<std::string> lines = {fmt::format("Made by {} {}:", tool_name, version()),
+                                      provenance.command};
+    for (const InputRecord& input : provenance.inputs) {
+        lines.push_back(input.sha256.empty() ? fmt::format("from {}", input.name)
+                                             : fmt::format("from {}, SHA-256 {}", input.name, input.sha256));
+    }
+    return lines;
+}
+
 bool ends_with_json(std::string_view path) { return path.size() > 5 && path.ends_with(".json"); }
+
+void attach_manner(Options& options, CommonOptions& common) {
+    options.flag("--force", common.force, "overwrite existing files");
+    options.flag("--no-sync", common.no_sync, "do not wait until written files are on the disk");
+    options.flag("-q,--quiet", common.quiet, "no warnings on standard error");
+    options.flag("-v,--verbose", common.verbose, "say on standard error what was decided");
+}
 
 void attach_common(Options& options, CommonOptions& common, const OutputNames& names) {
     options.after_parse([&common, names] {
@@ -247,25 +276,41 @@ void attach_common(Options& options, CommonOptions& common, const OutputNames& n
         common.json = common.json || (names.json_is_option && ends_with_json(common.output));
     });
     options.text("-o,--output", common.output, "FILE", "where the result goes; - is standard output");
-    options.writes(&common.output);
+    options.writes("-o");
     options.flag("--json", common.json, "one JSON object instead of text");
-    options.flag("--force", common.force, "overwrite existing files");
-    options.flag("--no-sync", common.no_sync, "do not wait until written files are on the disk");
-    options.flag("-q,--quiet", common.quiet, "no warnings on standard error");
-    options.flag("-v,--verbose", common.verbose, "say on standard error what was decided");
+    attach_manner(options, common);
+}
+
+void warn(const CommonOptions& common, std::string_view sentence) {
+    if (!common.quiet) talk(fmt::format("{}: warning: {}", tool_name, sentence));
 }
 
 void say_warnings(const CommonOptions& common, std::span<const std::string> warnings) {
-    if (common.quiet) return;
-    for (const std::string& warning : warnings) talk(fmt::format("{}: warning: {}", tool_name, warning));
+    for (const std::string& warning : warnings) warn(common, warning);
 }
 
 void say_warnings(const CommonOptions& common, std::span<const LogWarning> warnings) {
-    for (const LogWarning& warning : warnings) say_warnings(common, {&warning.text, 1});
+    for (const LogWarning& warning : warnings) warn(common, warning.text);
 }
 
 void say(const CommonOptions& common, std::string_view sentence) {
     if (common.verbose && !common.quiet) talk(fmt::format("{}: {}", tool_name, sentence));
+}
+
+void write_result(const CommonOptions& common, const std::function<std::string()>& json,
+                  const std::string& text) {
+    const bool json_file = ends_with_json(common.output);
+    write_text(common.output, common.json || json_file ? json() : text, common.overwrite());
+    // The file is for the next command; people still want to read what came out.
+    if (json_file && !common.json) write_text("-", text, ByteSink::Overwrite::yes);
+}
+
+void take_log(const CommonOptions& common, const std::string& path, const Log& log, Provenance& provenance) {
+    say_layout(common, log.layout);
+    say_warnings(common, log.recording.warnings);
+    provenance.inputs.push_back(input_record(path));
+    provenance.inputs.back().rows = log.recording.rows();
+    provenance.recordings.push_back({log.recording});
 }
 
 void say_layout(const CommonOptions& common, const Layout& layout) {
@@ -276,54 +321,7 @@ void say_layout(const CommonOptions& common, const Layout& layout) {
     say_warnings(common, layout.warnings);
 }
 
-// The options that every command with a log shares: what is declared, and what it asks of the reader.
-
-void attach_log(Options& options, LogOptions& log) {
-    options.text("--format", log.format, "NAME",
-                 fmt::format("format of the log: {} (default: found out from its first bytes)",
-                             name_list(log_formats())));
-    options.quantity("--sample-rate", log.sample_rate, Dimension::frequency,
-                     "rate of a log without time; overrides the log's own time");
-    attach_log_columns(options, log);
-}
-
-void attach_log_columns(Options& options, LogOptions& log) {
-    options.text(
-        "--from", log.from, "TIME",
-        "rows before are as if they were not there: 2s, 500ms, 1.5min or 1:30 on the log's own time axis; "
-        "12:30:05 where it has times of day");
-    options.text("--to", log.to, "TIME", "rows after are as if they were not there; the row at TIME counts");
-    options.text("--joint", log.joint, "NAME",
-                 "which joint of a file that holds several; all runs each where possible");
-    options.text(
-        "--columns", log.columns, "LIST",
-        "what the columns are: by place 'time,velocity,torque' (- skips one), or by name 'torque=tau_J'");
-    options.texts("--unit", log.units, "COLUMN=UNIT",
-                  "unit of a column: velocity=rad/s, torque=mNm, time=ms; repeatable");
-    options.text("--side", log.side, "SIDE",
-                 "where motion is measured: motor (before the gear) or joint; or by column, velocity=motor");
-    options.quantity("--constant-speed", log.constant_speed, Dimension::speed,
-                     "of the joint (of the motor with --side motor), throughout a log that holds no motion: "
-                     "60rpm");
-    options.text("--delimiter", log.delimiter, "CHAR", "between cells of a text log: , ; space or tab");
-    options.text("--decimal", log.decimal, "MARK", "decimal mark of a text log: . or ,");
-    options.flag("--no-header", log.no_header, "the first row of a text log is data");
-    options.count("--skip-lines", log.skip_lines, 0, 1000000,
-                  "lines at the top of a text log that are not read");
-    options.text(
-        "--layout", log.records, "FIELDS",
-        "of a record of a raw dump (--format raw): 'f8:time_s,f4:velocity_deg_s,<i2*0.01:torque_nm'");
-    options.count("--skip-bytes", log.skip_bytes, 0, 1 << 30, "bytes before the first record of a raw dump");
-    options.text("--clock", log.clock, "CLOCK",
-                 "of recorded messages: header (their own stamps, the default where they have them) or log "
-                 "(when they were recorded)");
-    options.text(
-        "--join", log.join, "HOW",
-        "of signals of several topics, which --columns names: linear (the default), hold or nearest");
-    options.text("--kt", log.kt, "Nm/A", "torque constant, for logs of motor current");
-    options.flag("--hold-bad-values", log.hold_bad_values,
-                 "replace empty cells and nan by the value before, and count them");
-}
+// The options that every command with a log shares.
 
 namespace {
 
@@ -341,9 +339,17 @@ std::vector<std::string> split_outside_brackets(const std::string& text) {
     return pieces;
 }
 
+void read_units(const std::string& text, std::map<std::string, std::string>& units) {
+    for (const std::string& piece : split_commas(text)) {
+        const std::size_t equals = piece.find('=');
+        if (equals == std::string::npos || equals == 0 || equals + 1 == piece.size())
+            raise<UsageError>("--unit: '{}' is not COLUMN=UNIT, for example velocity=rad/s", piece);
+        units[piece.substr(0, equals)] = piece.substr(equals + 1);
+    }
+}
+
 // "motor", "velocity=motor,position=joint"
-std::map<Role, Shaft> read_sides(const std::string& text) {
-    std::map<Role, Shaft> sides;
+void read_sides(const std::string& text, std::map<Role, Shaft>& sides) {
     for (const std::string& piece : split_commas(text)) {
         const std::size_t equals = piece.find('=');
         const std::string role = equals == std::string::npos ? "" : piece.substr(0, equals);
@@ -355,61 +361,102 @@ std::map<Role, Shaft> read_sides(const std::string& text) {
         if (role != "position") sides[Role::velocity] = shaft;
         if (role != "velocity") sides[Role::position] = shaft;
     }
-    return sides;
+}
+
+char one_character(const std::string& text, std::string_view option) {
+    if (text == "space") return ' ';
+    if (text == "tab" || text == "\\t") return '\t';
+    if (text.size() != 1) raise<UsageError>("{}: '{}' is not one character", option, text);
+    return text.front();
+}
+
+std::string one_of(std::initializer_list<std::string_view> all, const std::string& text,
+                   std::string_view option) {
+    if (std::find(all.begin(), all.end(), text) == all.end())
+        raise<UsageError>("{}: '{}' is none of {}", option, text, fmt::join(all, ", "));
+    return text;
 }
 
 }  // namespace
 
-ReadOptions LogOptions::resolve() const {
-    ReadOptions read;
-    read.format = format;
-    read.joint = joint;
-    if (columns) read.columns = split_outside_brackets(*columns);
-    for (const std::string& entry : units) {
-        for (const std::string& piece : split_commas(entry)) {
-            const std::size_t equals = piece.find('=');
-            if (equals == std::string::npos || equals == 0 || equals + 1 == piece.size()) {
-                raise<UsageError>("--unit: '{}' is not COLUMN=UNIT, for example velocity=rad/s", piece);
-            }
-            read.units[piece.substr(0, equals)] = piece.substr(equals + 1);
-        }
-    }
-    if (from) read.range.from = parse_time_point(*from, "--from");
-    if (to) read.range.to = parse_time_point(*to, "--to");
-    read.sample_rate = sample_rate;
-    if (sample_rate && !(sample_rate->value() > 0.0)) raise<UsageError>("--sample-rate: must be above 0 Hz");
-    read.constant_speed = constant_speed;
-    const auto one_character = [](const std::string& text, std::string_view option) {
-        if (text == "space") return ' ';
-        if (text == "tab" || text == "\\t") return '\t';
-        if (text.size() != 1) raise<UsageError>("{}: '{}' is not one character", option, text);
-        return text.front();
-    };
-    if (delimiter) read.delimiter = one_character(*delimiter, "--delimiter");
-    if (decimal) {
-        read.decimal_mark = one_character(*decimal, "--decimal");
-        if (*read.decimal_mark != '.' && *read.decimal_mark != ',') {
-            raise<UsageError>("--decimal: '{}' is neither . nor ,", *decimal);
-        }
-    }
-    if (no_header) read.header = false;
-    if (kt) {
-        std::string text = *kt;
-        if (text.size() > 4 && text.compare(text.size() - 4, 4, "Nm/A") == 0) text.resize(text.size() - 4);
-        read.nm_per_ampere = parse_quantity(text, Dimension::none, "--kt");
-    }
-    read.hold_bad_values = hold_bad_values;
-    if (clock && *clock != "log" && *clock != "header")
-        raise<UsageError>("--clock: '{}' is none of header, log", *clock);
-    read.clock = clock;
-    if (join && *join != "nearest" && *join != "hold" && *join != "linear")
-        raise<UsageError>("--join: '{}' is none of nearest, hold, linear", *join);
-    read.join = join;
-    read.records = records;
-    read.skip_bytes = static_cast<std::uint64_t>(skip_bytes);
-    read.skip_lines = static_cast<std::size_t>(skip_lines);
-    if (side) read.sides = read_sides(*side);
-    return read;
+void attach_log(Options& options, ReadOptions& log) {
+    options.text("--format", log.format, "NAME",
+                 fmt::format("format of the log: {} (default: found out from its first bytes)",
+                             name_list(log_formats())));
+    options.number("--sample-rate", log.sample_rate, Dimension::frequency,
+                   "rate of a log without time; overrides the log's own time");
+    options.after_parse([&log] {
+        if (log.sample_rate && !(log.sample_rate->value() > 0.0))
+            raise<UsageError>("--sample-rate: must be above 0 Hz");
+    });
+    attach_log_columns(options, log);
+}
+
+void attach_log_columns(Options& options, ReadOptions& log) {
+    using Text = const std::string&;
+    options.parsed(
+        "--from", [&log](Text text) { log.range.from = parse_time_point(text, "--from"); }, "TIME",
+        "rows before are as if they were not there: 2s, 500ms, 1.5min or 1:30 on the log's own time axis; "
+        "12:30:05 where it has times of day");
+    options.parsed(
+        "--to", [&log](Text text) { log.range.to = parse_time_point(text, "--to"); }, "TIME",
+        "rows after are as if they were not there; the row at TIME counts");
+    options.text("--joint", log.joint, "NAME",
+                 "which joint of a file that holds several; all runs each where possible");
+    options.parsed(
+        "--columns", [&log](Text text) { log.columns = split_outside_brackets(text); }, "LIST",
+        "what the columns are: by place 'time,velocity,torque' (- skips one), or by name 'torque=tau_J'");
+    options.parsed(
+        "--unit", [&log](Text text) { read_units(text, log.units); }, "COLUMN=UNIT",
+        "unit of a column: velocity=rad/s, torque=mNm, time=ms; repeatable", true);
+    options.parsed(
+        "--side", [&log](Text text) { read_sides(text, log.sides); }, "SIDE",
+        "where motion is measured: motor (before the gear) or joint; or by column, velocity=motor");
+    options.number("--constant-speed", log.constant_speed, Dimension::speed,
+                   "of the joint (of the motor with --side motor), throughout a log that holds no motion: "
+                   "60rpm");
+    options.parsed(
+        "--delimiter", [&log](Text text) { log.delimiter = one_character(text, "--delimiter"); }, "CHAR",
+        "between cells of a text log: , ; space or tab");
+    options.parsed(
+        "--decimal",
+        [&log](Text text) {
+            log.decimal_mark = one_character(text, "--decimal");
+            if (log.decimal_mark != '.' && log.decimal_mark != ',')
+                raise<UsageError>("--decimal: '{}' is neither . nor ,", text);
+        },
+        "MARK", "decimal mark of a text log: . or ,");
+    options.flag(
+        "--no-header", [&log] { log.header = false; }, "the first row of a text log is data");
+    options.count("--skip-lines", log.skip_lines, 0, 1000000,
+                  "lines at the top of a text log that are not read");
+    options.text(
+        "--layout", log.records, "FIELDS",
+        "of a record of a raw dump (--format raw): 'f8:time_s,f4:velocity_deg_s,<i2*0.01:torque_nm'");
+    options.count("--skip-bytes", log.skip_bytes, 0, 1 << 30, "bytes before the first record of a raw dump");
+    options.parsed(
+        "--clock",
+        [&log](Text text) {
+            log.clock = one_of({"header", "log"}, text, "--clock");
+        },
+        "CLOCK",
+        "of recorded messages: header (their own stamps, the default where they have them) or log "
+        "(when they were recorded)");
+    options.parsed(
+        "--join",
+        [&log](Text text) {
+            log.join = one_of({"nearest", "hold", "linear"}, text, "--join");
+        },
+        "HOW", "of signals of several topics, which --columns names: linear (the default), hold or nearest");
+    options.parsed(
+        "--kt",
+        [&log](std::string text) {
+            if (text.size() > 4 && text.ends_with("Nm/A")) text.resize(text.size() - 4);
+            log.nm_per_ampere = parse_quantity(text, Dimension::none, "--kt");
+        },
+        "Nm/A", "torque constant, for logs of motor current");
+    options.flag("--hold-bad-values", log.hold_bad_values,
+                 "replace empty cells and nan by the value before, and count them");
 }
 
 namespace {

@@ -18,6 +18,7 @@
 #include "ripplenotch/evaluate/contender.hpp"
 #include "ripplenotch/evaluate/ledger.hpp"
 #include "ripplenotch/log/layout.hpp"
+#include "ripplenotch/log/log.hpp"
 
 namespace ripplenotch {
 
@@ -27,44 +28,59 @@ class Options {
     explicit Options(Implementation& implementation) : implementation_(implementation) {}
 
     void flag(std::string_view names, bool& target, std::string_view help);
-    void text(std::string_view names, std::string& target, std::string_view type_name, std::string_view help);
-    void text(std::string_view names, std::optional<std::string>& target, std::string_view type_name,
-              std::string_view help);
+    void flag(std::string_view names, std::function<void()> set, std::string_view help);
+    /// A text, whose standing value is shown as the default, or an optional one.
+    template <class Text>
+    void text(std::string_view names, Text& target, std::string_view type_name, std::string_view help) {
+        std::string standing;
+        if constexpr (std::is_same_v<Text, std::string>) standing = target;
+        parsed(
+            names, [&target](const std::string& value) { target = value; }, type_name, help, false, standing);
+    }
     /// May be given several times; each occurrence takes exactly one value.
     void texts(std::string_view names, std::vector<std::string>& target, std::string_view type_name,
-               std::string_view help);
+               std::string_view help) {
+        parsed(
+            names, [&target](const std::string& value) { target.push_back(value); }, type_name, help, true);
+    }
+    /// `read` takes the value, as often as it is given where the option repeats; it throws UsageError.
+    void parsed(std::string_view names, std::function<void(const std::string&)> read,
+                std::string_view type_name, std::string_view help, bool repeats = false,
+                const std::string& standing = "");
     void choice(std::string_view names, std::string& target, std::span<const std::string_view> choices,
                 std::string_view help);
-    void count(std::string_view names, int& target, int lowest, int highest, std::string_view help);
-    void number(std::string_view names, double& target, Dimension dimension, std::string_view help);
-    void number(std::string_view names, std::optional<double>& target, Dimension dimension,
-                std::string_view help);
+    template <class Integer>
+    void count(std::string_view names, Integer& target, int lowest, int highest, std::string_view help) {
+        parsed_count(names, static_cast<int>(target), lowest, highest, help,
+                     [&target](int value) { target = static_cast<Integer>(value); });
+    }
+    /// A double or a quantity, or an optional one, which has no default.
+    template <class Target>
+    void number(std::string_view names, Target& target, Dimension dimension, std::string_view help,
+                bool above_zero = false) {
+        if constexpr (requires { target.emplace(0.0); }) {
+            parsed_number(names, dimension, help, {}, above_zero,
+                          [&target](double value) { target.emplace(value); });
+        } else {
+            const double standing = target / Target(1.0);
+            parsed_number(names, dimension, help, standing, above_zero,
+                          [&target](double value) { target = Target(value); });
+        }
+    }
     /// A time of which a bare number could as well be meant in ms as in s: it needs its unit, but for 0.
     void duration(std::string_view names, std::optional<Seconds>& target, std::string_view help);
     /// "1,2,4" or "25Hz,50Hz". Refuses "--orders 1 2", which would be a list of one and a log named 2.
     void numbers(std::string_view names, std::vector<double>& target, Dimension dimension,
                  std::string_view help);
 
-    template <class Tag>
-    void quantity(std::string_view names, Quantity<Tag>& target, Dimension dimension, std::string_view help) {
-        parsed_number(names, dimension, help, target.value(), true,
-                      [&target](double value) { target = Quantity<Tag>(value); });
-    }
-    template <class Tag>
-    void quantity(std::string_view names, std::optional<Quantity<Tag>>& target, Dimension dimension,
-                  std::string_view help) {
-        parsed_number(names, dimension, help, 0.0, false,
-                      [&target](double value) { target = Quantity<Tag>(value); });
-    }
-
     /// Positional arguments; `required` ones raise a usage error when missing.
     void argument(std::string_view name, std::string& target, bool required, std::string_view help);
     void arguments(std::string_view name, std::vector<std::string>& target, bool required,
                    std::string_view help);
 
-    /// The file that this option's target names is written; of all others whose type says that they name
-    /// files (FILE, LOG, SPEC, ...), and of arguments, files are read. Those that collide are refused.
-    void writes(const void* target);
+    /// The file that the option of this first name takes is written; of all others whose type says that they
+    /// name files (FILE, LOG, SPEC, ...), and of arguments, files are read. Those that collide are refused.
+    void writes(std::string_view name);
     /// Runs when all options are read, before the work.
     void after_parse(std::function<void()> check);
 
@@ -72,12 +88,17 @@ class Options {
     /// The command line as it would be typed again, without -o, --plot, --force, -q, -v and --json; for
     /// provenance.
     [[nodiscard]] std::string command_line() const;
+    /// The options of attach_log() that are given, each with a blank before it, for command lines that people
+    /// paste; `from` and `to` take the place of --from and --to.
+    [[nodiscard]] std::string log_words(const std::optional<std::string>& from = {},
+                                        const std::optional<std::string>& to = {}) const;
 
   private:
-    void names_file(std::string_view names, std::string_view type_name, const void* target,
-                    std::function<std::vector<std::string>()> values);
+    void names_file(std::string_view names, std::string_view type_name);
     void parsed_number(std::string_view names, Dimension dimension, std::string_view help,
-                       double default_value, bool has_default, std::function<void(double)> assign);
+                       std::optional<double> standing, bool above_zero, std::function<void(double)> assign);
+    void parsed_count(std::string_view names, int default_value, int lowest, int highest,
+                      std::string_view help, std::function<void(int)> assign);
     Implementation& implementation_;
 };
 
@@ -93,34 +114,31 @@ struct OutputNames {
     std::string_view endings;     ///< that fit it: ".txt .json"; empty where the command looks itself
     bool json_is_option = false;  ///< a name that ends in .json is the same as --json
 };
+/// How a file says where it is from, one line each: tool, command and inputs.
+[[nodiscard]] std::vector<std::string> heading_of(const Provenance& provenance);
 void attach_common(Options& options, CommonOptions& common, const OutputNames& names);
+/// How it writes and what it says: --force, --no-sync, --quiet and --verbose.
+void attach_manner(Options& options, CommonOptions& common);
 [[nodiscard]] bool ends_with_json(std::string_view path);
 
-/// How to read a log: --format, --joint, --columns, --unit, --sample-rate, --delimiter, --decimal,
-/// --no-header, --skip-lines, --layout, --skip-bytes, --clock, --join, --side, --kt, --hold-bad-values, and
-/// which rows of it: --from, --to. Call resolve() after parsing.
-struct LogOptions {
-    std::optional<std::string> from, to;
-    std::optional<std::string> format, joint, columns, delimiter, decimal, kt;
-    std::vector<std::string> units;
-    std::optional<std::string> side;
-    int skip_lines = 0, skip_bytes = 0;
-    std::optional<std::string> records, clock, join;
-    std::optional<Hertz> sample_rate;
-    std::optional<DegPerSec> constant_speed;
-    bool no_header = false, hold_bad_values = false;
-    [[nodiscard]] ReadOptions resolve() const;
-};
-void attach_log(Options& options, LogOptions& log);
+/// How to read a log, and which rows of it: --format, --joint, --columns, --from and so on.
+void attach_log(Options& options, ReadOptions& log);
 /// The same without --format and --sample-rate, for a command whose own options have these names.
-void attach_log_columns(Options& options, LogOptions& log);
+void attach_log_columns(Options& options, ReadOptions& log);
 
 /// Messages for people, on standard error: "ripplenotch: warning: ...". Nothing at all when quiet.
+void warn(const CommonOptions& common, std::string_view sentence);
 void say_warnings(const CommonOptions& common, std::span<const std::string> warnings);
 void say_warnings(const CommonOptions& common, std::span<const LogWarning> warnings);
 void say(const CommonOptions& common, std::string_view sentence);  ///< only with -v
 /// The option line that would force the reading of a log, with -v; its warnings always unless quiet.
 void say_layout(const CommonOptions& common, const Layout& layout);
+/// A log that was read: what is said of it, and its place among the inputs.
+void take_log(const CommonOptions& common, const std::string& path, const Log& log, Provenance& provenance);
+
+/// JSON where it is asked for, by --json or by the name of -o; then the text goes to standard output.
+void write_result(const CommonOptions& common, const std::function<std::string()>& json,
+                  const std::string& text);
 
 // Limits that a user sets on what a method may cost and must do; a violation is exit code 1.
 

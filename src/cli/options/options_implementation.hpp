@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <functional>
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,19 +22,13 @@ struct Options::Implementation {
     /// takes a long name of one letter for the short name too, so that `--q` would be refused beside `-q`.
     std::map<std::string, std::string> spelled_out = {};
 
-    /// The names for CLI11: "--quality" of "--quality,--q", which goes to `spelled_out`.
-    /// What options and arguments name: those of a type that files are named by are read, unless a command
-    /// says that it writes them.
-    struct FileOption {
-        std::string name;
-        std::function<std::vector<std::string>()> values;
-        const void* target;
-    };
-    std::vector<FileOption> files = {};
-    std::vector<const void*> written = {};
+    /// Options and arguments that name files, which are read, and those among them that are written.
+    std::vector<std::string> files = {};
+    std::set<std::string> written = {};
     /// Throws UsageError where files collide (file_claims.hpp).
     void check_files() const;
 
+    /// The names for CLI11: "--quality" of "--quality,--q", which goes to `spelled_out`.
     [[nodiscard]] std::string names_for_parser(std::string_view names);
     /// Rewrites the options before "--" as CLI11 knows them.
     void spell_out(std::vector<std::string>& command_line) const;

@@ -50,12 +50,13 @@ std::string joint_in_words(const std::string& path, const std::string& joint) {
     return joint.empty() ? path : path + ", joint " + joint;
 }
 
-void attach_plot(Options& options, PlotRequest& request) {
+void attach_plot(Options& options, PlotRequest& request, const CommonOptions& common) {
     options.text("--plot", request.path, "FILE",
                  fmt::format("the result as a picture ({}): FILE.svg, .png or .pdf by gnuplot, FILE.json for "
                              "the data of the figure; - draws it in the terminal",
                              figures_of(options.command_name())));
-    options.writes(&request.path);
+    options.writes("--plot");
+    options.after_parse([&] { check_plot(request, common); });
 }
 
 void check_plot(const PlotRequest& request, const CommonOptions& common) {

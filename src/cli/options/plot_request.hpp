@@ -26,10 +26,11 @@ struct PlotRequest {
 /// "wide.csv, joint j4": for the title of a figure.
 [[nodiscard]] std::string joint_in_words(const std::string& path, const std::string& joint);
 
-void attach_plot(Options& options, PlotRequest& request);
+void attach_plot(Options& options, PlotRequest& request, const CommonOptions& common);
 
-/// Before any work is done: throws UsageError for a name that is no picture's or --json and the figure both
-/// on standard output, FileError for a file that exists and may not be overwritten.
+/// Before any work is done, by attach_plot() already: throws UsageError for a name that is no picture's or
+/// --json and the figure both on standard output, FileError for a file that exists and may not be
+/// overwritten.
 void check_plot(const PlotRequest& request, const CommonOptions& common);
 
 /// Before any file is read: whether the run will tell what it read, as JSON or in the data of a figure. Only

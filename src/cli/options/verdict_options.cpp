@@ -25,10 +25,9 @@ void attach_gear(Options& options, GearOptions& gear, const GearHelp& help) {
     if (!help.joint_file.empty()) options.text("--joint-file", gear.joint_file, "FILE", help.joint_file);
 }
 
-ReadOptions read_options(const LogOptions& log, const std::optional<GearAccount>& gear) {
-    ReadOptions read = log.resolve();
-    if (gear) read.gear_ratio = gear->ratio.value();
-    return read;
+ReadOptions read_options(ReadOptions log, const std::optional<GearAccount>& gear) {
+    if (gear) log.gear_ratio = gear->ratio.value();
+    return log;
 }
 
 void attach_given(Options& options, GivenOptions& given) {

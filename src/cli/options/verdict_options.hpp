@@ -24,8 +24,8 @@ struct GearHelp {
 void attach_gear(Options& options, GearOptions& gear, const GearHelp& help = {});
 
 /// How a log is read beside this gear: motion that is measured before the gear is told by its ratio, and
-/// divided by it. Throws what LogOptions::resolve throws.
-[[nodiscard]] ReadOptions read_options(const LogOptions& log, const std::optional<GearAccount>& gear);
+/// divided by it.
+[[nodiscard]] ReadOptions read_options(ReadOptions log, const std::optional<GearAccount>& gear);
 
 /// --simulated and --arm.
 void attach_given(Options& options, GivenOptions& given);

@@ -16,6 +16,7 @@
 #include "cli/options/options.hpp"
 #include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/visible_text.hpp"
 #include "ripplenotch/document/map_json.hpp"
 #include "ripplenotch/evaluate/comparison.hpp"
 #include "ripplenotch/filter/map_fit.hpp"
@@ -26,47 +27,9 @@ namespace ripplenotch {
 
 namespace {
 
-void add(std::string& line, std::string_view option, const std::optional<std::string>& value) {
-    if (value) line += " " + std::string(option) + " " + shell_quoted(*value);
-}
-
-std::optional<std::string> count_of(int value) {
-    return value > 0 ? std::optional(std::to_string(value)) : std::nullopt;
-}
-
-}  // namespace
-
-std::string log_words(const LogOptions& log) {
-    std::string line;
-    add(line, "--from", log.from);
-    add(line, "--to", log.to);
-    add(line, "--format", log.format);
-    add(line, "--joint", log.joint);
-    add(line, "--columns", log.columns);
-    for (const std::string& unit : log.units) add(line, "--unit", unit);
-    if (log.sample_rate) add(line, "--sample-rate", shortest(log.sample_rate->value()) + "Hz");
-    if (log.constant_speed) line += " --constant-speed " + shortest(log.constant_speed->value()) + "deg/s";
-    add(line, "--side", log.side);
-    add(line, "--delimiter", log.delimiter);
-    add(line, "--decimal", log.decimal);
-    if (log.no_header) line += " --no-header";
-    add(line, "--skip-lines", count_of(log.skip_lines));
-    add(line, "--layout", log.records);
-    add(line, "--skip-bytes", count_of(log.skip_bytes));
-    add(line, "--clock", log.clock);
-    add(line, "--join", log.join);
-    add(line, "--kt", log.kt);
-    if (log.hold_bad_values) line += " --hold-bad-values";
-    return line;
-}
-
-namespace {
-
 // " --gear-ratio 100 --orders 1,2"
 std::string gear_words(const GearAccount& gear) {
-    std::string orders;
-    for (const Order order : gear.orders) orders += (orders.empty() ? "" : ",") + shortest(order.value());
-    return " --gear-ratio " + shortest(gear.ratio.value()) + " --orders " + orders;
+    return " --gear-ratio " + shortest(gear.ratio.value()) + " --orders " + joined(gear.orders, ",");
 }
 
 // A name for the filtered log beside this one: "filtered.csv".
@@ -281,8 +244,7 @@ std::vector<std::string> CommandLines::of(const MethodFigures& figures) const {
         if (std::find(files.begin(), files.end(), file.name) != files.end()) lines.push_back(file.command);
     }
     lines.push_back(fmt::format("ripplenotch filter {}{} --method {} -o {}", shell_quoted(about_.log),
-                                log_words(about_.whole), shell_quoted(figures.method),
-                                filtered_name(about_.log)));
+                                about_.whole, shell_quoted(figures.method), filtered_name(about_.log)));
     if (!about_.target) return lines;
     // A target that does not hold the whole map is given the map all the same.
     if (contender->method->name == "map" && contender->files.empty() && !tried.files.empty())
@@ -292,8 +254,8 @@ std::vector<std::string> CommandLines::of(const MethodFigures& figures) const {
 }
 
 std::string CommandLines::check(const std::vector<const JudgedMethod*>& methods) const {
-    std::string line = fmt::format("ripplenotch compare {}{}{}", shell_quoted(about_.log),
-                                   log_words(about_.judged), gear_words(about_.gear));
+    std::string line = fmt::format("ripplenotch compare {}{}{}", shell_quoted(about_.log), about_.judged,
+                                   gear_words(about_.gear));
     for (const JudgedMethod* method : methods)
         if (method != nullptr) line += " --method " + shell_quoted(method->figures.method);
     return line;

@@ -17,11 +17,6 @@
 
 namespace ripplenotch {
 
-// Command lines that people paste.
-
-/// " --from 2s --unit velocity=rad/s": the options that read a log in this way, each with a blank before it.
-[[nodiscard]] std::string log_words(const LogOptions& log);
-
 /// A file that methods need, and the command line that makes it.
 struct MadeFile {
     std::string name, command;
@@ -59,7 +54,7 @@ class CommandLines {
     /// What the lines are about; refers to what its maker holds.
     struct About {
         const std::string& log;
-        const LogOptions &whole, &judged;  ///< options that read the log, and the part that was judged
+        std::string whole, judged;  ///< options that read the log, and the part that was judged
         Hertz sample_rate;
         const TriedMethods& tried;
         const std::optional<TargetChoice>& target;

@@ -40,12 +40,6 @@ namespace {
 
 constexpr std::size_t report_width = 110, widest_name = 60;
 
-std::string wrapped_sentence(const std::string& sentence) {
-    std::string text;
-    for (const std::string& line : wrapped(sentence, report_width)) text += line + "\n";
-    return text;
-}
-
 std::string next_commands(std::string_view head, const std::vector<std::string>& lines) {
     if (lines.empty()) return "";
     return fmt::format("\n{}\n    {}\n", head, fmt::join(lines, "\n    "));
@@ -88,20 +82,15 @@ std::string methods_text(const Recommendation& found) {
 std::string bulleted(std::string_view head, const std::vector<std::string>& sentences) {
     if (sentences.empty()) return "";
     std::string text = fmt::format("\n{}\n", head);
-    for (const std::string& sentence : sentences) {
-        std::string lead = "* ";
-        for (const std::string& line : wrapped(sentence, report_width - 2)) {
-            text += lead + line + "\n";
-            lead = "  ";
-        }
-    }
+    for (const std::string& sentence : sentences)
+        text += "* " + joined(wrapped(sentence, report_width - 2), "\n  ") + "\n";
     return text;
 }
 
 // Verdict, commands to paste, what is in the log, all methods, and what was assumed.
 std::string recommendation_view(const RecommendationReport& report) {
     const Recommendation& found = report.found;
-    std::string text = wrapped_sentence(recommendation_verdict(found));
+    std::string text = joined(wrapped(recommendation_verdict(found), report_width), "\n") + "\n";
     text += next_commands("To take it:", report.take);
     text += next_commands("The other:", report.runner_up);
     if (!found.orders.empty()) text += orders_text(found);
@@ -173,7 +162,10 @@ constexpr std::size_t most_other_lines = 3;  // by hand: of a sentence
 
 struct RecommendRequest {
     CommonOptions common;
-    LogOptions log_options;
+    ReadOptions log_options;
+    /// The options that read the log, or the part of it between these times.
+    std::function<std::string(const std::optional<std::string>& from, const std::optional<std::string>& to)>
+        log_words;
     std::string log;
     std::optional<std::string> target, temperature;
     GearOptions gear;
@@ -185,7 +177,7 @@ struct RecommendRequest {
 /// The log, and its parts as --to and --from give them.
 struct Parts {
     Log whole, train, judge;
-    LogOptions train_options, judge_options;
+    ReadOptions train_options, judge_options;
     std::optional<SidesOfLog> temperature;
 };
 
@@ -210,33 +202,30 @@ double split_at(const Log& log, double percent) {
     return *parse_number(fmt::format("{:.{}f}", at_s, std::max(-digits, 0)));
 }
 
+std::string split_words(double split_s) { return shortest(split_s) + "s"; }
+
 Parts read_parts(const RecommendRequest& request, const std::optional<GearAccount>& gear, double& split_s,
                  Provenance& provenance) {
     Parts parts;
     parts.whole = read_log_in_part(request.log, read_options(request.log_options, gear));
-    say_layout(request.common, parts.whole.layout);
-    say_warnings(request.common, parts.whole.recording.warnings);
-    provenance.inputs.push_back(input_record(request.log));
-    provenance.inputs.back().rows = parts.whole.recording.rows();
-    provenance.recordings.push_back({parts.whole.recording});
+    take_log(request.common, request.log, parts.whole, provenance);
     split_s = split_at(parts.whole, request.train_percent);
-    parts.train_options = parts.judge_options = request.log_options;
-    parts.train_options.to = parts.judge_options.from = shortest(split_s) + "s";
-    parts.train = read_log_in_part(request.log, read_options(parts.train_options, gear));
-    parts.judge = read_log_in_part(request.log, read_options(parts.judge_options, gear));
+    parts.train_options = parts.judge_options = read_options(request.log_options, gear);
+    parts.train_options.range.to = parts.judge_options.range.from =
+        parse_time_point(split_words(split_s), "--to");
+    parts.train = read_log_in_part(request.log, parts.train_options);
+    parts.judge = read_log_in_part(request.log, parts.judge_options);
     return parts;
 }
 
 // The joint's temperature beside the rows of both parts, as map and filter read it.
-void read_temperature(const RecommendRequest& request, const std::optional<GearAccount>& gear, Parts& parts) {
+void read_temperature(const RecommendRequest& request, Parts& parts) {
     if (!request.temperature) return;
     const std::string& joint = parts.whole.trace.joint;
     std::vector<std::string> notes;
     parts.temperature = SidesOfLog{
-        *request.temperature,
-        side_column(request.log, *request.temperature, joint, read_options(parts.train_options, gear)),
-        held_side_column(request.log, *request.temperature, joint, read_options(parts.judge_options, gear),
-                         notes)};
+        *request.temperature, side_column(request.log, *request.temperature, joint, parts.train_options),
+        held_side_column(request.log, *request.temperature, joint, parts.judge_options, notes)};
     say_warnings(request.common, notes);
     require_beside(parts.temperature->train_degc, parts.train.trace, request.log, *request.temperature);
     require_beside(parts.temperature->judge_degc, parts.judge.trace, request.log, *request.temperature);
@@ -364,7 +353,7 @@ RecommendationReport report_of(const RecommendRequest& request, Provenance& prov
     const auto target = request.target ? std::optional(find_any_target(*request.target)) : std::nullopt;
     const GearChoice stated(request.gear);
     Parts parts = read_parts(request, stated.of(), report.split_s, provenance);
-    read_temperature(request, stated.of(), parts);
+    read_temperature(request, parts);
     if (stated.joint()) provenance.inputs.push_back(input_record(stated.joint()->path));
     GearOptions gear_options = request.gear;
     report.found.limits = {request.limits.max_delay, request.limits.min_attenuation_db};
@@ -378,8 +367,9 @@ RecommendationReport report_of(const RecommendRequest& request, Provenance& prov
     report.gear = choice.of();
     if (!stated.of()) report.gear->source = "identify, on the log's first part";
     say(request.common, gear_in_words(*report.gear));
+    const std::string split = split_words(report.split_s);
     TriedMethods candidates =
-        candidates_for({parts.train, shell_quoted(request.log) + log_words(parts.train_options), choice,
+        candidates_for({parts.train, shell_quoted(request.log) + request.log_words({}, split), choice,
                         *report.gear, request.offline, target, parts.temperature});
     report.found = judged_methods(candidates, parts, *report.gear, report.found.limits);
     name_other_lines(parts, *report.gear, report.found);
@@ -389,7 +379,7 @@ RecommendationReport report_of(const RecommendRequest& request, Provenance& prov
     // Where nothing can be told, nothing was tried: no list of what was not.
     if (report.conclusive) report.left_out = candidates.left_out;
     if (report.found.methods.empty()) return report;
-    const CommandLines commands({request.log, request.log_options, parts.judge_options,
+    const CommandLines commands({request.log, request.log_words({}, {}), request.log_words(split, {}),
                                  parts.judge.recording.clock.nominal_rate, candidates, target, *report.gear});
     const JudgedMethod* const next = report.found.runner_up();
     report.take = commands.of(report.found.taken()->figures);
@@ -429,6 +419,7 @@ std::function<ExitCode()> attach_recommend(Options& options) {
     options.flag("--require-conclusive", request->require_conclusive,
                  "exit with code 5 when the log does not settle it");
     attach_log(options, request->log_options);
+    request->log_words = [&options](const auto& from, const auto& to) { return options.log_words(from, to); };
     attach_common(options, request->common, {"a recommendation", ".txt .json", true});
     return [request, &options] { return run_recommend(*request, options.command_line()); };
 }

@@ -11,6 +11,7 @@
 #include "cli/options/options_implementation.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/progress.hpp"
+#include "ripplenotch/core/visible_text.hpp"
 
 namespace ripplenotch {
 
@@ -146,9 +147,7 @@ std::string argument_in_synopsis(const OptionEntry& argument) {
 }
 
 std::string option_item(const OptionEntry& option) {
-    std::string head;
-    for (const std::string& name : option.names)
-        head += (head.empty() ? "" : ", ") + (option.is_argument ? slanted(name) : bold(name));
+    std::string head = joined(option.names, ", ", option.is_argument ? slanted : bold);
     if (option.takes_value() && !option.is_argument) head += " " + slanted(option.type);
     std::string item = ".TP\n" + head + "\n" + plain_roff(option.help) + "\n";
     if (!option.default_text.empty() && option.takes_value() && !option.is_argument)

@@ -41,11 +41,9 @@ std::optional<std::string> plotly_js_of(const ReportRequest& request) {
     if (!path) {
         CommonOptions common;
         common.quiet = request.quiet;
-        say_warnings(
-            common,
-            std::vector<std::string>{
-                "plotly.js is not installed (scripts/setup does it where there is npm), so the page carries "
-                "pictures instead of plots"});
+        warn(common,
+             "plotly.js is not installed (scripts/setup does it where there is npm), so the page carries "
+             "pictures instead of plots");
         return std::nullopt;
     }
     std::string text = read_all(*path);
@@ -76,7 +74,7 @@ std::function<ExitCode()> attach_report(Options& options) {
         "JSON that commands wrote: joint.json, table.json, metrics, comparisons, diagnoses, figures "
         "(--plot FILE.json); - is standard input");
     options.text("-o,--output", request->output, "FILE", "where the page goes; - is standard output");
-    options.writes(&request->output);
+    options.writes("-o");
     options.text("--title", request->title, "TEXT", "of the page");
     options.text("--plotly", request->plotly, "FILE",
                  "plotly.js to put into the page, instead of the installed one");

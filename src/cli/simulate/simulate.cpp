@@ -103,12 +103,11 @@ void attach_joint_model(Options& options, JointModelOptions& joint) {
 struct SimulateOptions {
     CommonOptions common;
     JointModelOptions joint;
-    LogOptions log_options;
+    ReadOptions log_options;
     std::string log;  ///< empty: motions are given
     std::optional<std::string> simulated;
     std::optional<std::string> format;
     std::vector<std::string> motions;
-    std::optional<Hertz> sample_rate;
     Seconds smoothing = default_smoothing;
     NewtonMeters noise;
     double noise_correlation = 0.0;
@@ -144,14 +143,12 @@ void round_to(std::vector<double>& values, const std::optional<double>& decimals
 
 Course course_of(const SimulateOptions& options, const ModelWithGiven& model) {
     if (!options.along_log()) {
-        Motion motion = make_motion(options.motions, *options.sample_rate);
+        Motion motion = make_motion(options.motions, *options.log_options.sample_rate);
         std::vector<double> velocity_deg_s = motion.velocity_deg_s;
         return {std::move(motion), std::move(velocity_deg_s), {}, true};
     }
-    LogOptions words = options.log_options;
-    words.sample_rate = options.sample_rate;
-    take_joint_of(model, words.joint);
-    const ReadOptions reading = read_options(words, assembled_gear(options.joint, model.model));
+    ReadOptions reading = read_options(options.log_options, assembled_gear(options.joint, model.model));
+    take_joint_of(model, reading.joint);
     Log log = read_log(options.log, reading);
     say_layout(options.common, log.layout);
     std::vector<double> known_nm =
@@ -204,16 +201,19 @@ void check_course(const SimulateOptions& options) {
             raise<UsageError>("--model - and LOG -: standard input holds one of them");
         if (options.smoothing.value() < 0.0)
             raise<UsageError>("--smoothing: {} s is below 0", shortest(options.smoothing.value()));
+        if (options.log_options.sample_rate && !(options.log_options.sample_rate->value() > 0.0))
+            raise<UsageError>("--sample-rate: must be above 0 Hz");
         return;
     }
-    if (options.log_options.from || options.log_options.to)
+    if (options.log_options.range.given())
         raise<UsageError>("--from and --to: there is no LOG to take rows of");
     if (options.simulated) raise<UsageError>("--simulated: it is beside a LOG, and there is none");
     if (options.motions.empty()) {
         raise<UsageError>(
             "--motion is missing, for example --motion constant,speed=60deg/s,duration=5s, or a LOG");
     }
-    if (!options.sample_rate) raise<UsageError>("--sample-rate is missing, for example --sample-rate 1kHz");
+    if (!options.log_options.sample_rate)
+        raise<UsageError>("--sample-rate is missing, for example --sample-rate 1kHz");
 }
 
 void check_simulate(const SimulateOptions& options) {
@@ -311,15 +311,15 @@ std::function<ExitCode()> attach_simulate(Options& options) {
         fmt::format("how the joint moves: constant,speed=60deg/s,duration=5s; repeated ones follow one "
                     "another; motions: {}",
                     name_list(motion_kinds())));
-    options.quantity("--sample-rate", o->sample_rate, Dimension::frequency,
-                     "samples per second; with a LOG, in place of its own time");
-    options.quantity("--smoothing", o->smoothing, Dimension::time,
-                     "window in which a LOG's velocity is fitted to give speed and acceleration");
-    options.quantity("--noise", o->noise, Dimension::torque, "rms of noise on the torque");
+    options.number("--sample-rate", o->log_options.sample_rate, Dimension::frequency,
+                   "samples per second; with a LOG, in place of its own time");
+    options.number("--smoothing", o->smoothing, Dimension::time,
+                   "window in which a LOG's velocity is fitted to give speed and acceleration");
+    options.number("--noise", o->noise, Dimension::torque, "rms of noise on the torque");
     options.number("--noise-correlation", o->noise_correlation, Dimension::none,
                    "of the torque's noise with that of the sample before; 0 is white");
-    options.quantity("--velocity-noise", o->velocity_noise, Dimension::speed,
-                     "rms of white noise on the velocity");
+    options.number("--velocity-noise", o->velocity_noise, Dimension::speed,
+                   "rms of white noise on the velocity");
     options.count("--seed", o->seed, 0, 2147483647, "which noise; the same seed gives the same bytes");
     options.number(
         "--decimals", o->decimals, Dimension::none,

@@ -150,11 +150,9 @@ std::string order_peaks(const OrderSpectrum& spectrum) {
     const MotionLines& found = spectrum.lines;
     std::string text = spectrum.doubt.empty() ? "" : fmt::format("Cannot tell: {}.\n", spectrum.doubt);
     text += fmt::format("{} in {} over {:.3g} output turns (resolution {:.3g} orders, floor {:.2g} Nm).\n",
-                        found.lines.empty() ? "No line"
-                                            : fmt::format("{} line{}", found.lines.size(),
-                                                          found.lines.size() == 1 ? "" : "s"),
-                        found.sweeps == 1 ? "1 sweep" : fmt::format("{} sweeps", found.sweeps), found.turns,
-                        found.resolution_orders, median_floor(spectrum.stack.floor_nm));
+                        found.lines.empty() ? "No line" : how_many(found.lines.size(), "line"),
+                        how_many(found.sweeps, "sweep"), found.turns, found.resolution_orders,
+                        median_floor(spectrum.stack.floor_nm));
     if (found.lines.empty()) return text;
     std::vector<std::vector<std::string>> rows{{"kind", "output order", "+/-", "Hz", "amplitude, Nm", "SNR"}};
     for (const MotionLine& line : found.lines) {
@@ -277,7 +275,7 @@ void attach_speed_map(Options& options, SpeedMapRequest& request) {
                  .joint_file = "--map: joint.json with gear ratio and orders"});
     options.number("--resolution", request.resolution, Dimension::none, "of the map, in Hz or orders");
     options.number("--highest", request.highest, Dimension::none, "frequency or order where the map ends");
-    options.quantity("--speed-step", request.speed_step, Dimension::speed, "width of a row of the map");
+    options.number("--speed-step", request.speed_step, Dimension::speed, "width of a row of the map");
 }
 
 // Throws UsageError when options of the map are given without --map, or make no sense.
@@ -326,7 +324,7 @@ SpeedMapResult speed_map_result(const SpeedMapRequest& request, const MapLines& 
     const std::string_view axis = campbell ? "frequency_hz" : lines.gear ? "order" : "order_output";
     const std::string words = in_words(map, campbell ? "Hz" : "orders", request.resolution);
     if (request.resolution && map.resolution > 1.001 * *request.resolution) {
-        say_warnings(common, std::vector{words});
+        warn(common, words);
     } else {
         say(common, words);
     }
@@ -339,7 +337,7 @@ constexpr std::array<std::string_view, 2> domain_names = {"frequency", "order"};
 
 struct SpectrumRequest {
     CommonOptions common;
-    LogOptions log;
+    ReadOptions log;
     std::string path, domain = "frequency";
     std::optional<std::string> stretch;
     std::optional<Seconds> segment;
@@ -438,9 +436,8 @@ void say_segment(const SpectrumRequest& request, const StretchSpectrum& one) {
     const double piece_s = one.spectrum.piece_duration.value();
     if (!request.segment || request.segment->value() <= rounding * piece_s) return;
     const std::string what = one.number ? fmt::format("stretch {}", *one.number) : "the log";
-    say_warnings(request.common,
-                 std::vector{fmt::format("--segment {} s: {} is {:.4g} s long, so all of it is one piece",
-                                         shortest(request.segment->value()), what, piece_s)});
+    warn(request.common, fmt::format("--segment {} s: {} is {:.4g} s long, so all of it is one piece",
+                                     shortest(request.segment->value()), what, piece_s));
 }
 
 Result frequency_result(const SpectrumRequest& request, std::vector<StretchSpectrum> spectra,
@@ -469,7 +466,7 @@ using Made = std::pair<Result, Provenance>;
 
 /// The log goes by and is not held.
 Made piecewise_result(const SpectrumRequest& request, const std::string& command_line) {
-    ReadOptions reading = request.log.resolve();
+    ReadOptions reading = request.log;
     reading.needs_velocity = false;
     LogPasses log(request.path, reading);
     const StretchSpectrum spectrum = streamed_spectrum(log, {request.segment, request.false_alarm}, [&] {
@@ -502,9 +499,8 @@ Made whole_result(const SpectrumRequest& request, const std::string& command_lin
     Provenance provenance{{}, command_line};
     const MapLines lines = request.map.map ? map_lines(request.map, provenance) : MapLines{};
     if (lines.gear) say(request.common, gear_in_words(*lines.gear));
-    LogOptions words = request.log;
-    take_joint_of(request.residual, words.joint);
-    ReadOptions reading = read_options(words, lines.gear);
+    ReadOptions reading = read_options(request.log, lines.gear);
+    take_joint_of(request.residual, reading.joint);
     reading.needs_velocity = request.needs_motion();
     require_memory_for_spectrum(request, reading);
     Log log = read_log(request.path, reading);
@@ -516,7 +512,7 @@ Made whole_result(const SpectrumRequest& request, const std::string& command_lin
     const bool by_order = request.domain == "order" || request.map.map == "order";
     const std::string doubt =
         by_order ? reading_doubt({&log, 1}, [](const OtherReading&) { return true; }) : "";
-    if (!doubt.empty()) say_warnings(request.common, std::vector{doubt});
+    if (!doubt.empty()) warn(request.common, doubt);
     if (request.map.map) return {map_result(request, lines, log.trace, provenance), provenance};
     const TraceView trace = log.trace.view();
     if (request.domain == "order")
@@ -529,11 +525,7 @@ ExitCode run_spectrum(SpectrumRequest& request, const std::string& command_line)
     if (!(request.false_alarm > 0.0) || request.false_alarm > 0.5) {
         raise<UsageError>("--false-alarm {} is not between 0 and 0.5", shortest(request.false_alarm));
     }
-    if (request.segment && !(request.segment->value() > 0.0))
-        raise<UsageError>("--segment must be above 0 s");
-    if (!(request.steady.at_least.value() > 0.0)) raise<UsageError>("--steady-for must be above 0 s");
     check_speed_map(request.map);
-    check_plot(request.plot, request.common);
     hash_where_told(request.common, request.plot);
     if (request.map.map &&
         (request.stretch || request.segment || request.peaks || request.domain != "frequency"))
@@ -554,8 +546,8 @@ std::function<ExitCode()> attach_spectrum(Options& options) {
                    "against frequency, or against cycles per output turn");
     options.text("--stretch", request->stretch, "all|NUMBER",
                  "steady stretches instead of the whole log, each or one of them");
-    options.quantity("--segment", request->segment, Dimension::time,
-                     "average half-overlapping pieces of this length (Welch)");
+    options.number("--segment", request->segment, Dimension::time,
+                   "average half-overlapping pieces of this length (Welch)", true);
     options.flag("--peaks", request->peaks, "tables of the lines and humps instead of the bins");
     options.number("--false-alarm", request->false_alarm, Dimension::none,
                    "chance that noise gives any line in a spectrum");
@@ -563,10 +555,10 @@ std::function<ExitCode()> attach_spectrum(Options& options) {
                    "a stretch is steady while its speed stays within this many per cent ...");
     options.number("--steady-band-speed", request->steady.band_deg_s, Dimension::speed,
                    "... or within this speed, whichever is wider; none by default");
-    options.quantity("--steady-for", request->steady.at_least, Dimension::time, "for at least this long");
+    options.number("--steady-for", request->steady.at_least, Dimension::time, "for at least this long", true);
     attach_speed_map(options, request->map);
     attach_residual(options, request->residual);
-    attach_plot(options, request->plot);
+    attach_plot(options, request->plot, request->common);
     attach_log(options, request->log);
     attach_common(options, request->common, {"a spectrum", ".csv .txt .json", true});
     return [request, &options] { return run_spectrum(*request, options.command_line()); };

@@ -75,7 +75,7 @@ constexpr std::array<std::string_view, 2> against_names = {"time", "speed"};
 struct TrackRequest {
     CommonOptions common;
     PlotRequest plot;
-    LogOptions log;
+    ReadOptions log;
     std::string path, method = "ls", amplitude = "peak", against = "time";
     std::vector<double> output_orders, tones_hz;
     GearOptions gear_options;
@@ -100,13 +100,6 @@ void check_track(const TrackRequest& request) {
     }
     if (request.window_turns && request.window)
         raise<UsageError>("--window and --window-turns exclude each other");
-    if (request.window && !(request.window->value() > 0.0)) raise<UsageError>("--window must be above 0 s");
-    if (request.window_turns && !(*request.window_turns > 0.0))
-        raise<UsageError>("--window-turns must be above 0");
-    if (request.rows_per_second && !(request.rows_per_second->value() > 0.0))
-        raise<UsageError>("--rows-per-second must be above 0 Hz");
-    if (request.speed_step && !(request.speed_step->value() > 0.0))
-        raise<UsageError>("--speed-step must be above 0 deg/s");
     if (request.speed_step && request.against != "speed")
         raise<UsageError>("--speed-step belongs to --against speed");
     if (request.log.joint == "all") raise<UsageError>("--joint all: track looks at one joint; name it");
@@ -249,7 +242,7 @@ std::string unit_doubt(const TrackRequest& request, const Prepared& prepared, co
         return !confirmed || (!reading.changes_side && shows(*prepare(request, trace.view()), trace.view()));
     });
     if (doubt.empty()) return "";
-    say_warnings(request.common, std::vector{doubt});
+    warn(request.common, doubt);
     return fmt::format("Cannot tell: {}. ", doubt);
 }
 
@@ -274,16 +267,11 @@ TrackReport track_report_of(const TrackRequest& request, const Prepared& prepare
 
 ExitCode run_track(TrackRequest& request, const std::string& command_line) {
     check_track(request);
-    check_plot(request.plot, request.common);
     hash_where_told(request.common, request.plot);
     Provenance provenance{{}, command_line};
     read_gear(request, provenance);
     const Log log = read_log_in_part(request.path, read_options(request.log, request.gear));
-    say_layout(request.common, log.layout);
-    say_warnings(request.common, log.recording.warnings);
-    provenance.inputs.push_back(input_record(request.path));
-    provenance.inputs.back().rows = log.recording.rows();
-    provenance.recordings.push_back({log.recording});
+    take_log(request.common, request.path, log, provenance);
 
     const auto prepared = prepare(request, log.trace.view());
     TrackReport report = track_report_of(request, *prepared, log.trace);
@@ -316,19 +304,20 @@ std::function<ExitCode()> attach_track(Options& options) {
     options.number(
         "--window-turns", request->window_turns, Dimension::none,
         "ls: window in motor turns (output turns without a gear ratio); 8 periods of the lowest order, or 2 "
-        "beats of the closest");
-    options.quantity("--window", request->window, Dimension::time, "ls: window in time instead");
-    options.quantity("--bandwidth", request->bandwidth, Dimension::frequency,
-                     "vold-kalman: -3 dB width of each line's envelope; 1 Hz");
+        "beats of the closest",
+        true);
+    options.number("--window", request->window, Dimension::time, "ls: window in time instead", true);
+    options.number("--bandwidth", request->bandwidth, Dimension::frequency,
+                   "vold-kalman: -3 dB width of each line's envelope; 1 Hz");
     options.count("--poles", request->poles, 1, 4, "vold-kalman: steepness");
-    options.quantity("--rows-per-second", request->rows_per_second, Dimension::frequency,
-                     "vold-kalman: rows of the result; 8 in 1/bandwidth");
+    options.number("--rows-per-second", request->rows_per_second, Dimension::frequency,
+                   "vold-kalman: rows of the result; 8 in 1/bandwidth", true);
     options.choice("--amplitude", request->amplitude, amplitude_names,
                    "what amplitudes are; the column names say it");
     options.choice("--against", request->against, against_names, "rows by time, or gathered by signed speed");
-    options.quantity("--speed-step", request->speed_step, Dimension::speed,
-                     "width of a row's speeds; about 24 rows when left out");
-    attach_plot(options, request->plot);
+    options.number("--speed-step", request->speed_step, Dimension::speed,
+                   "width of a row's speeds; about 24 rows when left out", true);
+    attach_plot(options, request->plot, request->common);
     attach_log(options, request->log);
     attach_common(options, request->common, {"a track", ".csv .txt .npy .json", true});
     return [request, &options] { return run_track(*request, options.command_line()); };

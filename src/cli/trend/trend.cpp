@@ -202,24 +202,17 @@ ExitCode run_trend(const TrendRequest& request, const std::string& command_line)
     const double rate = rate_of(request.false_alarms);
     if (request.ndjson && request.common.json) raise<UsageError>("--ndjson and --json: one of them");
     check_page_pattern(request.log_page);
-    check_plot(request.plot, request.common);
     Provenance provenance{{}, command_line};
     const std::vector<FeatureLine> lines = read_lines(request, provenance);
     if (!lines.empty() && lines.front().version != version())
-        say_warnings(request.common,
-                     std::vector{fmt::format("the lines are by version {} of the tool, and this is {}",
-                                             lines.front().version, version())});
+        warn(request.common, fmt::format("the lines are by version {} of the tool, and this is {}",
+                                         lines.front().version, version()));
     Trend trend = trend_of(lines, {rate, static_cast<std::uint64_t>(request.seed)});
     add_log_pages(trend, request.log_page);
-    const std::string text = trend_report(trend);
-    const bool json_file = ends_with_json(request.common.output);
-    if (request.common.json || json_file) {
-        write_text(request.common.output, trend_text(trend, provenance), request.common.overwrite());
-        if (json_file && !request.common.json) write_text("-", text, ByteSink::Overwrite::yes);
-    } else {
-        write_text(request.common.output, request.ndjson ? alert_lines(trend) : text,
-                   request.common.overwrite());
-    }
+    const bool lines_alone = request.ndjson && !ends_with_json(request.common.output);
+    write_result(
+        request.common, [&] { return trend_text(trend, provenance); },
+        lines_alone ? alert_lines(trend) : trend_report(trend));
     draw_plot(request.plot, request.common, provenance, [&] { return trend_figure(trend); });
     return ExitCode::done;
 }
@@ -235,7 +228,7 @@ std::function<ExitCode()> attach_trend(Options& options) {
     options.text(
         "--log-page", request->log_page, "PATTERN",
         "where a log's own report is: '{stem}.html', 'pages/{robot}/{date}.html'; default: beside the log");
-    attach_plot(options, request->plot);
+    attach_plot(options, request->plot, request->common);
     attach_common(options, request->common, {"a trend", ".txt .json .ndjson"});
     return [request, &options] { return run_trend(*request, options.command_line()); };
 }

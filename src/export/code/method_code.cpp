@@ -6,6 +6,7 @@
 #include <array>
 
 #include "export/text.hpp"
+#include "ripplenotch/core/visible_text.hpp"
 #include "ripplenotch/design/candidate_table.hpp"
 #include "ripplenotch/export/target.hpp"
 
@@ -74,7 +75,7 @@ std::string sum_code(std::string first, std::span<const std::pair<std::string, s
 
 std::string CodeStyle::array(std::string_view what, const std::vector<double>& values) const {
     return fmt::format("static const {} {}_{}[{}] = {{{}}};\n", is_float ? "float" : "double", name, what,
-                       values.size(), listed(values, is_float ? decimal_float : decimal));
+                       values.size(), joined(values, ", ", is_float ? decimal_float : decimal));
 }
 
 std::string CodeStyle::filled(std::string_view code) const {

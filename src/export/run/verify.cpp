@@ -57,9 +57,14 @@ std::optional<RunFigures> run_one_section(const LoadedSection& section, Hertz fr
     if (settling + window > longest_run) return std::nullopt;
     std::vector<double> in(settling + window), out(in.size());
     const double step = 2.0 * std::numbers::pi * (frequency / sample_rate);
+    // In fixed point load and ripple are a share of the full scale, so that nothing is cut off.
+    const double scale = is_fixed(section.arithmetic.precision)
+                             ? section.arithmetic.full_scale_nm / (2.0 * (verify_load_nm + 1.0))
+                             : 1.0;
     for (std::size_t k = 0; k < in.size(); ++k)
-        in[k] = verify_load_nm + portable::sin(step * static_cast<double>(k));
+        in[k] = scale * (verify_load_nm + portable::sin(step * static_cast<double>(k)));
     run_section(section, in, out);
+    for (double& value : out) value /= scale;
     Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
     Eigen::Vector3d right = Eigen::Vector3d::Zero();
     for (std::size_t k = settling; k < in.size(); ++k) {

@@ -14,6 +14,7 @@
 #include "export/text.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/visible_text.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -173,7 +174,7 @@ std::string bands_text(const FilterSet& filters, const Writer& writer, Arithmeti
         auto& sections = loaded_filters.bands.emplace_back();
         for (const ExportSection& section : band.sections) {
             const auto values = values_of(section, filters.sample_rate, arithmetic);
-            std::string literals = listed(values, writer.exact);
+            std::string literals = joined(values, ", ", writer.exact);
             sections.push_back(section_from(values, arithmetic));
             if (is_fixed(arithmetic.precision)) {
                 std::vector<double> words;
@@ -185,7 +186,7 @@ std::string bands_text(const FilterSet& filters, const Writer& writer, Arithmeti
                 sections.back() = section_from_fixed(words, arithmetic);
             }
             text += fmt::format("        /* {} */\n        {{{}}},\n        /* {} */\n", describe(section),
-                                literals, listed(values, writer.readable));
+                                literals, joined(values, ", ", writer.readable));
         }
         text += "    },\n";
     }
@@ -223,8 +224,8 @@ std::string golden_text(const GoldenVector& golden, const Writer& writer, const 
             is_fixed(arithmetic.precision)
                 ? fmt::format("{}, {}, {}", fixed_word(row[0], arithmetic), fixed_speed(row[1]),
                               fixed_word(row[2], arithmetic))
-                : listed(row, writer.exact);
-        text += fmt::format("    {{{}}}, /* {} */\n", literals, listed(row, writer.readable));
+                : joined(row, ", ", writer.exact);
+        text += fmt::format("    {{{}}}, /* {} */\n", literals, joined(row, ", ", writer.readable));
     }
     return text;
 }
@@ -361,6 +362,7 @@ const Target targets::c_header = {
     .source = "A. Simper, Linear Trapezoidal Integrated State Variable Filter, 2013; C99, 6.4.4.2",
     .endings = ".h .hpp",
     .switches = true,
+    .runs_supervisor = true,
     .keys = keys,
     .write = write,
     .read = read,

@@ -7,6 +7,7 @@
 #include "export/target.hpp"
 #include "export/text.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/visible_text.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -47,8 +48,8 @@ Written write(const FilterSet& filters, const Settings& settings, std::span<cons
         text += fmt::format(
             "static const float32_t {0}_from_deg_s[] = {{{1}}};\n"
             "static const float32_t {0}_to_deg_s[] = {{{2}}};\n\n",
-            name, listed(edges(filters, &ExportBand::from), decimal_float),
-            listed(edges(filters, &ExportBand::to), decimal_float));
+            name, joined(edges(filters, &ExportBand::from), ", ", decimal_float),
+            joined(edges(filters, &ExportBand::to), ", ", decimal_float));
     }
     text += fmt::format("static const float32_t {0}_coefficients[{1}_BANDS][5 * {1}_STAGES + {2}] = {{\n",
                         name, macro, padding);
@@ -57,7 +58,7 @@ Written write(const FilterSet& filters, const Settings& settings, std::span<cons
         for (const ExportSection& section : band.sections) {
             const Biquad& f = section.section;
             text += fmt::format("        {}, /* {} */\n",
-                                listed(std::array{f.b0, f.b1, f.b2, -f.a1, -f.a2}, decimal_float),
+                                joined(std::array{f.b0, f.b1, f.b2, -f.a1, -f.a2}, ", ", decimal_float),
                                 describe(section));
         }
         text += "        0.0f},\n";

@@ -6,6 +6,7 @@
 #include "export/text.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/progress.hpp"
+#include "ripplenotch/core/visible_text.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -22,11 +23,11 @@ std::string in_quotes(std::string_view text) {
 }
 
 std::string list_of(const Biquad& f) {
-    return "[" + listed(std::array{f.b0, f.b1, f.b2, 1.0, f.a1, f.a2}, decimal) + "]";
+    return "[" + joined(std::array{f.b0, f.b1, f.b2, 1.0, f.a1, f.a2}, ", ", decimal) + "]";
 }
 
 std::string list_of(const SvfSection& s) {
-    return "[" + listed(std::array{s.a1, s.a2, s.a3, s.m0, s.m1, s.m2}, decimal) + "]";
+    return "[" + joined(std::array{s.a1, s.a2, s.a3, s.m0, s.m1, s.m2}, ", ", decimal) + "]";
 }
 
 std::string section_text(const ExportSection& section, Hertz sample_rate) {
@@ -51,9 +52,8 @@ std::string band_text(const ExportBand& band, const FilterSet& filters) {
                             decimal(band.from.value()), decimal(band.to.value()));
     }
     text += "\"sections\": [\n";
-    for (std::size_t i = 0; i < band.sections.size(); ++i) {
-        text += (i == 0 ? "" : ",\n") + section_text(band.sections[i], filters.sample_rate);
-    }
+    text += joined(band.sections, ",\n",
+                   [&](const ExportSection& one) { return section_text(one, filters.sample_rate); });
     return text + "\n    ]}";
 }
 
@@ -62,7 +62,7 @@ Written write(const FilterSet& filters, const Settings&, std::span<const std::st
         "{{\n  \"schema\": \"ripplenotch/filters/1\",\n  \"tool\": \"{}\",\n  \"version\": \"{}\",\n  "
         "\"made\": [",
         tool_name, version());
-    for (std::size_t i = 0; i < heading.size(); ++i) text += (i == 0 ? "" : ", ") + in_quotes(heading[i]);
+    text += joined(heading, ", ", in_quotes);
     text += fmt::format("],\n  \"sample_rate_hz\": {},\n", decimal(filters.sample_rate.value()));
     if (filters.by_speed()) {
         text += fmt::format(
@@ -75,9 +75,7 @@ Written write(const FilterSet& filters, const Settings&, std::span<const std::st
         "  \"svf_layout\": \"a1 a2 a3 m0 m1 m2: v3 = x - s2, v1 = a1 s1 + a2 v3, v2 = s2 + a2 s1 + a3 v3, "
         "s1 = 2 v1 - s1, s2 = 2 v2 - s2, y = m0 x + m1 v1 + m2 v2\",\n"
         "  \"bands\": [\n";
-    for (std::size_t b = 0; b < filters.bands.size(); ++b) {
-        text += (b == 0 ? "" : ",\n") + band_text(filters.bands[b], filters);
-    }
+    text += joined(filters.bands, ",\n", [&](const ExportBand& band) { return band_text(band, filters); });
     return {text + "\n  ]\n}\n", {}};
 }
 

@@ -7,6 +7,7 @@
 #include "export/target.hpp"
 #include "export/text.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/visible_text.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -26,8 +27,8 @@ Written write(const FilterSet& filters, const Settings& settings, std::span<cons
         text += fmt::format(
             "% A band is in force while from < |v| <= to, joint speed in deg/s.\n"
             "{0}.from_deg_s = [{1}];\n{0}.to_deg_s = [{2}];\n",
-            name, listed(edges(filters, &ExportBand::from), shortest, " "),
-            listed(edges(filters, &ExportBand::to), shortest, " "));
+            name, joined(edges(filters, &ExportBand::from), " ", shortest),
+            joined(edges(filters, &ExportBand::to), " ", shortest));
     }
     for (std::size_t b = 0; b < filters.bands.size(); ++b) {
         text += fmt::format("% {}\n{}.sos{{{}}} = [\n", describe(filters.bands[b]), name, b + 1);

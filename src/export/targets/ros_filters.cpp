@@ -8,6 +8,7 @@
 #include "export/target.hpp"
 #include "export/text.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/visible_text.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -46,8 +47,8 @@ Written write(const FilterSet& filters, const Settings& settings, std::span<cons
             "      filter{0}:  # {1}\n        name: ripple_{0}\n        type: {2}\n        params:\n", i + 1,
             describe(band.sections[i]), type_of(settings));
         text += fmt::format("          a: [{}]\n          b: [{}]\n",
-                            listed(std::array{1.0, f.a1, f.a2}, decimal),
-                            listed(std::array{f.b0, f.b1, f.b2}, decimal));
+                            joined(std::array{1.0, f.a1, f.a2}, ", ", decimal),
+                            joined(std::array{f.b0, f.b1, f.b2}, ", ", decimal));
     }
     return {text, {}};
 }

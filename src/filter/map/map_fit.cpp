@@ -18,6 +18,7 @@
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
+#include "ripplenotch/core/visible_text.hpp"
 #include "ripplenotch/filter/map_fit.hpp"
 
 namespace ripplenotch {
@@ -453,18 +454,9 @@ double decibels_down(double from_nm, double to_nm) {
     return to_nm > 0.0 && from_nm > 0.0 ? 20.0 * portable::log10(from_nm / to_nm) : 0.0;
 }
 
-// The non-empty texts that `words` returns, separated by commas.
-template <typename Each, typename Words>
-std::string listed(const std::vector<Each>& all, const Words& words) {
-    std::string text;
-    for (const Each& one : all)
-        if (const std::string part = words(one); !part.empty()) text += (text.empty() ? "" : ", ") + part;
-    return text;
-}
-
 std::string orders_of(const std::vector<MapOrderScore>& scores) {
     return (scores.size() == 1 ? "order " : "orders ") +
-           listed(scores, [](const MapOrderScore& score) { return shortest(score.order); });
+           joined(scores, ", ", [](const MapOrderScore& score) { return shortest(score.order); });
 }
 
 std::string disagreement(const MapAgreement& one) {
@@ -574,13 +566,14 @@ std::string map_verdict(const MapFit& fit) {
                         ratio));
     } else {
         sentences.push_back(fmt::format("Cross-validated: {}; amplitudes {}.",
-                                        listed(fit.scores, mapped_order), map_form_words(fit.map.form)));
+                                        joined(fit.scores, ", ", mapped_order),
+                                        map_form_words(fit.map.form)));
     }
-    if (const std::string bounds = listed(fit.scores, bound_of); !bounds.empty())
+    if (const std::string bounds = joined(fit.scores, ", ", bound_of); !bounds.empty())
         sentences.push_back(fmt::format("An amplitude of {} would have been found.", bounds));
     if (!fit.anchored && fit.finding == MapFinding::mapped)
         sentences.emplace_back("The log has no position: phases count from its first row.");
-    if (const std::string apart = listed(fit.agreement, disagreement); !apart.empty())
+    if (const std::string apart = joined(fit.agreement, ", ", disagreement); !apart.empty())
         sentences.push_back(fmt::format("The logs disagree: {}.", apart));
     if (fit.doubt.empty()) sentences.erase(sentences.begin());
     return fmt::format("{}", fmt::join(sentences, " "));

@@ -6,6 +6,7 @@
 
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/visible_text.hpp"
 #include "ripplenotch/filter/map_fit.hpp"
 
 namespace ripplenotch {
@@ -18,11 +19,7 @@ MapRange range_of(const Settings& settings, std::string_view key) {
     return {*std::min_element(ends.begin(), ends.end()), *std::max_element(ends.begin(), ends.end())};
 }
 
-std::string list_text(const std::vector<double>& values) {
-    std::string text;
-    for (const double value : values) text += (text.empty() ? "" : ":") + shortest(value);
-    return text;
-}
+std::string list_text(const std::vector<double>& values) { return joined(values, ":"); }
 
 std::string ends_text(const MapRange& range) { return list_text({range.from, range.to}); }
 

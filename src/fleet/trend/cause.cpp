@@ -8,6 +8,7 @@
 
 #include "core/matrices/factorisations.hpp"
 #include "ripplenotch/core/portable_math.hpp"
+#include "ripplenotch/core/visible_text.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -199,11 +200,9 @@ std::string cause_of(const JointHistory& history, const std::vector<Regression>&
     }
     // No other descriptor has a significant change that this cause does not explain.
     if (best != nullptr && left_by_best.cwiseAbs2().maxCoeff() < took_part) return best->name;
-    std::string words;
-    for (const ChangedSeries& one : changed)
-        if (one.extra.t_squared >= took_part)
-            words += (words.empty() ? "" : ", ") + history.series[one.series].name;
-    return "several at once: " + words;
+    return "several at once: " + joined(changed, ", ", [&](const ChangedSeries& one) {
+               return one.extra.t_squared >= took_part ? history.series[one.series].name : std::string();
+           });
 }
 
 }  // namespace ripplenotch

@@ -4,6 +4,7 @@
 
 #include "log/messages/message_records.hpp"
 #include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/visible_text.hpp"
 
 #if defined(RIPPLENOTCH_HAS_SQLITE)
 
@@ -80,9 +81,8 @@ class Rosbag2Messages final : public MessageSource {
                             : std::nullopt;
     }
     void restart(const std::vector<std::size_t>& channels) override {
-        std::string ids;
-        for (const std::size_t channel : channels)
-            ids += fmt::format("{}{}", ids.empty() ? "" : ",", ids_[channel]);
+        const std::string ids =
+            joined(channels, ",", [&](std::size_t channel) { return std::to_string(ids_[channel]); });
         restart_all(fmt::format("WHERE topic_id IN ({})", ids));
     }
     bool next(RecordedMessage& message) override {

@@ -17,6 +17,7 @@
 #include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/quantity.hpp"
+#include "ripplenotch/core/visible_text.hpp"
 #include "ripplenotch/document/identification_json.hpp"
 
 namespace ripplenotch {
@@ -47,8 +48,8 @@ double ratio_error(const GearRatioFit& fit) {
 
 }  // namespace
 
-JointFacts JointFile::facts(std::optional<GearRatio> given) const {
-    JointFacts facts;
+GearStatement JointFile::facts(std::optional<GearRatio> given) const {
+    GearStatement facts;
     facts.source = source;
     facts.sample_rate = nominal_rate(found.sample_rate);
     facts.velocity_noise = found.velocity_noise;
@@ -101,16 +102,15 @@ std::optional<GearRatio> ratio_of(const GearOptions& options) {
 
 std::string reason_for_none(const Identification& found) {
     if (!found.doubts.empty()) return "cannot tell: " + found.doubts.front().because;
-    std::string ratios;
-    for (const double ratio : undecided_ratios(found.gear_ratio))
-        ratios += fmt::format("{}{:.5g}", ratios.empty() ? "" : " or ", ratio);
+    const std::string ratios = joined(undecided_ratios(found.gear_ratio), " or ",
+                                      [](double ratio) { return fmt::format("{:.5g}", ratio); });
     return ratios.empty() ? "found none" : "could not decide between " + ratios;
 }
 
 // The statement of the file, after those that take precedence. A file that is asked and knows nothing is
 // refused: it was measured, and nothing was found.
 GearStatement statement_of(const JointFile& file, const GearStatement& options, const GearStatement& method) {
-    JointFacts facts = file.facts(options.ratio ? options.ratio : method.ratio);
+    GearStatement facts = file.facts(options.ratio ? options.ratio : method.ratio);
     if (!facts.ratio)
         raise<DataError>("{}: its gear ratio is null, because identify {}; give --gear-ratio", file.source,
                          reason_for_none(file.found));
@@ -184,7 +184,7 @@ std::optional<GearAccount> GearChoice::of(const GearStatement& method, const Joi
     return gear;
 }
 
-std::optional<JointFacts> GearChoice::facts() const {
+std::optional<GearStatement> GearChoice::facts() const {
     if (!joint_) return std::nullopt;
     return joint_->facts(ratio_of(options_));
 }
@@ -195,10 +195,8 @@ void raise_no_gear(std::string_view who) {
 }
 
 std::string gear_in_words(const GearAccount& gear) {
-    std::string orders;
-    for (const Order order : gear.orders)
-        orders += (orders.empty() ? ", orders " : ", ") + shortest(order.value());
-    return fmt::format("gear ratio {:.6g}{} ({})", gear.ratio.value(), orders, gear.source);
+    return fmt::format("gear ratio {:.6g}{}{} ({})", gear.ratio.value(),
+                       gear.orders.empty() ? "" : ", orders ", joined(gear.orders, ", "), gear.source);
 }
 
 }  // namespace ripplenotch

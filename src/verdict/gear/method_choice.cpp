@@ -13,6 +13,7 @@
 
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/visible_text.hpp"
 #include "ripplenotch/design/candidate_table.hpp"
 #include "ripplenotch/document/map_json.hpp"
 #include "ripplenotch/document/table_json.hpp"
@@ -39,9 +40,7 @@ bool given(Spec& spec, std::string_view key) { return entry_of(spec, key) != spe
 
 void fill_in(Spec& spec, const Method& method, std::string_view key, const std::vector<double>& values) {
     if (values.empty() || !has_key(method, key) || given(spec, key)) return;
-    std::string text;
-    for (const double value : values) text += (text.empty() ? "" : ":") + shortest(value);
-    spec.values.emplace_back(key, std::move(text));
+    spec.values.emplace_back(key, joined(values, ":"));
 }
 
 void fill_gear(Spec& spec, const Method& method, const GearAccount& gear) {

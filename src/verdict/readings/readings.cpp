@@ -15,6 +15,7 @@
 
 #include "ripplenotch/analysis/identification.hpp"
 #include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/visible_text.hpp"
 #include "ripplenotch/diagnose/diagnosis.hpp"
 #include "ripplenotch/log/log.hpp"
 
@@ -228,13 +229,12 @@ std::string settling_options(std::span<const Log> logs) {
 
 std::string reading_doubt(std::span<const Log> logs,
                           const std::function<bool(const OtherReading&)>& may_hold) {
-    std::string rivals;
-    for (const OtherReading& reading : open_readings(logs)) {
-        if (may_hold(reading)) rivals += (rivals.empty() ? "if " : ", or if ") + reading.words;
-    }
+    const std::string rivals = joined(open_readings(logs), ", or if ", [&](const OtherReading& reading) {
+        return may_hold(reading) ? reading.words : "";
+    });
     if (rivals.empty()) return "";
-    return fmt::format("the log does not say its units, and its orders are others {}; {} settles it", rivals,
-                       settling_options(logs));
+    return fmt::format("the log does not say its units, and its orders are others if {}; {} settles it",
+                       rivals, settling_options(logs));
 }
 
 Trace read_otherwise(const Trace& trace, const OtherReading& reading) {
