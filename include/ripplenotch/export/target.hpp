@@ -30,8 +30,8 @@ struct Target {
     std::string_view name, summary, source;
     std::string_view endings;  ///< file name endings, separated by blanks
     bool binary = false;
-    bool notches_only = false;  ///< it cannot hold a low-pass
-    bool switches = false;      ///< it holds the bands of a table, one for each range of speed
+    bool notches_only = false;     ///< it cannot hold a low-pass
+    bool switches = false;         ///< it holds the bands of a table, one for each range of speed
     bool runs_supervisor = false;  ///< its code has hysteresis, dwell and transitions
     std::span<const Key> keys = {};
     /// `heading` describes the origin of the file, one line each, for a comment; it may be empty. Throws

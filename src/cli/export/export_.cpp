@@ -63,6 +63,13 @@ void tell_check(const std::string& text, const CommonOptions& common) {
     }
 }
 
+// Where a generated file is from, and whose it is.
+std::vector<std::string> generated_by(const Provenance& provenance) {
+    std::vector<std::string> lines = heading_of(provenance);
+    lines.emplace_back("This file is yours to use, change and pass on, without conditions.");
+    return lines;
+}
+
 // `export` of a method whose coefficients change while it runs.
 
 struct CodeExport {
@@ -160,7 +167,7 @@ ExitCode export_code(const CodeExport& request, const std::string& command_line)
     const Settings settings(fmt::format("target {}", spec.name), spec, method_code_keys());
     check_output_name(request.common.output, spec.name, ".h .hpp");
     const auto design = running_design(*request.method.method, request.method.settings, request.sample_rate);
-    const Written written = write_method_code(*design, settings, heading_of({{}, command_line}));
+    const Written written = write_method_code(*design, settings, generated_by({{}, command_line}));
     write_export(written, request.common);
     if (!request.verify) return ExitCode::done;
     const ReadBack again = read_back(written, request.common);
@@ -206,7 +213,7 @@ ExitCode export_map(const MapExport& request, const std::string& command_line) {
     const RippleMap map = load_map(request.map).map;
     if (map.orders.empty()) raise<DataError>("{}: the map is empty: there is nothing to export", request.map);
     const Written written =
-        target.write(map, settings, heading_of({{input_record(request.map)}, command_line}));
+        target.write(map, settings, generated_by({{input_record(request.map)}, command_line}));
     write_export(written, request.common);
     if (!request.verify) return ExitCode::done;
     const ReadBack again = read_back(written, request.common);
@@ -303,8 +310,9 @@ void check_export(const ExportRequest& request) {
     if (request.method) {
         const Method& method = find_method(parse_spec(*request.method).name);
         if (!can_export(method))
-            raise<UsageError>("method {} is no set of coefficients and has no code; export takes a table.json, {}",
-                              method.name, exported_methods());
+            raise<UsageError>(
+                "method {} is no set of coefficients and has no code; export takes a table.json, {}",
+                method.name, exported_methods());
     }
     if (!switches(request) && !request.sample_rate)
         raise<UsageError>(
@@ -312,8 +320,9 @@ void check_export(const ExportRequest& request) {
     if (switches(request) && request.sample_rate)
         raise<UsageError>("a table has its own sample rate; --sample-rate goes with other methods");
     if (request.transition && request.method)
-        raise<UsageError>("--transition is for a table; of a method it is a key: switching,table=...,transition={}",
-                          *request.transition);
+        raise<UsageError>(
+            "--transition is for a table; of a method it is a key: switching,table=...,transition={}",
+            *request.transition);
     if (request.common.json && request.common.output == "-")
         raise<UsageError>(
             "the exported file and --json would both go to standard output; name a file with -o");
@@ -350,9 +359,10 @@ std::optional<std::string> left_to_caller(const Target& target, const FilterSet&
     const SwitchingDesign& design = filters.switching;
     if (target.runs_supervisor || !filters.by_speed()) return std::nullopt;
     if (design.hysteresis.value() == 0.0 && design.dwell_samples == 0) return std::nullopt;
-    return fmt::format("target {} holds the filters alone: hysteresis={}deg/s and dwell={} samples are left to the "
-                       "code that switches them",
-                       target.name, shortest(design.hysteresis.value()), design.dwell_samples);
+    return fmt::format(
+        "target {} holds the filters alone: hysteresis={}deg/s and dwell={} samples are left to the "
+        "code that switches them",
+        target.name, shortest(design.hysteresis.value()), design.dwell_samples);
 }
 
 void verify(const ExportRequest& request, const Target& target, const Settings& settings,
@@ -398,7 +408,7 @@ ExitCode run_export(const ExportRequest& request, const std::string& command_lin
     for (const std::string& file : method.files) provenance.inputs.push_back(input_record(file));
     if (request.band != 0) filters = only_band(filters, request.band);
 
-    Written written = target.write(filters, settings, heading_of(provenance));
+    Written written = target.write(filters, settings, generated_by(provenance));
     if (auto left = left_to_caller(target, filters)) written.warnings.push_back(std::move(*left));
     write_export(written, request.common, target.binary);
 
@@ -440,9 +450,10 @@ std::function<ExitCode()> attach_export(Options& options) {
                  fmt::format("instead of a table: {} with its keys, as filter has them, for example "
                              "switching,table=table.json,hysteresis=1deg/s",
                              exported_methods()));
-    options.text("--transition", request->transition, "NAME",
-                 "of a table: what becomes of the filters' memories at a switch, as the key of method switching "
-                 "(default: as there)");
+    options.text(
+        "--transition", request->transition, "NAME",
+        "of a table: what becomes of the filters' memories at a switch, as the key of method switching "
+        "(default: as there)");
     attach_gear(options, request->gear);
     options.number("--sample-rate", request->sample_rate, Dimension::frequency,
                    "with --method: rate at which the filter will run");

@@ -32,13 +32,16 @@ std::string SwitchingCode::declarations() const {
 #define @NAME@_SECTIONS @sections@
 )";
     if (by_speed_) {
-        text += R"(#define @NAME@_HYSTERESIS @hysteresis@ /* @speed-unit@: a region is left only so far outside it */
+        text +=
+            R"(#define @NAME@_HYSTERESIS @hysteresis@ /* @speed-unit@: a region is left only so far outside it */
 #define @NAME@_DWELL @dwell@ /* samples that a filter stays in force at least */
 )";
-        if (blends_) text += "#define @NAME@_CROSSFADE @crossfade@ /* samples over which outputs are blended */\n";
+        if (blends_)
+            text += "#define @NAME@_CROSSFADE @crossfade@ /* samples over which outputs are blended */\n";
     }
     if (fixed_) {
-        text += R"(#define @NAME@_FULL_SCALE_NM @full-scale@ /* the torque of a word one larger than the largest */
+        text +=
+            R"(#define @NAME@_FULL_SCALE_NM @full-scale@ /* the torque of a word one larger than the largest */
 #define @NAME@_HEADROOM @headroom@ /* bits of a signal above a word, for what is larger inside of a filter */
 
 #include <stdint.h>
@@ -56,7 +59,7 @@ typedef struct {
 /* Of x itself a section adds m0 = (its gain at half the rate) - 1. */
 typedef struct {
     @name@_coefficient )" +
-                fields + "\n} @name@_section;\n\n";
+            fields + "\n} @name@_section;\n\n";
     } else {
         text += "\ntypedef @real@ @name@_real;\ntypedef @real@ @name@_signal;\n\n";
         if (form != Form::svf)
@@ -74,11 +77,12 @@ typedef struct {
             "    long since; /* samples since the last switch, @NAME@_DWELL at most */\n";
     if (blends_)
         text +=
-            "    @name@_share leaving[@NAME@_BANDS + 1]; /* shares at the start of a blend; the torque's first */\n"
+            "    @name@_share leaving[@NAME@_BANDS + 1]; /* shares at the start of a blend; the torque's "
+            "first */\n"
             "    long blended; /* samples of the blend so far; -1 without one */\n";
     text += "} @name@_state;\n\n";
-    const std::string share = fixed_ ? "/* 32768 is all */\ntypedef int32_t @name@_share;\n\n"
-                                     : "typedef @real@ @name@_share;\n\n";
+    const std::string share =
+        fixed_ ? "/* 32768 is all */\ntypedef int32_t @name@_share;\n\n" : "typedef @real@ @name@_share;\n\n";
     if (by_speed_) text.insert(text.find("typedef struct {\n    @name@_signal " + memory), share);
     return text;
 }
@@ -137,8 +141,8 @@ std::string SwitchingCode::section_functions() const {
     if (fixed_)
         before = R"(static inline @name@_signal @name@_product(const @name@_coefficient *c, @name@_signal x)
 {
-    const int shift = c->shift - 16;
-    return (c->mantissa * (x >> 16) + ((@name@_signal)1 << (shift - 1))) >> shift;
+    const int shift = c->shift - @unused@;
+    return (c->mantissa * (x >> @unused@) + ((@name@_signal)1 << (shift - 1))) >> shift;
 }
 
 )";
@@ -232,7 +236,8 @@ static inline @name@_share @name@_fade(@speed@ speed, @speed@ full, @speed@ none
 
 )";
     } else {
-        text = R"(static inline @name@_signal @name@_times(@name@_signal x, @name@_share share) { return share * x; }
+        text =
+            R"(static inline @name@_signal @name@_times(@name@_signal x, @name@_share share) { return share * x; }
 
 static inline @name@_share @name@_fade(@speed@ speed, @speed@ full, @speed@ none)
 {
@@ -330,21 +335,24 @@ static inline @name@_real @name@_word(@name@_signal x)
 
 )";
     if (by_speed_) text += supervisor() + blend_functions();
-    text += R"(/* Before the first sample, and after a gap in time: the next torque is met as if it had always been there. */
+    text +=
+        R"(/* Before the first sample, and after a gap in time: the next torque is met as if it had always been there. */
 static inline void @name@_init(@name@_state *state)
 {
 )";
     if (all_bands_) {
-        text += "    int i;\n    for (i = 0; i < @NAME@_BANDS; ++i) {\n"
-                "        @name@_settle_cascade(@name@_bands[i], state->memory[i], 0);\n    }\n";
+        text +=
+            "    int i;\n    for (i = 0; i < @NAME@_BANDS; ++i) {\n"
+            "        @name@_settle_cascade(@name@_bands[i], state->memory[i], 0);\n    }\n";
     } else {
         text += "    @name@_settle_cascade(@name@_bands[0], state->memory, 0);\n";
     }
     text += "    state->band = -1;\n";
     if (by_speed_) text += "    state->region = -1;\n    state->since = 0;\n";
     if (blends_)
-        text += "    for (i = 0; i <= @NAME@_BANDS; ++i) {\n        state->leaving[i] = 0;\n    }\n"
-                "    state->blended = -1;\n";
+        text +=
+            "    for (i = 0; i <= @NAME@_BANDS; ++i) {\n        state->leaving[i] = 0;\n    }\n"
+            "    state->blended = -1;\n";
     text += "}\n\n";
     const std::string torque = fixed_ ? "torque" : "torque_nm";
     if (!by_speed_) {
@@ -364,13 +372,14 @@ static inline @name@_real @name@_step(@name@_state *state, @name@_real {0})
 )",
                                   torque, to_signal, out);
     }
-    text += fmt::format(R"(/* One sample, called at @NAME@_SAMPLE_RATE_HZ; the @shaft@ speed, in @speed-words@, may have either sign. */
+    text += fmt::format(
+        R"(/* One sample, called at @NAME@_SAMPLE_RATE_HZ; the @shaft@ speed, in @speed-words@, may have either sign. */
 static inline @name@_real @name@_step(@name@_state *state, @name@_real {0}, @speed@ @speed-name@)
 {{
     const @speed@ speed = @speed-name@ < 0 ? -@speed-name@ : @speed-name@;
     const @name@_signal x = {1};
 )",
-                        torque, to_signal);
+        torque, to_signal);
     if (all_bands_)
         text += std::string("    const int first = state->region < 0;\n") +
                 (blends_ ? "    const int before = state->band;\n" : "") +
@@ -382,9 +391,10 @@ static inline @name@_real @name@_step(@name@_state *state, @name@_real {0}, @spe
     if (all_bands_) text += "    int i;\n";
     if (!blends_) text += "    (void)@name@_supervise(state, speed);\n";
     text += "    region = &@name@_regions[state->region];\n" + filter_code();
-    text += "    if (region->full != region->none) {\n"
-            "        filtered = x + @name@_times(filtered - x, @name@_fade(speed, region->full, region->none));\n"
-            "    }\n";
+    text +=
+        "    if (region->full != region->none) {\n"
+        "        filtered = x + @name@_times(filtered - x, @name@_fade(speed, region->full, region->none));\n"
+        "    }\n";
     return text + "    return " + out + ";\n}\n\n";
 }
 
@@ -400,7 +410,8 @@ static const @golden-type@ @name@_golden[@NAME@_GOLDEN][3] = {{
 }
 
 std::string SwitchingCode::self_test_function() const {
-    return fmt::format(R"(/* The largest error{0}; assert(@name@_self_test() <= @NAME@_GOLDEN_TOLERANCE{1}). */
+    return fmt::format(
+        R"(/* The largest error{0}; assert(@name@_self_test() <= @NAME@_GOLDEN_TOLERANCE{1}). */
 static inline @golden-type@ @name@_self_test(void)
 {{
     @name@_state state;
@@ -423,11 +434,11 @@ static inline @golden-type@ @name@_self_test(void)
 #endif
 
 )",
-                       fixed_ ? " in words" : " in Nm", fixed_ ? "" : "_NM", fixed_ ? "(@name@_real)" : "",
-                       !by_speed_ ? ""
-                       : fixed_   ? ", (@speed@)@name@_golden[k][1]"
-                                  : ", @name@_golden[k][1]",
-                       fixed_ ? "(@golden-type@)" : "");
+        fixed_ ? " in words" : " in Nm", fixed_ ? "" : "_NM", fixed_ ? "(@name@_real)" : "",
+        !by_speed_ ? ""
+        : fixed_   ? ", (@speed@)@name@_golden[k][1]"
+                   : ", @name@_golden[k][1]",
+        fixed_ ? "(@golden-type@)" : "");
 }
 
 }  // namespace ripplenotch

@@ -18,7 +18,6 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t samples_a_region = 6;
 constexpr std::size_t most_regions_visited = 24;
-constexpr int word_fraction = 16;  // bits of a signal below those that are multiplied
 
 template <class Real>
 struct Floating {
@@ -83,8 +82,8 @@ struct Fixed {
         return found;
     }
     [[nodiscard]] static Signal product(const Coefficient& c, Signal x) {
-        const int shift = c.shift - word_fraction;
-        return (c.mantissa * (x >> word_fraction) + (std::int64_t{1} << (shift - 1))) >> shift;
+        const int shift = c.shift - c.unused_bits;
+        return (c.mantissa * (x >> c.unused_bits) + (std::int64_t{1} << (shift - 1))) >> shift;
     }
     [[nodiscard]] static Share share(Speed speed, Speed full, Speed none) {
         const std::int64_t share = (speed - none) * 32768 / (full - none);
@@ -344,8 +343,7 @@ std::vector<SwitchingRegion> switching_regions(const FilterSet& filters) {
     std::vector<std::pair<DegPerSec, DegPerSec>> edges;
     for (const ExportBand& band : filters.bands) edges.emplace_back(band.from, band.to);
     std::vector<SwitchingRegion> regions;
-    for (const SpeedRegion& region :
-         speed_regions(edges, filters.switching.below, filters.switching.above)) {
+    for (const SpeedRegion& region : speed_regions(edges, filters.switching.below, filters.switching.above)) {
         const int band = region.holds                       ? region_holds
                          : region.candidate == no_candidate ? region_passes
                                                             : region.candidate;
@@ -355,8 +353,8 @@ std::vector<SwitchingRegion> switching_regions(const FilterSet& filters) {
 }
 
 FixedCoefficient FixedCoefficient::of(double value, Precision precision) {
-    const int bits = precision == Precision::q15 ? 15 : 31;
-    if (value == 0.0) return {0, bits + word_fraction};
+    const int bits = precision == Precision::q15 ? 15 : 31, unused = unused_bits_of(precision);
+    if (value == 0.0) return {0, bits + unused, unused};
     int exponent = 0;
     const double fraction = std::frexp(value, &exponent);  // 0.5 <= |fraction| < 1
     double mantissa = std::nearbyint(std::ldexp(fraction, bits));
@@ -364,7 +362,7 @@ FixedCoefficient FixedCoefficient::of(double value, Precision precision) {
         mantissa /= 2.0;
         ++exponent;
     }
-    return {static_cast<std::int32_t>(mantissa), bits - exponent};
+    return {static_cast<std::int32_t>(mantissa), bits - exponent, unused};
 }
 
 double FixedCoefficient::value() const { return std::ldexp(static_cast<double>(mantissa), -shift); }
@@ -411,9 +409,8 @@ void run_section(const LoadedSection& section, std::span<const double> in, std::
         const A arithmetic(section.arithmetic);
         const SectionRun<A> run(section);
         typename SectionRun<A>::Memory memory{};
-        std::transform(in.begin(), in.end(), out.begin(), [&](double x) {
-            return arithmetic.out(run.step(memory, arithmetic.in(x)));
-        });
+        std::transform(in.begin(), in.end(), out.begin(),
+                       [&](double x) { return arithmetic.out(run.step(memory, arithmetic.in(x))); });
     });
 }
 

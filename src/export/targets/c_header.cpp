@@ -59,8 +59,9 @@ Form form_of(const FilterSet& filters, const Settings& settings) {
     const std::string& transition = filters.switching.transition;
     if (!filters.by_speed() || runs_all_bands(filters.switching)) return form;
     if (transition == "reset")
-        raise<UsageError>("target c-header: transition=reset is there to be compared, not to be used; take one "
-                          "of keep-state-variable, keep, parallel, crossfade");
+        raise<UsageError>(
+            "target c-header: transition=reset is there to be compared, not to be used; take one "
+            "of keep-state-variable, keep, parallel, crossfade");
     const bool keeps_past = transition == "keep";
     if (asked.empty()) return keeps_past ? Form::df1 : Form::svf;
     if (form != (keeps_past ? Form::df1 : Form::svf)) {
@@ -91,8 +92,9 @@ Arithmetic arithmetic_of(const FilterSet& filters, const Settings& settings) {
             "target c-header: precision={} needs the torque of the largest word, for example range=200Nm",
             precision);
     if (found.form != Form::svf)
-        raise<UsageError>("target c-header: fixed point is written in the state-variable form alone; leave "
-                          "form out, and take another transition than keep");
+        raise<UsageError>(
+            "target c-header: fixed point is written in the state-variable form alone; leave "
+            "form out, and take another transition than keep");
     found.full_scale_nm = settings.number("range");
     found.headroom_bits = headroom_bits(filters);
     return found;
@@ -109,10 +111,10 @@ SpeedOfCode speed_of(const FilterSet& filters, const Settings& settings) {
     if (speed.unit == "rad/s") speed.per_deg_s = std::numbers::pi / 180.0;
     if (speed.unit == "rpm") speed.per_deg_s = 1.0 / 6.0;
     if (speed.shaft == "motor" && filters.gear_ratio) speed.per_deg_s *= filters.gear_ratio->value();
-    speed.name = std::string(speed.shaft == "motor" ? "motor_speed_" : "speed_") +
-                 (speed.unit == "deg/s"   ? "deg_s"
-                  : speed.unit == "rad/s" ? "rad_s"
-                                          : "rpm");
+    speed.name =
+        std::string(speed.shaft == "motor" ? "motor_speed_" : "speed_") + (speed.unit == "deg/s"   ? "deg_s"
+                                                                           : speed.unit == "rad/s" ? "rad_s"
+                                                                                                   : "rpm");
     return speed;
 }
 
@@ -142,7 +144,8 @@ std::vector<double> values_of(const ExportSection& section, Hertz sample_rate, A
 
 LoadedSection section_from(const std::vector<double>& v, Arithmetic arithmetic) {
     if (arithmetic.form == Form::svf)
-        return {arithmetic, biquad_of({v[0], v[1], v[2], v[3], v[4], v[5]}),
+        return {arithmetic,
+                biquad_of({v[0], v[1], v[2], v[3], v[4], v[5]}),
                 {v[0], v[1], v[2], v[3], v[4], v[5]}};
     return loaded(Biquad{v[0], v[1], v[2], v[3], v[4]}, arithmetic);
 }
@@ -151,8 +154,8 @@ LoadedSection section_from(const std::vector<double>& v, Arithmetic arithmetic) 
 LoadedSection section_from_fixed(const std::vector<double>& words, Arithmetic arithmetic) {
     std::vector<double> values;
     for (std::size_t i = 0; i + 1 < words.size(); i += 2)
-        values.push_back(FixedCoefficient{static_cast<std::int32_t>(words[i]), static_cast<int>(words[i + 1])}
-                             .value());
+        values.push_back(
+            FixedCoefficient{static_cast<std::int32_t>(words[i]), static_cast<int>(words[i + 1]), 0}.value());
     values[3] += 1.0;
     return section_from(values, arithmetic);
 }
@@ -179,9 +182,12 @@ std::string bands_text(const FilterSet& filters, const Writer& writer, Arithmeti
             if (is_fixed(arithmetic.precision)) {
                 std::vector<double> words;
                 literals.clear();
-                for (const FixedCoefficient& c : fixed_coefficients(sections.back().svf, arithmetic.precision)) {
-                    literals += fmt::format("{}{{{}, {}}}", literals.empty() ? "" : ", ", c.mantissa, c.shift);
-                    words.insert(words.end(), {static_cast<double>(c.mantissa), static_cast<double>(c.shift)});
+                for (const FixedCoefficient& c :
+                     fixed_coefficients(sections.back().svf, arithmetic.precision)) {
+                    literals +=
+                        fmt::format("{}{{{}, {}}}", literals.empty() ? "" : ", ", c.mantissa, c.shift);
+                    words.insert(words.end(),
+                                 {static_cast<double>(c.mantissa), static_cast<double>(c.shift)});
                 }
                 sections.back() = section_from_fixed(words, arithmetic);
             }
@@ -193,9 +199,7 @@ std::string bands_text(const FilterSet& filters, const Writer& writer, Arithmeti
     return text;
 }
 
-std::string fixed_speed(double speed) {
-    return std::to_string(std::llround(speed * fixed_speed_steps));
-}
+std::string fixed_speed(double speed) { return std::to_string(std::llround(speed * fixed_speed_steps)); }
 
 std::string regions_text(const std::vector<SwitchingRegion>& regions, const SpeedOfCode& unit,
                          std::string (*literal)(double)) {
@@ -220,11 +224,10 @@ std::string golden_text(const GoldenVector& golden, const Writer& writer, const 
     std::string text;
     for (std::size_t k = 0; k < golden.torque_nm.size(); ++k) {
         const std::array row = {golden.torque_nm[k], golden.speed_deg_s[k], golden.expected_nm[k]};
-        const std::string literals =
-            is_fixed(arithmetic.precision)
-                ? fmt::format("{}, {}, {}", fixed_word(row[0], arithmetic), fixed_speed(row[1]),
-                              fixed_word(row[2], arithmetic))
-                : joined(row, ", ", writer.exact);
+        const std::string literals = is_fixed(arithmetic.precision)
+                                         ? fmt::format("{}, {}, {}", fixed_word(row[0], arithmetic),
+                                                       fixed_speed(row[1]), fixed_word(row[2], arithmetic))
+                                         : joined(row, ", ", writer.exact);
         text += fmt::format("    {{{}}}, /* {} */\n", literals, joined(row, ", ", writer.readable));
     }
     return text;
@@ -245,10 +248,11 @@ std::string about(const FilterSet& filters, const Arithmetic& arithmetic, const 
     }
     if (!is_fixed(arithmetic.precision))
         return text + " * Literals are exact; the comment below each row has them in decimal.\n */\n";
-    return text + fmt::format(" * {} Nm at full scale, a word's last place is {:.3g} Nm; {} bits of headroom; on "
-                              "the test vector rounding\n * makes {:.2g} Nm rms.\n */\n",
-                              shortest(arithmetic.full_scale_nm),
-                              fixed_torque_nm(1, arithmetic), arithmetic.headroom_bits, golden.rounding_rms_nm);
+    return text + fmt::format(
+                      " * {} Nm at full scale, a word's last place is {:.3g} Nm; {} bits of headroom; on "
+                      "the test vector rounding\n * makes {:.2g} Nm rms.\n */\n",
+                      shortest(arithmetic.full_scale_nm), fixed_torque_nm(1, arithmetic),
+                      arithmetic.headroom_bits, golden.rounding_rms_nm);
 }
 
 Written write(const FilterSet& filters, const Settings& settings, std::span<const std::string> heading) {
@@ -268,34 +272,37 @@ Written write(const FilterSet& filters, const Settings& settings, std::span<cons
     text +=
         "static const @name@_section @name@_bands[@NAME@_BANDS][@NAME@_SECTIONS] = {\n" + bands + "};\n\n";
     if (filters.by_speed())
-        text += code.regions_open() + regions_text(regions, speed, fixed ? fixed_speed : writer.exact) +
-                "};\n\n";
+        text +=
+            code.regions_open() + regions_text(regions, speed, fixed ? fixed_speed : writer.exact) + "};\n\n";
     text += code.section_functions() + code.step_function() + code.self_test_open() +
             golden_text(golden, writer, arithmetic) + "};\n\n" + code.self_test_function() + "#endif\n";
     const double hysteresis = scaled.switching.hysteresis.value();
-    text = filled(
-        text,
-        {{"@rate@", style.number(filters.sample_rate.value())},
-         {"@bands@", std::to_string(filters.bands.size())},
-         {"@sections@", std::to_string(filters.sections_per_band())},
-         {"@regions@", std::to_string(regions.size())},
-         {"@golden@", std::to_string(golden.torque_nm.size())},
-         {"@hysteresis@", fixed ? fixed_speed(hysteresis) : style.number(hysteresis)},
-         {"@dwell@", std::to_string(filters.switching.dwell_samples)},
-         {"@crossfade@", std::to_string(filters.switching.crossfade_samples)},
-         {"@full-scale@", shortest(arithmetic.full_scale_nm)},
-         {"@headroom@", std::to_string(arithmetic.headroom_bits)},
-         {"@fraction@", wide ? "16" : "32"},
-         {"@word@", wide ? "int32_t" : "int16_t"},
-         {"@mantissa@", wide ? "int32_t" : "int16_t"},
-         {"@largest@", wide ? "2147483647" : "32767"},
-         {"@golden-type@", fixed ? "int64_t" : style.is_float ? "float" : "double"},
-         {"@speed@", fixed ? "int32_t" : "@name@_real"},
-         {"@speed-unit@", speed.unit},
-         {"@speed-words@", fixed ? "thousandths of " + speed.unit : speed.unit},
-         {"@speed-name@", fixed ? "milli_" + speed.name : speed.name},
-         {"@shaft@", speed.shaft},
-         {"@tolerance@", fixed ? "0" : style.is_float ? "1e-4f" : "1e-9"}});
+    text = filled(text, {{"@rate@", style.number(filters.sample_rate.value())},
+                         {"@bands@", std::to_string(filters.bands.size())},
+                         {"@sections@", std::to_string(filters.sections_per_band())},
+                         {"@regions@", std::to_string(regions.size())},
+                         {"@golden@", std::to_string(golden.torque_nm.size())},
+                         {"@hysteresis@", fixed ? fixed_speed(hysteresis) : style.number(hysteresis)},
+                         {"@dwell@", std::to_string(filters.switching.dwell_samples)},
+                         {"@crossfade@", std::to_string(filters.switching.crossfade_samples)},
+                         {"@full-scale@", shortest(arithmetic.full_scale_nm)},
+                         {"@headroom@", std::to_string(arithmetic.headroom_bits)},
+                         {"@fraction@", wide ? "16" : "32"},
+                         {"@word@", wide ? "int32_t" : "int16_t"},
+                         {"@mantissa@", wide ? "int32_t" : "int16_t"},
+                         {"@unused@", std::to_string(unused_bits_of(arithmetic.precision))},
+                         {"@largest@", wide ? "2147483647" : "32767"},
+                         {"@golden-type@", fixed            ? "int64_t"
+                                           : style.is_float ? "float"
+                                                            : "double"},
+                         {"@speed@", fixed ? "int32_t" : "@name@_real"},
+                         {"@speed-unit@", speed.unit},
+                         {"@speed-words@", fixed ? "thousandths of " + speed.unit : speed.unit},
+                         {"@speed-name@", fixed ? "milli_" + speed.name : speed.name},
+                         {"@shaft@", speed.shaft},
+                         {"@tolerance@", fixed            ? "0"
+                                         : style.is_float ? "1e-4f"
+                                                          : "1e-9"}});
     return {"/*\n" + comment_lines(heading, " * ") + style.filled(text), {}};
 }
 
@@ -304,7 +311,9 @@ Arithmetic arithmetic_in(std::string_view bytes, TextReader& reader) {
     const auto has = [&](std::string_view declaration) {
         return bytes.find(declaration) != std::string_view::npos;
     };
-    Arithmetic found{has(svf_fields) ? Form::svf : has(df1_memory) ? Form::df1 : Form::df2t,
+    Arithmetic found{has(svf_fields)   ? Form::svf
+                     : has(df1_memory) ? Form::df1
+                                       : Form::df2t,
                      has("typedef float ")     ? Precision::float32
                      : has("typedef double ")  ? Precision::float64
                      : has("typedef int16_t ") ? Precision::q15
@@ -350,8 +359,8 @@ LoadedFilters read(std::string_view bytes, const std::string& source, const Filt
 
 std::string usage(const FilterSet& filters, const Settings& settings, const std::string& path) {
     const std::string name = settings.text("name");
-    return fmt::format("#include \"{1}\"   {0}_state s; {0}_init(&s); filtered = {0}_step(&s, torque{2});", name,
-                       path, filters.by_speed() ? ", " + speed_of(filters, settings).name : "");
+    return fmt::format("#include \"{1}\"   {0}_state s; {0}_init(&s); filtered = {0}_step(&s, torque{2});",
+                       name, path, filters.by_speed() ? ", " + speed_of(filters, settings).name : "");
 }
 
 }  // namespace
