@@ -26,7 +26,7 @@ TableSpec searched_ripple(WidthRule width, std::vector<double> amplitudes_nm) {
 TEST_CASE("the Q for a delay is the one that halving alone comes to, to the last bit") {
     for (const WidthRule width : {WidthRule::analog, WidthRule::digital}) {
         const TableSpec spec = searched_ripple(width, {});
-        const BandFit fit(spec, false);
+        const BandFit fit(spec, {});
         const auto delay_s = [&](double center_deg_s, double q) {
             return fit.delay_s(*fit.tune(center_deg_s, {q, std::nullopt}));
         };

@@ -135,7 +135,7 @@ TEST_CASE("numbers of C, MATLAB and YAML are read, and only numbers") {
 TEST_CASE("the exported bank passes, holds and fades where the table says") {
     const auto settled_output = [](const FilterSet& filters, double speed) {
         // 20 samples of another torque at that speed tell: passed, filtered, or a share of it.
-        const auto regions = bank_regions(filters);
+        const auto regions = switching_regions(filters);
         std::size_t at = 0;
         while (at + 1 < regions.size() && speed > regions[at].to_deg_s) ++at;
         return regions[at];
@@ -147,18 +147,18 @@ TEST_CASE("the exported bank passes, holds and fades where the table says") {
     CHECK(settled_output(table(OutsideRule::pass, OutsideRule::pass), 20.0).band == region_passes);
     CHECK(settled_output(table(OutsideRule::pass, OutsideRule::pass), 20.001).band == 0);
     CHECK(settled_output(table(OutsideRule::pass, OutsideRule::pass), 40.0).band == 0);
-    const BankRegion below = settled_output(table(OutsideRule::fade, OutsideRule::fade), 15.0);
+    const SwitchingRegion below = settled_output(table(OutsideRule::fade, OutsideRule::fade), 15.0);
     CHECK((below.band == 0 && below.full_deg_s == 20.0 && below.none_deg_s == 10.0));
-    const BankRegion hole = settled_output(table(OutsideRule::fade, OutsideRule::fade), 55.0);
+    const SwitchingRegion hole = settled_output(table(OutsideRule::fade, OutsideRule::fade), 55.0);
     CHECK((hole.band == 1 && hole.full_deg_s == 60.0 && hole.none_deg_s == 50.0));
-    const BankRegion above = settled_output(table(OutsideRule::fade, OutsideRule::fade), 100.0);
+    const SwitchingRegion above = settled_output(table(OutsideRule::fade, OutsideRule::fade), 100.0);
     CHECK((above.band == 1 && above.full_deg_s == 80.0 && above.none_deg_s == 120.0));
 }
 
 TEST_CASE("the test vector goes through every region and is not the identity") {
     const FilterSet filters = table(OutsideRule::pass, OutsideRule::fade);
-    const auto regions = bank_regions(filters);
-    const GoldenVector golden = golden_vector(regions, as_svf(filters));
+    const auto regions = switching_regions(filters);
+    const GoldenVector golden = golden_vector(filters, as_svf(filters));
     std::vector<bool> visited(regions.size());
     std::size_t changed = 0;
     for (std::size_t k = 0; k < golden.torque_nm.size(); ++k) {
