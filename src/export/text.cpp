@@ -10,6 +10,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 #include <optional>
 
 #include "export/target.hpp"
@@ -241,6 +242,18 @@ std::string describe(const ExportBand& band) {
     if (band.number == 0) return "one filter";
     return fmt::format("band {}: {} < |v| <= {} deg/s", band.number, shortest(band.from.value()),
                        shortest(band.to.value()));
+}
+
+CodeSpeed code_speed(const Settings& settings, double gear_ratio) {
+    CodeSpeed speed{settings.text("speed-unit"), settings.text("speed-side"), "", 1.0};
+    if (speed.unit == "rad/s") speed.per_deg_s = std::numbers::pi / 180.0;
+    if (speed.unit == "rpm") speed.per_deg_s = 1.0 / 6.0;
+    const bool motor = speed.side == "motor";
+    if (motor) speed.per_deg_s *= gear_ratio;
+    speed.name = std::string(motor ? "motor_speed_" : "speed_") + (speed.unit == "deg/s"   ? "deg_s"
+                                                                   : speed.unit == "rad/s" ? "rad_s"
+                                                                                           : "rpm");
+    return speed;
 }
 
 std::vector<double> edges(const FilterSet& filters, DegPerSec ExportBand::*edge) {

@@ -117,6 +117,26 @@ inline constexpr std::array<std::string_view, 2> precision_choices = {"float", "
             .choices = precision_choices,
             .help = help};
 }
+inline constexpr std::array<std::string_view, 3> speed_unit_choices = {"deg/s", "rad/s", "rpm"};
+inline constexpr std::array<std::string_view, 2> speed_side_choices = {"joint", "motor"};
+inline constexpr Key speed_unit_key = {.name = "speed-unit",
+                                       .kind = KeyKind::choice,
+                                       .default_text = "deg/s",
+                                       .choices = speed_unit_choices,
+                                       .help = "of the speed that the step function gets"};
+inline constexpr Key speed_side_key = {.name = "speed-side",
+                                       .kind = KeyKind::choice,
+                                       .default_text = "joint",
+                                       .choices = speed_side_choices,
+                                       .help = "whose speed it gets"};
+/// The speed that exported code gets, by these keys.
+struct CodeSpeed {
+    std::string unit, side;
+    std::string name;        ///< of the parameter: "motor_speed_rpm"
+    double per_deg_s = 1.0;  ///< its value at a joint speed of 1 deg/s
+};
+[[nodiscard]] CodeSpeed code_speed(const Settings& settings, double gear_ratio);
+
 [[nodiscard]] constexpr Key name_key(std::string_view name, std::string_view help = "prefix of all names") {
     return {.name = "name", .kind = KeyKind::text, .default_text = name, .help = help};
 }

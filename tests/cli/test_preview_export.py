@@ -129,6 +129,11 @@ class PreviewIsExport(commands.Case):
                 self.assert_same("switching,table=table.json,below=fade",
                                  f"c-header,precision=double,speed-unit={unit},speed-side={side}", 1e-9, factor * ratio)
         self.assertIn("motor_speed_rpm", (self.folder / "notch.h").read_text())
+        self.good("export", "--method", "tracking,gear-ratio=100,orders=1:2", "--sample-rate", "1kHz", "-o", "track.h", "--verify", "-q",
+                  "--to", "c-header,precision=double,speed-unit=rpm,speed-side=motor")
+        text = (self.folder / "track.h").read_text()
+        self.assertIn("motor_speed_rpm", text)
+        self.assertNotIn("speed_deg_s", text)
 
     def test_what_would_run_otherwise_is_refused_with_what_runs(self):
         for words, said in ((("--transition", "reset"), "keep-state-variable"), (("--transition", "keep,"), "keep"),

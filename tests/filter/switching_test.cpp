@@ -134,7 +134,7 @@ TEST_CASE("switching between equal coefficients is bit-identical to not switchin
 TEST_CASE("parallel gives at each sample the output of the band's own filter, run alone on the whole log") {
     const CandidateTable table = paper_table();
     const Signals s = wandering(9000, 29);
-    const auto out = filtered(*start("switching,table=t", &table), s.samples());
+    const auto out = filtered(*start("switching,table=t,transition=parallel", &table), s.samples());
     std::vector<std::vector<double>> alone;
     for (const Band& band : table.bands()) {
         std::string centers;
@@ -230,8 +230,10 @@ TEST_CASE("outside the bands the torque passes, or the filter holds, or it fades
     const CandidateTable table = paper_table();
     const Signals s = stairs({90.0, 8.0, 0.0, 300.0}, 300);
     const auto band4 = filtered(*start("fixed,centers=22.5Hz:45Hz"), s.samples());
-    const auto pass = filtered(*start("switching,table=t,below=pass,above=pass", &table), s.samples());
-    const auto hold = filtered(*start("switching,table=t,below=hold,above=hold", &table), s.samples());
+    const auto pass =
+        filtered(*start("switching,table=t,transition=parallel,below=pass,above=pass", &table), s.samples());
+    const auto hold =
+        filtered(*start("switching,table=t,transition=parallel,below=hold,above=hold", &table), s.samples());
     for (std::size_t k = 0; k < s.torque_nm.size(); ++k) {
         REQUIRE(pass[k] == (k < 300 ? band4[k] : s.torque_nm[k]));
         REQUIRE(hold[k] == band4[k]);
@@ -239,7 +241,8 @@ TEST_CASE("outside the bands the torque passes, or the filter holds, or it fades
     Signals sweep = stairs({20.0}, 2000);
     for (std::size_t k = 0; k < 2000; ++k)
         sweep.velocity_deg_s[k] = 0.02 * static_cast<double>(k);  // 0 to 40 deg/s
-    const auto fade = filtered(*start("switching,table=t,below=fade", &table), sweep.samples());
+    const auto fade =
+        filtered(*start("switching,table=t,transition=parallel,below=fade", &table), sweep.samples());
     const auto band1 = filtered(*start("fixed,centers=7.5Hz:15Hz"), sweep.samples());
     for (std::size_t k = 0; k < 1800; ++k) {
         const double share = std::clamp((sweep.velocity_deg_s[k] - 9.0) / 9.0, 0.0, 1.0);

@@ -32,7 +32,7 @@ struct Target {
     bool binary = false;
     bool notches_only = false;     ///< it cannot hold a low-pass
     bool switches = false;         ///< it holds the bands of a table, one for each range of speed
-    bool runs_supervisor = false;  ///< its code has hysteresis, dwell and transitions
+    bool runs_supervisor = false;  ///< it holds hysteresis, dwell and transition, too
     std::span<const Key> keys = {};
     /// `heading` describes the origin of the file, one line each, for a comment; it may be empty. Throws
     /// UsageError, naming value, limit and remedy, when the target cannot hold the filters.

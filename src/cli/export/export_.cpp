@@ -389,6 +389,8 @@ ExitCode run_export(const ExportRequest& request, const std::string& command_lin
     check_export(request);
     if (is_map(request.table))
         return export_map({request.table, request.to, request.verify, request.common}, command_line);
+    const Spec spec = parse_spec(request.to);
+    const Target& target = find_target(spec.name);
     const Contender method = method_of(request);
     if (has_code(method.method->name)) {
         if (request.limits.any())
@@ -396,8 +398,6 @@ ExitCode run_export(const ExportRequest& request, const std::string& command_lin
         return export_code({method, *request.sample_rate, request.to, request.verify, request.common},
                            command_line);
     }
-    const Spec spec = parse_spec(request.to);
-    const Target& target = find_target(spec.name);
     if (ends_with_json(request.common.output) && target.name != "json")
         raise<UsageError>("-o {}: {} is no JSON; use --to json, or name the file otherwise",
                           request.common.output, target.name);

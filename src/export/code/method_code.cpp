@@ -6,6 +6,7 @@
 #include <array>
 
 #include "export/text.hpp"
+#include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/visible_text.hpp"
 #include "ripplenotch/design/candidate_table.hpp"
 #include "ripplenotch/export/target.hpp"
@@ -14,7 +15,8 @@ namespace ripplenotch {
 
 namespace {
 
-constexpr std::array keys = {name_key("ripplenotch"), precision_key("of numbers and arithmetic")};
+constexpr std::array keys = {name_key("ripplenotch"), precision_key("of numbers and arithmetic"),
+                             speed_unit_key, speed_side_key};
 
 // Polynomials in the square of the quarter turns from the nearest whole one, by interpolation at Chebyshev
 // points: within 2.5e-9 except for rounding. Where a processor has a fused multiplication and addition it is
@@ -78,6 +80,15 @@ std::string CodeStyle::array(std::string_view what, const std::vector<double>& v
                        values.size(), joined(values, ", ", is_float ? decimal_float : decimal));
 }
 
+std::string CodeStyle::constants(std::span<const std::string_view> names,
+                                 const std::vector<double>& values) const {
+    const std::string all = joined(names, ", ");
+    return filled(
+        fmt::format("typedef struct {{\n    @real@ {};\n}} @name@_constants;\n"
+                    "static const @name@_constants @name@_values = {{{}}};\n",
+                    all, joined(values, ", ", is_float ? decimal_float : decimal)));
+}
+
 std::string CodeStyle::filled(std::string_view code) const {
     return ripplenotch::filled(std::string(code), {{"@name@", name},
                                                    {"@NAME@", upper_case(name)},
@@ -99,19 +110,45 @@ std::vector<double> CodeStyle::read(TextReader& reader, std::string_view what, s
     return reader.numbers('{', '}', count);
 }
 
+std::vector<double> CodeStyle::read_constants(TextReader& reader, std::size_t count) const {
+    reader.expect(fmt::format("{}_values = ", name));
+    return reader.numbers('{', '}', count);
+}
+
 bool is_code_target(std::string_view target) { return target == "c-header"; }
 
 bool has_code(std::string_view method) { return method == "tracking" || method == "oscillator"; }
 
 std::span<const Key> method_code_keys() { return keys; }
 
+namespace {
+
+// A gear ratio in motor turns per 360 of the code's own unit makes the rest of the code the same for all.
+TrackingDesign in_unit(TrackingDesign design, const Settings& settings) {
+    design.gear_ratio /= code_speed(settings, design.gear_ratio).per_deg_s;
+    return design;
+}
+
+void refuse_units(const Settings& settings) {
+    if (code_speed(settings, 2.0).per_deg_s != 1.0)
+        raise<UsageError>(
+            "target c-header: the oscillator takes the motor's angle, not a speed; speed-unit and "
+            "speed-side are of tracking and of tables");
+}
+
+}  // namespace
+
 Written write_method_code(const RunningDesign& design, const Settings& settings,
                           std::span<const std::string> heading) {
     const CodeStyle style = style_of(settings);
     const auto* const tracking = std::get_if<TrackingDesign>(&design);
-    const std::string body = tracking != nullptr
-                                 ? tracking_header(*tracking, style)
-                                 : oscillator_header(std::get<OscillatorDesign>(design), style);
+    if (tracking == nullptr) {
+        refuse_units(settings);
+        return {style.header(heading, oscillator_header(std::get<OscillatorDesign>(design), style) + "\n"),
+                {}};
+    }
+    std::string body = tracking_header(in_unit(*tracking, settings), style);
+    body = filled(std::move(body), {{"@speed-name@", code_speed(settings, tracking->gear_ratio).name}});
     return {style.header(heading, body + "\n"), {}};
 }
 
@@ -119,9 +156,17 @@ LoadedCode read_method_code(std::string_view bytes, const std::string& source, c
                             const Settings& settings) {
     const CodeStyle style = style_of(settings);
     TextReader reader(bytes, source, Comments::c, style.precision());
-    LoadedCode loaded = std::holds_alternative<TrackingDesign>(design)
-                            ? tracking_loaded(reader, std::get<TrackingDesign>(design), style)
-                            : oscillator_loaded(reader, std::get<OscillatorDesign>(design), style);
+    LoadedCode loaded;
+    if (const auto* const tracking = std::get_if<TrackingDesign>(&design)) {
+        const double per_deg_s = code_speed(settings, tracking->gear_ratio).per_deg_s;
+        loaded = tracking_loaded(reader, *tracking, style);
+        loaded.step = [step = loaded.step, per_deg_s](CodeInput in) {
+            in.speed_deg_s *= per_deg_s;
+            return step(in);
+        };
+    } else {
+        loaded = oscillator_loaded(reader, std::get<OscillatorDesign>(design), style);
+    }
     loaded.arithmetic = style.is_float ? "float32" : "float64";
     return loaded;
 }

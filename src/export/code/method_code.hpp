@@ -31,8 +31,13 @@ struct CodeStyle {
 
     /// "static const float NAME_what[3] = {...};"
     [[nodiscard]] std::string array(std::string_view what, const std::vector<double>& values) const;
+    /// "typedef struct { float a, b; } NAME_constants;" and their values as NAME_values.
+    [[nodiscard]] std::string constants(std::span<const std::string_view> names,
+                                        const std::vector<double>& values) const;
     /// Fields @name@, @NAME@, @real@ and mathematics functions filled in.
     [[nodiscard]] std::string filled(std::string_view code) const;
+    /// The numbers of constants().
+    [[nodiscard]] std::vector<double> read_constants(TextReader& reader, std::size_t count) const;
     /// The numbers of an array().
     [[nodiscard]] std::vector<double> read(TextReader& reader, std::string_view what,
                                            std::size_t count) const;

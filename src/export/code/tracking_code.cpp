@@ -44,7 +44,7 @@ static inline void @name@_begin(@name@_state* s, @real@ torque_nm) {
     for (i = 0; i < @NAME@_COVARIANCES; ++i) s->p[i] = 0;
     s->x[0] = s->x[1] = 0;
     s->p[0] = 1;
-    s->p[@NAME@_STATES] = @name@_values[4];
+    s->p[@NAME@_STATES] = @name@_values.first_rate_variance;
     for (i = 2; i < @NAME@_STATES; ++i) {
         const @real@* const prior = @name@_priors + 3 * (i / 2 - 1);
         s->x[i] = prior[i % 2];
@@ -67,7 +67,7 @@ constexpr std::string_view step_code = R"c(
 /* Every sample, @NAME@_SAMPLE_RATE_HZ times a second: the torque without ripple. motor_turns is the motor's angle in
    turns, 0 where the joint is at position 0; the fraction of the turn is enough.@more@ */
 static inline @real@ @name@_step(@name@_state* s, @real@ torque_nm, @real@ motor_turns@parameters@) {
-    const @real@* const c = @name@_values;
+    const @name@_constants* const c = &@name@_values;
     @real@ moved, squares = @NAME@_ORDERS;
 )c";
 
@@ -86,6 +86,11 @@ static inline void @name@_bring_back(@name@_state* s) {
     s->left = 1;
 }
 )c";
+
+constexpr std::array<std::string_view, Value::count> oscillator_names = {
+    "noise_nm",        "seen_noise",     "cross_noise", "rate_noise",   "first_rate_variance",
+    "amplitude_noise", "quarter_memory", "jump",        "largest_slip", "turns_to_return",
+    "in_noise"};
 
 std::vector<double> code_values(const OscillatorDesign& d) {
     std::vector<double> values(Value::count);
@@ -131,11 +136,12 @@ std::string oscillator_header(const OscillatorDesign& d, const CodeStyle& style)
     text += "/* of each order, in units of the noise: cosine, sine, how far off they may be */\n";
     text += style.array("priors", priors);
     text +=
-        "/* noise in Nm; variance of the sensor and of what a sample adds to the torque; what it adds to "
-        "that of "
-        "torque and\n   rate, of rate, and the rate's at the start; deviation that a motor turn adds to an "
-        "amplitude; 0.25 / memory in\n   turns, jump, largest slip, 1 / turns of return, 1 / noise */\n";
-    text += style.array("values", code_values(d));
+        "/* noise_nm is the unit of the state; seen_noise: variance of the sensor and of what a sample adds "
+        "to "
+        "the torque;\n   amplitude_noise: deviation that a motor turn adds; quarter_memory: 0.25 / memory in "
+        "turns; "
+        "in_noise: 1 / noise */\n";
+    text += style.constants(oscillator_names, code_values(d));
     text += turn_code(style.is_float);
     if (d.map) text += "\n/* the map that is taken off before */\n" + MapCode(*d.map, style).definitions();
     text += state_code;
@@ -148,7 +154,7 @@ LoadedCode oscillator_loaded(TextReader& reader, const OscillatorDesign& d, cons
     const bool minus_ripple = reader.number() > 0.0;
     const auto orders = style.read(reader, "orders", d.orders.size());
     const auto priors = style.read(reader, "priors", 3 * d.orders.size());
-    const auto values = style.read(reader, "values", Value::count);
+    const auto values = style.read_constants(reader, Value::count);
     const auto tables = d.map ? std::optional(MapTables(reader, *d.map, style)) : std::nullopt;
     return in_precision(style.precision(), [&](auto real) -> LoadedCode {
         using Real = decltype(real);
@@ -182,14 +188,14 @@ static inline void @name@_init(@name@_state* s) { s->started = 0; }
 
 constexpr std::string_view tune_code = R"c(
 static inline void @name@_tune(@name@_line* line, @real@ center) {
-    const @real@* const c = @name@_values;
-    const @real@ narrow = c[3] / center;
+    const @name@_constants* const c = &@name@_values;
+    const @real@ narrow = c->narrow_hz / center;
     int j;
     line->center = center;
-    line->q = c[2] * (narrow > 1 ? narrow : 1);
+    line->q = c->q_each * (narrow > 1 ? narrow : 1);
     for (j = 0; j < @NAME@_NOTCHES; ++j) {
         @real@ cosine, sine, warped, damping, a1;
-        @name@_on_circle((@real@)0.5 * center * @name@_spread[j] / c[1], &cosine, &sine);
+        @name@_on_circle((@real@)0.5 * center * @name@_spread[j] / c->sample_rate_hz, &cosine, &sine);
         warped = sine / cosine;
         damping = 1 / line->q;
         a1 = 1 / (1 + warped * (warped + damping));
@@ -206,31 +212,31 @@ static inline @real@ @name@_between(@real@ value, @real@ low, @real@ high) {
 
 /* What is left of a line at its centre. */
 static inline @real@ @name@_left(int order, @real@ hz) {
-    const @real@* const c = @name@_values;
-    @real@ gain = c[4];
-    @real@ share = @name@_weights[order] * @name@_between(((@real@)@none@ - hz / c[1]) / ((@real@)@none@ - (@real@)@full@), 0, 1);
+    const @name@_constants* const c = &@name@_values;
+    @real@ gain = c->depth_gain;
+    @real@ share = @name@_weights[order] * @name@_between(((@real@)@none@ - hz / c->sample_rate_hz) / ((@real@)@none@ - (@real@)@full@), 0, 1);
     if (@NAME@_PARKS) {
-        const @real@ on = @name@_between((hz / c[5] - (@real@)0.25) / (@real@)0.75, 0, 1);
-        const @real@ root = 1 - on * (1 - @sqrt@(c[4]));
+        const @real@ on = @name@_between((hz / c->min_hz - (@real@)0.25) / (@real@)0.75, 0, 1);
+        const @real@ root = 1 - on * (1 - @sqrt@(c->depth_gain));
         gain = root * root;
-    } else if (c[6] > 0) {
-        share *= @name@_between((hz - c[5]) / c[6], 0, 1);
-    } else if (hz < c[5]) {
+    } else if (c->fade_hz > 0) {
+        share *= @name@_between((hz - c->min_hz) / c->fade_hz, 0, 1);
+    } else if (hz < c->min_hz) {
         share = 0;
     }
     return 1 - share * (1 - gain);
 }
 
 static inline void @name@_follow(@name@_state* s, int starts) {
-    const @real@* const c = @name@_values;
+    const @name@_constants* const c = &@name@_values;
     int i;
     s->arrived = 1;
     for (i = 0; i < @NAME@_ORDERS; ++i) {
         @name@_line* const line = s->line + i;
-        const @real@ hz = @name@_orders[i] * c[0] * (s->speed < 0 ? -s->speed : s->speed) / 360;
-        const @real@ wanted = @name@_between(hz, c[5], (@real@)@none@ * c[1]);
+        const @real@ hz = @name@_orders[i] * c->gear_ratio * (s->speed < 0 ? -s->speed : s->speed) / 360;
+        const @real@ wanted = @name@_between(hz, c->min_hz, (@real@)@none@ * c->sample_rate_hz);
         @real@ center = wanted;
-        if (!starts && c[8] < 1) center = @name@_between(wanted, line->center * (1 - c[8]), line->center / (1 - c[8]));
+        if (!starts && c->slew < 1) center = @name@_between(wanted, line->center * (1 - c->slew), line->center / (1 - c->slew));
         if (center != wanted) s->arrived = 0;
         if (starts || center != line->center) @name@_tune(line, center);
         line->taken = 1 - @name@_left(i, hz);
@@ -239,18 +245,18 @@ static inline void @name@_follow(@name@_state* s, int starts) {
 }
 
 /* Every sample, @NAME@_SAMPLE_RATE_HZ times a second: the torque without ripple. */
-static inline @real@ @name@_step(@name@_state* s, @real@ torque_nm, @real@ speed_deg_s) {
+static inline @real@ @name@_step(@name@_state* s, @real@ torque_nm, @real@ @speed-name@) {
     @real@ y;
     int i, j;
     if (!s->started) {
         s->started = 1;
         s->origin = torque_nm;
-        s->speed = speed_deg_s;
+        s->speed = @speed-name@;
         @name@_follow(s, 1);
         for (i = 0; i < @NAME@_ORDERS; ++i)
             for (j = 0; j < @NAME@_NOTCHES; ++j) s->line[i].notch[j].s1 = s->line[i].notch[j].s2 = 0;
     } else {
-        s->speed = speed_deg_s + @name@_values[7] * (s->speed - speed_deg_s);
+        s->speed = @speed-name@ + @name@_values.speed_pole * (s->speed - @speed-name@);
         if (s->speed != s->tuned_for || !s->arrived) @name@_follow(s, 0);
     }
     y = torque_nm - s->origin;
@@ -270,7 +276,10 @@ static inline @real@ @name@_step(@name@_state* s, @real@ torque_nm, @real@ speed
 }
 )c";
 
-/// The header's array of values, in its order.
+/// The header's constants, in their order.
+constexpr std::array<std::string_view, 9> tracking_names = {"gear_ratio", "sample_rate_hz", "q_each",
+                                                            "narrow_hz",  "depth_gain",     "min_hz",
+                                                            "fade_hz",    "speed_pole",     "slew"};
 constexpr std::array tracking_values = {
     &TrackingDesign::gear_ratio, &TrackingDesign::sample_rate_hz, &TrackingDesign::q_each,
     &TrackingDesign::narrow_hz,  &TrackingDesign::depth_gain,     &TrackingDesign::min_hz,
@@ -293,11 +302,12 @@ std::string tracking_header(const TrackingDesign& d, const CodeStyle& style) {
     text +=
         style.array("orders", d.orders) + style.array("weights", d.weights) + style.array("spread", d.spread);
     text +=
-        "/* gear ratio, sample rate, Q, narrow below, gain at the centre, lowest centre, fade, speed pole, "
-        "slew */\n";
+        "/* motor turns per turn of the speed's shaft, in the speed's unit; depth_gain: gain at the centre; "
+        "min_hz: "
+        "lowest centre */\n";
     std::vector<double> values;
     for (const auto value : tracking_values) values.push_back(d.*value);
-    text += style.array("values", values);
+    text += style.constants(tracking_names, values);
     for (const std::string_view part : {code, turn_code(style.is_float), tune_code}) text += part;
     return text;
 }
@@ -309,7 +319,7 @@ LoadedCode tracking_loaded(TextReader& reader, const TrackingDesign& d, const Co
     found.orders = style.read(reader, "orders", d.orders.size());
     found.weights = style.read(reader, "weights", d.orders.size());
     found.spread = style.read(reader, "spread", d.spread.size());
-    const auto values = style.read(reader, "values", tracking_values.size());
+    const auto values = style.read_constants(reader, tracking_values.size());
     for (std::size_t i = 0; i < values.size(); ++i) found.*tracking_values[i] = values[i];
     return in_precision(style.precision(), [&](auto real) -> LoadedCode {
         using Real = decltype(real);

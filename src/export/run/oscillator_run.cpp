@@ -25,7 +25,7 @@ constexpr std::string_view slip_code =
 )c";
 
 // A sample that is nearly impossible under the model is a torque that jumped.
-constexpr std::string_view jump_code = R"c(    if (surprise * surprise > c[7] * c[7] * variance) {
+constexpr std::string_view jump_code = R"c(    if (surprise * surprise > c->jump * c->jump * variance) {
         variance += surprise * surprise;
     }
 )c";
@@ -48,8 +48,8 @@ class StepCode {
         line("    }} else {{\n        @name@_begin(s, torque_nm);\n    }}");
         for (std::size_t i = 2; i < m_; ++i) line("    s->h[{}] = {};", i - 2, h(i));
         line("    s->turns = motor_turns;\n    const @real@ ripple = {};", shown(2, "s->x"));
-        line(d_.minus_ripple ? "    return @name@_fma(-c[0], ripple, torque_nm);"
-                             : "    return @name@_fma(c[0], s->x[0] - ripple, s->origin);");
+        line(d_.minus_ripple ? "    return @name@_fma(-c->noise_nm, ripple, torque_nm);"
+                             : "    return @name@_fma(c->noise_nm, s->x[0] - ripple, s->origin);");
         return std::move(text_);
     }
 
@@ -100,7 +100,7 @@ class StepCode {
         if (d_.map) line("    torque_nm -= {};", shown(0, "z"));
     }
     void forget() {
-        line("        s->left *= @name@_fma(-size, c[9], 1);");
+        line("        s->left *= @name@_fma(-size, c->turns_to_return, 1);");
         line("        if (s->left < (@real@)0.5) @name@_bring_back(s);");
         for (std::size_t i = 2; i < m_; ++i) line("        {} *= s->left;", h(i));
     }
@@ -112,7 +112,7 @@ class StepCode {
         }
     }
     void predict() {
-        line("        const @real@ strays = size * c[5], added = strays * strays;");
+        line("        const @real@ strays = size * c->amplitude_noise, added = strays * strays;");
         line(forgets_
                  ? "        const @real@ strays_here = strays / s->left, more = strays_here * strays_here;"
                  : "        const @real@ more = added;");
@@ -123,16 +123,16 @@ class StepCode {
         for (std::size_t i = 0; i < m_; ++i)
             line("        {}@real@ v{} = {};", i == 0 ? "const " : "", i,
                  sum(p(0, i) + " + " + p(1, i), [&](std::size_t k) { return p(k, i); }));
-        line("        @real@ variance = @name@_fma(added, squares, {}) + c[1];",
+        line("        @real@ variance = @name@_fma(added, squares, {}) + c->seen_noise;",
              sum("v0 + v1", [](std::size_t k) { return fmt::format("v{}", k); }));
-        line("        v1 += c[2];\n        p_1_1 += c[3];");
+        line("        v1 += c->cross_noise;\n        p_1_1 += c->rate_noise;");
         line("        const @real@ expected = {};",
              sum("s->x[0] + s->x[1]", [](std::size_t k) { return fmt::format("s->x[{}]", k); }));
         for (std::size_t i = 2; i < m_; ++i)
             line("        v{0} = @name@_fma(more, {1}, v{0});\n        {2} += more;", i, h(i), p(i, i));
     }
     void update() {
-        line("        const @real@ surprise = @name@_fma(torque_nm - s->origin, c[10], -expected);");
+        line("        const @real@ surprise = @name@_fma(torque_nm - s->origin, c->in_noise, -expected);");
         if (d_.jump > 0.0) text_ += jump_code;
         line("        const @real@ scale = 1 / variance;");
         for (std::size_t i = 0; i < m_; ++i) {
@@ -164,12 +164,14 @@ class StepCode {
             line("                    weights = @name@_fma((@real@){}, square, weights);", decimal(n * n));
             line("                }}\n            }}");
         }
-        line("            if (weights > 0) {{\n                @real@ of = size * c[6];");
+        line("            if (weights > 0) {{\n                @real@ of = size * c->quarter_memory;");
         line("                of = of < (@real@)0.01 ? of : (@real@)0.01;");
         line(
             "                s->slip += of * (ahead * (surprise * scale)) / ((@real@)6.283185307179586 * "
             "weights * step);");
-        line("                s->slip = s->slip < -c[8] ? -c[8] : s->slip > c[8] ? c[8] : s->slip;");
+        line(
+            "                s->slip = s->slip < -c->largest_slip ? -c->largest_slip : s->slip > "
+            "c->largest_slip ? c->largest_slip : s->slip;");
         line("            }}\n        }}");
     }
 

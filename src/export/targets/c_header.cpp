@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include "export/code/method_code.hpp"
 #include "export/code/switching_code.hpp"
@@ -21,9 +20,6 @@ namespace {
 
 constexpr std::array<std::string_view, 4> precisions = {"float", "double", "q31", "q15"};
 constexpr std::array<std::string_view, 3> forms = {"svf", "df1", "df2t"};
-constexpr std::array<std::string_view, 3> speed_units = {"deg/s", "rad/s", "rpm"};
-constexpr std::array<std::string_view, 2> shafts = {"joint", "motor"};
-
 constexpr std::array keys = {
     Key{.name = "precision",
         .kind = KeyKind::choice,
@@ -39,16 +35,8 @@ constexpr std::array keys = {
         .choices = forms,
         .help = "svf: state-variable; df1: direct form I; df2t: transposed direct form II (default: that of "
                 "the transition, else svf)"},
-    Key{.name = "speed-unit",
-        .kind = KeyKind::choice,
-        .default_text = "deg/s",
-        .choices = speed_units,
-        .help = "of the speed that the step function gets"},
-    Key{.name = "speed-side",
-        .kind = KeyKind::choice,
-        .default_text = "joint",
-        .choices = shafts,
-        .help = "whose speed it gets"},
+    speed_unit_key,
+    speed_side_key,
     name_key("ripplenotch"),
 };
 
@@ -100,22 +88,8 @@ Arithmetic arithmetic_of(const FilterSet& filters, const Settings& settings) {
     return found;
 }
 
-// The speed that the code gets, in its unit and on its shaft.
-struct SpeedOfCode {
-    std::string unit, shaft, name;
-    double per_deg_s = 1.0;
-};
-
-SpeedOfCode speed_of(const FilterSet& filters, const Settings& settings) {
-    SpeedOfCode speed{settings.text("speed-unit"), settings.text("speed-side"), "", 1.0};
-    if (speed.unit == "rad/s") speed.per_deg_s = std::numbers::pi / 180.0;
-    if (speed.unit == "rpm") speed.per_deg_s = 1.0 / 6.0;
-    if (speed.shaft == "motor" && filters.gear_ratio) speed.per_deg_s *= filters.gear_ratio->value();
-    speed.name =
-        std::string(speed.shaft == "motor" ? "motor_speed_" : "speed_") + (speed.unit == "deg/s"   ? "deg_s"
-                                                                           : speed.unit == "rad/s" ? "rad_s"
-                                                                                                   : "rpm");
-    return speed;
+CodeSpeed speed_of(const FilterSet& filters, const Settings& settings) {
+    return code_speed(settings, filters.gear_ratio ? filters.gear_ratio->value() : 1.0);
 }
 
 /// The same filters with all speeds in the code's unit.
@@ -201,7 +175,7 @@ std::string bands_text(const FilterSet& filters, const Writer& writer, Arithmeti
 
 std::string fixed_speed(double speed) { return std::to_string(std::llround(speed * fixed_speed_steps)); }
 
-std::string regions_text(const std::vector<SwitchingRegion>& regions, const SpeedOfCode& unit,
+std::string regions_text(const std::vector<SwitchingRegion>& regions, const CodeSpeed& unit,
                          std::string (*literal)(double)) {
     std::string text;
     for (const SwitchingRegion& region : regions) {
@@ -259,7 +233,7 @@ Written write(const FilterSet& filters, const Settings& settings, std::span<cons
     const CodeStyle style = style_of(settings);
     const Arithmetic arithmetic = arithmetic_of(filters, settings);
     const bool fixed = is_fixed(arithmetic.precision), wide = arithmetic.precision == Precision::q31;
-    const SpeedOfCode speed = speed_of(filters, settings);
+    const CodeSpeed speed = speed_of(filters, settings);
     const FilterSet scaled = in_unit(filters, speed.per_deg_s);
     const Writer& writer = style.is_float ? in_float : in_double;
     const auto regions = switching_regions(scaled);
@@ -299,7 +273,7 @@ Written write(const FilterSet& filters, const Settings& settings, std::span<cons
                          {"@speed-unit@", speed.unit},
                          {"@speed-words@", fixed ? "thousandths of " + speed.unit : speed.unit},
                          {"@speed-name@", fixed ? "milli_" + speed.name : speed.name},
-                         {"@shaft@", speed.shaft},
+                         {"@shaft@", speed.side},
                          {"@tolerance@", fixed            ? "0"
                                          : style.is_float ? "1e-4f"
                                                           : "1e-9"}});

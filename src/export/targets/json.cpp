@@ -66,9 +66,13 @@ Written write(const FilterSet& filters, const Settings&, std::span<const std::st
     text += fmt::format("],\n  \"sample_rate_hz\": {},\n", decimal(filters.sample_rate.value()));
     if (filters.by_speed()) {
         text += fmt::format(
-            "  \"gear_ratio\": {},\n  \"below_first_band\": \"{}\",\n  \"above_last_band\": \"{}\",\n",
+            "  \"gear_ratio\": {},\n  \"below_first_band\": \"{}\",\n  \"above_last_band\": \"{}\",\n"
+            "  \"transition\": \"{}\",\n  \"hysteresis_deg_s\": {},\n  \"dwell_samples\": {},\n  "
+            "\"crossfade_samples\": {},\n",
             decimal(filters.gear_ratio->value()), outside_rule_name(filters.switching.below),
-            outside_rule_name(filters.switching.above));
+            outside_rule_name(filters.switching.above), filters.switching.transition,
+            decimal(filters.switching.hysteresis.value()), filters.switching.dwell_samples,
+            filters.switching.crossfade_samples);
     }
     text +=
         "  \"sos_layout\": \"b0 b1 b2 1 a1 a2: y = b0 x + b1 x1 + b2 x2 - a1 y1 - a2 y2\",\n"
@@ -100,6 +104,7 @@ const Target targets::json = {
     .source = "RFC 8259",
     .endings = ".json",
     .switches = true,
+    .runs_supervisor = true,
     .write = write,
     .read = read,
 };
