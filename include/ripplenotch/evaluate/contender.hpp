@@ -31,6 +31,8 @@ struct Contender {
 
     /// A filter without a past. Throws UsageError on what cannot be designed at this sample rate.
     [[nodiscard]] std::unique_ptr<CausalFilter> start(Hertz sample_rate) const;
+    /// Why start() would throw, a sentence; empty where it does not.
+    [[nodiscard]] std::string refusal(Hertz sample_rate) const;
     /// The same for signals that have no ripple: without the ripple known from a map.
     [[nodiscard]] std::unique_ptr<CausalFilter> start_on_bench(Hertz sample_rate) const;
     /// Null for methods that need no first pass over the log.
