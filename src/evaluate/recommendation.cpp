@@ -261,6 +261,7 @@ namespace {
 
 constexpr double slow_turn_s = 0.5;       // chosen, not derived
 constexpr NewtonMeters judged_step{10.0};  // as compare takes on a log
+constexpr Seconds run_in{2.0};             // chosen, not derived: the motor has turned several times
 // Speeds of the log at which delays within the band are looked at, alike many rows apart.
 constexpr std::size_t speeds_judged = 9;
 
@@ -328,7 +329,7 @@ JudgedMethod judged(const Contender& contender, MethodFigures&& measured, const 
     method.figures.note = at_median.note;
     try {
         const Bench bench(contender, trace.sample_rate, median);
-        method.figures.overshoot_percent = bench.step(judged_step).overshoot_percent;
+        method.figures.overshoot_percent = bench.step(judged_step, run_in).overshoot_percent;
     } catch (const UsageError&) {
         // A filter that does not settle has no such figure; the others still count.
     }

@@ -20,7 +20,6 @@ constexpr double share_of_variance = 0.99;  // chosen, not derived; stated in do
 // Periods of a torque in a log that are fewer than this are not told from its mean and trend.
 constexpr double fewest_periods = 4.0;
 constexpr double mean_over_median = 1.4426950408889634;  // of a noise bin's power, which is exponential
-constexpr double piece_s = 4.0;                          // chosen, not derived: bins of 0.25 Hz
 constexpr int band_limit_order = 4;                      // once forward and once backward
 constexpr int frequencies_looked_at = 8;
 
@@ -90,14 +89,32 @@ TorqueReference::TorqueReference(const ComparedLog& log, const GearAccount& line
     log_.trace.torque_nm = torque_nm_;
     log_.watch = {};
     band_ = stated ? *stated : torque_band(log_.trace);
-    psd_ = spectrum_of(torque_nm_);
+    beside_nm2_ = powers_beside(torque_nm_);
 }
 
-std::vector<double> TorqueReference::spectrum_of(std::span<const double> torque_nm) const {
-    TraceView trace = log_.trace;
-    trace.torque_nm = torque_nm;
-    const double least_s = static_cast<double>(fewest_spectrum_samples) / trace.sample_rate.value();
-    return torque_spectrum(trace, {Seconds(std::max(piece_s, 2.0 * least_s)), no_lines}).psd_nm2_hz;
+// Mean square over the rows at which the ripple is known.
+double TorqueReference::power(std::span<const double> values) const {
+    double squares = 0.0, rows = 0.0;
+    for (std::size_t k = 0; k < values.size(); ++k) {
+        if (!known_[k]) continue;
+        squares += values[k] * values[k];
+        rows += 1.0;
+    }
+    return rows > 0.0 ? squares / rows : 0.0;
+}
+
+// Octave by octave above the band, so that noise removed far away is no credit for what is added near by.
+std::vector<double> TorqueReference::powers_beside(const std::vector<double>& torque_nm) const {
+    std::vector<double> powers, lower = torque_nm, upper;
+    low_pass(lower, log_.trace, band_.to);
+    for (Hertz edge = band_.to; edge < 0.5 * log_.trace.sample_rate; lower = std::move(upper)) {
+        edge = 2.0 * edge;
+        upper = torque_nm;
+        low_pass(upper, log_.trace, edge);
+        for (std::size_t k = 0; k < lower.size(); ++k) lower[k] = upper[k] - lower[k];
+        powers.push_back(power(lower));
+    }
+    return powers;
 }
 
 Distortion TorqueReference::distortion(const Contender& contender,
@@ -106,14 +123,10 @@ Distortion TorqueReference::distortion(const Contender& contender,
     ComparedLog log = log_;
     log.temperatures_degc.assign(1, temperature_degc);
     std::vector<double> out = output_on_log(method, log);
-    Distortion found;
-    const std::vector<double> psd = spectrum_of(out);
-    const double bin_hz = 0.5 * log.trace.sample_rate.value() / static_cast<double>(psd.size() - 1);
-    for (std::size_t i = 0; i < psd.size(); ++i) {
-        const Hertz at(bin_hz * static_cast<double>(i));
-        if (at < band_.from || band_.to < at) found.added_nm += std::max(psd[i] - psd_[i], 0.0) * bin_hz;
-    }
-    found.added_nm = std::sqrt(found.added_nm);
+    const std::vector<double> beside_nm2 = powers_beside(out);
+    double added_nm2 = 0.0;
+    for (std::size_t i = 0; i < beside_nm2.size(); ++i)
+        added_nm2 += std::max(beside_nm2[i] - beside_nm2_[i], 0.0);
     for (std::size_t k = 0; k < out.size(); ++k) out[k] -= torque_nm_[k];
     std::vector<double> slower = out;
     low_pass(out, log.trace, band_.to);
@@ -121,14 +134,7 @@ Distortion TorqueReference::distortion(const Contender& contender,
         low_pass(slower, log.trace, band_.from);
         for (std::size_t k = 0; k < out.size(); ++k) out[k] -= slower[k];
     }
-    double squares = 0.0, rows = 0.0;
-    for (std::size_t k = 0; k < out.size(); ++k) {
-        if (!known_[k]) continue;
-        squares += out[k] * out[k];
-        rows += 1.0;
-    }
-    found.in_band_nm = rows > 0.0 ? std::sqrt(squares / rows) : 0.0;
-    return found;
+    return {std::sqrt(power(out)), std::sqrt(added_nm2)};
 }
 
 std::optional<BandResponse> band_response(const Contender& contender, Hertz sample_rate, DegPerSec speed,

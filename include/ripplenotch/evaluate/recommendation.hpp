@@ -65,7 +65,7 @@ struct TorqueBand {
 
 struct Distortion {
     double in_band_nm = 0.0;  ///< output minus torque within the band, rms
-    double added_nm = 0.0;    ///< beside the band, rms of the power that the output has above the torque's
+    double added_nm = 0.0;    ///< above the band: by how much its octaves are stronger, rms, added up
 };
 
 /// The torque of a log without its ripple: what a method should pass.
@@ -82,9 +82,10 @@ class TorqueReference {
                                         std::span<const double> temperature_degc) const;
 
   private:
-    [[nodiscard]] std::vector<double> spectrum_of(std::span<const double> torque_nm) const;
+    [[nodiscard]] double power(std::span<const double> values) const;
+    [[nodiscard]] std::vector<double> powers_beside(const std::vector<double>& torque_nm) const;
     ComparedLog log_;
-    std::vector<double> torque_nm_, psd_;
+    std::vector<double> torque_nm_, beside_nm2_;
     std::vector<bool> known_;
     TorqueBand band_;
 };
