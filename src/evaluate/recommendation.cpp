@@ -187,7 +187,8 @@ std::string taken_off(const JudgedMethod& method, const std::vector<RippleEstima
     return fmt::format("{} and {}", fmt::join(parts, ", "), last);
 }
 
-// "no delay at 0 Hz, 0.2 to 9.3 ms late at a gain of 0.98 to 1.21 within 0 to 5 Hz, a step overshoots by 40 %"
+// "no delay at 0 Hz, 0.2 to 9.3 ms late at a gain of 0.98 to 1.21 within 0 to 5 Hz, a step overshoots by 40
+// %"
 std::string late(const JudgedMethod& method, const TorqueBand& band) {
     const std::string dc_ms = rounded(method.figures.dc_delay_ms.value_or(0.0), 1);
     std::string text = dc_ms == "0.0" ? "no delay at 0 Hz" : fmt::format("{} ms late at 0 Hz", dc_ms);
@@ -200,10 +201,10 @@ std::string late(const JudgedMethod& method, const TorqueBand& band) {
         const bool passes = dc_ms == "0.0" && least == "0.0" && longest == "0.0" && gain == "1.00" &&
                             largest == "1.00" && overshoot_percent < 0.5;
         if (passes) return "without delay";
-        text += fmt::format(", {} ms late at a gain of {} within {:.3g} to {:.3g} Hz",
-                            least == longest ? least : least + " to " + longest,
-                            gain == largest ? gain : gain + " to " + largest, band.from.value(),
-                            band.to.value());
+        text +=
+            fmt::format(", {} ms late at a gain of {} within {:.3g} to {:.3g} Hz",
+                        least == longest ? least : least + " to " + longest,
+                        gain == largest ? gain : gain + " to " + largest, band.from.value(), band.to.value());
     }
     if (overshoot_percent >= 0.5) text += fmt::format(", a step overshoots by {:.0f} %", overshoot_percent);
     return text;
@@ -218,8 +219,8 @@ std::string short_text(const MethodFigures& figures) {
 bool is_control(const MethodFigures& figures) { return part_of(figures) == MethodPart::control; }
 
 std::string one_sentence(const Recommendation& found, const JudgedMethod& method) {
-    return fmt::format("{}, {}, {:.3g} Nm rms of ripple left", taken_off(method, found.orders), late(method, *found.band),
-                       method.figures.ripple_rms_nm.value_or(0.0));
+    return fmt::format("{}, {}, {:.3g} Nm rms of ripple left", taken_off(method, found.orders),
+                       late(method, *found.band), method.figures.ripple_rms_nm.value_or(0.0));
 }
 
 std::string next_to(const Recommendation& found, const JudgedMethod& taken, const JudgedMethod& other) {
@@ -259,7 +260,7 @@ std::string recommendation_verdict(const Recommendation& found) {
 
 namespace {
 
-constexpr double slow_turn_s = 0.5;       // chosen, not derived
+constexpr double slow_turn_s = 0.5;        // chosen, not derived
 constexpr NewtonMeters judged_step{10.0};  // as compare takes on a log
 constexpr Seconds run_in{2.0};             // chosen, not derived: the motor has turned several times
 // Speeds of the log at which delays within the band are looked at, alike many rows apart.
@@ -441,15 +442,13 @@ Recommendation recommend(std::span<const Contender> contenders, const ComparedLo
     const std::vector<double> speeds = speeds_of(log.trace);
     Progress::current().begin("judging", "methods", contenders.size());
     for (std::size_t i = 0; i < contenders.size(); ++i, Progress::current().add(1)) {
-        JudgedMethod method =
-            judged(contenders[i], std::move(levels.methods[i]), log.trace, speeds, found);
-        method.distortion = reference.distortion(
-            contenders[i], i < log.temperatures_degc.size() ? log.temperatures_degc[i]
-                                                            : std::span<const double>());
-        method.error_nm =
-            portable::hypot(portable::hypot(method.figures.ripple_rms_nm.value_or(0.0),
-                                            method.distortion.in_band_nm),
-                            method.distortion.added_nm);
+        JudgedMethod method = judged(contenders[i], std::move(levels.methods[i]), log.trace, speeds, found);
+        method.distortion =
+            reference.distortion(contenders[i], i < log.temperatures_degc.size() ? log.temperatures_degc[i]
+                                                                                 : std::span<const double>());
+        method.error_nm = portable::hypot(
+            portable::hypot(method.figures.ripple_rms_nm.value_or(0.0), method.distortion.in_band_nm),
+            method.distortion.added_nm);
         hold_to(method, limits, found.orders);
         found.methods.push_back(std::move(method));
     }

@@ -71,8 +71,9 @@ TEST_CASE("what is off is the ripple left and what is done to the torque without
     const Recommendation found = recommended(trace);
     REQUIRE(found.finding == RecommendationFinding::recommended);
     for (const JudgedMethod& method : found.methods) {
-        CHECK(method.error_nm == Approx(std::hypot(*method.figures.ripple_rms_nm, method.distortion.in_band_nm,
-                                                   method.distortion.added_nm)));
+        CHECK(method.error_nm ==
+              Approx(std::hypot(*method.figures.ripple_rms_nm, method.distortion.in_band_nm,
+                                method.distortion.added_nm)));
         if (method.figures.method == "none") {
             CHECK(method.distortion.in_band_nm == 0.0);
             CHECK(method.distortion.added_nm == 0.0);
@@ -102,13 +103,16 @@ TEST_CASE("the band of a torque is where 99 % of its variance above the noise li
     }
 }
 
-TEST_CASE("the distortion within the band is that of the filter's response there, and noise taken out is no credit") {
+TEST_CASE(
+    "the distortion within the band is that of the filter's response there, and noise taken out is no "
+    "credit") {
     Trace trace = log_of(1.0, 0.0);
     for (std::size_t k = 0; k < trace.size(); ++k)
         trace.torque_nm[k] += 5.0 * std::sin(2.0 * std::numbers::pi * 2.0 * trace.time_s[k]);
     const auto ripple = ripple_of(trace);
     for (const bool stated : {false, true}) {
-        const auto band = stated ? std::optional(TorqueBand{Hertz(0.0), Hertz(5.0), true, false}) : std::nullopt;
+        const auto band =
+            stated ? std::optional(TorqueBand{Hertz(0.0), Hertz(5.0), true, false}) : std::nullopt;
         const TorqueReference reference({trace.view()}, gear, ripple, band);
         CHECK(reference.band().to.value() == Approx(stated ? 5.0 : 2.0).margin(0.2));
         const auto rms_of = [&](const char* text) {
@@ -124,7 +128,8 @@ TEST_CASE("the distortion within the band is that of the filter's response there
         CHECK(slow.in_band_nm > 0.4 * 5.0 / std::sqrt(2.0) * off);
         CHECK(slow.added_nm < 0.02);
     }
-    const TorqueReference reference({trace.view()}, gear, ripple, TorqueBand{Hertz(0.0), Hertz(1.0), true, false});
+    const TorqueReference reference({trace.view()}, gear, ripple,
+                                    TorqueBand{Hertz(0.0), Hertz(1.0), true, false});
     // A resonance of 9 dB at 3 Hz above a band that ends below it adds, however much noise it takes out.
     const Contender rising = make_contender(parse_spec("oscillator,gear-ratio=100,orders=1:2,bandwidth=3Hz"));
     CHECK(reference.distortion(rising, {}).added_nm > 0.1);

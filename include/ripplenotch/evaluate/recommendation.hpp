@@ -100,7 +100,7 @@ struct BandResponse {
                                                         DegPerSec speed, const TorqueBand& band);
 
 struct RecommendationLimits {
-    std::optional<Seconds> max_delay;  ///< at 0 Hz and within the torque's band, at speeds of the log
+    std::optional<Seconds> max_delay;          ///< at 0 Hz and within the torque's band, at speeds of the log
     std::optional<double> min_attenuation_db;  ///< attenuation of every order that is present
 };
 
@@ -111,7 +111,7 @@ struct JudgedMethod {
     DegPerSec delay_at;  ///< ... and where
     std::optional<BandResponse> response;     ///< at the log's median speed
     std::optional<OrderAttenuation> weakest;  ///< the least attenuated of the orders that are present
-    Distortion distortion;  ///< of the log's torque without ripple
+    Distortion distortion;                    ///< of the log's torque without ripple
     double error_nm = 0.0;  ///< of its output: remaining ripple and distortion, root of the sum of squares
     std::vector<std::string> shortfalls;  ///< one clause for each limit that it breaks
     double excess = 0.0;                  ///< by how much, as a share of the limits, added up; 0: none
@@ -133,9 +133,9 @@ struct Recommendation {
     RecommendationLimits limits;
     /// Orders of the whole log; empty where their interpretation is uncertain.
     std::vector<RippleEstimate> orders;
-    std::size_t windows = 0;        ///< windows in which the methods were measured
+    std::size_t windows = 0;         ///< windows in which the methods were measured
     std::optional<TorqueBand> band;  ///< of the torque; empty where nothing was judged
-    double torque_rate_nm_s = 0.0;   ///< rate of change of the log's torque from motor turn to motor turn, rms
+    double torque_rate_nm_s = 0.0;  ///< rate of change of the log's torque from motor turn to motor turn, rms
     std::vector<JudgedMethod> methods;  ///< the one to take first; those within the limits before the others
 
     /// The one to take, or the nearest; null without methods.

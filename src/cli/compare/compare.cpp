@@ -711,8 +711,8 @@ ExitCode run_compare(const CompareRequest& request, const std::string& command_l
     if (request.log.empty() && (request.log_options.from || request.log_options.to))
         raise<UsageError>("--from and --to: there is no LOG to take rows of");
     Provenance provenance{{}, command_line};
-    Field field = load_contenders(methods_at(request.log, request.methods, request.log_options),
-                                        request.gear, provenance);
+    Field field = load_contenders(methods_at(request.log, request.methods, request.log_options), request.gear,
+                                  provenance);
     if (request.costs.gates.min_attenuation_db && !field.gear) raise_no_gear("--min-attenuation");
     if (field.gear) say(request.common, gear_in_words(*field.gear));
     ComparedCourse course;

@@ -79,8 +79,8 @@ std::string methods_text(const Recommendation& found) {
             rows.back().push_back(entry.db ? rounded(*entry.db, 1) : "-");
         rows.back().push_back(rounded(1e3 * method.delay.value(), 1));
         const auto& within = method.response;
-        rows.back().push_back(
-            within ? fmt::format("{:.2f}-{:.2f}", within->least_gain, within->largest_gain) : "-");
+        rows.back().push_back(within ? fmt::format("{:.2f}-{:.2f}", within->least_gain, within->largest_gain)
+                                     : "-");
         const auto& overshoot = method.figures.overshoot_percent;
         rows.back().push_back(overshoot ? rounded(*overshoot, 0) : "-");
         for (const double nm : {method.figures.ripple_rms_nm.value_or(0.0), method.distortion.in_band_nm,
@@ -115,15 +115,19 @@ std::string recommendation_view(const RecommendationReport& report) {
     if (!found.methods.empty()) {
         text += methods_text(found);
         text += "\n" + wrapped_sentence(fmt::format(
-            "Trained up to {:.6g} s, judged from there on in {} windows. The torque's band, {}: {:.3g} to "
-            "{:.3g} Hz. Off by, rms: the ripple left, what is distorted of the torque without ripple within "
-            "its band, and what is added to it beside that. Gain, within the band, and step: at the log's "
-            "median speed; late: at any of its speeds.",
-            report.split_s, found.windows,
-            found.band->stated    ? "as stated"
-            : found.band->at_rest ? "which does not rise above the noise, as far as this log resolves it"
-                                  : "99 % of what rises above the noise",
-            found.band->from.value(), found.band->to.value()));
+                           "Trained up to {:.6g} s, judged from there on in {} windows. The torque's band, "
+                           "{}: {:.3g} to "
+                           "{:.3g} Hz. Off by, rms: the ripple left, what is distorted of the torque without "
+                           "ripple within "
+                           "its band, and what is added to it beside that. Gain, within the band, and step: "
+                           "at the log's "
+                           "median speed; late: at any of its speeds.",
+                           report.split_s, found.windows,
+                           found.band->stated ? "as stated"
+                           : found.band->at_rest
+                               ? "which does not rise above the noise, as far as this log resolves it"
+                               : "99 % of what rises above the noise",
+                           found.band->from.value(), found.band->to.value()));
     }
     if (!report.check.empty()) text += next_commands("To measure it again:", {report.check});
     return text + bulleted("Assumed:", report.assumed) + bulleted("Not tried:", report.left_out);
