@@ -69,7 +69,7 @@ def figure_4(tool, data):
     """The supervisor: which candidate is in force as the speed rises to 190 deg/s and falls again."""
     tool.text("simulate", "--model", data / "paper_model.json", "--motion", "ramp,to-speed=191deg/s,duration=3.8s",
               "--motion", "ramp,to-speed=0deg/s,duration=3.8s", "--sample-rate", "1kHz", "-o", "ramp.csv", "--force")
-    metrics = tool.json("filter", "--method", "switching,table=table1.json", "ramp.csv", "-o", "ramped.csv", "--force")
+    metrics = tool.json("filter", "--method", "switching,table=table1.json,transition=parallel", "ramp.csv", "-o", "ramped.csv", "--force")
     switches = metrics["logs"][0]["switches"] if "logs" in metrics else metrics["switches"]
     rows = [[f"{s['time_s']:.3f}", str(s["from_band"]), str(s["to_band"]), fixed(s["speed_deg_s"], 3),
              fixed(s["jump_nm"], 4)] for s in switches]

@@ -59,7 +59,7 @@ def contenders(best_q):
     rows += [(f"Table 1, {name}", same(f"{TABLE},transition={name}")) for name in TRANSITIONS]
     rows += [(f"Table 1, {name}, hysteresis 1 deg/s", same(f"{TABLE},transition={name},hysteresis=1deg/s"))
              for name in TRANSITIONS]
-    rows += [(f"Table 1 with its best Q, {best_q:g}, parallel", same("switching,table=best.json")),
+    rows += [(f"Table 1 with its best Q, {best_q:g}, parallel", same("switching,table=best.json,transition=parallel")),
              (f"Table 1 with Q {best_q:g}, keep-state-variable",
               same("switching,table=best.json,transition=keep-state-variable")),
              ("low-pass, 13 Hz, 1st order", same("lowpass,cutoff=13Hz,order=1")),
@@ -90,7 +90,7 @@ def best_q(tool, data, logs, truth):
         table = columns(text)
         tool.text("design", "--gear-ratio", "100", "--orders", "1,2", "--sample-rate", "1kHz", "--speed", "18:180:18",
                   "--q", f"{q:g}", "-o", "tried.json", "--force")
-        left = sum(error(filtered(tool, "switching,table=tried.json", logs[90, seed][0]), truth) for seed in SEEDS) / 5.0
+        left = sum(error(filtered(tool, "switching,table=tried.json,transition=parallel", logs[90, seed][0]), truth) for seed in SEEDS) / 5.0
         delays = table["dc_delay_ms"]
         least = min(table["worst_attenuation_1_db"] + table["worst_attenuation_2_db"])
         rows.append([f"{q:g}", fixed(left, 3), f"{delays[-1]:.1f} to {delays[0]:.1f}", fixed(least, 1)])
@@ -144,7 +144,8 @@ def figure_11(tool, logs, truth):
     log = logs[90, 1][0]
     raw = columns((tool.folder / log).read_text())
     outputs = [filtered(tool, method, log) for method in (
-        TABLE, "switching,table=best.json", f"tracking,{GEAR}", OSCILLATOR, warm(90), f"subtract,{GEAR}")]
+        f"{TABLE},transition=parallel", "switching,table=best.json,transition=parallel", f"tracking,{GEAR}", OSCILLATOR,
+        warm(90), f"subtract,{GEAR}")]
     rows = [[f"{raw['time_s'][k]:.3f}", fixed(raw["velocity_deg_s"][k], 2), fixed(truth[k], 4),
              fixed(raw["torque_nm"][k], 4), *(fixed(out[k], 4) for out in outputs)] for k in range(0, len(truth), 5)]
     return {"figure11.csv": csv_text(["time_s", "velocity_deg_s", "true_nm", "raw_nm", "table1_nm", "best_q_nm",
@@ -189,7 +190,7 @@ def reversal(tool, data):
     tool.text("simulate", "--gear-ratio", "100", *ripple, *base, *motion, "--noise", "0.05Nm", "-o", "reversal.csv",
               "--force")
     truth = tool.log("simulate", "--gear-ratio", "100", *base, *motion)["torque_nm"]
-    methods = ["none", TABLE, "lowpass,cutoff=3Hz,order=2", "lowpass,cutoff=13rad/s,order=1"]
+    methods = ["none", f"{TABLE},transition=parallel", "lowpass,cutoff=3Hz,order=2", "lowpass,cutoff=13rad/s,order=1"]
     methods += [f"tracking,{GEAR},q=1,{low}" for low in ("min=1Hz,fade=0Hz,low=park", "min=1Hz,fade=1Hz",
                                                          "min=2Hz,fade=2Hz")]
     methods += [f"tracking,{GEAR}", OSCILLATOR, f"subtract,{GEAR}"]

@@ -78,14 +78,15 @@ double sine_amplitude(std::span<const double> y, std::size_t from, double omega)
 
 }  // namespace
 
-StepMeasurement Bench::step(NewtonMeters height) const {
+StepMeasurement Bench::step(NewtonMeters height, Seconds run_in) const {
     const double h = height.value();
     if (!std::isfinite(h) || h == 0.0) raise<UsageError>("a step of {} Nm is no step", h);
     Run run(contender_, sample_rate_, speed_);
-    // Sample 0 is the steady state before the step: filters start settled on their first sample.
-    const auto signal = [h](std::size_t k) { return k == 0 ? 0.0 : h; };
+    // The last sample of rest is the steady state before the step: filters start settled on their first.
+    const auto before = static_cast<std::size_t>(std::llround(run_in.value() * sample_rate_.value()));
+    const auto signal = [h, before](std::size_t k) { return k <= before ? 0.0 : h; };
     const double rest = 0.01 * settle_bands_percent.front() / 100.0;
-    std::size_t count = first_length(sample_rate_);
+    std::size_t count = first_length(sample_rate_) + 2 * before;
     while (true) {
         run.extend(count, signal);
         const auto half = run.out().begin() + static_cast<std::ptrdiff_t>(count / 2);
@@ -96,11 +97,11 @@ StepMeasurement Bench::step(NewtonMeters height) const {
     StepMeasurement figures;
     std::array<std::size_t, 4> settled{};
     double peak = 1.0;
-    for (std::size_t k = 1; k < count; ++k) {
+    for (std::size_t k = before + 1; k < count; ++k) {
         const double y = run.out()[k] / h;
         peak = std::max(peak, y);
         for (std::size_t b = 0; b < settled.size(); ++b) {
-            if (!(std::abs(y - 1.0) <= settle_bands_percent[b] / 100.0)) settled[b] = k;
+            if (!(std::abs(y - 1.0) <= settle_bands_percent[b] / 100.0)) settled[b] = k - before;
         }
     }
     for (std::size_t b = 0; b < settled.size(); ++b) {

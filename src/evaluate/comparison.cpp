@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "ripplenotch/analysis/ripple_estimate.hpp"
+#include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/evaluate/comparison.hpp"
@@ -203,6 +204,17 @@ std::unique_ptr<CausalFilter> Contender::start(Hertz sample_rate) const {
     return method->start(settings, sample_rate, table.get());
 }
 
+std::string Contender::refusal(Hertz sample_rate) const {
+    try {
+        static_cast<void>(start(sample_rate));
+    } catch (const UsageError& error) {
+        return error.what();
+    } catch (const DataError& error) {
+        return error.what();
+    }
+    return "";
+}
+
 std::unique_ptr<CausalFilter> Contender::start_on_bench(Hertz sample_rate) const {
     return without_ripple ? without_ripple->start(sample_rate) : start(sample_rate);
 }
@@ -382,6 +394,22 @@ DegPerSec median_moving_speed(const TraceView& trace) {
     }
     if (moving.empty()) return DegPerSec(0.0);
     return DegPerSec(median_in(moving));
+}
+
+std::vector<double> output_on_log(const Contender& contender, const ComparedLog& log) {
+    const auto filter = filter_for(contender, log);
+    std::vector<double> out(log.trace.size());
+    for_each_block(
+        log.trace,
+        [&](const TraceView& block) {
+            std::span<const double> warmth;
+            if (!log.temperatures_degc.empty() && !log.temperatures_degc.front().empty())
+                warmth = log.temperatures_degc.front().subspan(block.first_row, block.size());
+            filter->process({block.velocity_deg_s, block.torque_nm, block.position_deg, warmth},
+                            std::span(out).subspan(block.first_row, block.size()));
+        },
+        [&] { filter->restart(); });
+    return out;
 }
 
 LogLevels measure_on_log(std::span<const Contender> contenders, const ComparedLog& log,

@@ -187,9 +187,27 @@ std::string taken_off(const JudgedMethod& method, const std::vector<RippleEstima
     return fmt::format("{} and {}", fmt::join(parts, ", "), last);
 }
 
-std::string late(const JudgedMethod& method) {
-    const double ms = 1e3 * method.delay.value();
-    return ms < 0.05 ? "without delay" : fmt::format("{:.1f} ms late at most", ms);
+// "no delay at 0 Hz, 0.2 to 9.3 ms late at a gain of 0.98 to 1.21 within 0 to 5 Hz, a step overshoots by 40
+// %"
+std::string late(const JudgedMethod& method, const TorqueBand& band) {
+    const std::string dc_ms = rounded(method.figures.dc_delay_ms.value_or(0.0), 1);
+    std::string text = dc_ms == "0.0" ? "no delay at 0 Hz" : fmt::format("{} ms late at 0 Hz", dc_ms);
+    const double overshoot_percent = method.figures.overshoot_percent.value_or(0.0);
+    if (const auto& within = method.response) {
+        const std::string least = rounded(1e3 * within->least_delay.value(), 1),
+                          longest = rounded(1e3 * within->longest_delay.value(), 1),
+                          gain = fmt::format("{:.2f}", within->least_gain),
+                          largest = fmt::format("{:.2f}", within->largest_gain);
+        const bool passes = dc_ms == "0.0" && least == "0.0" && longest == "0.0" && gain == "1.00" &&
+                            largest == "1.00" && overshoot_percent < 0.5;
+        if (passes) return "without delay";
+        text +=
+            fmt::format(", {} ms late at a gain of {} within {:.3g} to {:.3g} Hz",
+                        least == longest ? least : least + " to " + longest,
+                        gain == largest ? gain : gain + " to " + largest, band.from.value(), band.to.value());
+    }
+    if (overshoot_percent >= 0.5) text += fmt::format(", a step overshoots by {:.0f} %", overshoot_percent);
+    return text;
 }
 
 std::string short_text(const MethodFigures& figures) {
@@ -201,8 +219,8 @@ std::string short_text(const MethodFigures& figures) {
 bool is_control(const MethodFigures& figures) { return part_of(figures) == MethodPart::control; }
 
 std::string one_sentence(const Recommendation& found, const JudgedMethod& method) {
-    return fmt::format("{}, {}, {:.3g} Nm rms of ripple left", taken_off(method, found.orders), late(method),
-                       method.figures.ripple_rms_nm.value_or(0.0));
+    return fmt::format("{}, {}, {:.3g} Nm rms of ripple left", taken_off(method, found.orders),
+                       late(method, *found.band), method.figures.ripple_rms_nm.value_or(0.0));
 }
 
 std::string next_to(const Recommendation& found, const JudgedMethod& taken, const JudgedMethod& other) {
@@ -232,8 +250,8 @@ std::string recommendation_verdict(const Recommendation& found) {
     std::string text =
         is_control(taken->figures)
             ? fmt::format(
-                  "Leave the torque as it is: what a filter takes out here, its delay "
-                  "costs ({:.3g} Nm rms of ripple).",
+                  "Leave the torque as it is: what a filter takes out here is less than what it "
+                  "distorts ({:.3g} Nm rms of ripple).",
                   taken->figures.ripple_rms_nm.value_or(0.0))
             : fmt::format("Take {}: {}.", short_text(taken->figures), one_sentence(found, *taken));
     if (other != nullptr) text += next_to(found, *taken, *other);
@@ -242,7 +260,11 @@ std::string recommendation_verdict(const Recommendation& found) {
 
 namespace {
 
-constexpr double slow_turn_s = 0.5;  // chosen, not derived
+constexpr double slow_turn_s = 0.5;        // chosen, not derived
+constexpr NewtonMeters judged_step{10.0};  // as compare takes on a log
+constexpr Seconds run_in{2.0};             // chosen, not derived: the motor has turned several times
+// Speeds of the log at which delays within the band are looked at, alike many rows apart.
+constexpr std::size_t speeds_judged = 9;
 
 std::pair<Seconds, DegPerSec> longest_of(const Contender& contender, Hertz sample_rate, DegPerSec slowest,
                                          DegPerSec fastest) {
@@ -288,25 +310,43 @@ void hold_to(JudgedMethod& method, const RecommendationLimits& limits,
     method.excess += (delay_ms - limit_ms) / std::max(limit_ms, 1.0);
 }
 
-// The delay of a method in addition to its measured remaining ripple.
-JudgedMethod judged(const Contender& contender, MethodFigures&& measured, const ComparedLog& log,
-                    const Recommendation& found) {
+// |v| of a log, slowest first.
+std::vector<double> speeds_of(const TraceView& trace) {
+    std::vector<double> speeds;
+    for (const double velocity : trace.velocity_deg_s) speeds.push_back(std::abs(velocity));
+    std::sort(speeds.begin(), speeds.end());
+    return speeds;
+}
+
+// What the method costs, in addition to what it leaves.
+JudgedMethod judged(const Contender& contender, MethodFigures&& measured, const TraceView& trace,
+                    const std::vector<double>& speeds, const Recommendation& found) {
     JudgedMethod method;
     method.figures = std::move(measured);
-    const TraceView& trace = log.trace;
-    DegPerSec slowest(1e300), fastest(0.0);
-    for (const double velocity : trace.velocity_deg_s) {
-        slowest = std::min(slowest, DegPerSec(std::abs(velocity)));
-        fastest = std::max(fastest, DegPerSec(std::abs(velocity)));
-    }
-    const MethodFigures at_median = measure_on_signals(
-        contender, trace.sample_rate, median_moving_speed(trace), std::nullopt, std::nullopt, nullptr);
+    const DegPerSec median = median_moving_speed(trace);
+    const MethodFigures at_median =
+        measure_on_signals(contender, trace.sample_rate, median, std::nullopt, std::nullopt, nullptr);
     method.figures.dc_delay_ms = at_median.dc_delay_ms;
     method.figures.note = at_median.note;
-    std::tie(method.delay, method.delay_at) = longest_of(contender, trace.sample_rate, slowest, fastest);
+    try {
+        const Bench bench(contender, trace.sample_rate, median);
+        method.figures.overshoot_percent = bench.step(judged_step, run_in).overshoot_percent;
+    } catch (const UsageError&) {
+        // A filter that does not settle has no such figure; the others still count.
+    }
+    std::tie(method.delay, method.delay_at) =
+        longest_of(contender, trace.sample_rate, DegPerSec(speeds.front()), DegPerSec(speeds.back()));
+    method.response = band_response(contender, trace.sample_rate, median, *found.band);
+    const auto moving = std::upper_bound(speeds.begin(), speeds.end(), speeds.back() / 20.0);
+    for (std::size_t i = 0; i < speeds_judged && moving != speeds.end(); ++i) {
+        const auto apart = static_cast<std::size_t>(speeds.end() - moving - 1);
+        const DegPerSec speed(moving[static_cast<std::ptrdiff_t>(apart * i / (speeds_judged - 1))]);
+        const auto response = band_response(contender, trace.sample_rate, speed, *found.band);
+        if (!response || response->longest_delay <= method.delay) continue;
+        method.delay = response->longest_delay;
+        method.delay_at = speed;
+    }
     method.weakest = weakest_of(method.figures, found.orders);
-    const double lag_nm = 1e-3 * method.figures.dc_delay_ms.value_or(0.0) * found.torque_rate_nm_s;
-    method.error_nm = portable::hypot(method.figures.ripple_rms_nm.value_or(0.0), lag_nm);
     return method;
 }
 
@@ -374,7 +414,7 @@ double torque_rate_nm_s(const TraceView& trace, GearRatio ratio) {
 
 Recommendation recommend(std::span<const Contender> contenders, const ComparedLog& log,
                          const GearAccount& lines, const RecommendationLimits& limits,
-                         std::vector<RippleEstimate> ripple) {
+                         std::vector<RippleEstimate> ripple, std::optional<TorqueBand> band) {
     Recommendation found;
     found.limits = limits;
     found.orders = std::move(ripple);
@@ -397,9 +437,18 @@ Recommendation recommend(std::span<const Contender> contenders, const ComparedLo
         return found;
     }
     found.torque_rate_nm_s = torque_rate_nm_s(log.trace, lines.ratio);
+    const TorqueReference reference(log, lines, found.orders, band);
+    found.band = reference.band();
+    const std::vector<double> speeds = speeds_of(log.trace);
     Progress::current().begin("judging", "methods", contenders.size());
     for (std::size_t i = 0; i < contenders.size(); ++i, Progress::current().add(1)) {
-        JudgedMethod method = judged(contenders[i], std::move(levels.methods[i]), log, found);
+        JudgedMethod method = judged(contenders[i], std::move(levels.methods[i]), log.trace, speeds, found);
+        method.distortion =
+            reference.distortion(contenders[i], i < log.temperatures_degc.size() ? log.temperatures_degc[i]
+                                                                                 : std::span<const double>());
+        method.error_nm = portable::hypot(
+            portable::hypot(method.figures.ripple_rms_nm.value_or(0.0), method.distortion.in_band_nm),
+            method.distortion.added_nm);
         hold_to(method, limits, found.orders);
         found.methods.push_back(std::move(method));
     }

@@ -64,8 +64,8 @@ class Signals(Comparison):
         _, rows = self.compare("--ramp", "20Nm/s", "--sample-rate", "1kHz", *methods(NOTCHES))
         self.assertEqual(list(rows[NOTCHES]), [
             "method", "settle_ms", "overshoot_percent", "ramp_delay_ms", "dc_delay_ms", "phase_lag_deg",
-            "crossover_db", "attenuation_db", "ripple_rms_nm", "residual_rms_nm", "residual_peak_to_peak_nm", "switches",
-            "largest_jump_nm", "error_rms_nm", "note", "within_max_delay_from_deg_s", "ledger",
+            "crossover_db", "attenuation_db", "ripple_rms_nm", "residual_rms_nm", "residual_peak_to_peak_nm", "distortion_rms_nm",
+            "switches", "largest_jump_nm", "error_rms_nm", "note", "within_max_delay_from_deg_s", "ledger",
             "switch_ledger"])
         for name in ("settle_ms", "overshoot_percent", "ripple_rms_nm", "residual_rms_nm", "switches"):
             self.assertIsNone(rows[NOTCHES][name])

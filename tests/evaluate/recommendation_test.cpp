@@ -66,17 +66,87 @@ TEST_CASE("without a ripple that is present nothing is recommended, and a short 
     CHECK(recommended(log_of(1.0, 0.0, 0.5)).finding == RecommendationFinding::cannot_tell);
 }
 
-TEST_CASE("what is off is the ripple left and the way of the torque within the delay") {
+TEST_CASE("what is off is the ripple left and what is done to the torque without it") {
     const Trace trace = log_of(1.0, 20.0);
     const Recommendation found = recommended(trace);
     REQUIRE(found.finding == RecommendationFinding::recommended);
     for (const JudgedMethod& method : found.methods) {
+        CHECK(method.error_nm ==
+              Approx(std::hypot(*method.figures.ripple_rms_nm, method.distortion.in_band_nm,
+                                method.distortion.added_nm)));
+        if (method.figures.method == "none") {
+            CHECK(method.distortion.in_band_nm == 0.0);
+            CHECK(method.distortion.added_nm == 0.0);
+        }
+        // On a ramp all that is distorted is the way of the torque within the delay, once the filter follows.
         const double lag = 1e-3 * *method.figures.dc_delay_ms * found.torque_rate_nm_s;
-        CHECK(method.error_nm == Approx(std::hypot(*method.figures.ripple_rms_nm, lag)));
+        CHECK(method.distortion.in_band_nm == Approx(lag).margin(0.02).epsilon(0.05));
     }
     // A low-pass of 3 Hz is 53 ms late, which is more than a Nm of this ramp.
     CHECK(found.taken()->figures.method.substr(0, 10) == "oscillator");
     CHECK(found.methods.back().figures.method == "lowpass,cutoff=3Hz,order=1");
+}
+
+TEST_CASE("the band of a torque is where 99 % of its variance above the noise lies") {
+    Trace trace = log_of(0.0, 0.0);
+    const auto band_of = [&](double hz, double nm) {
+        Trace moved = trace;
+        for (std::size_t k = 0; k < moved.size(); ++k)
+            moved.torque_nm[k] += nm * std::sin(2.0 * std::numbers::pi * hz * moved.time_s[k]);
+        return torque_band(moved.view());
+    };
+    CHECK(band_of(0.0, 0.0).at_rest);
+    CHECK(band_of(0.0, 0.0).to.value() == Approx(4.0 / 12.0).epsilon(0.01));
+    for (const double hz : {1.0, 3.0, 10.0}) {
+        CHECK_FALSE(band_of(hz, 5.0).at_rest);
+        CHECK(band_of(hz, 5.0).to.value() == Approx(hz).margin(0.2));
+    }
+}
+
+TEST_CASE(
+    "the distortion within the band is that of the filter's response there, and noise taken out is no "
+    "credit") {
+    Trace trace = log_of(1.0, 0.0);
+    for (std::size_t k = 0; k < trace.size(); ++k)
+        trace.torque_nm[k] += 5.0 * std::sin(2.0 * std::numbers::pi * 2.0 * trace.time_s[k]);
+    const auto ripple = ripple_of(trace);
+    for (const bool stated : {false, true}) {
+        const auto band =
+            stated ? std::optional(TorqueBand{Hertz(0.0), Hertz(5.0), true, false}) : std::nullopt;
+        const TorqueReference reference({trace.view()}, gear, ripple, band);
+        CHECK(reference.band().to.value() == Approx(stated ? 5.0 : 2.0).margin(0.2));
+        const auto rms_of = [&](const char* text) {
+            const Contender method = make_contender(parse_spec(text));
+            return reference.distortion(method, {});
+        };
+        CHECK(rms_of("none").in_band_nm == 0.0);
+        const Distortion slow = rms_of("lowpass,cutoff=10Hz,order=1");
+        // The band ends at the sine where nobody states it: of its amplitude a half is seen there.
+        const Cascade cascade = design_low_pass({Hertz(10.0), 1}, trace.sample_rate);
+        const double off = std::abs(response(cascade, Hertz(2.0), SampledAt(trace.sample_rate)) - 1.0);
+        if (stated) CHECK(slow.in_band_nm == Approx(5.0 / std::sqrt(2.0) * off).epsilon(0.03));
+        CHECK(slow.in_band_nm > 0.4 * 5.0 / std::sqrt(2.0) * off);
+        CHECK(slow.added_nm < 0.02);
+    }
+    const TorqueReference reference({trace.view()}, gear, ripple,
+                                    TorqueBand{Hertz(0.0), Hertz(1.0), true, false});
+    // A resonance of 9 dB at 3 Hz above a band that ends below it adds, however much noise it takes out.
+    const Contender rising = make_contender(parse_spec("oscillator,gear-ratio=100,orders=1:2,bandwidth=3Hz"));
+    CHECK(reference.distortion(rising, {}).added_nm > 0.1);
+}
+
+TEST_CASE("the response of the oscillator within the band is what sines measure") {
+    const Contender oscillator = make_contender(parse_spec("oscillator,gear-ratio=100,orders=1:2,slip=0"));
+    const Hertz rate(1000.0), at(5.0);
+    const auto response = band_response(oscillator, rate, DegPerSec(90.0), {at, at, true, false});
+    REQUIRE(response);
+    const Bench bench(oscillator, rate, DegPerSec(90.0));
+    CHECK(20.0 * std::log10(response->largest_gain) == Approx(-*bench.attenuation_db(at)).margin(0.01));
+    CHECK(response->largest_gain > 1.01);
+    CHECK(response->least_delay == response->longest_delay);
+    // A step that comes while the filter does not know the ripple yet excites more of it.
+    CHECK(bench.step(NewtonMeters(10.0), Seconds(2.0)).overshoot_percent <
+          0.6 * bench.step(NewtonMeters(10.0)).overshoot_percent);
 }
 
 TEST_CASE("the longest delay of a table is that of the slowest band that the log comes into") {

@@ -57,6 +57,17 @@ struct RippleEstimate {
 [[nodiscard]] std::vector<RippleEstimate> estimate_ripple(std::span<const TraceView> logs, GearRatio ratio,
                                                           std::span<const Order> orders);
 
+/// The ripple of a log, row by row.
+struct RippleCourse {
+    std::vector<double> nm;   ///< where it is not known a straight line, so that nothing jumps
+    std::vector<bool> known;  ///< whether a segment of estimate_ripple() holds the row
+};
+
+/// The sum of the orders as estimate_ripple() fits them in its overlapping windows, each row by the weight
+/// that it has there.
+[[nodiscard]] RippleCourse ripple_course(const TraceView& log, GearRatio ratio,
+                                         std::span<const Order> orders);
+
 /// The ripple that is present, or its upper limit, order by order, with the speeds it was searched at.
 [[nodiscard]] std::string ripple_text(std::span<const RippleEstimate> estimates);
 

@@ -113,6 +113,9 @@ struct ComparedLog {
 /// motion.
 [[nodiscard]] DegPerSec median_moving_speed(const TraceView& trace);
 
+/// The output of one method, row by row; of the temperatures the first counts.
+[[nodiscard]] std::vector<double> output_on_log(const Contender& contender, const ComparedLog& log);
+
 /// The remaining ripple of the log after each method: all run over the log together, and are measured on the
 /// same windows.
 struct LogLevels {

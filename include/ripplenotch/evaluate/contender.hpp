@@ -31,6 +31,8 @@ struct Contender {
 
     /// A filter without a past. Throws UsageError on what cannot be designed at this sample rate.
     [[nodiscard]] std::unique_ptr<CausalFilter> start(Hertz sample_rate) const;
+    /// Why start() would throw, a sentence; empty where it does not.
+    [[nodiscard]] std::string refusal(Hertz sample_rate) const;
     /// The same for signals that have no ripple: without the ripple known from a map.
     [[nodiscard]] std::unique_ptr<CausalFilter> start_on_bench(Hertz sample_rate) const;
     /// Null for methods that need no first pass over the log.
@@ -69,8 +71,9 @@ class Bench {
         : contender_(contender), sample_rate_(sample_rate), speed_(speed) {}
     Bench(const Contender&& gone, Hertz sample_rate, DegPerSec speed) = delete;  // it is borrowed
 
-    /// The filter is in steady state at torque 0; the torque is `height` Nm (not 0) from t = 0 on.
-    [[nodiscard]] StepMeasurement step(NewtonMeters height) const;
+    /// The filter is in steady state at torque 0; the torque is `height` Nm (not 0) from t = 0 on. One that
+    /// has to see the joint move before it is in steady state is given that time at torque 0.
+    [[nodiscard]] StepMeasurement step(NewtonMeters height, Seconds run_in = Seconds(0.0)) const;
     /// The filter is in steady state at torque 0; the torque rises by `slope_nm_s` (not 0) from t = 0 on: how
     /// far the output lags behind once the lag no longer changes, to 1e-5 ms.
     [[nodiscard]] Seconds ramp_delay(double slope_nm_s) const;

@@ -49,20 +49,70 @@ inline constexpr double complete_null_gain = 1e-7;
 [[nodiscard]] LowPassMatch match_on_log(const std::string& subject, double ripple_rms_nm, int order,
                                         const ComparedLog& log, const GearAccount& lines);
 
+// The band of the torque, and what a method does to a torque without ripple.
+
+/// The frequencies in which a log's torque moves.
+struct TorqueBand {
+    Hertz from, to;
+    bool stated = false;   ///< by the user
+    bool at_rest = false;  ///< the torque does not move above its noise: the band is what the log resolves
+};
+
+/// From 0 Hz to the frequency below which 99 % of the variance above the noise lies, of a torque without
+/// ripple: mean and straight line removed, the noise taken as white, at the median density above a quarter of
+/// the sample rate. Never less than four periods in the log. Throws DataError for fewer than 64 samples.
+[[nodiscard]] TorqueBand torque_band(const TraceView& torque);
+
+struct Distortion {
+    double in_band_nm = 0.0;  ///< output minus torque within the band, rms
+    double added_nm = 0.0;    ///< above the band: by how much its octaves are stronger, rms, added up
+};
+
+/// The torque of a log without its ripple: what a method should pass.
+class TorqueReference {
+  public:
+    /// Borrows the log. `ripple`: the orders that are present are taken out, as ripple_course() fits them.
+    TorqueReference(const ComparedLog& log, const GearAccount& lines, std::span<const RippleEstimate> ripple,
+                    std::optional<TorqueBand> stated);
+
+    [[nodiscard]] const TorqueBand& band() const { return band_; }
+    /// Of a method that runs on it, over the rows at which the ripple is known; both band-limited without
+    /// phase. A method with a map runs without the ripple known from it.
+    [[nodiscard]] Distortion distortion(const Contender& contender,
+                                        std::span<const double> temperature_degc) const;
+
+  private:
+    [[nodiscard]] double power(std::span<const double> values) const;
+    [[nodiscard]] std::vector<double> powers_beside(const std::vector<double>& torque_nm) const;
+    ComparedLog log_;
+    std::vector<double> torque_nm_, beside_nm2_;
+    std::vector<bool> known_;
+    TorqueBand band_;
+};
+
+/// Phase delay and gain over a band, smallest and largest.
+struct BandResponse {
+    Seconds least_delay, longest_delay;
+    double least_gain = 1.0, largest_gain = 1.0;
+};
+/// Of the filter that is active at a constant speed; empty for methods that have none.
+[[nodiscard]] std::optional<BandResponse> band_response(const Contender& contender, Hertz sample_rate,
+                                                        DegPerSec speed, const TorqueBand& band);
+
 struct RecommendationLimits {
-    std::optional<Seconds> max_delay;          ///< DC delay at any speed of the log
+    std::optional<Seconds> max_delay;          ///< at 0 Hz and within the torque's band, at speeds of the log
     std::optional<double> min_attenuation_db;  ///< attenuation of every order that is present
 };
 
 /// One method on the log.
 struct JudgedMethod {
     MethodFigures figures;
-    Seconds delay;                            ///< longest DC delay at speeds of the log ...
-    DegPerSec delay_at;                       ///< ... and where
+    Seconds delay;       ///< the longest, at 0 Hz and within the torque's band, at speeds of the log ...
+    DegPerSec delay_at;  ///< ... and where
+    std::optional<BandResponse> response;     ///< at the log's median speed
     std::optional<OrderAttenuation> weakest;  ///< the least attenuated of the orders that are present
-    /// Error of its output: the remaining ripple and, for its DC delay at the log's median speed, the change
-    /// of the log's torque in that time; root of the sum of squares.
-    double error_nm = 0.0;
+    Distortion distortion;                    ///< of the log's torque without ripple
+    double error_nm = 0.0;  ///< of its output: remaining ripple and distortion, root of the sum of squares
     std::vector<std::string> shortfalls;  ///< one clause for each limit that it breaks
     double excess = 0.0;                  ///< by how much, as a share of the limits, added up; 0: none
 
@@ -83,7 +133,8 @@ struct Recommendation {
     RecommendationLimits limits;
     /// Orders of the whole log; empty where their interpretation is uncertain.
     std::vector<RippleEstimate> orders;
-    std::size_t windows = 0;        ///< windows in which the methods were measured
+    std::size_t windows = 0;         ///< windows in which the methods were measured
+    std::optional<TorqueBand> band;  ///< of the torque; empty where nothing was judged
     double torque_rate_nm_s = 0.0;  ///< rate of change of the log's torque from motor turn to motor turn, rms
     std::vector<JudgedMethod> methods;  ///< the one to take first; those within the limits before the others
 
@@ -103,10 +154,11 @@ inline constexpr std::size_t fewest_judged_windows = 7;
 /// Runs all over the log and sorts them by the error of their output. The same methods under looser limits
 /// give the same or a better one. The control is among them or not, as given. `ripple`: the result of
 /// estimate_ripple() for the whole log, of which `log` is the part used for the recommendation, one for each
-/// of `lines`.
+/// of `lines`. `band`: the torque's, where it is stated.
 [[nodiscard]] Recommendation recommend(std::span<const Contender> contenders, const ComparedLog& log,
                                        const GearAccount& lines, const RecommendationLimits& limits,
-                                       std::vector<RippleEstimate> ripple);
+                                       std::vector<RippleEstimate> ripple,
+                                       std::optional<TorqueBand> band = std::nullopt);
 
 /// One sentence, or two, with numbers: the recommended method, its performance, and the next best.
 [[nodiscard]] std::string recommendation_verdict(const Recommendation& found);

@@ -117,6 +117,8 @@ std::size_t RippleSegments::add(const TraceView& rows, std::span<const std::span
     for (double& turns : angle.turns) turns *= ratio_;
     Part part{rows, {rows.torque_nm}, std::move(angle.turns), smoothed_speed(rows), angle.absolute};
     part.torques.insert(part.torques.end(), further.begin(), further.end());
+    if (options_.courses)
+        courses_.assign(orders_.size(), {std::vector<double>(rows.size()), std::vector<double>(rows.size())});
     double fastest = 0.0;
     for (const double speed : part.speed_deg_s) fastest = std::max(fastest, std::abs(speed));
     fastest_deg_s_ = std::max(fastest_deg_s_, fastest);
@@ -133,7 +135,7 @@ std::size_t RippleSegments::add(const TraceView& rows, std::span<const std::span
                     rows_ += window.end - std::min(std::max(window.first, seen_before), window.end);
                     seen_before = std::max(seen_before, window.end);
                 }
-                if (keeps(window.size())) measure(part, window, last, shared);
+                if (options_.courses || keeps(window.size())) measure(part, window, last, shared);
             }
         }
     }
@@ -191,6 +193,12 @@ void RippleSegments::measure(const Part& part, const SampleRun& window, std::siz
             const double apart = (nearest_probe + static_cast<double>(p / 2)) / length;
             found.noise[p] = fit.power_beside(
                 torques.front(), {orders_[i] + (p % 2 == 0 ? -apart : apart), turns}, nearest_probe);
+        }
+        for (std::size_t k = 0; options_.courses && k < window.size(); ++k) {
+            const double cycles = orders_[i] * turns[k], weight = root_weight[k] * root_weight[k];
+            const auto on_circle = portable::phasor(2.0 * std::numbers::pi * (cycles - std::floor(cycles)));
+            courses_[i].nm[window.first + k] += weight * (found.value.front() * on_circle).real();
+            courses_[i].weight[window.first + k] += weight;
         }
         gathered_[i].segments.push_back(std::move(found));
         gathered_[i].absolute_angle = gathered_[i].absolute_angle && part.absolute_angle;
@@ -408,6 +416,35 @@ std::vector<RippleEstimate> estimate_ripple(std::span<const TraceView> logs, Gea
         found.back().insufficient = why_none(all, order);
     }
     return found;
+}
+
+RippleCourse ripple_course(const TraceView& log, GearRatio ratio, std::span<const Order> orders) {
+    RippleSegments all(ratio, orders, {.courses = true});
+    all.add(log);
+    RippleCourse course{std::vector<double>(log.size()), std::vector<bool>(log.size())};
+    for (const RippleSegments::Course& one : all.courses()) {
+        for (std::size_t k = 0; k < log.size(); ++k) {
+            if (!(one.weight[k] > 0.0)) continue;
+            course.nm[k] += one.nm[k] / one.weight[k];
+            course.known[k] = true;
+        }
+    }
+    for (std::size_t from = 0; from < log.size();) {
+        std::size_t to = from;
+        while (to < log.size() && !course.known[to] && (to == from || !log.starts_run(to))) ++to;
+        if (to == from) {
+            ++from;
+            continue;
+        }
+        const bool before = from > 0 && !log.starts_run(from), after = to < log.size() && !log.starts_run(to);
+        const double first = before ? course.nm[from - 1] : after ? course.nm[to] : 0.0;
+        const double last = after ? course.nm[to] : first;
+        const double steps = static_cast<double>(to - from + 1);
+        for (std::size_t k = from; k < to; ++k)
+            course.nm[k] = first + (last - first) * static_cast<double>(k - from + 1) / steps;
+        from = to;
+    }
+    return course;
 }
 
 std::string ripple_text(std::span<const RippleEstimate> estimates) {

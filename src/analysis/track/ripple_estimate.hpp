@@ -57,10 +57,16 @@ class RippleSegments {
         std::size_t signals = 1;
         bool noise = false;      ///< SegmentAmplitude::noise is wanted ...
         bool residuals = false;  ///< ... and residuals() are
+        bool courses = false;    ///< courses() are wanted
         LineGains gains = {};
     };
     /// Throws UsageError for a ratio or an order that is not above 0.
     RippleSegments(GearRatio ratio, std::span<const Order> orders, Options options);
+
+    /// The ripple of one order row by row: the fits of the windows, weighted as they weigh their rows.
+    struct Course {
+        std::vector<double> nm, weight;  ///< sum of weighted ripple, and of weights: 0 where no window lies
+    };
 
     /// Measures a log, or a part of one whose first rows `seen_before` were in the part before, with its own
     /// torque as the first signal and further ones after it. Returns the row from which a part that follows
@@ -71,6 +77,8 @@ class RippleSegments {
     [[nodiscard]] const OrderSegments& of(Order order) const;
     /// Per signal, of all segments that hold the most orders.
     [[nodiscard]] const std::vector<std::vector<SegmentResidual>>& residuals() const { return residuals_; }
+    /// Per order, rising, of the latest add(); every window counts.
+    [[nodiscard]] const std::vector<Course>& courses() const { return courses_; }
     [[nodiscard]] std::size_t orders() const { return orders_.size(); }
     [[nodiscard]] bool has_gains() const { return static_cast<bool>(options_.gains); }
     /// Rows in segments that hold the lowest order.
@@ -94,6 +102,7 @@ class RippleSegments {
     double longest_turns_;
     std::vector<OrderSegments> gathered_;
     std::vector<std::vector<SegmentResidual>> residuals_;
+    std::vector<Course> courses_;
     std::size_t stride_ = 1, seen_ = 0, samples_ = 0, rows_ = 0, too_few_samples_ = 0;
     double fastest_deg_s_ = 0.0, rate_turns_deg_s_ = std::numeric_limits<double>::max();
 };

@@ -426,6 +426,25 @@ void check_table_rates(const Field& field, Hertz sample_rate, const std::string&
     }
 }
 
+// Those that cannot be designed at this rate are left out with a warning where another one is left.
+void leave_out_refused(Field& field, Hertz sample_rate, const CommonOptions& common) {
+    std::vector<std::string> reasons;
+    std::vector<Contender> kept;
+    bool compared = false;
+    for (const Contender& contender : field.contenders) {
+        const std::string why = contender.refusal(sample_rate);
+        if (!why.empty()) {
+            reasons.push_back(why + "; it is left out");
+            continue;
+        }
+        compared = compared || contender.method->part != MethodPart::control;
+        kept.push_back(contender);
+    }
+    if (reasons.empty() || !compared) return;
+    say_warnings(common, reasons);
+    field.contenders = std::move(kept);
+}
+
 void attach_costs(Options& options, CostRequest& request) {
     options.number("--crossover", request.crossover, Dimension::frequency,
                    "the control loop's: phase lag and gain there, e.g. 12Hz");
@@ -638,7 +657,7 @@ std::vector<double> true_torque(const CompareRequest& request, const ReadOptions
     return std::move(truth.trace.torque_nm);
 }
 
-Comparison compare_on_log(const CompareRequest& request, const Field& field, Provenance& provenance,
+Comparison compare_on_log(const CompareRequest& request, Field& field, Provenance& provenance,
                           ComparedCourse& course) {
     if (request.log_options.joint == "all")
         raise<UsageError>("--joint all: compare looks at one joint; name it");
@@ -652,6 +671,7 @@ Comparison compare_on_log(const CompareRequest& request, const Field& field, Pro
     compared.truth_nm = truth;
     if (request.plot.wanted() && !truth.empty())
         compared.watch = [&course](auto&&... all) { course.add(all...); };
+    leave_out_refused(field, log.recording.clock.nominal_rate, request.common);
     const auto warmth = temperatures_for(field.contenders, request.log, read, request.common);
     compared.temperatures_degc.assign(warmth.begin(), warmth.end());
     // The filters are those that the filter command would run.
@@ -685,8 +705,8 @@ ExitCode run_compare(const CompareRequest& request, const std::string& command_l
     if (request.log.empty() && request.log_options.range.given())
         raise<UsageError>("--from and --to: there is no LOG to take rows of");
     Provenance provenance{{}, command_line};
-    const Field field = load_contenders(methods_at(request.log, request.methods, request.log_options),
-                                        request.gear, provenance);
+    Field field = load_contenders(methods_at(request.log, request.methods, request.log_options), request.gear,
+                                  provenance);
     if (request.costs.gates.min_attenuation_db && !field.gear) raise_no_gear("--min-attenuation");
     if (field.gear) say(request.common, gear_in_words(*field.gear));
     ComparedCourse course;

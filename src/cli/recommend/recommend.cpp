@@ -63,7 +63,8 @@ std::string methods_text(const Recommendation& found) {
     std::vector<std::vector<std::string>> rows = {{"method"}};
     for (const RippleEstimate& one : found.orders)
         rows.front().push_back(fmt::format("order {:g}, dB", one.order));
-    for (const char* const title : {"late, ms", "ripple, Nm rms", "off by, Nm", ""})
+    for (const char* const title :
+         {"late, ms", "gain", "step, %", "ripple, Nm", "distorts, Nm", "adds, Nm", "off by, Nm", ""})
         rows.front().emplace_back(title);
     for (const JudgedMethod& method : found.methods) {
         const std::string& name = method.figures.method;
@@ -71,13 +72,21 @@ std::string methods_text(const Recommendation& found) {
         for (const OrderAttenuation& entry : method.figures.attenuation)
             rows.back().push_back(entry.db ? rounded(*entry.db, 1) : "-");
         rows.back().push_back(rounded(1e3 * method.delay.value(), 1));
-        rows.back().push_back(fmt::format("{:.4f}", method.figures.ripple_rms_nm.value_or(0.0)));
-        rows.back().push_back(fmt::format("{:.4f}", method.error_nm));
+        const auto& within = method.response;
+        rows.back().push_back(within ? fmt::format("{:.2f}-{:.2f}", within->least_gain, within->largest_gain)
+                                     : "-");
+        const auto& overshoot = method.figures.overshoot_percent;
+        rows.back().push_back(overshoot ? rounded(*overshoot, 0) : "-");
+        for (const double nm : {method.figures.ripple_rms_nm.value_or(0.0), method.distortion.in_band_nm,
+                                method.distortion.added_nm, method.error_nm})
+            rows.back().push_back(fmt::format("{:.4f}", nm));
         rows.back().push_back(method.meets() ? "" : "no");
     }
     rows.front().back() = found.limits.max_delay || found.limits.min_attenuation_db ? "within limits" : "";
     return "\n" + text_table(rows, "lr");
 }
+
+std::string paragraph(const std::string& text) { return joined(wrapped(text, report_width), "\n") + "\n"; }
 
 std::string bulleted(std::string_view head, const std::vector<std::string>& sentences) {
     if (sentences.empty()) return "";
@@ -90,17 +99,26 @@ std::string bulleted(std::string_view head, const std::vector<std::string>& sent
 // Verdict, commands to paste, what is in the log, all methods, and what was assumed.
 std::string recommendation_view(const RecommendationReport& report) {
     const Recommendation& found = report.found;
-    std::string text = joined(wrapped(recommendation_verdict(found), report_width), "\n") + "\n";
+    std::string text = paragraph(recommendation_verdict(found));
     text += next_commands("To take it:", report.take);
     text += next_commands("The other:", report.runner_up);
     if (!found.orders.empty()) text += orders_text(found);
     if (!found.methods.empty()) {
         text += methods_text(found);
-        text += fmt::format(
-            "\nTrained up to {:.6g} s, judged from there on in {} windows. Off by: the ripple left, and "
-            "{:.3g} Nm\n"
-            "for every ms of delay, since this torque moves at {:.3g} Nm/s.\n",
-            report.split_s, found.windows, 1e-3 * found.torque_rate_nm_s, found.torque_rate_nm_s);
+        text += "\n" + paragraph(fmt::format(
+                           "Trained up to {:.6g} s, judged from there on in {} windows. The torque's band, "
+                           "{}: {:.3g} to "
+                           "{:.3g} Hz. Off by, rms: the ripple left, what is distorted of the torque without "
+                           "ripple within "
+                           "its band, and what is added to it beside that. Gain, within the band, and step: "
+                           "at the log's "
+                           "median speed; late: at any of its speeds.",
+                           report.split_s, found.windows,
+                           found.band->stated ? "as stated"
+                           : found.band->at_rest
+                               ? "which does not rise above the noise, as far as this log resolves it"
+                               : "99 % of what rises above the noise",
+                           found.band->from.value(), found.band->to.value()));
     }
     if (!report.check.empty()) text += next_commands("To measure it again:", {report.check});
     return text + bulleted("Assumed:", report.assumed) + bulleted("Not tried:", report.left_out);
@@ -170,6 +188,7 @@ struct RecommendRequest {
     std::optional<std::string> target, temperature;
     GearOptions gear;
     Gates limits;
+    std::optional<std::string> torque_band;
     double train_percent = 60.0;
     bool offline = false, require_conclusive = false;
 };
@@ -191,6 +210,21 @@ void check_recommend(const RecommendRequest& request) {
         raise<UsageError>("--train {} % is not from 10 to 90", shortest(request.train_percent));
     if (request.limits.max_delay && !(request.limits.max_delay->value() >= 0.0))
         raise<UsageError>("--max-delay is below 0");
+}
+
+// "0:10Hz"
+std::optional<TorqueBand> stated_band(const std::optional<std::string>& text) {
+    if (!text) return std::nullopt;
+    const auto colon = text->find(':');
+    if (colon == std::string::npos)
+        raise<UsageError>("--torque-band: '{}' is not FROM:TO, for example 0:10Hz", *text);
+    const auto hertz = [](const std::string& part) {
+        return Hertz(parse_quantity(part, Dimension::frequency, "--torque-band"));
+    };
+    const TorqueBand band{hertz(text->substr(0, colon)), hertz(text->substr(colon + 1)), true, false};
+    if (!(band.from.value() >= 0.0 && band.from < band.to))
+        raise<UsageError>("--torque-band: '{}' does not rise from 0 Hz or more", *text);
+    return band;
 }
 
 // A time that people can read, on the log's own axis.
@@ -322,28 +356,35 @@ std::vector<std::string> assumptions(const RecommendRequest& request, const Part
 
 // Those that follow the temperature beside the log's rows are given it.
 Recommendation judged_at(const std::vector<Contender>& contenders, const Parts& parts,
-                         const GearAccount& gear, const RecommendationLimits& limits) {
+                         const GearAccount& gear, const RecommendationLimits& limits,
+                         const std::optional<TorqueBand>& band) {
     ComparedLog log{parts.judge.trace.view()};
     log.trace.sample_rate = parts.judge.recording.clock.nominal_rate;
     for (const Contender& contender : contenders)
         log.temperatures_degc.push_back(follows_temperature(contender)
                                             ? std::span<const double>(parts.temperature->judge_degc)
                                             : std::span<const double>());
-    return recommend(contenders, log, gear, limits, ripple_of(parts.whole.trace, gear));
+    return recommend(contenders, log, gear, limits, ripple_of(parts.whole.trace, gear), band);
 }
 
-// A map that does not reach as far as the judged part of the log moves is refused there; the others are
-// judged without it.
+// What cannot be designed at the log's rate, and a map that does not reach as far as the judged part of the
+// log moves, is left out; the others are judged without it.
 Recommendation judged_methods(TriedMethods& candidates, const Parts& parts, const GearAccount& gear,
-                              const RecommendationLimits& limits) {
+                              const RecommendationLimits& limits, const std::optional<TorqueBand>& band) {
+    std::erase_if(candidates.contenders, [&](const Contender& one) {
+        const std::string why = one.refusal(parts.judge.recording.clock.nominal_rate);
+        auto& all = candidates.left_out;
+        if (!why.empty() && std::find(all.begin(), all.end(), why) == all.end()) all.push_back(why);
+        return !why.empty();
+    });
     try {
-        return judged_at(candidates.contenders, parts, gear, limits);
+        return judged_at(candidates.contenders, parts, gear, limits, band);
     } catch (const DataError& error) {
         if (std::erase_if(candidates.contenders, [](const Contender& one) { return one.map != nullptr; }) ==
             0)
             throw;
         candidates.left_out.emplace_back(error.what());
-        return judged_at(candidates.contenders, parts, gear, limits);
+        return judged_at(candidates.contenders, parts, gear, limits, band);
     }
 }
 
@@ -351,6 +392,7 @@ RecommendationReport report_of(const RecommendRequest& request, Provenance& prov
     RecommendationReport report;
     report.target = request.target.value_or("");
     const auto target = request.target ? std::optional(find_any_target(*request.target)) : std::nullopt;
+    const auto band = stated_band(request.torque_band);
     const GearChoice stated(request.gear);
     Parts parts = read_parts(request, stated.of(), report.split_s, provenance);
     read_temperature(request, parts);
@@ -371,7 +413,7 @@ RecommendationReport report_of(const RecommendRequest& request, Provenance& prov
     TriedMethods candidates =
         candidates_for({parts.train, shell_quoted(request.log) + request.log_words({}, split), choice,
                         *report.gear, request.offline, target, parts.temperature});
-    report.found = judged_methods(candidates, parts, *report.gear, report.found.limits);
+    report.found = judged_methods(candidates, parts, *report.gear, report.found.limits, band);
     name_other_lines(parts, *report.gear, report.found);
     doubt_readings(parts, *report.gear, report.found);
     report.assumed = assumptions(request, parts, *report.gear, stated.of().has_value());
@@ -404,9 +446,11 @@ std::function<ExitCode()> attach_recommend(Options& options) {
     options.argument("LOG", request->log, true, "a log of the joint, as it moves at work");
     attach_gear(options, request->gear);
     options.duration("--max-delay", request->limits.max_delay,
-                     "longest DC delay at any speed of the log, e.g. 10ms");
+                     "longest delay at 0 Hz and within the torque's band at any speed of the log, e.g. 10ms");
     options.number("--min-attenuation", request->limits.min_attenuation_db, Dimension::decibel,
                    "of every order that shows in the log, e.g. 20dB");
+    options.text("--torque-band", request->torque_band, "FROM:TO",
+                 "frequencies of the torque that have to pass, e.g. 0:10Hz; left out: found in the log");
     options.text("--target", request->target, "TARGET[,KEY=VALUE...]",
                  "only methods that this export target holds; see docs/export");
     options.flag("--offline", request->offline,

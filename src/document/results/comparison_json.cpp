@@ -105,9 +105,18 @@ void describe(JsonWriter& json, const JudgedMethod& method) {
     json("meets", method.meets());
     json("error_nm", method.error_nm);
     json("ripple_rms_nm", method.figures.ripple_rms_nm);
+    json("distortion_nm", method.distortion.in_band_nm);
+    json("added_nm", method.distortion.added_nm);
     json("longest_delay_ms", method.delay, in_ms);
     json("longest_delay_at_deg_s", method.delay_at);
     json("dc_delay_ms", method.figures.dc_delay_ms);
+    json.group_if("within_band", method.response, [](JsonWriter& within, const BandResponse& response) {
+        within("least_delay_ms", response.least_delay, in_ms);
+        within("longest_delay_ms", response.longest_delay, in_ms);
+        within("least_gain", response.least_gain);
+        within("largest_gain", response.largest_gain);
+    });
+    json("overshoot_percent", method.figures.overshoot_percent);
     json.each("attenuation_db", method.figures.attenuation,
               [](JsonWriter& one, const OrderAttenuation& entry) {
                   one("order", entry.order);
@@ -130,6 +139,12 @@ void describe(JsonWriter& json, const RecommendationReport& report) {
     json("split_s", report.split_s);
     json("windows", found.windows);
     json("torque_rate_nm_s", found.torque_rate_nm_s);
+    json.group_if("torque_band_hz", found.band, [](JsonWriter& band, const TorqueBand& one) {
+        band("from", one.from);
+        band("to", one.to);
+        band("stated", one.stated);
+        band("at_rest", one.at_rest);
+    });
     json("orders", found.orders);
     json("take", recommended ? found.taken()->figures.method : std::string(), null_if_empty);
     json("take_commands", report.take);
