@@ -211,5 +211,7 @@ class Robot(Recommended):
         self.assertEqual(told["take"].split(",")[0], "oscillator")
         mapped = next(one for one in told["methods"] if one["method"] == "oscillator,map=map.json")
         self.assertTrue(mapped["meets"])
-        self.assertLess(mapped["error_nm"], 1.1 * told["methods"][0]["error_nm"])
+        # What a method adds beside the ripple counts since it is measured: the oscillator with a fixed gain adds least here.
+        control = next(one for one in told["methods"] if one["method"] == "none")
+        self.assertLess(mapped["error_nm"], 0.6 * control["error_nm"])
         self.assertTrue(all(one["db"] >= 12 for one in told["methods"][0]["attenuation_db"]))
