@@ -96,3 +96,31 @@ TEST_CASE("a velocity in coarse steps makes the ratio's interval as wide as its 
     }
     CHECK(ratios >= 33);
 }
+
+TEST_CASE(
+    "the noise of a velocity is found beside motion, whatever its rate, and steps of an encoder count as "
+    "noise") {
+    for (const double rate : {200.0, 1000.0, 4000.0}) {
+        for (const double deviation : {0.05, 0.5}) {
+            CAPTURE(rate, deviation);
+            std::mt19937_64 engine(3);
+            std::normal_distribution<double> normal(0.0, deviation);
+            Trace trace;
+            trace.sample_rate = Hertz(rate);
+            for (int k = 0; k < static_cast<int>(10.0 * rate); ++k) {
+                trace.time_s.push_back(k / rate);
+                trace.velocity_deg_s.push_back(60.0 * std::sin(2.0 * 3.141592653589793 * 0.5 * k / rate) +
+                                               normal(engine));
+                trace.torque_nm.push_back(0.0);
+            }
+            CHECK_THAT(velocity_noise(trace.view()).value(), Catch::Matchers::WithinRel(deviation, 0.06));
+            for (double& v : trace.velocity_deg_s)
+                v = std::round(v / 2.0) * 2.0;  // steps of 2 deg/s: 2 / sqrt(12)
+            CHECK_THAT(velocity_noise(trace.view()).value(),
+                       Catch::Matchers::WithinAbs(std::hypot(deviation, 0.577), 0.25));
+        }
+    }
+    Trace still;
+    still.sample_rate = Hertz(1000.0);
+    CHECK(velocity_noise(still.view()).value() == 0.0);
+}

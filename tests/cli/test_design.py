@@ -446,3 +446,36 @@ class Warnings(unittest.TestCase):
         done = design(*with_option(PAPER, "--sample-rate", "191Hz"))
         self.assertEqual(done.returncode, 0)
         self.assertIn("warning: band 9 (162-180 deg/s): order 2 passes half the sample rate at 171.9 deg/s", done.stderr)
+
+
+class Hysteresis(unittest.TestCase):
+    def table(self, *words, stdin=None):
+        done = design(*words, "--json", stdin=stdin)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return json.loads(done.stdout)
+
+    def test_a_band_is_rated_as_far_as_it_stays_in_force(self):
+        words = ("--gear-ratio", "100", "--orders", "1,2", "--sample-rate", "1kHz", "--q", "0.25")
+        table = self.table(*words, "--bands", "20:30,30:40", "--hysteresis", "2deg/s")
+        self.assertEqual(table["hysteresis_deg_s"], 2)
+        # The least attenuation is that of bands which reach as far, about the same centres.
+        centre = table["bands"][0]["notches"][0]["center_hz"]
+        wide = self.table(*words, "--bands", "18:32,32:38")
+        self.assertAlmostEqual(wide["bands"][0]["notches"][0]["center_hz"], centre, places=9)
+        for ours, theirs in zip(table["bands"][0]["worst_attenuation_db"], wide["bands"][0]["worst_attenuation_db"]):
+            self.assertAlmostEqual(ours, theirs, places=6)
+        self.assertNotIn("hysteresis_deg_s", self.table(*words, "--bands", "20:30,30:40"))
+
+    def test_three_deviations_of_the_speeds_noise_unless_it_is_stated(self):
+        noisy = json.loads(joint())
+        noisy["velocity_noise_deg_s"] = 0.4
+        text = json.dumps(noisy)
+        self.assertEqual(self.table("-", "--speed", "18:90:18", stdin=text)["hysteresis_deg_s"], 1.2)
+        self.assertEqual(self.table("-", "--speed", "18:90:18", "--hysteresis", "0.3deg/s", stdin=text)["hysteresis_deg_s"], 0.3)
+        self.assertNotIn("hysteresis_deg_s", self.table("-", "--speed", "18:90:18", "--hysteresis", "0", stdin=text))
+
+    def test_a_goal_holds_over_the_hysteresis_too(self):
+        table = self.table("--gear-ratio", "100", "--orders", "1,2", "--sample-rate", "1kHz", "--speed", "20:120", "--min-attenuation",
+                           "20dB", "--max-delay", "60ms", "--hysteresis", "1deg/s")
+        for band in table["bands"]:
+            self.assertGreaterEqual(min(band["worst_attenuation_db"]), 20)

@@ -351,3 +351,55 @@ class Threads(Case):
                 done = self.run_tool("filter", "-", "--method", LOWPASS, "--threads", threads, "-q", stdin=text)
                 self.assertEqual(done.returncode, 3)
                 self.assertIn(f"standard input:{line + 1}:1: read the time 0.001 after", done.stderr.decode())
+
+
+class Harm(Case):
+    """A filter that makes the torque worse is said to, always, and is exit code 1 on request."""
+
+    def simulated(self, name, inertia, motion):
+        self.good("simulate", "--gear-ratio", 100, "--inertia", inertia, "--ripple", "1:0.8Nm:30deg", "--ripple", "2:0.5Nm", "--motion",
+                  motion, "--sample-rate", "1kHz", "--noise", "0.05Nm", "--seed", 1, "-o", name)
+        return self.folder / name
+
+    def test_a_delay_and_a_switch_that_cost_more_than_the_ripple_are_warned_of(self):
+        self.table()
+        fast = self.simulated("fast.csv", "3kgm2", "sine,amplitude=40deg,frequency=0.6Hz,duration=10s")
+        done = self.run_tool("filter", fast, "--table", "table.json", "-o", "out.csv")
+        said = done.stderr.decode()
+        self.assertEqual(done.returncode, 0, said)
+        self.assertRegex(said, r"its delay moves the torque itself by [\d.]+ Nm rms, more than the 0\.6\d* Nm rms of ripple")
+        self.assertRegex(said, r"the switch from band 1 to no filter at [\d.]+ s moves the output by [\d.]+ Nm, .*below=fade")
+        done = self.run_tool("filter", fast, "--table", "table.json", "-o", "out.csv", "--force", "--require-improvement")
+        self.assertEqual(done.returncode, 1)
+        self.assertTrue((self.folder / "out.csv").exists())
+        # What it moves is the delay on a torque that moves: the lag of the trend, worked out from the two files.
+        metrics = self.metrics(fast, "--table", "table.json")
+        self.assertGreater(metrics["distortion_rms_nm"], 1.0)
+        self.assertEqual(self.run_tool("filter", fast, "--table", "table.json", "-o", "out.csv", "--force", "-q").stderr, b"")
+
+    def test_a_filter_that_improves_the_torque_says_nothing(self):
+        self.table()
+        calm = self.simulated("calm.csv", "0.2kgm2", "constant,speed=60deg/s,duration=5s")
+        done = self.run_tool("filter", calm, "--table", "table.json", "-o", "out.csv", "--require-improvement")
+        self.assertEqual((done.returncode, done.stderr), (0, b""))
+
+    def test_an_order_that_grows_is_named(self):
+        # A map with the wrong sign doubles what it should take out.
+        log = self.simulated("log.csv", "0.2kgm2", "sine,amplitude=60deg,frequency=0.1Hz,duration=20s")
+        opposite = "map,gear-ratio=100,orders=1:2,cosines=-0.6928Nm:-0.5Nm,sines=0.4Nm:0Nm"
+        done = self.run_tool("filter", log, "--method", opposite, "-o", "out.csv", "--require-improvement")
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertRegex(done.stderr.decode(), r"order 1 grew from 0\.(79|8)\d* to 1\.\d+ Nm")
+
+    @unittest.skipUnless((LOGS / "gpl3" / "panda_gaz_j1.csv").exists(), "SKIPPED: the folder of real logs is not here")
+    def test_the_route_of_the_readme_on_a_robot_does_no_harm_unsaid(self):
+        log = LOGS / "gpl3" / "panda_gaz_j1.csv"
+        self.good("identify", log, "-o", "joint.json", "-q")
+        self.good("design", "joint.json", "-o", "table.json", "-q")
+        table = json.loads((self.folder / "table.json").read_text())
+        self.assertGreater(table["hysteresis_deg_s"], 0.5)
+        done = self.run_tool("filter", log, "--table", "table.json", "-o", "out.csv", "--require-improvement")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("more than the", done.stderr.decode())
+        # Its noise makes it switch back and forth no more: 458 times without hysteresis.
+        self.assertLess(self.metrics(log, "--table", "table.json")["switch_count"], 100)
