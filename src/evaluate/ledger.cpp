@@ -223,7 +223,8 @@ std::vector<std::string> harm_done(const FilterMetrics& metrics) {
     }
     const double before = ripple_rms_nm(levels, 0), after = ripple_rms_nm(levels, 1);
     const double taken = std::sqrt(std::max(before * before - after * after, 0.0));
-    if (const double moved = levels.distortion_rms_nm[1]; moved > taken && moved > share_that_counts * before) {
+    if (const double moved = levels.distortion_rms_nm[1];
+        moved > taken && moved > share_that_counts * before) {
         found.push_back(
             fmt::format("its delay moves the torque itself by {:.3g} Nm rms, more than the {:.3g} Nm "
                         "rms of ripple that it takes out; narrower notches (--q) delay less, and "
