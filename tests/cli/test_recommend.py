@@ -190,6 +190,35 @@ class Honest(Recommended):
         self.assertGreater(fast["torque_rate_nm_s"], 10 * slow["torque_rate_nm_s"])
         self.assertLessEqual(fast["methods"][0]["longest_delay_ms"], slow["methods"][0]["longest_delay_ms"])
 
+    def test_the_band_that_is_stated_decides(self):
+        """A torque that is slow here and fast at work: the delay of an oscillator at 5 Hz is told, and held to the limit."""
+        found, stated = self.recommended(), self.recommended("--torque-band", "0:10Hz")
+        self.assertFalse(found["torque_band_hz"]["stated"])
+        self.assertLess(found["torque_band_hz"]["to"], 1.0)
+        self.assertEqual(stated["torque_band_hz"], {"from": 0, "to": 10, "stated": True, "at_rest": False})
+        slow, fast = (next(one for one in told["methods"] if one["method"] == "oscillator,gear-ratio=100,orders=1:2") for told in (found, stated))
+        self.assertLess(slow["longest_delay_ms"], 1.0)
+        self.assertGreater(fast["longest_delay_ms"], 5.0)
+        self.assertGreater(fast["within_band"]["largest_gain"], 1.1)
+        held = self.recommended("--torque-band", "0:10Hz", "--max-delay", "3ms")
+        self.assertFalse(next(one for one in held["methods"] if one["method"] == fast["method"])["meets"])
+        for one in stated["methods"]:
+            self.assertAlmostEqual(one["error_nm"], math.hypot(one["ripple_rms_nm"], one["distortion_nm"], one["added_nm"]), places=7)
+        for words in ("5Hz", "10Hz:5Hz", "0:5Nm"):
+            self.assertEqual(self.run_tool("recommend", "log.csv", *GEAR, "--torque-band", words).returncode, 2)
+
+    def test_a_method_that_cannot_run_at_the_rate_is_left_out_with_its_reason(self):
+        lines = (self.folder / "log.csv").read_text().splitlines()
+        (self.folder / "rare.csv").write_text("\n".join([lines[0], *lines[1::20]]) + "\n")
+        told = self.recommended(log="rare.csv")
+        self.assertTrue(any("quarter of the sample rate" in one for one in told["left_out"]), told["left_out"])
+        self.assertNotIn("oscillator", {one["method"].split(",")[0] for one in told["methods"]} - {"map"})
+        words = ("compare", "rare.csv", *GEAR, "--method", "oscillator")
+        done = self.run_tool(*words, "--method", "tracking")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("it is left out", done.stderr)
+        self.assertEqual(self.run_tool(*words).returncode, 2)
+
     def test_standard_input_and_all_joints_are_refused(self):
         for words, said in ((("-",), "name a file"), (("log.csv", "--joint", "all"), "name it"), (("log.csv", "--train", "95"), "10 to 90")):
             done = self.run_tool("recommend", *words, *GEAR)
@@ -211,7 +240,7 @@ class Robot(Recommended):
         self.assertEqual(told["take"].split(",")[0], "oscillator")
         mapped = next(one for one in told["methods"] if one["method"] == "oscillator,map=map.json")
         self.assertTrue(mapped["meets"])
-        # What a method adds beside the ripple counts since it is measured: the oscillator with a fixed gain adds least here.
-        control = next(one for one in told["methods"] if one["method"] == "none")
-        self.assertLess(mapped["error_nm"], 0.6 * control["error_nm"])
+        # It leaves less ripple than what is taken, and distorts the torque more.
+        self.assertLess(mapped["ripple_rms_nm"], told["methods"][0]["ripple_rms_nm"])
+        self.assertLess(mapped["error_nm"], 1.5 * told["methods"][0]["error_nm"])
         self.assertTrue(all(one["db"] >= 12 for one in told["methods"][0]["attenuation_db"]))

@@ -97,7 +97,7 @@ void StreamPass::filter_part(const RowBlock& block, std::size_t joint, const Run
 
 // Stretches 0, 1, 3, 7, 15, ...: all of a short log.
 bool in_measured_stretch(std::size_t row) {
-    constexpr std::size_t stretch = 16384;  // chosen, not derived: several turns of a motor at most rates
+    constexpr std::size_t stretch = 8192;  // chosen, not derived: several turns of a motor at most rates
     return std::has_single_bit(row / stretch + 1);
 }
 
