@@ -13,6 +13,8 @@ constexpr double moving_deg_s = 0.2;           // by hand: slower is a rest
 constexpr std::size_t judged_changes = 16384;  ///< enough to know how coarse a torque is
 constexpr std::size_t fewest_changes = 8;      // by hand
 constexpr double coarse_steps = 10.0;          ///< a usual change of fewer smallest ones
+/// Of the torque's changes; by chance half of them at most meet those of a channel that changes less often.
+constexpr double changing_together = 0.9;
 
 }  // namespace
 
@@ -73,9 +75,17 @@ void HeldCounter::note_changes(const RowChannels& rows, std::size_t pairs) {
     }
 }
 
+// Of a sample written several times, all channels change in one row or in none.
+bool HeldCounter::tells(std::size_t repeats, std::size_t with_torque) const {
+    const std::size_t changes = counts_.moving - repeats, of_torque = counts_.moving - counts_.torque;
+    if (2 * repeats < counts_.moving) return true;
+    const auto both = static_cast<double>(changes + with_torque) - static_cast<double>(counts_.torque);
+    return of_torque >= fewest_changes && both >= changing_together * static_cast<double>(of_torque);
+}
+
 HeldCounter::Way HeldCounter::way() const {
-    const bool velocity_tells = 2 * counts_.velocity < counts_.moving;
-    const bool position_tells = has_position_ && 2 * counts_.position < counts_.moving;
+    const bool velocity_tells = tells(counts_.velocity, counts_.velocity_and_torque);
+    const bool position_tells = has_position_ && tells(counts_.position, counts_.position_and_torque);
     if (velocity_tells) return position_tells ? with_both : with_velocity;
     return position_tells ? with_position : torque_alone;
 }
@@ -91,7 +101,7 @@ HeldSamples HeldCounter::held() const {
                                counts_.all};
     const Way chosen = way();
     if (chosen == torque_alone && counts_.torque > 0 && torque_is_coarse()) return {};
-    return {counts[chosen], longest_[chosen]};
+    return {counts[chosen], longest_[chosen], counts_.moving};
 }
 
 }  // namespace ripplenotch

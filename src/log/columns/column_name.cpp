@@ -67,17 +67,19 @@ constexpr std::array role_words = {
 
 constexpr std::array<std::string_view, 7> current_words = {"current", "currents", "iq",  "amps",
                                                            "strom",   "amperage", "curr"};
-constexpr std::array<std::string_view, 20> reference_words = {
+constexpr std::array<std::string_view, 22> reference_words = {
     "target",    "targets",     "ref",      "reference", "desired",  "des",   "cmd",
     "command",   "commanded",   "commands", "goal",      "setpoint", "model", "sim",
-    "simulated", "feedforward", "ff",       "soll",      "planned",  "set"};
+    "simulated", "feedforward", "ff",       "soll",      "planned",  "set",
+    "ctrl",      "control"};
 // Quantities of something else: of the tool, of the mains, or derived from the one that is wanted.
-constexpr std::array<std::string_view, 35> foreign_words = {
+constexpr std::array<std::string_view, 45> foreign_words = {
     "tcp",     "tool",      "pose",     "twist", "cartesian",   "wrench",        "force",
     "linear",  "scaling",   "fraction", "error", "err",         "ext",           "external",
     "hat",     "limit",     "limits",   "max",   "min",         "robot",         "main",
     "voltage", "execution", "cycle",    "delay", "temperature", "accelerations", "acceleration",
-    "acc",     "ddq",       "ddot",     "qdd",   "override",    "deviation",     "derivative"};
+    "acc",     "ddq",       "ddot",     "qdd",   "override",    "deviation",     "derivative",
+    "friction", "passive", "gravity", "grav", "coriolis", "inertia", "inertial", "damping", "bias", "constraint"};
 // Words that say how or where, not which joint.
 constexpr std::array<std::string_view, 25> general_words = {
     "state",  "states", "actual",   "act",   "measured", "meas", "msr",    "measurement", "value",
@@ -131,6 +133,18 @@ std::vector<Word> split_words(std::string_view name) {
     return words;
 }
 
+// "j1_current_a": behind a current, a lower-case a is its unit.
+void take_ampere(std::vector<Word>& words, std::string& unit) {
+    if (!unit.empty() || words.size() < 2 || words.back().glued) return;
+    const std::string& last = words.back().text;
+    if ((last != "a" && last != "ma") || !std::any_of(words.begin(), words.end() - 1, [](const Word& word) {
+            return contains(current_words, word.text);
+        }))
+        return;
+    unit = last == "a" ? "A" : "mA";
+    words.pop_back();
+}
+
 // What is left of a name once quantity and unit are gone: "j4", "3", "wrist_1_joint", or nothing.
 std::string joint_in_name(const std::vector<Word>& left) {
     std::vector<Word> words;
@@ -174,11 +188,11 @@ ColumnName read_column_name(std::string_view name) {
     if (element) parts.name += name.substr(bracket);
     column.unit = parts.unit;
     column.unit_is_sure = parts.bracketed;
-
     std::vector<Word> left;
     const RoleWord* found = nullptr;
     bool foreign = false, filtered = false;
-    const std::vector<Word> words = split_words(parts.name);
+    std::vector<Word> words = split_words(parts.name);
+    take_ampere(words, column.unit);
     for (std::size_t i = 0; i < words.size(); ++i) {
         const Word& word = words[i];
         // tau_J: the J is of the symbol; in tau_J1 it is of the joint.
