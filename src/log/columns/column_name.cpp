@@ -73,13 +73,16 @@ constexpr std::array<std::string_view, 22> reference_words = {
     "simulated", "feedforward", "ff",       "soll",      "planned",  "set",
     "ctrl",      "control"};
 // Quantities of something else: of the tool, of the mains, or derived from the one that is wanted.
-constexpr std::array<std::string_view, 45> foreign_words = {
+constexpr std::array<std::string_view, 35> foreign_words = {
     "tcp",     "tool",      "pose",     "twist", "cartesian",   "wrench",        "force",
     "linear",  "scaling",   "fraction", "error", "err",         "ext",           "external",
     "hat",     "limit",     "limits",   "max",   "min",         "robot",         "main",
     "voltage", "execution", "cycle",    "delay", "temperature", "accelerations", "acceleration",
-    "acc",     "ddq",       "ddot",     "qdd",   "override",    "deviation",     "derivative",
-    "friction", "passive", "gravity", "grav", "coriolis", "inertia", "inertial", "damping", "bias", "constraint"};
+    "acc",     "ddq",       "ddot",     "qdd",   "override",    "deviation",     "derivative"};
+// Parts of a torque, as models and simulators write them beside the whole.
+constexpr std::array<std::string_view, 12> part_words = {
+    "friction", "passive",  "gravity", "grav", "coriolis",   "centrifugal",
+    "inertia",  "inertial", "damping", "bias", "constraint", "disturbance"};
 // Words that say how or where, not which joint.
 constexpr std::array<std::string_view, 25> general_words = {
     "state",  "states", "actual",   "act",   "measured", "meas", "msr",    "measurement", "value",
@@ -190,7 +193,7 @@ ColumnName read_column_name(std::string_view name) {
     column.unit_is_sure = parts.bracketed;
     std::vector<Word> left;
     const RoleWord* found = nullptr;
-    bool foreign = false, filtered = false;
+    bool foreign = false, filtered = false, part = false;
     std::vector<Word> words = split_words(parts.name);
     take_ampere(words, column.unit);
     for (std::size_t i = 0; i < words.size(); ++i) {
@@ -201,6 +204,7 @@ ColumnName read_column_name(std::string_view name) {
         const auto role = std::find_if(role_words.begin(), role_words.end(),
                                        [&](const RoleWord& known) { return known.word == word.text; });
         if (contains(foreign_words, word.text)) foreign = true;
+        if (contains(part_words, word.text)) part = true;
         if (word.text == "motor" || word.text == "rotor") column.motor_side = true;
         if (word.text == "filtered" || word.text == "smoothed") filtered = true;
         if (contains(reference_words, word.text) || (word.text == "d" && found != nullptr)) {
@@ -223,6 +227,7 @@ ColumnName read_column_name(std::string_view name) {
     }
     const bool clock = column.role == Role::time;
     if (!clock) column.joint = joint_in_name(left);
+    foreign = foreign || (part && column.role == Role::torque);
     if (foreign || (clock && !is_clock_name(left))) column.role = Role::other;
     if (column.motor_side && !column.current) column.rank += 2;
     if (filtered) column.rank += 4;
@@ -314,6 +319,73 @@ std::vector<JointGroup> collect_groups(const KnownColumns& known, bool merge) {
 
 }  // namespace
 
+namespace {
+
+/// The columns of one role whose joints are numbers.
+struct Numbering {
+    std::size_t lowest = 0, highest = 0, first_column = 0, columns = 0;
+};
+
+/// Number behind the letters of a joint's key, "left_3".
+std::optional<std::size_t> number_of(std::string_view key) {
+    const std::size_t letters = key.find_last_not_of("0123456789");
+    key.remove_prefix(letters == std::string_view::npos ? 0 : letters + 1);
+    constexpr std::size_t most_digits = 4;
+    if (key.empty() || key.size() > most_digits) return std::nullopt;
+    std::size_t number = 0;
+    for (const char c : key) number = 10 * number + static_cast<std::size_t>(c - '0');
+    return number;
+}
+
+// One of them has what the other has not, at both ends; of single columns, another number.
+bool differ(const Numbering& a, const Numbering& b) {
+    if (a.columns == 1 && b.columns == 1) return a.lowest != b.lowest;
+    const auto shifted = [](const Numbering& from_0, const Numbering& from_1) {
+        return from_0.lowest == 0 && from_1.lowest == 1 && from_1.highest > from_0.highest;
+    };
+    return shifted(a, b) || shifted(b, a);
+}
+
+}  // namespace
+
+std::string mixed_numberings(const KnownColumns& known) {
+    const auto& forced = known.forced;
+    if (forced.column_of(Role::torque) &&
+        (forced.column_of(Role::velocity) || forced.column_of(Role::position)))
+        return "";
+    std::map<std::string, std::map<Role, Numbering>> numberings;  // by the letters before the number
+    for (std::size_t c = 0; c < known.facts.columns; ++c) {
+        const ColumnName& name = known.names[c];
+        if (name.reference || forced.roles[c] || name.role == Role::other || name.role == Role::time) continue;
+        const std::string key = joint_key(name.joint);
+        const auto number = number_of(key);
+        if (!number) continue;
+        const auto [found, first] =
+            numberings[key.substr(0, key.find_last_not_of("0123456789") + 1)].try_emplace(
+                name.role, Numbering{*number, *number, c, 0});
+        Numbering& of_role = found->second;
+        if (*number < of_role.lowest) of_role.lowest = *number, of_role.first_column = c;
+        of_role.highest = std::max(of_role.highest, *number);
+        ++of_role.columns;
+    }
+    for (const auto& [letters, roles] : numberings) {
+        for (auto a = roles.begin(); a != roles.end(); ++a) {
+            for (auto b = std::next(a); b != roles.end(); ++b) {
+                if (!differ(a->second, b->second)) continue;
+                const std::size_t first = a->second.first_column, second = b->second.first_column;
+                const auto& names = known.facts.names;
+                return fmt::format(
+                    "{} is the first {} and {} the first {}: joints are numbered from {} and from {}; say "
+                    "which columns are one joint's, with --columns {}={},{}={}",
+                    column_label(names, first), role_name(a->first), column_label(names, second),
+                    role_name(b->first), a->second.lowest, b->second.lowest, role_name(a->first),
+                    names[first], role_name(b->first), names[second]);
+            }
+        }
+    }
+    return "";
+}
+
 std::vector<JointGroup> group_joints(const KnownColumns& known, bool joint_asked, bool needs_torque) {
     std::vector<JointGroup> groups = collect_groups(known, false);
     drop_unasked(known, joint_asked, groups);
@@ -332,9 +404,12 @@ std::vector<JointGroup> group_joints(const KnownColumns& known, bool joint_asked
         for (std::size_t r = 0; r < motion_roles.size(); ++r) {
             for (const JointGroup& group : groups) counts[r] += group.has(motion_roles[r]);
         }
-        if (std::all_of(counts.begin(), counts.end(), [](std::size_t n) { return n <= 1; })) {
+        // "tau_motor_side" and "tau_sensor" beside them: torques of the one joint that moves, to be chosen from.
+        const bool numbered = std::any_of(groups.begin(), groups.end(), [](const JointGroup& group) {
+            return number_of(group.key).has_value();
+        });
+        if (counts[0] <= 1 && counts[2] <= 1 && (counts[1] <= 1 || !numbered))
             groups = collect_groups(known, true);
-        }
     }
     const bool any_complete = std::any_of(groups.begin(), groups.end(), complete);
     if (any_complete) {

@@ -59,6 +59,10 @@ struct KnownColumns {
 [[nodiscard]] std::vector<JointGroup> group_joints(const KnownColumns& known, bool joint_asked,
                                                    bool needs_torque = true);
 
+/// A sentence where joints are numbered from 0 for one quantity and from 1 for another, so that equal numbers
+/// are not one joint's; empty otherwise, and where --columns says what belongs together.
+[[nodiscard]] std::string mixed_numberings(const KnownColumns& known);
+
 /// The one column for a role, empty when there is none. Throws DataError where several are equally good.
 [[nodiscard]] std::optional<std::size_t> choose_column(const KnownColumns& known, const JointGroup& group,
                                                        Role role, std::vector<LogWarning>& warnings);

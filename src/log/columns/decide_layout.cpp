@@ -155,6 +155,7 @@ class Decision {
         if (layout_.chosen.time) give_role(*layout_.chosen.time, Role::time, "");
         if (layout_.time_fraction) give_role(*layout_.time_fraction, Role::time, "");
         settle_clock(facts_, layout_.chosen.time && stated_[*layout_.chosen.time], layout_);
+        compare_numberings();
         groups_ = group_joints(known(), options_.joint.has_value(),
                                !options_.every_joint || options_.torque_of_each);
         for (const JointGroup& group : groups_) layout_.joints.push_back(group.name);
@@ -187,6 +188,13 @@ class Decision {
                 names_[c].current = names_[c].current || is_current_unit(names_[c].unit);
             }
         }
+    }
+
+    void compare_numberings() {
+        const std::string mixed = mixed_numberings(known());
+        if (mixed.empty()) return;
+        if (options_.needs_torque) raise<DataError>("{}: {}", source_, mixed);
+        layout_.warnings.push_back({"numbering of joints", mixed});
     }
 
     void choose_joint() {
