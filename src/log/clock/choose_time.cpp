@@ -255,8 +255,9 @@ struct Clocks {
 Clocks find_clocks(const ColumnFacts& facts, const Forced& forced, const ReadOptions& options) {
     Clocks found;
     int best_rank = 1000;
+    const std::vector<ColumnName> names = read_column_names(facts.meanings(), facts.units);
     for (std::size_t c = 0; !forced.by_place && c < facts.names.size(); ++c) {
-        const ColumnName name = read_column_name(facts.meanings()[c]);
+        const ColumnName& name = names[c];
         const Convention* const known = convention_of(facts.meanings()[c], Role::time, facts.meanings());
         if ((name.role != Role::time && known == nullptr) || name.reference || forced.roles[c]) continue;
         const auto values = finite_values(facts, c);

@@ -237,6 +237,73 @@ ColumnName read_column_name(std::string_view name) {
     return column;
 }
 
+namespace {
+
+/// Letters that are a quantity where no other column is, and the names beside which they may be another one.
+struct Symbol {
+    std::string_view text;
+    Role role;
+    std::array<std::string_view, 4> rivals;
+};
+constexpr std::array symbols = {
+    Symbol{"v", Role::velocity, {"i", "I", "u", "U"}},  // a voltage beside a current
+    Symbol{"w", Role::velocity, {"x", "y", "z", "qx"}},  // of a quaternion
+    Symbol{"\xcf\x89", Role::velocity, {}},
+    Symbol{"T", Role::torque, {"i", "I", "iq", "current"}},  // a temperature beside a motor current
+    Symbol{"M", Role::torque, {}},
+    Symbol{"\xcf\x84", Role::torque, {}},
+    Symbol{"th", Role::position, {}},
+    Symbol{"phi", Role::position, {}},
+    Symbol{"\xce\xb8", Role::position, {}},
+    Symbol{"\xcf\x86", Role::position, {}},
+};
+
+/// "v" of "v", "v_3", "v3", "v[3]".
+std::string_view without_number(std::string_view name) {
+    if (name.ends_with(']')) name.remove_suffix(1);
+    while (!name.empty() && is_digits(name.substr(name.size() - 1))) name.remove_suffix(1);
+    while (!name.empty() && (name.back() == '_' || name.back() == '[' || name.back() == ' ')) name.remove_suffix(1);
+    return name;
+}
+
+}  // namespace
+
+std::vector<ColumnName> read_column_names(const std::vector<std::string>& names,
+                                          const std::vector<std::string>& units) {
+    std::vector<ColumnName> columns;
+    for (std::size_t c = 0; c < names.size(); ++c) {
+        columns.push_back(read_column_name(names[c]));
+        if (!columns[c].unit.empty() || units.empty() || units[c].empty()) continue;
+        columns[c].unit = units[c];
+        columns[c].unit_is_sure = true;
+    }
+    const auto has = [&columns](Role role, std::size_t but) {
+        for (std::size_t c = 0; c < columns.size(); ++c)
+            if (c != but && columns[c].role == role && columns[c].symbol == Role::other && !columns[c].reference)
+                return true;
+        return false;
+    };
+    for (std::size_t c = 0; c < names.size(); ++c) {
+        ColumnName& column = columns[c];
+        const std::string bare = split_unit(names[c]).name;
+        const auto symbol = std::find_if(symbols.begin(), symbols.end(), [&](const Symbol& known) {
+            return known.text == without_number(bare);
+        });
+        if (symbol == symbols.end() || has(symbol->role, c)) continue;
+        const bool by_unit = !column.unit.empty() && usual_unit(column.unit, symbol->role);
+        if (!column.unit.empty() && !by_unit) continue;
+        if (column.role == Role::time && !by_unit && !has(Role::time, c)) continue;
+        const bool rivalled = std::any_of(names.begin(), names.end(), [&](const std::string& name) {
+            return !name.empty() && contains(symbol->rivals, split_unit(name).name);
+        });
+        column.symbol = symbol->role;
+        column.role = rivalled && !by_unit ? Role::other : symbol->role;
+        column.joint = bare.substr(without_number(bare).size());
+        std::erase_if(column.joint, [](char sign) { return sign == '_' || sign == '[' || sign == ']' || sign == ' '; });
+    }
+    return columns;
+}
+
 std::string joint_key(std::string_view joint) {
     std::string key = lower_case(joint);
     for (const std::string_view prefix : {"joint_", "joint", "axis", "ax", "j", "a"}) {
