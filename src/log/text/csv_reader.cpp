@@ -73,6 +73,8 @@ ColumnFacts CsvReader::facts_of(std::string& opening) {
     facts.sample = std::move(dialect_.sample);
     facts.first_counts = dialect_.first_counts;
     facts.clock_texts = dialect_.clock_texts;
+    facts.stamp_forms = dialect_.stamp_forms;
+    facts.sums_steps = true;
     facts.clock_of = dialect_.clock_of;
     facts.row_step_s = dialect_.row_step_s;
     facts.dialect_options = dialect_options(dialect_);
@@ -149,7 +151,10 @@ bool CsvReader::fetch(RowBlock& block) {
     return !block.bytes.empty();  // a line that is too long is accept()'s, which has its number
 }
 
-void CsvReader::parse(RowBlock& block) const { block.parsed_bytes = quick_->read(block, 0, not_a_number); }
+// Rows whose times are sums are taken one by one.
+void CsvReader::parse(RowBlock& block) const {
+    if (!layout_.time_is_steps) block.parsed_bytes = quick_->read(block, 0, not_a_number);
+}
 
 void CsvReader::accept(RowBlock& block) {
     block.first_row = rows_;
@@ -184,7 +189,7 @@ std::size_t CsvReader::accept_from(RowBlock& block, std::size_t begin) {
             source_->name(), line_in_file());
     }
     // A row that needed care is seldom alone.
-    if (!plain_row_ || end_mark_seen_ || next == block.bytes.size()) return next;
+    if (!plain_row_ || end_mark_seen_ || layout_.time_is_steps || next == block.bytes.size()) return next;
     const std::size_t before = block.size();
     const std::size_t taken = quick_->read(block, next, before_.values[time_slot]);
     note_quick_rows(block, before);
@@ -248,6 +253,13 @@ bool CsvReader::accept_line(RowBlock& block, std::size_t begin, std::size_t end)
 }
 
 void CsvReader::append_row(RowBlock& block, ParsedRow& row) {
+    if (layout_.time_is_steps) {
+        if (row.values[time_slot] < 0.0)
+            complain(1, fmt::format("read the time step {}, expected none below 0; mend or remove the line, or "
+                                    "say --sample-rate",
+                                    shortest(row.values[time_slot])));
+        row.values[time_slot] = rows_ == 0 ? 0.0 : before_.values[time_slot] + row.values[time_slot];
+    }
     const double time = row.values[time_slot], before = before_.values[time_slot];
     if (layout_.chosen.time && time < before) {
         complain(1, time_backward({before, time, layout_.time_origin}));
@@ -351,7 +363,8 @@ double CsvReader::read_cell(std::string_view line, const Cell& cell, const Wante
     complain(cell.begin + 1,
              fmt::format("read {} in {}, expected a {}; {}",
                          text.empty() ? std::string("nothing") : "'" + shown_cell(text) + "'", name,
-                         stamp && stamp_.text               ? "time of day or a date and time"
+                         (stamp && stamp_.text) || (slot == time_slot && text.find(':') != std::string_view::npos)
+                             ? fmt::format("time of day or a date and time such as {}", stamp_forms)
                          : number && std::isfinite(*number) ? "number from -1e30 to 1e30"
                          : number                           ? "finite number"
                                                             : "number",
