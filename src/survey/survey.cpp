@@ -330,6 +330,10 @@ void state_uses(LogInfo& info) {
                            ? "no position column"
                            : "too few rows, too little motion, or position and velocity of different things";
     }
+    if (joint.torque_nm && !joint.speed_deg_s && info.clock.refusal.empty()) {
+        spectrum = {"spectrum", true, "over frequency; " + missing};
+        filter = {"filter", true, "by methods that are the same at every speed, fixed and lowpass; " + missing};
+    }
     info.uses = {spectrum, identify, filter, clock};
 }
 

@@ -9,6 +9,7 @@
 #include <limits>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cli/command.hpp"
@@ -154,7 +155,13 @@ std::vector<Joint> read_all_joints(const IdentifyRequest& request, Provenance& p
     const std::size_t most_rows = request.residual.any()
                                       ? std::numeric_limits<std::size_t>::max()
                                       : std::max(fewest_rows_held, most_rows_held / request.logs.size());
-    for (const std::string& path : request.logs) {
+    const std::vector<DegPerSec> speeds = std::exchange(read.constant_speeds, {});
+    if (!speeds.empty() && speeds.size() != request.logs.size())
+        raise<UsageError>("--constant-speed: read {} speeds for {} logs; state one for all, or one for each",
+                          speeds.size(), request.logs.size());
+    for (std::size_t i = 0; i < request.logs.size(); ++i) {
+        const std::string& path = request.logs[i];
+        if (!speeds.empty()) read.constant_speed = speeds[i];
         std::vector<Log> logs;
         if (each) {
             logs = read_joints_in_part(path, read, most_rows);

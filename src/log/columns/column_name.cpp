@@ -30,6 +30,7 @@ constexpr std::array role_words = {
     RoleWord{"moment", Role::torque, 0},
     RoleWord{"moments", Role::torque, 0},
     RoleWord{"trq", Role::torque, 0},
+    RoleWord{"torq", Role::torque, 0},
     RoleWord{"drehmoment", Role::torque, 0},
     RoleWord{"velocity", Role::velocity, 0},
     RoleWord{"velocities", Role::velocity, 0},
@@ -196,6 +197,8 @@ ColumnName read_column_name(std::string_view name) {
     bool foreign = false, filtered = false, part = false;
     std::vector<Word> words = split_words(parts.name);
     take_ampere(words, column.unit);
+    const bool of_current = std::any_of(words.begin(), words.end(),
+                                        [](const Word& word) { return contains(current_words, word.text); });
     for (std::size_t i = 0; i < words.size(); ++i) {
         const Word& word = words[i];
         // tau_J: the J is of the symbol; in tau_J1 it is of the joint.
@@ -203,7 +206,7 @@ ColumnName read_column_name(std::string_view name) {
         if (word.text == "j" && i > 0 && words[i - 1].text == "tau" && !numbered) continue;
         const auto role = std::find_if(role_words.begin(), role_words.end(),
                                        [&](const RoleWord& known) { return known.word == word.text; });
-        if (contains(foreign_words, word.text)) foreign = true;
+        if (contains(foreign_words, word.text) || (word.text == "d" && of_current)) foreign = true;
         if (contains(part_words, word.text)) part = true;
         if (word.text == "motor" || word.text == "rotor") column.motor_side = true;
         if (word.text == "filtered" || word.text == "smoothed") filtered = true;
@@ -211,6 +214,8 @@ ColumnName read_column_name(std::string_view name) {
             column.reference = true;
         } else if (contains(current_words, word.text)) {
             column.current = true;
+        } else if (word.text == "q" && of_current) {
+            continue;  // the axis of a motor's field, no coordinate
         } else if (role != role_words.end() && (found == nullptr || found->role == Role::time)) {
             found = role;
         } else {
