@@ -459,9 +459,11 @@ void attach_log_columns(Options& options, ReadOptions& log) {
     options.parsed(
         "--join",
         [&log](Text text) {
-            log.join = one_of({"nearest", "hold", "linear"}, text, "--join");
+            log.join = one_of({"nearest", "hold", "linear", "rows"}, text, "--join");
         },
-        "HOW", "of signals of several topics, which --columns names: linear (the default), hold or nearest");
+        "HOW",
+        "of signals with times of their own: linear (the default), hold or nearest; rows makes one log of "
+        "several files, row by row");
     options.parsed(
         "--kt",
         [&log](std::string text) {

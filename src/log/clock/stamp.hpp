@@ -17,7 +17,7 @@ struct StampRule {
     bool text = false;        ///< cells as in clock_text()
     std::int64_t origin = 0;  ///< in the unit of the column; taken off before anything is rounded
     char decimal_mark = '.';
-    StampForm form;
+    StampForm form = {};
 };
 
 /// What clock_text() reads, for messages.

@@ -63,6 +63,7 @@ constexpr std::array role_words = {
     RoleWord{"elapsed", Role::time, 0},
     RoleWord{"duration", Role::time, 1},
     RoleWord{"datetime", Role::time, 1},
+    RoleWord{"asctime", Role::time, 1},
     RoleWord{"date", Role::time, 2},
 };
 
