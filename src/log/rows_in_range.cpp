@@ -193,7 +193,8 @@ class LinesInRange final : public RowsInRange {
             if (whole_->layout().time_is_steps) time = sum_ = first_ ? 0.0 : sum_ + *time;
             first_ = false;
             if (whole_->layout().time_as_text && !std::exchange(stamped_, true))
-                first_stamp(clock_text(row_.cell(line, *whole_->layout().chosen.time), whole_->layout().stamp_form));
+                first_stamp(
+                    clock_text(row_.cell(line, *whole_->layout().chosen.time), whole_->layout().stamp_form));
         } else if (is_no_row(line)) {
             return keeps_line();
         }

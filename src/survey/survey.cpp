@@ -332,7 +332,8 @@ void state_uses(LogInfo& info) {
     }
     if (joint.torque_nm && !joint.speed_deg_s && info.clock.refusal.empty()) {
         spectrum = {"spectrum", true, "over frequency; " + missing};
-        filter = {"filter", true, "by methods that are the same at every speed, fixed and lowpass; " + missing};
+        filter = {"filter", true,
+                  "by methods that are the same at every speed, fixed and lowpass; " + missing};
     }
     info.uses = {spectrum, identify, filter, clock};
 }

@@ -91,8 +91,8 @@ TEST_CASE("rows that are written several times are held whatever the steps of th
         for (std::size_t k = 0; k < 8000; ++k) {
             const auto updates = static_cast<double>(k - k % 4);
             held_rows.velocity_deg_s.push_back(30.0 + 0.002 * updates);
-            held_rows.torque_nm.push_back(
-                k % 4 != 0 ? held_rows.torque_nm.back() : 0.25 * std::round(8.0 * noise(engine)));
+            held_rows.torque_nm.push_back(k % 4 != 0 ? held_rows.torque_nm.back()
+                                                     : 0.25 * std::round(8.0 * noise(engine)));
             if (position) held_rows.position_deg.push_back(0.03 * updates);
             // Steps of the velocity and of the position, but every row measured.
             coarse_rows.velocity_deg_s.push_back(30.0 + 0.1 * std::round(0.02 * static_cast<double>(k)));

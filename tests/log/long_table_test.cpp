@@ -56,11 +56,13 @@ TEST_CASE("a table of one value a row and a trace of one block a variable are lo
             CHECK(log.trace.velocity_deg_s == std::vector<double>{10, 11, 12, 13});
             CHECK(log.trace.time_s[3] == Approx(0.03));
             const auto& said = log.layout.inferences;
-            CHECK(std::any_of(said.begin(), said.end(), [](const Assumption& one) { return one.about == "shape"; }));
+            CHECK(std::any_of(said.begin(), said.end(),
+                              [](const Assumption& one) { return one.about == "shape"; }));
         }
     }
     const std::string broken = tidy("time_ms,signal,value") + "40,torque,soon\n";
-    CHECK_THAT(complaint(broken), Contains("log.csv:10: read 'soon' as the value of 'torque', expected a number"));
+    CHECK_THAT(complaint(broken),
+               Contains("log.csv:10: read 'soon' as the value of 'torque', expected a number"));
     const std::string backward = tidy("time_ms,signal,value") + "20,torque,1\n";
     CHECK_THAT(complaint(backward), Contains("log.csv:10: read the time 20 of 'torque' after 30"));
 }
@@ -108,18 +110,21 @@ TEST_CASE("files of one signal each are one log, row by row", "[log]") {
 TEST_CASE("joints numbered from 0 and from 1 beside each other are asked about", "[log]") {
     const std::string rows = "\n0,10,11,1,2\n0.01,12,13,2,3\n0.02,14,15,3,4\n";
     const std::string mixed = "t,dq0,dq1,tau1,tau2" + rows;
-    CHECK_THAT(complaint(mixed, [] {
-                   ReadOptions options;
-                   options.joint = "1";
-                   return options;
-               }()),
-               Contains("joints are numbered from 0 and from 1") && Contains("--columns velocity=dq0,torque=tau1"));
+    CHECK_THAT(
+        complaint(mixed,
+                  [] {
+                      ReadOptions options;
+                      options.joint = "1";
+                      return options;
+                  }()),
+        Contains("joints are numbered from 0 and from 1") && Contains("--columns velocity=dq0,torque=tau1"));
     const Log log = read_text(mixed, with_columns({"velocity=dq1", "torque=tau2"}));
     CHECK(log.trace.torque_nm == std::vector<double>{2, 3, 4});
     CHECK_THAT(complaint("t,dq1,tau2\n0,1,2\n0.01,2,3\n"), Contains("numbered from 1 and from 2"));
     ReadOptions first;
     first.joint = "1";
-    CHECK(read_text("t,dq0,dq1,dq2,tau1\n0,1,2,3,4\n0.01,1,2,3,5\n", first).trace.velocity_deg_s.front() > 100.0);
+    CHECK(read_text("t,dq0,dq1,dq2,tau1\n0,1,2,3,4\n0.01,1,2,3,5\n", first).trace.velocity_deg_s.front() >
+          100.0);
 }
 
 TEST_CASE("several torques of one joint are listed, and parts of a torque are none", "[log]") {

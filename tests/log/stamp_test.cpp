@@ -35,7 +35,8 @@ TEST_CASE("dates and times of day are seconds, exactly", "[log]") {
     CHECK(clock_text("2000-02-29T00:00:00")->whole_s == 951782400);
     CHECK(clock_text("00:00:00.001")->fraction_s == 0.001);
     CHECK(clock_text("12:30:01")->whole_s == 45001);
-    for (const char* text : {"1.5.2024 12:30:01", "01.05.2024 12:30:01", "5/13/2024 12:30:01", "01/05/2024 12:30:01"})
+    for (const char* text :
+         {"1.5.2024 12:30:01", "01.05.2024 12:30:01", "5/13/2024 12:30:01", "01/05/2024 12:30:01"})
         CHECK(clock_text(text)->whole_s == (std::string(text).starts_with("5/13") ? 1715603401 : 1714566601));
     CHECK(clock_text("05/01/2024 12:30:01", {.day_first = false})->whole_s == 1714566601);
     CHECK(clock_text("13/05/2024 12:30:01", {.day_first = false})->whole_s == 1715603401);
@@ -44,8 +45,8 @@ TEST_CASE("dates and times of day are seconds, exactly", "[log]") {
     CHECK(clock_text("2024-05-01 12:30:01,25")->fraction_s == 0.25);
     CHECK(clock_text("12:30:01:025")->fraction_s == 0.025);
     CHECK(clock_text("12:30:01.25", {.milliseconds = true})->fraction_s == 0.025);
-    for (const char* text :
-         {"13:30:01 PM", "0:30:01 AM", "31.13.2024 12:30:01", "1.5.24 12:30:01", "", "12:30", "12.5", "2024-05-01", "2024-13-01T00:00:00", "12:61:00", "12:30:01x"})
+    for (const char* text : {"13:30:01 PM", "0:30:01 AM", "31.13.2024 12:30:01", "1.5.24 12:30:01", "",
+                             "12:30", "12.5", "2024-05-01", "2024-13-01T00:00:00", "12:61:00", "12:30:01x"})
         CHECK_FALSE(clock_text(text).has_value());
 }
 
@@ -118,7 +119,8 @@ TEST_CASE("a date's order is taken from the log, or said where it matters to nob
     };
     CHECK(read_text(day("03/04/2025", "04/04/2025")).layout.stamp_form.day_first);
     CHECK_FALSE(read_text(day("04/03/2025", "04/04/2025")).layout.stamp_form.day_first);
-    const Log same = read_text(log_of("t", [](int k) { return "03/04/2025 12:00:00.0" + std::to_string(10 + k); }));
+    const Log same =
+        read_text(log_of("t", [](int k) { return "03/04/2025 12:00:00.0" + std::to_string(10 + k); }));
     CHECK(same.layout.inferences.front().reason == "no field says which; only the day depends on it");
     CHECK_THAT(complaint(log_of("t", [](int k) { return "3-Apr-2025 12:00:" + std::to_string(10 + k); })),
                Catch::Contains("expected a time of day or a date and time such as 12:30:01.5"));

@@ -651,7 +651,8 @@ Comparison compare_on_log(const CompareRequest& request, const Field& field, Pro
         raise<UsageError>("--joint all: compare looks at one joint; name it");
     ReadOptions read = read_options(request.log_options, field.gear);
     // What has the same coefficients at every speed is measured without one.
-    read.needs_velocity = field.gear || std::any_of(field.contenders.begin(), field.contenders.end(), follows_motion);
+    read.needs_velocity =
+        field.gear || std::any_of(field.contenders.begin(), field.contenders.end(), follows_motion);
     const Log log = read_log_in_part(request.log, read);
     take_log(request.common, request.log, log, provenance);
     for (const Contender& contender : field.contenders) refuse_other_joint(contender, log.trace.joint);

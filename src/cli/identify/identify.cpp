@@ -161,8 +161,9 @@ std::vector<Joint> read_all_joints(const IdentifyRequest& request, Provenance& p
                           speeds.size(), request.logs.size());
     const bool as_one = std::exchange(read.join, read.join == "rows" ? std::nullopt : read.join) == "rows";
     if (as_one && (each || request.residual.any()))
-        raise<UsageError>("--join rows: takes one joint and its logged torque; name it with --joint, and leave "
-                          "out the simulation");
+        raise<UsageError>(
+            "--join rows: takes one joint and its logged torque; name it with --joint, and leave "
+            "out the simulation");
     for (std::size_t i = 0; i < request.logs.size(); ++i) {
         const std::string& path = request.logs[i];
         if (!speeds.empty()) read.constant_speed = speeds[i];
@@ -175,7 +176,8 @@ std::vector<Joint> read_all_joints(const IdentifyRequest& request, Provenance& p
             logs.push_back(read_log_in_part(path, read, most_rows));
         }
         provenance.inputs.push_back(
-            {path, path == "-" ? "" : sha256_as_read(path), logs.empty() ? std::nullopt : std::optional(logs.front().recording.rows())});
+            {path, path == "-" ? "" : sha256_as_read(path),
+             logs.empty() ? std::nullopt : std::optional(logs.front().recording.rows())});
         for (Log& log : logs) {
             say_layout(request.common, log.layout);
             take_residual(request.residual, read, request.logs.size(), {path, log}, request.common,

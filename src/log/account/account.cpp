@@ -259,7 +259,8 @@ std::string update_rate_text(const Recording& recording) {
     const Hertz rate = recording.update_rate();
     if (!(rate < recording.clock.nominal_rate)) return "";
     return fmt::format(
-        "; the signals are updated at {:.4g} Hz and written at {:.4g} Hz: nothing above {:.4g} Hz is measured",
+        "; the signals are updated at {:.4g} Hz and written at {:.4g} Hz: nothing above {:.4g} Hz is "
+        "measured",
         rate.value(), recording.clock.nominal_rate.value(), 0.5 * rate.value());
 }
 

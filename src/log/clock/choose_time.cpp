@@ -267,8 +267,9 @@ std::optional<StampPair> find_stamp_pair(const ColumnFacts& facts, const Forced&
 
 /// "dt", "timestep", "Delta t": a column of steps, whose values are steps, too.
 bool holds_steps(const ColumnFacts& facts, std::size_t column) {
-    constexpr std::array<std::string_view, 9> words = {"dt",        "timestep",   "timesteps", "deltat",  "deltatime",
-                                                       "sampletime", "samplestep", "steptime",  "tdelta"};
+    constexpr std::array<std::string_view, 9> words = {"dt",         "timestep",  "timesteps",
+                                                       "deltat",     "deltatime", "sampletime",
+                                                       "samplestep", "steptime",  "tdelta"};
     if (!facts.sums_steps || facts.names.empty()) return false;
     std::string name = lower_case(split_unit(facts.meanings()[column]).name);
     std::erase_if(name, [](char c) { return c == '_' || c == ' ' || c == '-' || c == '.'; });

@@ -22,58 +22,36 @@ struct RoleWord {
 };
 
 constexpr std::array role_words = {
-    RoleWord{"torque", Role::torque, 0},
-    RoleWord{"torques", Role::torque, 0},
-    RoleWord{"tau", Role::torque, 0},
-    RoleWord{"effort", Role::torque, 0},
-    RoleWord{"efforts", Role::torque, 0},
-    RoleWord{"moment", Role::torque, 0},
-    RoleWord{"moments", Role::torque, 0},
-    RoleWord{"trq", Role::torque, 0},
-    RoleWord{"torq", Role::torque, 0},
-    RoleWord{"drehmoment", Role::torque, 0},
-    RoleWord{"velocity", Role::velocity, 0},
-    RoleWord{"velocities", Role::velocity, 0},
-    RoleWord{"vel", Role::velocity, 0},
-    RoleWord{"velo", Role::velocity, 0},
-    RoleWord{"speed", Role::velocity, 0},
-    RoleWord{"dq", Role::velocity, 0},
-    RoleWord{"qd", Role::velocity, 0},
-    RoleWord{"qdot", Role::velocity, 0},
-    RoleWord{"qvel", Role::velocity, 0},
-    RoleWord{"omega", Role::velocity, 0},
-    RoleWord{"drehzahl", Role::velocity, 0},
-    RoleWord{"geschwindigkeit", Role::velocity, 0},
-    RoleWord{"dtheta", Role::velocity, 1},
-    RoleWord{"position", Role::position, 0},
-    RoleWord{"positions", Role::position, 0},
-    RoleWord{"pos", Role::position, 0},
-    RoleWord{"q", Role::position, 0},
-    RoleWord{"angle", Role::position, 0},
-    RoleWord{"angles", Role::position, 0},
-    RoleWord{"qpos", Role::position, 0},
-    RoleWord{"winkel", Role::position, 0},
-    RoleWord{"theta", Role::position, 1},
-    RoleWord{"time", Role::time, 0},
-    RoleWord{"t", Role::time, 0},
-    RoleWord{"timestamp", Role::time, 0},
-    RoleWord{"stamp", Role::time, 0},
-    RoleWord{"timestamps", Role::time, 0},
-    RoleWord{"zeit", Role::time, 0},
-    RoleWord{"elapsed", Role::time, 0},
-    RoleWord{"duration", Role::time, 1},
-    RoleWord{"datetime", Role::time, 1},
-    RoleWord{"asctime", Role::time, 1},
+    RoleWord{"torque", Role::torque, 0},      RoleWord{"torques", Role::torque, 0},
+    RoleWord{"tau", Role::torque, 0},         RoleWord{"effort", Role::torque, 0},
+    RoleWord{"efforts", Role::torque, 0},     RoleWord{"moment", Role::torque, 0},
+    RoleWord{"moments", Role::torque, 0},     RoleWord{"trq", Role::torque, 0},
+    RoleWord{"torq", Role::torque, 0},        RoleWord{"drehmoment", Role::torque, 0},
+    RoleWord{"velocity", Role::velocity, 0},  RoleWord{"velocities", Role::velocity, 0},
+    RoleWord{"vel", Role::velocity, 0},       RoleWord{"velo", Role::velocity, 0},
+    RoleWord{"speed", Role::velocity, 0},     RoleWord{"dq", Role::velocity, 0},
+    RoleWord{"qd", Role::velocity, 0},        RoleWord{"qdot", Role::velocity, 0},
+    RoleWord{"qvel", Role::velocity, 0},      RoleWord{"omega", Role::velocity, 0},
+    RoleWord{"drehzahl", Role::velocity, 0},  RoleWord{"geschwindigkeit", Role::velocity, 0},
+    RoleWord{"dtheta", Role::velocity, 1},    RoleWord{"position", Role::position, 0},
+    RoleWord{"positions", Role::position, 0}, RoleWord{"pos", Role::position, 0},
+    RoleWord{"q", Role::position, 0},         RoleWord{"angle", Role::position, 0},
+    RoleWord{"angles", Role::position, 0},    RoleWord{"qpos", Role::position, 0},
+    RoleWord{"winkel", Role::position, 0},    RoleWord{"theta", Role::position, 1},
+    RoleWord{"time", Role::time, 0},          RoleWord{"t", Role::time, 0},
+    RoleWord{"timestamp", Role::time, 0},     RoleWord{"stamp", Role::time, 0},
+    RoleWord{"timestamps", Role::time, 0},    RoleWord{"zeit", Role::time, 0},
+    RoleWord{"elapsed", Role::time, 0},       RoleWord{"duration", Role::time, 1},
+    RoleWord{"datetime", Role::time, 1},      RoleWord{"asctime", Role::time, 1},
     RoleWord{"date", Role::time, 2},
 };
 
 constexpr std::array<std::string_view, 7> current_words = {"current", "currents", "iq",  "amps",
                                                            "strom",   "amperage", "curr"};
 constexpr std::array<std::string_view, 22> reference_words = {
-    "target",    "targets",     "ref",      "reference", "desired",  "des",   "cmd",
-    "command",   "commanded",   "commands", "goal",      "setpoint", "model", "sim",
-    "simulated", "feedforward", "ff",       "soll",      "planned",  "set",
-    "ctrl",      "control"};
+    "target",    "targets",  "ref",     "reference", "desired", "des",    "cmd",       "command",
+    "commanded", "commands", "goal",    "setpoint",  "model",   "sim",    "simulated", "feedforward",
+    "ff",        "soll",     "planned", "set",       "ctrl",    "control"};
 // Quantities of something else: of the tool, of the mains, or derived from the one that is wanted.
 constexpr std::array<std::string_view, 35> foreign_words = {
     "tcp",     "tool",      "pose",     "twist", "cartesian",   "wrench",        "force",
@@ -252,7 +230,7 @@ struct Symbol {
     std::array<std::string_view, 4> rivals;
 };
 constexpr std::array symbols = {
-    Symbol{"v", Role::velocity, {"i", "I", "u", "U"}},  // a voltage beside a current
+    Symbol{"v", Role::velocity, {"i", "I", "u", "U"}},   // a voltage beside a current
     Symbol{"w", Role::velocity, {"x", "y", "z", "qx"}},  // of a quaternion
     Symbol{"\xcf\x89", Role::velocity, {}},
     Symbol{"T", Role::torque, {"i", "I", "iq", "current"}},  // a temperature beside a motor current
@@ -268,7 +246,8 @@ constexpr std::array symbols = {
 std::string_view without_number(std::string_view name) {
     if (name.ends_with(']')) name.remove_suffix(1);
     while (!name.empty() && is_digits(name.substr(name.size() - 1))) name.remove_suffix(1);
-    while (!name.empty() && (name.back() == '_' || name.back() == '[' || name.back() == ' ')) name.remove_suffix(1);
+    while (!name.empty() && (name.back() == '_' || name.back() == '[' || name.back() == ' '))
+        name.remove_suffix(1);
     return name;
 }
 
@@ -285,7 +264,8 @@ std::vector<ColumnName> read_column_names(const std::vector<std::string>& names,
     }
     const auto has = [&columns](Role role, std::size_t but) {
         for (std::size_t c = 0; c < columns.size(); ++c)
-            if (c != but && columns[c].role == role && columns[c].symbol == Role::other && !columns[c].reference)
+            if (c != but && columns[c].role == role && columns[c].symbol == Role::other &&
+                !columns[c].reference)
                 return true;
         return false;
     };
@@ -305,7 +285,8 @@ std::vector<ColumnName> read_column_names(const std::vector<std::string>& names,
         column.symbol = symbol->role;
         column.role = rivalled && !by_unit ? Role::other : symbol->role;
         column.joint = bare.substr(without_number(bare).size());
-        std::erase_if(column.joint, [](char sign) { return sign == '_' || sign == '[' || sign == ']' || sign == ' '; });
+        std::erase_if(column.joint,
+                      [](char sign) { return sign == '_' || sign == '[' || sign == ']' || sign == ' '; });
     }
     return columns;
 }
@@ -429,7 +410,8 @@ std::string mixed_numberings(const KnownColumns& known) {
     std::map<std::string, std::map<Role, Numbering>> numberings;  // by the letters before the number
     for (std::size_t c = 0; c < known.facts.columns; ++c) {
         const ColumnName& name = known.names[c];
-        if (name.reference || forced.roles[c] || name.role == Role::other || name.role == Role::time) continue;
+        if (name.reference || forced.roles[c] || name.role == Role::other || name.role == Role::time)
+            continue;
         const std::string key = joint_key(name.joint);
         const auto number = number_of(key);
         if (!number) continue;
@@ -477,7 +459,8 @@ std::vector<JointGroup> group_joints(const KnownColumns& known, bool joint_asked
         for (std::size_t r = 0; r < motion_roles.size(); ++r) {
             for (const JointGroup& group : groups) counts[r] += group.has(motion_roles[r]);
         }
-        // "tau_motor_side" and "tau_sensor" beside them: torques of the one joint that moves, to be chosen from.
+        // "tau_motor_side" and "tau_sensor" beside them: torques of the one joint that moves, to be chosen
+        // from.
         const bool numbered = std::any_of(groups.begin(), groups.end(), [](const JointGroup& group) {
             return number_of(group.key).has_value();
         });

@@ -258,7 +258,8 @@ class Decision {
         for (const Role role : motion_roles) {
             const std::string perhaps = maybe(role);
             if (perhaps.empty() || forced_.column_of(role)) continue;
-            layout_.warnings.push_back({"symbols", fmt::format("{} is not read: {}", role_name(role), perhaps)});
+            layout_.warnings.push_back(
+                {"symbols", fmt::format("{} is not read: {}", role_name(role), perhaps)});
         }
     }
 

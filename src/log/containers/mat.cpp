@@ -343,16 +343,19 @@ MatContents find_mat_arrays(const std::shared_ptr<StoredBytes>& file) {
 std::string matlab_object_text(const std::string& name, const std::string& class_name) {
     const std::string save = "save('run.mat', 't', 'tau')";
     if (class_name == "timeseries")
-        return fmt::format("an object of class timeseries; in MATLAB: t = {0}.Time; tau = {0}.Data; {1}", name, save);
+        return fmt::format("an object of class timeseries; in MATLAB: t = {0}.Time; tau = {0}.Data; {1}",
+                           name, save);
     if (class_name == "table" || class_name == "timetable") {
         const bool timed = class_name == "timetable";
         return fmt::format(
-            "an object of class {}; in MATLAB: s = table2struct({}, 'ToScalar', true); save('run.mat', '-struct', 's')",
+            "an object of class {}; in MATLAB: s = table2struct({}, 'ToScalar', true); save('run.mat', "
+            "'-struct', 's')",
             class_name, timed ? fmt::format("timetable2table({})", name) : name);
     }
     if (class_name.starts_with("Simulink."))
         return fmt::format(
-            "an object of class {0}; in MATLAB, for each signal: x = {1}.get('tau').Values; t = x.Time; tau = x.Data; {2}",
+            "an object of class {0}; in MATLAB, for each signal: x = {1}.get('tau').Values; t = x.Time; tau "
+            "= x.Data; {2}",
             class_name, class_name == "Simulink.SimulationOutput" ? name + ".logsout" : name, save);
     return fmt::format("an object of class {}; in MATLAB, save its numbers as vectors: {}", class_name, save);
 }

@@ -260,9 +260,10 @@ bool CsvReader::accept_line(RowBlock& block, std::size_t begin, std::size_t end)
 void CsvReader::append_row(RowBlock& block, ParsedRow& row) {
     if (layout_.time_is_steps) {
         if (row.values[time_slot] < 0.0)
-            complain(1, fmt::format("read the time step {}, expected none below 0; mend or remove the line, or "
-                                    "say --sample-rate",
-                                    shortest(row.values[time_slot])));
+            complain(1,
+                     fmt::format("read the time step {}, expected none below 0; mend or remove the line, or "
+                                 "say --sample-rate",
+                                 shortest(row.values[time_slot])));
         row.values[time_slot] = rows_ == 0 ? 0.0 : before_.values[time_slot] + row.values[time_slot];
     }
     const double time = row.values[time_slot], before = before_.values[time_slot];
@@ -365,15 +366,16 @@ double CsvReader::read_cell(std::string_view line, const Cell& cell, const Wante
         remedy =
             fmt::format("mend the line, or say --decimal {}", dialect_.rules.decimal_mark == '.' ? ',' : '.');
     }
-    complain(cell.begin + 1,
-             fmt::format("read {} in {}, expected a {}; {}",
-                         text.empty() ? std::string("nothing") : "'" + shown_cell(text) + "'", name,
-                         (stamp && stamp_.text) || (slot == time_slot && text.find(':') != std::string_view::npos)
-                             ? fmt::format("time of day or a date and time such as {}", stamp_forms)
-                         : number && std::isfinite(*number) ? "number from -1e30 to 1e30"
-                         : number                           ? "finite number"
-                                                            : "number",
-                         remedy));
+    complain(
+        cell.begin + 1,
+        fmt::format("read {} in {}, expected a {}; {}",
+                    text.empty() ? std::string("nothing") : "'" + shown_cell(text) + "'", name,
+                    (stamp && stamp_.text) || (slot == time_slot && text.find(':') != std::string_view::npos)
+                        ? fmt::format("time of day or a date and time such as {}", stamp_forms)
+                    : number && std::isfinite(*number) ? "number from -1e30 to 1e30"
+                    : number                           ? "finite number"
+                                                       : "number",
+                    remedy));
 }
 
 void CsvReader::complain(std::size_t column, const std::string& sentence) const {

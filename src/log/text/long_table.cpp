@@ -36,10 +36,12 @@ ReshapedText::ReshapedText(const std::string& name, std::string text, Assumption
 namespace {
 
 using Words = std::span<const std::string_view>;
-constexpr std::array<std::string_view, 10> signal_words = {"signal", "variable",  "name",  "channel", "topic",
-                                                           "key",    "parameter", "field", "series",  "signalname"};
-constexpr std::array<std::string_view, 7> value_words = {"value", "values", "data", "wert", "werte", "y", "reading"};
-constexpr std::array<std::string_view, 5> name_keys = {"variable", "name", "variablename", "symbol", "symbolname"};
+constexpr std::array<std::string_view, 10> signal_words = {
+    "signal", "variable", "name", "channel", "topic", "key", "parameter", "field", "series", "signalname"};
+constexpr std::array<std::string_view, 7> value_words = {"value", "values", "data",   "wert",
+                                                         "werte", "y",      "reading"};
+constexpr std::array<std::string_view, 5> name_keys = {"variable", "name", "variablename", "symbol",
+                                                       "symbolname"};
 constexpr std::size_t most_names = 4096;
 constexpr double periods_apart = 3.0;  // as signals of topics are joined
 
@@ -118,7 +120,8 @@ std::optional<LongHeader> long_header(std::string_view line) {
             if (!value && is_one_of(value_words, cells[c])) value = c;
             if (!unit && is_one_of(std::array<std::string_view, 2>{"unit", "units"}, cells[c])) unit = c;
         }
-        if (time && signal && value) return LongHeader{delimiter, cells.size(), *time, *signal, *value, unit, cells[*time]};
+        if (time && signal && value)
+            return LongHeader{delimiter, cells.size(), *time, *signal, *value, unit, cells[*time]};
     }
     return std::nullopt;
 }
@@ -129,7 +132,8 @@ std::optional<std::array<std::string, 2>> pair_in(const Lines& lines) {
         std::vector<std::string> cells = lines.cells(delimiter);
         if (cells.size() != 2) continue;
         const auto reads = [&](const std::string& cell) { return number_in(cell, delimiter).has_value(); };
-        if ((reads(cells[0]) || clock_text(cells[0])) && reads(cells[1])) return std::array{cells[0], cells[1]};
+        if ((reads(cells[0]) || clock_text(cells[0])) && reads(cells[1]))
+            return std::array{cells[0], cells[1]};
     }
     return std::nullopt;
 }
@@ -155,7 +159,8 @@ std::string name_in_head(const std::vector<std::vector<std::string>>& head, std:
         if (cells.size() >= 2 && is_one_of(name_keys, key)) {
             name = cells[1];
             by_key = true;
-        } else if (!by_key && cells.size() == 1 && has_letters(cells[0]) && !is_one_of(value_words, cells[0])) {
+        } else if (!by_key && cells.size() == 1 && has_letters(cells[0]) &&
+                   !is_one_of(value_words, cells[0])) {
             name = cells[0];
             while (!name.empty() && (name.back() == ':' || name.back() == ' ')) name.pop_back();
         }
@@ -188,21 +193,24 @@ class Signals {
         if (!number) {
             const auto stamp = clock_text(time);
             if (!stamp)
-                lines_.complain(fmt::format("read '{}' in '{}', expected a number, or a time such as {}; mend or "
-                                            "remove the line",
-                                            time, time_name_, stamp_forms));
+                lines_.complain(
+                    fmt::format("read '{}' in '{}', expected a number, or a time such as {}; mend or "
+                                "remove the line",
+                                time, time_name_, stamp_forms));
             if (!origin_s_) origin_s_ = stamp->whole_s;
             number = since(stamp->whole_s, *origin_s_) + stamp->fraction_s;
         }
         const auto read = number_in(value, delimiter);
         if (!read)
-            lines_.complain(fmt::format("read '{}' as the value of '{}', expected a number; mend or remove the line",
-                                        value, all[signal].name));
+            lines_.complain(
+                fmt::format("read '{}' as the value of '{}', expected a number; mend or remove the line",
+                            value, all[signal].name));
         Signal& one = all[signal];
         if (!one.time.empty() && *number < one.time.back())
-            lines_.complain(fmt::format("read the time {} of '{}' after {}, expected time to run forward; sort "
-                                        "the log",
-                                        time, one.name, shortest(one.time.back())));
+            lines_.complain(
+                fmt::format("read the time {} of '{}' after {}, expected time to run forward; sort "
+                            "the log",
+                            time, one.name, shortest(one.time.back())));
         one.time.push_back(*number);
         one.cells.push_back(parse_number(value) ? value : shortest(*read));
     }
@@ -240,9 +248,10 @@ class AtTimes {
         const double since = time - times[before], until = times[next_] - time;
         const bool nearest = how_ == "nearest", hold = how_ == "hold";
         if ((hold ? since : nearest ? std::min(since, until) : std::max(since, until)) > limit_)
-            raise<DataError>("{}: read no value of '{}' within {} of the time {}, expected one; leave the gap out with "
-                             "--from and --to",
-                             source_, signal_.name, shortest(limit_), shortest(time));
+            raise<DataError>(
+                "{}: read no value of '{}' within {} of the time {}, expected one; leave the gap out with "
+                "--from and --to",
+                source_, signal_.name, shortest(limit_), shortest(time));
         if (hold || (nearest && since <= until)) return signal_.cells[before];
         if (nearest) return signal_.cells[next_];
         const double from = *parse_number(signal_.cells[before]), to = *parse_number(signal_.cells[next_]);
@@ -297,11 +306,12 @@ std::unique_ptr<ByteSource> as_table(const std::string& source, const std::vecto
     }
     std::vector<LogWarning> warnings;
     if (!joined.empty())
-        warnings.push_back({"joined by time",
-                            fmt::format("{} {} times of {} own: joined to those of '{}' by --join {}; nearest, hold "
-                                        "and linear can be said",
-                                        fmt::join(joined, ", "), joined.size() == 1 ? "has" : "have",
-                                        joined.size() == 1 ? "its" : "their", base.name, how)});
+        warnings.push_back(
+            {"joined by time",
+             fmt::format("{} {} times of {} own: joined to those of '{}' by --join {}; nearest, hold "
+                         "and linear can be said",
+                         fmt::join(joined, ", "), joined.size() == 1 ? "has" : "have",
+                         joined.size() == 1 ? "its" : "their", base.name, how)});
     return std::make_unique<ReshapedText>(
         source, std::move(text),
         Assumption{"shape", fmt::format("{} signals as columns", signals.size()), std::string(shape), "", {}},
@@ -318,15 +328,17 @@ std::string whole_text(ByteSource& source, std::string bytes) {
     return bytes;
 }
 
-std::unique_ptr<ByteSource> widened_tidy(const std::string& source, std::string_view bytes, const LongHeader& header,
-                                         const ReadOptions& options) {
+std::unique_ptr<ByteSource> widened_tidy(const std::string& source, std::string_view bytes,
+                                         const LongHeader& header, const ReadOptions& options) {
     Lines lines(bytes, source);
     lines.next();
     Signals signals(lines, header.time_name);
     while (lines.next()) {
         const std::vector<std::string> cells = lines.cells(header.delimiter);
-        if (cells.size() <= std::max({header.time, header.signal, header.value}) || cells.size() > header.cells)
-            lines.complain(fmt::format("read {} cells, expected {}; mend or remove the line", cells.size(), header.cells));
+        if (cells.size() <= std::max({header.time, header.signal, header.value}) ||
+            cells.size() > header.cells)
+            lines.complain(fmt::format("read {} cells, expected {}; mend or remove the line", cells.size(),
+                                       header.cells));
         const std::string unit = header.unit && *header.unit < cells.size() ? cells[*header.unit] : "";
         signals.add(signals.index_of(cells[header.signal], unit), cells[header.time], cells[header.value],
                     header.delimiter);
@@ -334,7 +346,8 @@ std::unique_ptr<ByteSource> widened_tidy(const std::string& source, std::string_
     return as_table(source, signals.all, signals.time_name(), "a row holds the value of one signal", options);
 }
 
-std::unique_ptr<ByteSource> widened_blocks(const std::string& source, std::string bytes, const ReadOptions& options) {
+std::unique_ptr<ByteSource> widened_blocks(const std::string& source, std::string bytes,
+                                           const ReadOptions& options) {
     Lines lines(bytes, source);
     Signals signals(lines, "time");
     std::vector<std::vector<std::string>> head;
@@ -357,14 +370,15 @@ std::unique_ptr<ByteSource> widened_blocks(const std::string& source, std::strin
     }
     if (signals.all.size() < 2)
         return std::make_unique<ByteSource>(source, std::make_shared<const std::string>(std::move(bytes)));
-    return as_table(source, signals.all, signals.time_name() == "time" && !time_name.empty() ? time_name : signals.time_name(),
+    return as_table(source, signals.all,
+                    signals.time_name() == "time" && !time_name.empty() ? time_name : signals.time_name(),
                     "a block of rows holds one variable", options);
 }
 
 }  // namespace
 
-// Of a trace, the first lines hold a head of two lines and more, and rows of a time and a value, which no line
-// over them names.
+// Of a trace, the first lines hold a head of two lines and more, and rows of a time and a value, which no
+// line over them names.
 bool may_be_long(std::string_view first_bytes) {
     if (long_header(first_line_of(first_bytes))) return true;
     Lines lines(first_bytes, "");
@@ -376,9 +390,11 @@ bool may_be_long(std::string_view first_bytes) {
     }
     if (!row || head.empty()) return false;
     const std::vector<std::string>& last = head.back();
-    if (last.size() == 2 && read_column_name(last[0]).role == Role::time) return head.size() > 1 && is_one_of(value_words, last[1]);
+    if (last.size() == 2 && read_column_name(last[0]).role == Role::time)
+        return head.size() > 1 && is_one_of(value_words, last[1]);
     std::string ignored;
-    return std::any_of(head.begin(), head.end(), [](const auto& cells) { return cells.size() == 1 || cells.size() == 2; }) &&
+    return std::any_of(head.begin(), head.end(),
+                       [](const auto& cells) { return cells.size() == 1 || cells.size() == 2; }) &&
            last.size() == 1 && !name_in_head(head, ignored).empty() && lines.next() && pair_in(lines);
 }
 
@@ -386,7 +402,8 @@ std::unique_ptr<ByteSource> widened(std::unique_ptr<ByteSource> source, std::str
                                     const ReadOptions& options) {
     const std::string name = source->name();
     std::string bytes = whole_text(*source, std::move(first_bytes));
-    if (const auto header = long_header(first_line_of(bytes))) return widened_tidy(name, bytes, *header, options);
+    if (const auto header = long_header(first_line_of(bytes)))
+        return widened_tidy(name, bytes, *header, options);
     return widened_blocks(name, std::move(bytes), options);
 }
 
@@ -397,10 +414,10 @@ std::vector<std::string> stems_of(const std::vector<std::string>& paths) {
     std::vector<std::string> stems;
     for (const std::string& path : paths) stems.push_back(std::filesystem::path(path).stem().string());
     std::size_t common = stems.size() > 1 ? stems.front().find_last_of("_-. ") : std::string::npos;
-    while (common != std::string::npos &&
-           !std::all_of(stems.begin(), stems.end(), [&](const std::string& stem) {
-               return stem.compare(0, common + 1, stems.front(), 0, common + 1) == 0 && stem.size() > common + 1;
-           }))
+    while (
+        common != std::string::npos && !std::all_of(stems.begin(), stems.end(), [&](const std::string& stem) {
+            return stem.compare(0, common + 1, stems.front(), 0, common + 1) == 0 && stem.size() > common + 1;
+        }))
         common = common == 0 ? std::string::npos : stems.front().find_last_of("_-. ", common - 1);
     for (std::string& stem : stems) stem.erase(0, common == std::string::npos ? 0 : common + 1);
     return stems;
@@ -427,8 +444,9 @@ Log read_files_as_one(const std::vector<std::string>& paths, const ReadOptions& 
                 const auto number =
                     c < cells.size() ? parse_number(cells[c], dialect.rules.decimal_mark) : std::nullopt;
                 if (!number)
-                    lines.complain(fmt::format("read '{}' in cell {}, expected a number; mend or remove the line",
-                                               c < cells.size() ? cells[c] : "", c + 1));
+                    lines.complain(
+                        fmt::format("read '{}' in cell {}, expected a number; mend or remove the line",
+                                    c < cells.size() ? cells[c] : "", c + 1));
                 own[c].push_back(*number);
             }
         }
@@ -440,16 +458,17 @@ Log read_files_as_one(const std::vector<std::string>& paths, const ReadOptions& 
             const ColumnName read = read_column_name(given);
             if (read.role == Role::time) {
                 if (timed && own[c] != columns.front())
-                    raise<DataError>("{}: read other times in '{}' than in {}, expected the same; --join rows takes "
-                                     "rows one by one",
-                                     path, given, paths.front());
+                    raise<DataError>(
+                        "{}: read other times in '{}' than in {}, expected the same; --join rows takes "
+                        "rows one by one",
+                        path, given, paths.front());
                 if (timed) continue;
                 names.insert(names.begin(), given);
                 columns.insert(columns.begin(), std::move(own[c]));
                 timed = true;
                 continue;
             }
-            names.push_back(given.empty()              ? dialect.columns == 1 ? stem : fmt::format("{}_{}", stem, c + 1)
+            names.push_back(given.empty() ? dialect.columns == 1 ? stem : fmt::format("{}_{}", stem, c + 1)
                             : read.role == Role::other ? fmt::format("{}_{}", stem, given)
                                                        : given);
             columns.push_back(std::move(own[c]));
@@ -459,7 +478,8 @@ Log read_files_as_one(const std::vector<std::string>& paths, const ReadOptions& 
     for (const std::string& name : names) text += (text.empty() ? "" : ",") + quoted_name({name, "", {}, {}});
     text += '\n';
     for (std::size_t k = 0; k < columns.front().size(); ++k) {
-        for (std::size_t c = 0; c < columns.size(); ++c) text += (c == 0 ? "" : ",") + shortest(columns[c][k]);
+        for (std::size_t c = 0; c < columns.size(); ++c)
+            text += (c == 0 ? "" : ",") + shortest(columns[c][k]);
         text += '\n';
     }
     return read_log(std::make_unique<ReshapedText>(

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Text logs in which a row holds one number: tables of time, signal and value, and traces with a block of rows
-// for each variable. They are made tables of a column for each signal, in memory, and read as such.
+// Text logs in which a row holds one number: tables of time, signal and value, and traces with a block of
+// rows for each variable. They are made tables of a column for each signal, in memory, and read as such.
 
 #include <memory>
 #include <string>
@@ -16,7 +16,8 @@ namespace ripplenotch {
 /// A table that was made from another shape, and what has to be said of it.
 class ReshapedText : public ByteSource {
   public:
-    ReshapedText(const std::string& name, std::string text, Assumption shape, std::vector<LogWarning> warnings);
+    ReshapedText(const std::string& name, std::string text, Assumption shape,
+                 std::vector<LogWarning> warnings);
     [[nodiscard]] const Assumption& shape() const { return shape_; }
     [[nodiscard]] const std::vector<LogWarning>& warnings() const { return warnings_; }
 

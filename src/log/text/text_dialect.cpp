@@ -54,8 +54,8 @@ GuessedRules rules_of(std::string_view bytes, const std::vector<TextLine>& conte
         source.name(), number_in_file(source, content[aside].number), content[aside].of(bytes).substr(0, 40));
 }
 
-// The first form by which all texts are times and run forward; of several such, that of the shortest time, for
-// a date in the wrong order jumps by a month at midnight.
+// The first form by which all texts are times and run forward; of several such, that of the shortest time,
+// for a date in the wrong order jumps by a month at midnight.
 StampForm form_of(const std::vector<std::string_view>& texts) {
     StampForm best;
     double shortest_s = std::numeric_limits<double>::infinity();

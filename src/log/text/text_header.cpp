@@ -157,8 +157,8 @@ std::size_t read_names(std::string_view bytes, const TextLines& lines, const std
         const auto text = [&](std::size_t cell) { return split.cells[cell].of(row.of(bytes)); };
         const std::size_t cells = split.cells.size();
         for (std::size_t c = 0; c + 1 < cells && dialect.rules.delimiter == ','; ++c) {
-            if (!clock_text(text(c)) || text(c).find('.') != std::string_view::npos || text(c + 1).size() != 3 ||
-                !is_number(text(c + 1), '.'))
+            if (!clock_text(text(c)) || text(c).find('.') != std::string_view::npos ||
+                text(c + 1).size() != 3 || !is_number(text(c + 1), '.'))
                 continue;
             raise<DataError>(
                 "{}:{}: read the time '{},{}' in two cells, expected one: the comma of its milliseconds "
