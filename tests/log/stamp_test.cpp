@@ -126,8 +126,9 @@ TEST_CASE("a date's order is taken from the log, or said where it matters to nob
                Catch::Contains("expected a time of day or a date and time such as 12:30:01.5"));
     CHECK_THAT(complaint(log_of("t", [](int k) { return "2025-12-31 12:00:01,0" + std::to_string(10 + k); })),
                Catch::Contains("the comma of its milliseconds separates cells"));
-    CHECK_THAT(complaint(log_of("dt", [](int k) { return std::string(k == 30 ? "-0.001" : "0.001"); })),
-               Catch::Contains("log.csv:32:1: read the time step -0.001"));
+    const std::string steps = log_of(
+        "dt", [](int k) { return std::string(k == 2500 ? "-0.001" : "0.001"); }, 3000);
+    CHECK_THAT(complaint(steps), Catch::Contains("log.csv:2502:1: read the time step -0.001"));
 }
 
 TEST_CASE("a clock that no unit makes a log's is refused with the option", "[log]") {

@@ -346,8 +346,20 @@ std::unique_ptr<ByteSource> widened_tidy(const std::string& source, std::string_
     return as_table(source, signals.all, signals.time_name(), "a row holds the value of one signal", options);
 }
 
+bool has_blocks(std::string_view bytes) {
+    Lines lines(bytes, "");
+    std::size_t blocks = 0;
+    for (bool row = false; blocks < 2 && lines.next();) {
+        const bool was = std::exchange(row, pair_in(lines).has_value());
+        blocks += row && !was ? 1 : 0;
+    }
+    return blocks > 1;
+}
+
 std::unique_ptr<ByteSource> widened_blocks(const std::string& source, std::string bytes,
                                            const ReadOptions& options) {
+    if (!has_blocks(bytes))
+        return std::make_unique<ByteSource>(source, std::make_shared<const std::string>(std::move(bytes)));
     Lines lines(bytes, source);
     Signals signals(lines, "time");
     std::vector<std::vector<std::string>> head;
@@ -368,8 +380,6 @@ std::unique_ptr<ByteSource> widened_blocks(const std::string& source, std::strin
         }
         signals.add(*block, (*pair)[0], (*pair)[1], ';');
     }
-    if (signals.all.size() < 2)
-        return std::make_unique<ByteSource>(source, std::make_shared<const std::string>(std::move(bytes)));
     return as_table(source, signals.all,
                     signals.time_name() == "time" && !time_name.empty() ? time_name : signals.time_name(),
                     "a block of rows holds one variable", options);
