@@ -317,7 +317,8 @@ Account::Account(const Layout& layout, const Opening& opening, double gap_steps)
         const JointRows* const rows = opening.blocks.empty() ? nullptr : &opening.blocks.front().joints[j];
         const bool velocity = rows != nullptr && has_values(rows->velocity_deg_s);
         const bool position = rows != nullptr && has_values(rows->position_deg);
-        joints_.push_back({{}, {velocity && !layout.velocity_from_position, position}});
+        joints_.push_back({HeldCounter(layout.velocity_from_position),
+                           {velocity && !layout.velocity_from_position, position}});
     }
     judged_ = clock_.facts().refusal.empty();
     Clock clock = clock_;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "ripplenotch/core/number.hpp"
 
@@ -19,12 +20,26 @@ constexpr double changing_together = 0.9;
 }  // namespace
 
 HeldCounter::Row HeldCounter::row_of(const TraceView& rows, std::size_t k) {
-    return {rows.velocity_deg_s[k], rows.torque_nm[k], rows.has_position() ? rows.position_deg[k] : 0.0};
+    return {rows.velocity_deg_s[k], rows.torque_nm[k], rows.has_position() ? rows.position_deg[k] : 0.0,
+            rows.time_s[k]};
 }
 
 void HeldCounter::count(const TraceView& rows, bool begins_run) {
     if (rows.size() == 0) return;
     has_position_ = rows.has_position();
+    if (by_position_ && has_position_) {
+        std::size_t k = 0;
+        if (!any_ || begins_run) {
+            last_ = row_of(rows, k++);
+            stretch_ = {.since_s = last_.time_s};
+            any_ = true;
+        }
+        for (; k < rows.size(); ++k) {
+            const Row before = std::exchange(last_, row_of(rows, k));
+            count_by_position(before, last_);
+        }
+        return;
+    }
     if (any_ && !begins_run) {
         const Row now = row_of(rows, 0);
         const std::array velocity = {last_.velocity, now.velocity}, torque = {last_.torque, now.torque},
@@ -48,6 +63,32 @@ void HeldCounter::count_pairs(const RowChannels& rows, std::size_t pairs) {
     else if (pairs > 0)
         run_ = {};
     if (changes_.size() < judged_changes) note_changes(rows, pairs);
+}
+
+void HeldCounter::count_by_position(const Row& before, const Row& now) {
+    const bool torque = before.torque == now.torque, position = before.position == now.position;
+    if (!torque && changes_.size() < judged_changes) changes_.push_back(std::abs(now.torque - before.torque));
+    for (const Way way : {torque_alone, with_position}) {
+        run_[way] = torque && (position || way == torque_alone) ? run_[way] + 1 : 0;
+        if (way == with_position) stretch_.longest = std::max(stretch_.longest, run_[way]);
+    }
+    if (position) {
+        ++stretch_.pairs;
+        stretch_.torque += torque ? 1 : 0;
+        return;
+    }
+    const double passed_s = now.time_s - stretch_.since_s;
+    if (std::abs(now.position - before.position) > moving_deg_s * passed_s) {
+        counts_.moving += stretch_.pairs + 1;
+        counts_.position += stretch_.pairs;
+        counts_.torque += stretch_.torque + (torque ? 1 : 0);
+        counts_.position_and_torque += stretch_.torque;
+        counts_.velocity = counts_.moving;  // which says nothing of its own
+        counts_.velocity_and_torque = counts_.torque;
+        longest_[with_position] = std::max(longest_[with_position], stretch_.longest);
+        longest_[torque_alone] = std::max(longest_[torque_alone], run_[torque_alone]);
+    }
+    stretch_ = {.since_s = now.time_s};
 }
 
 void HeldCounter::measure_runs(const RowChannels& rows, std::size_t pairs) {
