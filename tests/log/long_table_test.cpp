@@ -67,6 +67,19 @@ TEST_CASE("a table of one value a row and a trace of one block a variable are lo
     CHECK_THAT(complaint(backward), Contains("log.csv:10: read the time 20 of 'torque' after 30"));
 }
 
+TEST_CASE("joints of a table are told apart by their column, and others are asked about", "[log]") {
+    std::string text = "time,joint,signal,run,value\n";
+    for (int k = 0; k < 4; ++k)
+        for (const char* joint : {"j1", "j2"})
+            for (const char* signal : {"velocity_deg_s", "torque_nm"})
+                text += fmt::format("{},{},{},3,{}\n", 0.01 * k, joint, signal, joint[1] == '1' ? k : 10 + k);
+    ReadOptions options;
+    options.joint = "j2";
+    CHECK(read_text(text, options).trace.torque_nm == std::vector<double>{10, 11, 12, 13});
+    CHECK_THAT(complaint(text + "0.03,j2,torque_nm,4,9\n", options),
+               Contains("log.csv:18: read a second value of 'j2.torque_nm' at the time 0.03"));
+}
+
 TEST_CASE("signals with times of their own are joined to the torque's", "[log]") {
     std::string text = "time,name,value,unit\n";
     for (int k = 0; k < 20; ++k)

@@ -38,6 +38,9 @@ namespace {
 using Words = std::span<const std::string_view>;
 constexpr std::array<std::string_view, 10> signal_words = {
     "signal", "variable", "name", "channel", "topic", "key", "parameter", "field", "series", "signalname"};
+// Beside them: whose signal it is.
+constexpr std::array<std::string_view, 6> owner_words = {"joint", "axis",  "actuator",
+                                                         "motor", "robot", "device"};
 constexpr std::array<std::string_view, 7> value_words = {"value", "values", "data",   "wert",
                                                          "werte", "y",      "reading"};
 constexpr std::array<std::string_view, 5> name_keys = {"variable", "name", "variablename", "symbol",
@@ -102,8 +105,10 @@ std::optional<double> number_in(std::string_view text, char delimiter) {
 /// Which columns of a tidy table are what, by its header.
 struct LongHeader {
     char delimiter = ',';
-    std::size_t cells = 0, time = 0, signal = 0, value = 0;
+    std::size_t cells = 0, time = 0, value = 0;
+    std::vector<std::size_t> signal;  ///< the columns that make its name together
     std::optional<std::size_t> unit;
+    bool others = false;  ///< there are columns of something else
     std::string time_name;
 };
 
@@ -112,16 +117,27 @@ std::optional<LongHeader> long_header(std::string_view line) {
         Lines one(line, "");
         if (!one.next()) return std::nullopt;
         const std::vector<std::string> cells = one.cells(delimiter);
-        std::optional<std::size_t> time, signal, value, unit;
+        std::optional<std::size_t> time, value, unit;
+        std::vector<std::size_t> signal;
+        bool named = false;
         for (std::size_t c = 0; c < cells.size(); ++c) {
             const ColumnName name = read_column_name(cells[c]);
             if (!time && name.role == Role::time) time = c;
-            if (!signal && is_one_of(signal_words, cells[c])) signal = c;
+            const bool names = is_one_of(signal_words, cells[c]);
+            named = named || names;
+            if (names || is_one_of(owner_words, cells[c])) signal.push_back(c);
             if (!value && is_one_of(value_words, cells[c])) value = c;
             if (!unit && is_one_of(std::array<std::string_view, 2>{"unit", "units"}, cells[c])) unit = c;
         }
-        if (time && signal && value)
-            return LongHeader{delimiter, cells.size(), *time, *signal, *value, unit, cells[*time]};
+        if (time && named && value)
+            return LongHeader{delimiter,
+                              cells.size(),
+                              *time,
+                              *value,
+                              signal,
+                              unit,
+                              cells.size() > signal.size() + 2 + (unit ? 1 : 0),
+                              cells[*time]};
     }
     return std::nullopt;
 }
@@ -335,13 +351,22 @@ std::unique_ptr<ByteSource> widened_tidy(const std::string& source, std::string_
     Signals signals(lines, header.time_name);
     while (lines.next()) {
         const std::vector<std::string> cells = lines.cells(header.delimiter);
-        if (cells.size() <= std::max({header.time, header.signal, header.value}) ||
+        if (cells.size() <= std::max({header.time, header.signal.back(), header.value}) ||
             cells.size() > header.cells)
             lines.complain(fmt::format("read {} cells, expected {}; mend or remove the line", cells.size(),
                                        header.cells));
         const std::string unit = header.unit && *header.unit < cells.size() ? cells[*header.unit] : "";
-        signals.add(signals.index_of(cells[header.signal], unit), cells[header.time], cells[header.value],
-                    header.delimiter);
+        std::string name;
+        for (const std::size_t part : header.signal) name += (name.empty() ? "" : ".") + cells[part];
+        const std::size_t signal = signals.index_of(name, unit);
+        const std::size_t before = signals.all[signal].time.size();
+        signals.add(signal, cells[header.time], cells[header.value], header.delimiter);
+        const std::vector<double>& times = signals.all[signal].time;
+        if (header.others && before > 0 && times[before] == times[before - 1])
+            lines.complain(
+                fmt::format("read a second value of '{}' at the time {}, expected one; leave one value of "
+                            "each other column, and remove it",
+                            name, cells[header.time]));
     }
     return as_table(source, signals.all, signals.time_name(), "a row holds the value of one signal", options);
 }
