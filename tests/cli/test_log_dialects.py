@@ -458,3 +458,34 @@ class RealLogsWithoutUnits(Case):
                     verdict = json.loads(without.stdout)["verdict"]
                     self.assertTrue(verdict.startswith("Cannot tell"), verdict)
                     self.assertIn("--unit", verdict)
+
+
+class OtherShapes(Case):
+    def test_what_has_one_value_a_row_is_written_as_a_table_and_never_in_its_place(self):
+        (self.folder / "log.csv").write_bytes(tidy())
+        done = self.run_tool("filter", "log.csv", "--method", "none", "-o", "out.csv", "-q")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual((self.folder / "out.csv").read_text().split("\n")[0], "time_ms,velocity_deg_s,torque_nm,position_deg")
+        done = self.run_tool("filter", "log.csv", "--method", "none", "--in-place")
+        self.assertEqual((done.returncode, "say -o" in done.stderr), (2, True), done.stderr)
+        self.assertEqual((self.folder / "log.csv").read_bytes(), tidy())
+
+    def test_files_of_one_signal_each_are_one_log_of_identify(self):
+        for name, of in (("velocity", lambda r: r.velocity), ("torque", lambda r: r.torque)):
+            (self.folder / f"run_{name}.csv").write_text("".join(f"{of(r):.6f}\n" for r in ROWS))
+        files = ["run_velocity.csv", "run_torque.csv", "--join", "rows", "--sample-rate", "500Hz", "--unit", "velocity=deg/s,torque=Nm"]
+        done = self.run_tool("identify", *files, "--json", "-q")
+        self.assertAlmostEqual(json.loads(done.stdout)["gear_ratio"]["value"], RATIO, delta=0.5)
+        done = self.run_tool("info", "run_velocity.csv", "--join", "rows")
+        self.assertEqual((done.returncode, "identify takes" in done.stderr), (2, True), done.stderr)
+
+    def test_joints_paired_one_off_are_refused_and_listed_by_info(self):
+        header = "time_s," + ",".join(f"q{k}" for k in range(3)) + "," + ",".join(f"tau{k + 1}" for k in range(3))
+        rows = "".join(f"{r.t:.4f}," + ",".join([f"{r.position * DEG:.6f}"] * 3 + [f"{r.torque:.4f}"] * 3) + "\n" for r in ROWS)
+        (self.folder / "log.csv").write_text(header + "\n" + rows)
+        for joint in ([], ["--joint", "1"], ["--joint", "all"]):
+            done = self.run_tool("identify", "log.csv", *joint)
+            self.assertEqual((done.returncode, "--columns torque=tau1,position=q0" in done.stderr), (3, True), done.stderr)
+        self.assertIn("numbered from 1 and from 0", self.run_tool("info", "log.csv").stdout)
+        done = self.run_tool("identify", "log.csv", "--columns", "torque=tau3,position=q2", "--json", "-q")
+        self.assertAlmostEqual(json.loads(done.stdout)["gear_ratio"]["value"], RATIO, delta=0.5)
