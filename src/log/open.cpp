@@ -202,6 +202,14 @@ void require_built(const LogFormat& format, const std::string& source) {
 }  // namespace
 
 std::unique_ptr<LogReader> open_log(std::unique_ptr<ByteSource> source, const ReadOptions& options) {
+    if (!options.constant_speeds.empty())
+        raise<UsageError>(
+            "--constant-speed: read {} speeds for {}, expected one; identify takes several logs",
+            options.constant_speeds.size(), source->name());
+    if (options.join == "rows")
+        raise<UsageError>(
+            "--join rows: makes one log of several files, which identify takes; say nearest, hold or "
+            "linear for signals of one file");
     std::string first_bytes = first_bytes_of(*source);
     if (const Packing* const packing = packing_of(first_bytes)) {
         source = unpack(std::move(source), std::move(first_bytes), *packing);

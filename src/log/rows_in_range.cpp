@@ -46,6 +46,7 @@ std::shared_ptr<const RowsOutside> rows_outside(const ByteSource& source) {
 
 RowsInRange::RowsInRange(const ReadOptions& options, const Layout& whole, std::size_t head)
     : ByteSource(Name{whole.source}), range_(options.range), numbers_(head) {
+    counts_from_kept_ = whole.stated_rate || whole.time_is_steps;
     if (whole.stated_rate) {
         rate_hz_ = whole.stated_rate->value();
     } else if (whole.chosen.time) {
@@ -65,7 +66,7 @@ bool RowsInRange::keeps(std::optional<double> time) {
         if (!first_s_) begin(time_s);
         last_s_ = time_s;
         place_ = place_of(time_s);
-        if (rate_hz_ && kept_ == 0 && inside()) outside_->zero_s = time_s;
+        if (counts_from_kept_ && kept_ == 0 && inside()) outside_->zero_s = time_s;
     }
     if (inside())
         ++kept_;
@@ -189,8 +190,11 @@ class LinesInRange final : public RowsInRange {
         std::optional<double> time;
         if (row_.parse(line)) {
             time = row_.value(time_slot);
+            if (whole_->layout().time_is_steps) time = sum_ = first_ ? 0.0 : sum_ + *time;
+            first_ = false;
             if (whole_->layout().time_as_text && !std::exchange(stamped_, true))
-                first_stamp(clock_text(row_.cell(line, *whole_->layout().chosen.time)));
+                first_stamp(
+                    clock_text(row_.cell(line, *whole_->layout().chosen.time), whole_->layout().stamp_form));
         } else if (is_no_row(line)) {
             return keeps_line();
         }
@@ -203,6 +207,8 @@ class LinesInRange final : public RowsInRange {
     std::string lines_;
     std::size_t given_ = 0;  ///< of lines_
     bool stamped_ = false;   ///< the first row has been seen
+    bool first_ = true;      ///< no row has been seen
+    double sum_ = 0.0;       ///< of time steps
     bool unended_ = false;   ///< the bytes before ended within a line
 };
 
@@ -233,7 +239,10 @@ class RecordsInRange final : public RowsInRange {
 std::string clock_words(const Layout& layout) {
     if (!layout.chosen.time) return "none";
     const Column& column = layout.columns[*layout.chosen.time];
-    return fmt::format("'{}' {}{}", column.name, layout.time_as_text ? "as text" : "in " + column.unit,
+    return fmt::format("'{}' {}{}", column.name,
+                       layout.time_is_steps  ? "as steps in " + column.unit
+                       : layout.time_as_text ? "as text"
+                                             : "in " + column.unit,
                        layout.time_fraction ? " and nanoseconds" : "");
 }
 

@@ -71,7 +71,8 @@ class RowsInRange : public ByteSource {
 
     TimeRange range_;
     std::optional<double> rate_hz_;
-    double factor_ = 1.0;  ///< times in the file to seconds
+    bool counts_from_kept_ = false;  ///< the times of the rows inside begin at 0
+    double factor_ = 1.0;            ///< times in the file to seconds
     TimeAxis axis_;
     KeptNumbers numbers_;
     std::shared_ptr<RowsOutside> outside_ = std::make_shared<RowsOutside>();

@@ -301,13 +301,14 @@ void state_uses(LogInfo& info) {
     }
     Use identify{"identify", missing.empty() && joint.turns > 0.05, missing};
     if (missing.empty()) {
-        const double top = 0.5 * info.clock.nominal_rate.value();
+        const double top = 0.5 * joint.recording.update_rate().value();
         const double speed = std::max(std::abs(joint.speed_deg_s->min), std::abs(joint.speed_deg_s->max));
         const std::string turns = fmt::format("{:.3g}", joint.turns);
         identify.reason = fmt::format(
             "{}{} turn{} of the joint at up to {:.3g} deg/s; lines below {:.0f} cycles per turn stay "
-            "under half the sample rate at that speed",
-            of_joint, turns, turns == "1" ? "" : "s", speed, 360.0 * top / std::max(speed, 1e-9));
+            "under half the {} rate at that speed",
+            of_joint, turns, turns == "1" ? "" : "s", speed, 360.0 * top / std::max(speed, 1e-9),
+            joint.recording.update_rate() < info.clock.nominal_rate ? "update" : "sample");
         if (!identify.possible)
             identify.reason = fmt::format("{}the joint turns by {:.3g} of a turn: too little for any line",
                                           of_joint, joint.turns);
@@ -328,6 +329,11 @@ void state_uses(LogInfo& info) {
                        : !joint.position_deg
                            ? "no position column"
                            : "too few rows, too little motion, or position and velocity of different things";
+    }
+    if (joint.torque_nm && !joint.speed_deg_s && info.clock.refusal.empty()) {
+        spectrum = {"spectrum", true, "over frequency; " + missing};
+        filter = {"filter", true,
+                  "by methods that are the same at every speed, fixed and lowpass; " + missing};
     }
     info.uses = {spectrum, identify, filter, clock};
 }

@@ -66,3 +66,21 @@ class TorqueOnly(Case):
     def test_a_log_with_motion_refuses_it(self):
         done = self.run_tool("identify", DATA / "paper_90deg_s.csv", *STATED)
         self.assertEqual((done.returncode, "leave it out" in done.stderr), (2, True), done.stderr)
+
+    def test_each_of_several_logs_has_its_speed(self):
+        text = (self.folder / "bench.csv").read_text()
+        (self.folder / "other.csv").write_text(text)
+        found = self.json_of("identify", "bench.csv", "other.csv", "--speed", "10rpm,10rpm")
+        self.assertAlmostEqual(found["lines"][0]["order_output"], 100, delta=0.1)
+        for words in (["identify", "bench.csv", "--speed", "10rpm,20rpm"], ["spectrum", "bench.csv", "--speed", "10rpm,20rpm"]):
+            done = self.run_tool(*words)
+            self.assertEqual((done.returncode, "read 2 speeds" in done.stderr), (2, True), done.stderr)
+
+    def test_filters_of_one_design_are_compared_without_motion(self):
+        methods = ["--method", "lowpass,cutoff=10Hz", "--method", "fixed,centers=16.67Hz"]
+        told = self.good("compare", "bench.csv", *methods).stdout
+        self.assertIn("Settling and delays: on a step", told)
+        done = self.run_tool("compare", "bench.csv", "--method", "tracking,gear-ratio=100")
+        self.assertIn("expected a velocity column", done.stderr)
+        uses = {use["name"]: use["possible"] for use in self.json_of("info", "bench.csv")["uses"]}
+        self.assertEqual((uses["spectrum"], uses["filter"], uses["identify"]), (True, True, False))

@@ -42,6 +42,10 @@ def make_rows():
     return rows
 
 
+def stamp(row):
+    return datetime.datetime(2025, 12, 31, 23, 59, 55) + datetime.timedelta(seconds=row.k // 500, milliseconds=row.k % 500 * 2)
+
+
 ROWS = make_rows()
 COLUMNS = {
     "t": lambda r: f"{r.t:.6f}", "deg/s": lambda r: f"{r.velocity:.6f}", "rad/s": lambda r: f"{r.velocity * DEG:.7f}",
@@ -59,6 +63,10 @@ COLUMNS = {
         timespec="microseconds") + "Z",
     "clock": lambda r: (datetime.datetime(2024, 5, 1, 12, 30) + datetime.timedelta(seconds=r.t)).strftime("%H:%M:%S.%f"),
     "filetime": lambda r: str(133_600_000_000_000_000 + 20_000 * r.k), "0": lambda r: "0", "": lambda r: "",
+    "dt": lambda r: "0.002", "dt us": lambda r: str(2000 + 5 * (r.k % 3 - 1)),
+    "german": lambda r: stamp(r).strftime("%d.%m.%Y %H:%M:%S,") + f"{r.k * 2 % 1000:03d}",
+    "american": lambda r: stamp(r).strftime("%m/%d/%Y %I:%M:%S.%f %p"),
+    "logging": lambda r: stamp(r).strftime("%Y-%m-%d %H:%M:%S,") + f"{r.k * 2 % 1000:03d}",
     "frame": lambda r: "base_link", "text": lambda r: "running",
 }
 
@@ -136,6 +144,22 @@ def twincat_shared():
     return table(None, "ms|deg/s|Nm|deg", delimiter="\t", head=head) + b"EOF\n"
 
 
+def tidy():
+    lines = ["time_ms,signal,value"]
+    for r in ROWS:
+        lines += [f"{2 * r.k},{name},{value:.6f}" for name, value in
+                  (("velocity_deg_s", r.velocity), ("torque_nm", r.torque), ("position_deg", r.position))]
+    return ("\n".join(lines) + "\n").encode()
+
+
+def blocks():
+    """One block of rows a variable, as controllers' traces are exported."""
+    text = ""
+    for name, of in (("PLC.fVelocity [deg/s]", lambda r: r.velocity), ("PLC.fTorque [Nm]", lambda r: r.torque)):
+        text += f"Variable;{name}\nTimestamp [ms];Value\n" + "".join(f"{2 * r.k};{of(r):.6f}\n" for r in ROWS)
+    return text.encode()
+
+
 # name -> bytes, and the options that make it right where it may be refused
 RAD, REFUSED_RAD = "t|rad/s|Nm|rad", ["--unit", "velocity=rad/s"]
 DIALECTS = {
@@ -163,6 +187,8 @@ DIALECTS = {
     "counter called time": (table("time|velocity_deg_s|torque_nm", "k|deg/s|Nm"), ["--sample-rate", "500Hz"]),
     # Radians that nobody names: five styles.
     "t,dq,tau_J,q": (table("t|dq|tau_J|q", RAD), None),
+    "t,v,tau,q": (table("t|v|tau|q", RAD), None),
+    "t,w,T,th": (table("t|w|T|th", RAD), None),
     "libfranka's log, ms": (table("time|state.q[0]|state.dq[0]|state.tau_J[0]", "ms|rad|rad/s|Nm"), None),
     "JointState names": (table("time|position|velocity|effort", "t|rad|rad/s|Nm"), None),
     "UR RTDE": (table("timestamp actual_q_0 actual_qd_0 actual_current_0 target_qd_0".split(), "t|rad|rad/s|A|rad/s",
@@ -187,6 +213,11 @@ DIALECTS = {
     "milliseconds": (table("t|velocity_deg_s|torque_nm", "ms|deg/s|Nm"), None),
     "ISO 8601": (table("timestamp|velocity_deg_s|torque_nm", "iso|deg/s|Nm"), None),
     "time of day": (table("time|velocity_deg_s|torque_nm", "clock|deg/s|Nm"), None),
+    "time steps": (table("dt|velocity_deg_s|torque_nm", "dt|deg/s|Nm"), None),
+    "time steps in us": (table("k|timestep [us]|velocity_deg_s|torque_nm", "k|dt us|deg/s|Nm"), None),
+    "German dates": (table("Zeit|velocity_deg_s|torque_nm", "german|deg/s|Nm", delimiter=";"), None),
+    "American dates": (table("Timestamp|velocity_deg_s|torque_nm", "american|deg/s|Nm"), None),
+    "Python's logging": (table("asctime|velocity_deg_s|torque_nm", "logging|deg/s|Nm", quote=True), None),
     "TimeUS": (table("TimeUS|velocity_deg_s|torque_nm", "us|deg/s|Nm"), None),
     "FILETIME": (table("timestamp|velocity_deg_s|torque_nm", "filetime|deg/s|Nm"), None),
     # ROS, flattened.
@@ -223,6 +254,8 @@ DIALECTS = {
     "npy in Fortran order": (npy(True, False), ["--unit", "velocity=deg/s"]),
     "npy with a row a signal": (npy(False, True), ["--unit", "velocity=deg/s"]),
     "npy with stamps": (npy_stamped(), None),
+    "one value a row": (tidy(), None),
+    "one block a variable": (blocks(), None),
     "trailing delimiters": (table("time_s|velocity_deg_s|torque_nm|", "t|deg/s|Nm|"), None),
     "a column of words": (table("time_s|state|velocity_deg_s|torque_nm", "t|text|deg/s|Nm"), None),
     "milli-units": (table("time_ms|velocity_rpm|torque_mNm", "ms|rpm|mNm"), None),
@@ -425,3 +458,34 @@ class RealLogsWithoutUnits(Case):
                     verdict = json.loads(without.stdout)["verdict"]
                     self.assertTrue(verdict.startswith("Cannot tell"), verdict)
                     self.assertIn("--unit", verdict)
+
+
+class OtherShapes(Case):
+    def test_what_has_one_value_a_row_is_written_as_a_table_and_never_in_its_place(self):
+        (self.folder / "log.csv").write_bytes(tidy())
+        done = self.run_tool("filter", "log.csv", "--method", "none", "-o", "out.csv", "-q")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual((self.folder / "out.csv").read_text().split("\n")[0], "time_ms,velocity_deg_s,torque_nm,position_deg")
+        done = self.run_tool("filter", "log.csv", "--method", "none", "--in-place")
+        self.assertEqual((done.returncode, "say -o" in done.stderr), (2, True), done.stderr)
+        self.assertEqual((self.folder / "log.csv").read_bytes(), tidy())
+
+    def test_files_of_one_signal_each_are_one_log_of_identify(self):
+        for name, of in (("velocity", lambda r: r.velocity), ("torque", lambda r: r.torque)):
+            (self.folder / f"run_{name}.csv").write_text("".join(f"{of(r):.6f}\n" for r in ROWS))
+        files = ["run_velocity.csv", "run_torque.csv", "--join", "rows", "--sample-rate", "500Hz", "--unit", "velocity=deg/s,torque=Nm"]
+        done = self.run_tool("identify", *files, "--json", "-q")
+        self.assertAlmostEqual(json.loads(done.stdout)["gear_ratio"]["value"], RATIO, delta=0.5)
+        done = self.run_tool("info", "run_velocity.csv", "--join", "rows")
+        self.assertEqual((done.returncode, "identify takes" in done.stderr), (2, True), done.stderr)
+
+    def test_joints_paired_one_off_are_refused_and_listed_by_info(self):
+        header = "time_s," + ",".join(f"q{k}" for k in range(3)) + "," + ",".join(f"tau{k + 1}" for k in range(3))
+        rows = "".join(f"{r.t:.4f}," + ",".join([f"{r.position * DEG:.6f}"] * 3 + [f"{r.torque:.4f}"] * 3) + "\n" for r in ROWS)
+        (self.folder / "log.csv").write_text(header + "\n" + rows)
+        for joint in ([], ["--joint", "1"], ["--joint", "all"]):
+            done = self.run_tool("identify", "log.csv", *joint)
+            self.assertEqual((done.returncode, "--columns torque=tau1,position=q0" in done.stderr), (3, True), done.stderr)
+        self.assertIn("numbered from 1 and from 0", self.run_tool("info", "log.csv").stdout)
+        done = self.run_tool("identify", "log.csv", "--columns", "torque=tau3,position=q2", "--json", "-q")
+        self.assertAlmostEqual(json.loads(done.stdout)["gear_ratio"]["value"], RATIO, delta=0.5)

@@ -140,7 +140,7 @@ class Mat(Case):
         self.assert_same(path)
         said = self.run_tool("info", path).stdout.decode()
         self.assertRegex(said, r"fun +1 x 1 +a function handle")
-        self.assertRegex(said, r"runs +an object")
+        self.assertRegex(said, r"runs +an object of class table; in MATLAB: s = table2struct\(runs")
         self.assertIn("expected arrays of numbers", self.refusal(self.write("none.mat", plain[:128] + handle + table)))
         deep = element(14, b"")
         for _ in range(20):
@@ -247,6 +247,23 @@ class Hdf5(Case):
         said = self.run_tool("info", path, "--columns", "torque=log.torque_nm(:,2)").stdout.decode()
         self.assertIn("torque -0.7879 to 1.393 Nm", said)
         self.assertRegex(said, r"log.torque_nm +read +4000 x 2")
+
+    def test_objects_of_matlab_say_what_they_are_and_how_to_save_their_numbers(self):
+        import numpy
+        for name, kind, lines in (("tau", "timeseries", "t = tau.Time; tau = tau.Data; save('run.mat', 't', 'tau')"),
+                                  ("runs", "table", "s = table2struct(runs, 'ToScalar', true); save('run.mat', '-struct', 's')"),
+                                  ("out", "Simulink.SimulationOutput", "x = out.logsout.get('tau').Values; t = x.Time")):
+            file = self.file("run.mat", userblock_size=512)
+            dataset = file.create_dataset(name, data=numpy.array([[0xdd000000, 2, 1, 1, 1, 1]], dtype="u4"))
+            dataset.attrs["MATLAB_class"] = numpy.bytes_(kind)
+            dataset.attrs["MATLAB_object_decode"] = numpy.int32(3)
+            file.close()
+            data = bytearray((self.folder / "run.mat").read_bytes())
+            data[:128] = b"MATLAB 7.3 MAT-file".ljust(124) + b"\0\x02IM"
+            (self.folder / "run.mat").write_bytes(bytes(data))
+            said = self.refusal(self.folder / "run.mat")
+            self.assertIn(f"{name} (an object of class {kind}; in MATLAB", said)
+            self.assertIn(lines, said)
 
     def test_what_is_written_is_read_by_h5py(self):
         import h5py

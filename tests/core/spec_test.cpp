@@ -66,3 +66,10 @@ TEST_CASE("the nearest name is offered only when it is near") {
     CHECK(nearest_name("identfy", known) == "identify");
     CHECK_FALSE(nearest_name("zzz", known).has_value());
 }
+
+TEST_CASE("a comma inside brackets separates nothing", "[core]") {
+    const Spec spec = parse_spec("tau_rigid[:,1],scale=1,name=log.tau(:,3)");
+    CHECK(spec.name == "tau_rigid[:,1]");
+    CHECK(spec.values ==
+          std::vector<std::pair<std::string, std::string>>{{"scale", "1"}, {"name", "log.tau(:,3)"}});
+}

@@ -66,6 +66,13 @@ TEST_CASE("a column's name gives role, unit and joint", "[log]") {
         {"joint_temperatures_0", Role::other, "", ""},
         {"load_encoder_counts", Role::other, "", ""},
         {"State", Role::other, "", ""},
+        {"j1_current_a", Role::torque, "A", "j1"},
+        {"q_axis_current", Role::torque, "", ""},
+        {"d_axis_current", Role::other, "", ""},
+        {"163.05 ch1 torq.(P:00A305h)", Role::torque, "", "163_05_ch1"},
+        {"tau_friction", Role::other, "", ""},
+        {"tau_passive_2", Role::other, "", ""},
+        {"passive_joint_velocity", Role::velocity, "", "passive_joint"},
         {"", Role::other, "", ""},
     };
     for (const Expectation& expected : expectations) {
@@ -81,7 +88,7 @@ TEST_CASE("a column's name gives role, unit and joint", "[log]") {
 
 TEST_CASE("a wished quantity is told from a measured one", "[log]") {
     for (const std::string name :
-         {"target_q_0", "ref_velocity", "desired torque", "model_torque_Nm", "cmd_vel",
+         {"target_q_0", "ref_velocity", "desired torque", "model_torque_Nm", "cmd_vel", "tau_ctrl",
           "j1_ref_velocity_deg_s", "state.dq_d[3]", "tau_J_d", "setpoint_speed"}) {
         INFO(name);
         CHECK(read_column_name(name).reference);
@@ -124,4 +131,21 @@ TEST_CASE("a unit of torque that is not read is sure, and comes behind one that 
         CHECK(read_column_name(name).rank > read_column_name("torque_nm").rank);
     }
     CHECK_FALSE(read_column_name("torque_nm").unit_is_sure);
+}
+
+TEST_CASE("a letter is a quantity where nothing else is, and another reading is asked about", "[log]") {
+    const auto role_in = [](const std::vector<std::string>& names, std::size_t column) {
+        return read_column_names(names, {})[column].role;
+    };
+    CHECK(role_in({"t", "v", "tau", "q"}, 1) == Role::velocity);
+    CHECK(role_in({"t", "w", "T", "th"}, 1) == Role::velocity);
+    CHECK(role_in({"t", "w", "T", "th"}, 2) == Role::torque);
+    CHECK(role_in({"t", "w", "T", "th"}, 3) == Role::position);
+    CHECK(role_in({"T", "v", "tau"}, 0) == Role::time);
+    CHECK(role_in({"time [s]", "v1", "T1 [Nm]", "v2", "T2 [Nm]"}, 4) == Role::torque);
+    CHECK(read_column_names({"time [s]", "v1", "T1 [Nm]", "v2", "T2 [Nm]"}, {})[3].joint == "2");
+    CHECK(role_in({"t", "v", "velocity", "tau"}, 1) == Role::other);
+    CHECK(role_in({"t", "v [V]", "tau"}, 1) == Role::other);
+    CHECK(role_in({"t", "i", "v", "tau"}, 2) == Role::other);
+    CHECK(read_column_names({"t", "i", "v", "tau"}, {})[2].symbol == Role::velocity);
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "log/account/held_samples.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <random>
 #include "support/catch.hpp"
 
@@ -80,4 +82,52 @@ TEST_CASE("the row after a gap holds nothing", "[log]") {
     held.count(rows.view(0, 15), true);
     held.count(rows.view(15, 15), true);  // row 15 repeats row 14
     CHECK(held.held().count == 8);
+}
+
+TEST_CASE("rows that are written several times are held whatever the steps of the torque", "[log]") {
+    std::mt19937 engine(5);
+    std::normal_distribution<double> noise;
+    for (const bool position : {false, true}) {
+        Rows held_rows, coarse_rows;
+        for (std::size_t k = 0; k < 8000; ++k) {
+            const auto updates = static_cast<double>(k - k % 4);
+            held_rows.velocity_deg_s.push_back(30.0 + 0.002 * updates);
+            held_rows.torque_nm.push_back(k % 4 != 0 ? held_rows.torque_nm.back()
+                                                     : 0.25 * std::round(8.0 * noise(engine)));
+            if (position) held_rows.position_deg.push_back(0.03 * updates);
+            // Steps of the velocity and of the position, but every row measured.
+            coarse_rows.velocity_deg_s.push_back(30.0 + 0.1 * std::round(0.02 * static_cast<double>(k)));
+            coarse_rows.torque_nm.push_back(0.25 * std::round(noise(engine)));
+            if (position) coarse_rows.position_deg.push_back(0.1 * std::round(0.3 * static_cast<double>(k)));
+        }
+        HeldCounter held, coarse;
+        held.count(held_rows.view(0, 8000), true);
+        coarse.count(coarse_rows.view(0, 8000), true);
+        CHECK(held.held().count == 6000);
+        CHECK(held.held().longest == 3);
+        CHECK(held.held().moving == 7999);
+        CHECK(coarse.held().count == 0);
+    }
+}
+
+TEST_CASE("without a velocity the joint moves where its position does", "[log]") {
+    std::mt19937 engine(7);
+    std::normal_distribution<double> noise;
+    std::vector<double> time_s, slope, torque_nm, position_deg;
+    for (std::size_t k = 0; k < 8000; ++k) {
+        const bool rests = k >= 4000;
+        time_s.push_back(0.001 * static_cast<double>(k));
+        slope.push_back(0.0);
+        torque_nm.push_back(k % 4 != 0 ? torque_nm.back() : 0.25 * std::round(8.0 * noise(engine)));
+        position_deg.push_back(rests ? 120.0 : 0.03 * static_cast<double>(k - k % 4));
+    }
+    for (const std::size_t block : {std::size_t{7}, std::size_t{8000}}) {
+        HeldCounter held(true);
+        const TraceView all{{}, time_s, slope, torque_nm, position_deg};
+        for (std::size_t first = 0; first < 8000; first += block)
+            held.count(all.part(first, std::min(block, 8000 - first)), first == 0);
+        CHECK(held.held().count == 3000);
+        CHECK(held.held().longest == 3);
+        CHECK(held.held().moving == 4000);
+    }
 }

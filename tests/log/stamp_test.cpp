@@ -36,7 +36,17 @@ TEST_CASE("dates and times of day are seconds, exactly", "[log]") {
     CHECK(clock_text("00:00:00.001")->fraction_s == 0.001);
     CHECK(clock_text("12:30:01")->whole_s == 45001);
     for (const char* text :
-         {"", "12:30", "12.5", "2024-05-01", "2024-13-01T00:00:00", "12:61:00", "12:30:01x"})
+         {"1.5.2024 12:30:01", "01.05.2024 12:30:01", "5/13/2024 12:30:01", "01/05/2024 12:30:01"})
+        CHECK(clock_text(text)->whole_s == (std::string(text).starts_with("5/13") ? 1715603401 : 1714566601));
+    CHECK(clock_text("05/01/2024 12:30:01", {.day_first = false})->whole_s == 1714566601);
+    CHECK(clock_text("13/05/2024 12:30:01", {.day_first = false})->whole_s == 1715603401);
+    CHECK(clock_text("5/1/2024 1:30:01 PM", {.day_first = false})->whole_s == 1714570201);
+    CHECK(clock_text("5/1/2024, 12:30:01 am", {.day_first = false})->whole_s == 1714523401);
+    CHECK(clock_text("2024-05-01 12:30:01,25")->fraction_s == 0.25);
+    CHECK(clock_text("12:30:01:025")->fraction_s == 0.025);
+    CHECK(clock_text("12:30:01.25", {.milliseconds = true})->fraction_s == 0.025);
+    for (const char* text : {"13:30:01 PM", "0:30:01 AM", "31.13.2024 12:30:01", "1.5.24 12:30:01", "",
+                             "12:30", "12.5", "2024-05-01", "2024-13-01T00:00:00", "12:61:00", "12:30:01x"})
         CHECK_FALSE(clock_text(text).has_value());
 }
 
@@ -75,6 +85,50 @@ TEST_CASE("whatever a clock counts, a thousandth of a second is one", "[log]") {
             CHECK(log.trace.time_s[39] - log.trace.time_s[0] == Approx(0.039).epsilon(1e-9));
         }
     }
+}
+
+TEST_CASE("whatever a logger's dates look like, a thousandth of a second is one", "[log]") {
+    const auto padded = [](int k) { return std::string(k < 10 ? "00" : "0") + std::to_string(k); };
+    const std::vector<std::string> logs = {
+        log_of("t", [&](int k) { return "31.12.2025 23:59:59." + padded(k); }),
+        log_of("t", [&](int k) { return "12/31/2025 11:59:59." + padded(k) + " PM"; }),
+        log_of("t", [&](int k) { return "\"2025-12-31 23:59:59," + padded(k) + "\""; }),
+        log_of("t", [&](int k) { return "12:30:01:" + padded(k); }),
+        log_of("t", [](int k) { return "12:30:01." + std::to_string(k); }),
+        log_of("dt", [](int) { return std::string("0.001"); }),
+        log_of("timestep [us]", [](int k) { return std::to_string(1000 + (k % 2 == 0 ? -5 : 5)); }),
+        log_of("k,Delta t", [](int k) { return std::to_string(k) + ",0.001"; }),
+    };
+    for (std::size_t i = 0; i < logs.size(); ++i) {
+        INFO(i << ": " << logs[i].substr(0, 80));
+        for (const std::size_t piece : {std::size_t{7}, test::whole}) {
+            const Log log = read_text(logs[i], {}, piece);
+            REQUIRE(log.trace.size() == 40);
+            CHECK(log.trace.time_s[39] - log.trace.time_s[0] == Approx(0.039).margin(1e-5));
+        }
+    }
+    CHECK(read_text(logs[5]).layout.time_is_steps);
+    CHECK(read_text(logs[4]).layout.stamp_form.milliseconds);
+}
+
+TEST_CASE("a date's order is taken from the log, or said where it matters to nobody", "[log]") {
+    const auto day = [](const std::string& first, const std::string& second) {
+        return log_of("t", [&](int k) {
+            return (k < 20 ? first + " 23:59:59.9" : second + " 00:00:00.0") + std::to_string(10 + k);
+        });
+    };
+    CHECK(read_text(day("03/04/2025", "04/04/2025")).layout.stamp_form.day_first);
+    CHECK_FALSE(read_text(day("04/03/2025", "04/04/2025")).layout.stamp_form.day_first);
+    const Log same =
+        read_text(log_of("t", [](int k) { return "03/04/2025 12:00:00.0" + std::to_string(10 + k); }));
+    CHECK(same.layout.inferences.front().reason == "no field says which; only the day depends on it");
+    CHECK_THAT(complaint(log_of("t", [](int k) { return "3-Apr-2025 12:00:" + std::to_string(10 + k); })),
+               Catch::Contains("expected a time of day or a date and time such as 12:30:01.5"));
+    CHECK_THAT(complaint(log_of("t", [](int k) { return "2025-12-31 12:00:01,0" + std::to_string(10 + k); })),
+               Catch::Contains("the comma of its milliseconds separates cells"));
+    const std::string steps = log_of(
+        "dt", [](int k) { return std::string(k == 2500 ? "-0.001" : "0.001"); }, 3000);
+    CHECK_THAT(complaint(steps), Catch::Contains("log.csv:2502:1: read the time step -0.001"));
 }
 
 TEST_CASE("a clock that no unit makes a log's is refused with the option", "[log]") {

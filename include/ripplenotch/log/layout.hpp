@@ -110,6 +110,7 @@ struct ReadOptions {
     std::map<std::string, std::string> units;  ///< role or column name -> unit
     std::optional<Hertz> sample_rate;          ///< for logs without time; overrides the log's own time
     std::optional<DegPerSec> constant_speed;   ///< of a log that holds no motion (--constant-speed)
+    std::vector<DegPerSec> constant_speeds;    ///< of several such logs, in their order; else empty
     std::optional<char> delimiter;
     std::optional<char> decimal_mark;
     std::optional<bool> header;
@@ -146,6 +147,14 @@ struct JointColumns {
     std::optional<std::size_t> time, velocity, torque, position;
 };
 
+/// How dates and times are written where their fields alone do not say it.
+struct StampForm {
+    bool day_first = true;      ///< 3/4/2025 is in April
+    bool either_order = false;  ///< no field says which; only the day depends on it
+    bool milliseconds = false;  ///< digits behind the seconds count them, without zeros in front: .5 is 5 ms
+    bool operator==(const StampForm&) const = default;
+};
+
 struct Layout {
     std::string source;  ///< for messages: path or "standard input"
     std::string format;  ///< "csv", "npy"
@@ -156,7 +165,10 @@ struct Layout {
     std::vector<JointColumns> others;          ///< that are read with it, when every joint is
     std::optional<std::size_t> time_fraction;  ///< beside chosen.time: nanoseconds to be added to its seconds
     std::int64_t time_origin = 0;  ///< in the column's own unit: taken off stamps that count from long ago
+    bool reshaped = false;         ///< the rows are not those of the file, which has another shape
     bool time_as_text = false;     ///< stamps like 12:30:00.5 or 2024-05-01T12:30:00.5Z
+    StampForm stamp_form;          ///< of these
+    bool time_is_steps = false;    ///< the time column holds steps from row to row, which are summed
     bool velocity_from_position = false;      ///< no velocity is logged: it is the slope of the position
     std::optional<DegPerSec> constant_speed;  ///< no motion is logged: it was stated (--constant-speed)
     bool motor_units = false;             ///< motion is the motor's, and no ratio was known to divide it by

@@ -123,6 +123,10 @@ inline constexpr std::size_t all_rows = std::numeric_limits<std::size_t>::max();
 [[nodiscard]] Log read_log(const std::string& path, const ReadOptions& options);
 [[nodiscard]] Log read_log(std::unique_ptr<ByteSource> source, const ReadOptions& options);
 [[nodiscard]] Log read_log(LogReader& reader, const ReadOptions& options);
+/// Text files of one signal or more each, whose rows belong together one by one, as one log. Columns without
+/// a name are named after their files. Throws DataError where their rows are not as many, or their times
+/// differ.
+[[nodiscard]] Log read_files_as_one(const std::vector<std::string>& paths, const ReadOptions& options);
 
 /// The same for all joints that have a velocity or position and a torque (options.torque_of_each), in one
 /// pass: their rows are the same. The torque of a joint without one is not a number. What is told of the

@@ -97,6 +97,7 @@ class JointAngle {
 struct HeldSamples {
     std::size_t count = 0;
     std::size_t longest = 0;  ///< rows in the longest unbroken repetition
+    std::size_t moving = 0;   ///< rows that could have repeated the row before: the joint moves
 };
 
 /// What is held of a log that is too long to be held: evenly spread pieces of its rows.
@@ -115,6 +116,10 @@ struct Recording {
     std::vector<LogWarning> warnings;                 ///< about clock, held samples and angle
 
     [[nodiscard]] std::size_t rows() const { return clock.rows; }
+    /// How often the signals are measured: the nominal rate of the rows, unless most of them repeat the row
+    /// before. A filter runs row by row, at the nominal rate; what it can be designed for ends at half of
+    /// this one.
+    [[nodiscard]] Hertz update_rate() const;
 };
 
 /// The warnings of what is known; `clock_check` is what comparing the clock with the motion gave, if it did.

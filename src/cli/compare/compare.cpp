@@ -302,7 +302,9 @@ std::string conditions(const Comparison& comparison) {
                 comparison.windows, comparison.windows == 1 ? "" : "s", 100.0 * comparison.measured_share);
         }
         text = paragraph(on);
-        on = fmt::format("Settling and delays: at {:.6g} deg/s, on", comparison.speed.value());
+        on = comparison.fastest > DegPerSec(0.0)
+                 ? fmt::format("Settling and delays: at {:.6g} deg/s, on", comparison.speed.value())
+                 : "Settling and delays: on";
     } else {
         on = fmt::format("At {:.6g} deg/s, sampled at {:.6g} Hz, on", comparison.speed.value(),
                          comparison.sample_rate.value());
@@ -657,11 +659,19 @@ std::vector<double> true_torque(const CompareRequest& request, const ReadOptions
     return std::move(truth.trace.torque_nm);
 }
 
+// As filter has it: other coefficients at other speeds, or a law of the angle.
+bool follows_motion(const Contender& contender) {
+    return contender.method->steady == nullptr && contender.method->part != MethodPart::control;
+}
+
 Comparison compare_on_log(const CompareRequest& request, Field& field, Provenance& provenance,
                           ComparedCourse& course) {
     if (request.log_options.joint == "all")
         raise<UsageError>("--joint all: compare looks at one joint; name it");
-    const ReadOptions read = read_options(request.log_options, field.gear);
+    ReadOptions read = read_options(request.log_options, field.gear);
+    // What has the same coefficients at every speed is measured without one.
+    read.needs_velocity =
+        field.gear || std::any_of(field.contenders.begin(), field.contenders.end(), follows_motion);
     const Log log = read_log_in_part(request.log, read);
     take_log(request.common, request.log, log, provenance);
     for (const Contender& contender : field.contenders) refuse_other_joint(contender, log.trace.joint);
@@ -683,6 +693,7 @@ Comparison compare_on_log(const CompareRequest& request, Field& field, Provenanc
     check_table_rates(field, comparison.sample_rate, log.layout.source, request.common);
     comparison.speed = request.speed ? *request.speed : median_moving_speed(compared.trace);
     for (const double velocity : compared.trace.velocity_deg_s) {
+        if (std::isnan(velocity)) break;
         const DegPerSec speed(std::abs(velocity));
         comparison.slowest =
             comparison.fastest == DegPerSec(0.0) ? speed : std::min(comparison.slowest, speed);

@@ -283,7 +283,12 @@ bool run_job(const FilterRequest& request, const FilterJob& job, JointMethods& m
     if (methods.learns()) spool.emplace(job.log);
     const ReadOptions read = request.read_options(methods);
     LogStream stream(spool ? open_log(spool->open(), read) : open_log(job.log, read), request.gap_steps);
-    say_layout(request.common, stream.reader().layout());
+    const Layout& layout = stream.reader().layout();
+    if (request.in_place && layout.reshaped)
+        raise<UsageError>(
+            "--in-place: {} has one value a row, and would have a column for each signal; say -o",
+            layout.source);
+    say_layout(request.common, layout);
     std::vector<JointWork> works = start_works(request, job, stream, methods, spool);
     std::unique_ptr<LogWriter> writer;
     if (!request.plot.instead_of(job.output)) {

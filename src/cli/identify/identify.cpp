@@ -9,6 +9,7 @@
 #include <limits>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cli/command.hpp"
@@ -154,15 +155,29 @@ std::vector<Joint> read_all_joints(const IdentifyRequest& request, Provenance& p
     const std::size_t most_rows = request.residual.any()
                                       ? std::numeric_limits<std::size_t>::max()
                                       : std::max(fewest_rows_held, most_rows_held / request.logs.size());
-    for (const std::string& path : request.logs) {
+    const std::vector<DegPerSec> speeds = std::exchange(read.constant_speeds, {});
+    if (!speeds.empty() && speeds.size() != request.logs.size())
+        raise<UsageError>("--constant-speed: read {} speeds for {} logs; state one for all, or one for each",
+                          speeds.size(), request.logs.size());
+    const bool as_one = std::exchange(read.join, read.join == "rows" ? std::nullopt : read.join) == "rows";
+    if (as_one && (each || request.residual.any()))
+        raise<UsageError>(
+            "--join rows: takes one joint and its logged torque; name it with --joint, and leave "
+            "out the simulation");
+    for (std::size_t i = 0; i < request.logs.size(); ++i) {
+        const std::string& path = request.logs[i];
+        if (!speeds.empty()) read.constant_speed = speeds[i];
         std::vector<Log> logs;
-        if (each) {
+        if (as_one) {
+            if (i == 0) logs.push_back(read_files_as_one(request.logs, read));
+        } else if (each) {
             logs = read_joints_in_part(path, read, most_rows);
         } else {
             logs.push_back(read_log_in_part(path, read, most_rows));
         }
         provenance.inputs.push_back(
-            {path, path == "-" ? "" : sha256_as_read(path), logs.front().recording.rows()});
+            {path, path == "-" ? "" : sha256_as_read(path),
+             logs.empty() ? std::nullopt : std::optional(logs.front().recording.rows())});
         for (Log& log : logs) {
             say_layout(request.common, log.layout);
             take_residual(request.residual, read, request.logs.size(), {path, log}, request.common,

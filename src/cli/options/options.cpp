@@ -57,6 +57,10 @@ void Options::Implementation::spell_out(std::vector<std::string>& command_line) 
     }
 }
 
+bool Options::has(std::string_view name) const {
+    return implementation_.command->get_option_no_throw(owned(name)) != nullptr;
+}
+
 void Options::flag(std::string_view names, bool& target, std::string_view help) {
     implementation_.command->add_flag(owned(names), target, owned(help));
 }
@@ -412,9 +416,19 @@ void attach_log_columns(Options& options, ReadOptions& log) {
     options.parsed(
         "--side", [&log](Text text) { read_sides(text, log.sides); }, "SIDE",
         "where motion is measured: motor (before the gear) or joint; or by column, velocity=motor");
-    options.number("--constant-speed", log.constant_speed, Dimension::speed,
-                   "of the joint (of the motor with --side motor), throughout a log that holds no motion: "
-                   "60rpm");
+    options.parsed(
+        options.has("--speed") ? "--constant-speed" : "--constant-speed,--speed",
+        [&log](Text text) {
+            log.constant_speeds.clear();
+            for (const std::string& piece : split_commas(text))
+                log.constant_speeds.emplace_back(parse_quantity(piece, Dimension::speed, "--constant-speed"));
+            if (log.constant_speeds.size() > 1) return;
+            log.constant_speed = log.constant_speeds.front();
+            log.constant_speeds.clear();
+        },
+        "SPEED",
+        "of the joint (of the motor with --side motor), throughout a log that holds no motion: 60rpm; of "
+        "several logs in their order: 60rpm,120rpm");
     options.parsed(
         "--delimiter", [&log](Text text) { log.delimiter = one_character(text, "--delimiter"); }, "CHAR",
         "between cells of a text log: , ; space or tab");
@@ -445,9 +459,11 @@ void attach_log_columns(Options& options, ReadOptions& log) {
     options.parsed(
         "--join",
         [&log](Text text) {
-            log.join = one_of({"nearest", "hold", "linear"}, text, "--join");
+            log.join = one_of({"nearest", "hold", "linear", "rows"}, text, "--join");
         },
-        "HOW", "of signals of several topics, which --columns names: linear (the default), hold or nearest");
+        "HOW",
+        "of signals with times of their own: linear (the default), hold or nearest; rows makes one log of "
+        "several files, row by row");
     options.parsed(
         "--kt",
         [&log](std::string text) {

@@ -43,6 +43,7 @@ class Options {
         parsed(
             names, [&target](const std::string& value) { target.push_back(value); }, type_name, help, true);
     }
+    [[nodiscard]] bool has(std::string_view name) const;
     /// `read` takes the value, as often as it is given where the option repeats; it throws UsageError.
     void parsed(std::string_view names, std::function<void(const std::string&)> read,
                 std::string_view type_name, std::string_view help, bool repeats = false,

@@ -174,7 +174,7 @@ class Maker {
     void add_switching(const std::string& file, double q) {
         const double lowest = request_.gear.orders.front().value() * request_.gear.ratio.value() / 360.0;
         double width = *parse_number(fmt::format("{:.1e}", paper_spacing_hz / lowest));
-        const double highest = highest_share * request_.train.recording.clock.nominal_rate.value() /
+        const double highest = highest_share * request_.train.recording.update_rate().value() /
                                (request_.gear.orders.back().value() * request_.gear.ratio.value() / 360.0);
         const double top = std::min(fastest_deg_s_, highest);
         while (top / width > most_bands_tried) width = *parse_number(fmt::format("{:.1e}", 2.0 * width));
@@ -205,7 +205,7 @@ class Maker {
 
     // Filters of the same coefficients at every speed.
     void add_steady() {
-        const double rate = request_.train.recording.clock.nominal_rate.value();
+        const double rate = request_.train.recording.update_rate().value();
         const double line = line_hz(0, median_deg_s_);
         if (fastest_deg_s_ <= steady_share * median_deg_s_ &&
             line_hz(request_.gear.orders.size() - 1, fastest_deg_s_) < highest_share * rate) {

@@ -110,9 +110,27 @@ std::string list_hint(const Spec& spec, std::string_view piece) {
 
 }  // namespace
 
+namespace {
+
+// At the commas outside of brackets: "tau[:,1],scale=1".
+std::vector<std::string_view> pieces_of(std::string_view text) {
+    std::vector<std::string_view> pieces;
+    int depth = 0;
+    for (const std::string_view piece : split(text, ',')) {
+        if (depth > 0)
+            pieces.back() = {pieces.back().data(), pieces.back().size() + 1 + piece.size()};
+        else
+            pieces.push_back(piece);
+        for (const char c : piece) depth += c == '(' || c == '[' ? 1 : c == ')' || c == ']' ? -1 : 0;
+    }
+    return pieces;
+}
+
+}  // namespace
+
 Spec parse_spec(std::string_view text) {
     Spec spec;
-    const auto pieces = split(text, ',');
+    const auto pieces = pieces_of(text);
     spec.name = std::string(pieces.front());
     if (spec.name.empty())
         raise<UsageError>("'{}': expected NAME,KEY=VALUE,..., but the name is empty", text);

@@ -250,6 +250,29 @@ void JointAngle::conclude() {
     if (found.verdict != facts_.verdict) facts_.contradicted = {rows_, rows_ - skipped_};
 }
 
+namespace {
+
+// By hand: fewer repeated rows are lost messages; a sample that is written twice gives half.
+constexpr double repeated_by_rule = 0.4;
+
+std::string update_rate_text(const Recording& recording) {
+    const Hertz rate = recording.update_rate();
+    if (!(rate < recording.clock.nominal_rate)) return "";
+    return fmt::format(
+        "; the signals are updated at {:.4g} Hz and written at {:.4g} Hz: nothing above {:.4g} Hz is "
+        "measured",
+        rate.value(), recording.clock.nominal_rate.value(), 0.5 * rate.value());
+}
+
+}  // namespace
+
+Hertz Recording::update_rate() const {
+    const auto held_share =
+        static_cast<double>(held.count) / static_cast<double>(std::max<std::size_t>(held.moving, 1));
+    return held_share < repeated_by_rule ? clock.nominal_rate
+                                         : ripplenotch::nominal_rate((1.0 - held_share) * clock.nominal_rate);
+}
+
 std::vector<LogWarning> recording_warnings(const Recording& recording, const std::string& clock_check) {
     std::vector<LogWarning> warnings = clock_warnings(recording.clock);
     const double held = 100.0 * static_cast<double>(recording.held.count) /
@@ -257,8 +280,9 @@ std::vector<LogWarning> recording_warnings(const Recording& recording, const std
     if (held >= 0.1) {
         warnings.push_back(
             {"held samples",
-             fmt::format("{} rows ({} %) hold the sample before while the joint moves, up to {} in a row",
-                         recording.held.count, percent_text(held), recording.held.longest),
+             fmt::format("{} rows ({} %) hold the sample before while the joint moves, up to {} in a row{}",
+                         recording.held.count, percent_text(held), recording.held.longest,
+                         update_rate_text(recording)),
              true});
     }
     using Verdict = AngleFacts::Verdict;
@@ -293,7 +317,8 @@ Account::Account(const Layout& layout, const Opening& opening, double gap_steps)
         const JointRows* const rows = opening.blocks.empty() ? nullptr : &opening.blocks.front().joints[j];
         const bool velocity = rows != nullptr && has_values(rows->velocity_deg_s);
         const bool position = rows != nullptr && has_values(rows->position_deg);
-        joints_.push_back({{}, {velocity && !layout.velocity_from_position, position}});
+        joints_.push_back({HeldCounter(layout.velocity_from_position),
+                           {velocity && !layout.velocity_from_position, position}});
     }
     judged_ = clock_.facts().refusal.empty();
     Clock clock = clock_;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "ripplenotch/core/number.hpp"
 
@@ -13,16 +14,32 @@ constexpr double moving_deg_s = 0.2;           // by hand: slower is a rest
 constexpr std::size_t judged_changes = 16384;  ///< enough to know how coarse a torque is
 constexpr std::size_t fewest_changes = 8;      // by hand
 constexpr double coarse_steps = 10.0;          ///< a usual change of fewer smallest ones
+/// Of the torque's changes; by chance half of them at most meet those of a channel that changes less often.
+constexpr double changing_together = 0.9;
 
 }  // namespace
 
 HeldCounter::Row HeldCounter::row_of(const TraceView& rows, std::size_t k) {
-    return {rows.velocity_deg_s[k], rows.torque_nm[k], rows.has_position() ? rows.position_deg[k] : 0.0};
+    return {rows.velocity_deg_s[k], rows.torque_nm[k], rows.has_position() ? rows.position_deg[k] : 0.0,
+            rows.time_s[k]};
 }
 
 void HeldCounter::count(const TraceView& rows, bool begins_run) {
     if (rows.size() == 0) return;
     has_position_ = rows.has_position();
+    if (by_position_ && has_position_) {
+        std::size_t k = 0;
+        if (!any_ || begins_run) {
+            last_ = row_of(rows, k++);
+            stretch_ = {.since_s = last_.time_s};
+            any_ = true;
+        }
+        for (; k < rows.size(); ++k) {
+            const Row before = std::exchange(last_, row_of(rows, k));
+            count_by_position(before, last_);
+        }
+        return;
+    }
     if (any_ && !begins_run) {
         const Row now = row_of(rows, 0);
         const std::array velocity = {last_.velocity, now.velocity}, torque = {last_.torque, now.torque},
@@ -46,6 +63,32 @@ void HeldCounter::count_pairs(const RowChannels& rows, std::size_t pairs) {
     else if (pairs > 0)
         run_ = {};
     if (changes_.size() < judged_changes) note_changes(rows, pairs);
+}
+
+void HeldCounter::count_by_position(const Row& before, const Row& now) {
+    const bool torque = before.torque == now.torque, position = before.position == now.position;
+    if (!torque && changes_.size() < judged_changes) changes_.push_back(std::abs(now.torque - before.torque));
+    for (const Way way : {torque_alone, with_position}) {
+        run_[way] = torque && (position || way == torque_alone) ? run_[way] + 1 : 0;
+        if (way == with_position) stretch_.longest = std::max(stretch_.longest, run_[way]);
+    }
+    if (position) {
+        ++stretch_.pairs;
+        stretch_.torque += torque ? 1 : 0;
+        return;
+    }
+    const double passed_s = now.time_s - stretch_.since_s;
+    if (std::abs(now.position - before.position) > moving_deg_s * passed_s) {
+        counts_.moving += stretch_.pairs + 1;
+        counts_.position += stretch_.pairs;
+        counts_.torque += stretch_.torque + (torque ? 1 : 0);
+        counts_.position_and_torque += stretch_.torque;
+        counts_.velocity = counts_.moving;  // which says nothing of its own
+        counts_.velocity_and_torque = counts_.torque;
+        longest_[with_position] = std::max(longest_[with_position], stretch_.longest);
+        longest_[torque_alone] = std::max(longest_[torque_alone], run_[torque_alone]);
+    }
+    stretch_ = {.since_s = now.time_s};
 }
 
 void HeldCounter::measure_runs(const RowChannels& rows, std::size_t pairs) {
@@ -73,9 +116,17 @@ void HeldCounter::note_changes(const RowChannels& rows, std::size_t pairs) {
     }
 }
 
+// Of a sample written several times, all channels change in one row or in none.
+bool HeldCounter::tells(std::size_t repeats, std::size_t with_torque) const {
+    const std::size_t changes = counts_.moving - repeats, of_torque = counts_.moving - counts_.torque;
+    if (2 * repeats < counts_.moving) return true;
+    const auto both = static_cast<double>(changes + with_torque) - static_cast<double>(counts_.torque);
+    return of_torque >= fewest_changes && both >= changing_together * static_cast<double>(of_torque);
+}
+
 HeldCounter::Way HeldCounter::way() const {
-    const bool velocity_tells = 2 * counts_.velocity < counts_.moving;
-    const bool position_tells = has_position_ && 2 * counts_.position < counts_.moving;
+    const bool velocity_tells = tells(counts_.velocity, counts_.velocity_and_torque);
+    const bool position_tells = has_position_ && tells(counts_.position, counts_.position_and_torque);
     if (velocity_tells) return position_tells ? with_both : with_velocity;
     return position_tells ? with_position : torque_alone;
 }
@@ -91,7 +142,7 @@ HeldSamples HeldCounter::held() const {
                                counts_.all};
     const Way chosen = way();
     if (chosen == torque_alone && counts_.torque > 0 && torque_is_coarse()) return {};
-    return {counts[chosen], longest_[chosen]};
+    return {counts[chosen], longest_[chosen], counts_.moving};
 }
 
 }  // namespace ripplenotch

@@ -18,6 +18,7 @@
 #include "core/text/lower_case.hpp"
 #include "log/columns/column_name.hpp"
 #include "log/columns/decide_layout.hpp"
+#include "log/columns/units.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 
@@ -50,12 +51,15 @@ struct ClockOpening {
     double step = 0.0;  ///< the median of those that advance; 0 when none does
 };
 
-ClockOpening opening_of(const ColumnFacts& facts, std::size_t column) {
+// Of a column of times, or of steps that are summed.
+ClockOpening opening_of(const ColumnFacts& facts, std::size_t column, bool summed) {
     ClockOpening opening;
     if (column >= facts.sample.size()) return opening;
     std::vector<double> steps;
     double before = std::numeric_limits<double>::quiet_NaN();
     for (const double value : facts.sample[column]) {
+        if (summed && value > 0.0) steps.push_back(value);
+        if (summed) continue;
         if (std::isfinite(value) && !std::isfinite(before)) opening.first = value;
         if (value > before) steps.push_back(value - before);
         if (std::isfinite(value)) before = value;
@@ -100,10 +104,23 @@ void set_origin(const ColumnFacts& facts, const ClockOpening& opening, Layout& l
 void settle_clock(const ColumnFacts& facts, bool unit_is_stated, Layout& layout) {
     if (!layout.chosen.time) return;
     Column& column = layout.columns[*layout.chosen.time];
-    const ClockOpening opening = opening_of(facts, *layout.chosen.time);
+    const ClockOpening opening = opening_of(facts, *layout.chosen.time, layout.time_is_steps);
     layout.time_as_text = !facts.clock_texts.empty() && facts.clock_texts[*layout.chosen.time];
+    if (layout.time_as_text) layout.stamp_form = facts.stamp_forms[*layout.chosen.time];
     set_origin(facts, opening, layout);
     const std::string label = column_label(facts.names, *layout.chosen.time);
+    if (layout.time_as_text && layout.stamp_form.either_order)
+        layout.inferences.push_back({fmt::format("dates in {}", label),
+                                     layout.stamp_form.day_first ? "day/month/year" : "month/day/year",
+                                     "no field says which; only the day depends on it",
+                                     "dates as 2024-05-01",
+                                     {}});
+    if (layout.time_as_text && layout.stamp_form.milliseconds)
+        layout.inferences.push_back({fmt::format("digits behind the seconds in {}", label),
+                                     "milliseconds",
+                                     "as decimals they would run backward",
+                                     "--sample-rate",
+                                     {}});
     if (layout.time_as_text || layout.time_fraction) {
         column.unit = "s";
         column.factor = 1.0;
@@ -248,6 +265,29 @@ std::optional<StampPair> find_stamp_pair(const ColumnFacts& facts, const Forced&
     return std::nullopt;
 }
 
+/// "dt", "timestep", "Delta t": a column of steps, whose values are steps, too.
+bool holds_steps(const ColumnFacts& facts, std::size_t column) {
+    constexpr std::array<std::string_view, 9> words = {"dt",         "timestep",  "timesteps",
+                                                       "deltat",     "deltatime", "sampletime",
+                                                       "samplestep", "steptime",  "tdelta"};
+    if (!facts.sums_steps || facts.names.empty()) return false;
+    std::string name = lower_case(split_unit(facts.meanings()[column]).name);
+    std::erase_if(name, [](char c) { return c == '_' || c == ' ' || c == '-' || c == '.'; });
+    if (std::find(words.begin(), words.end(), name) == words.end()) return false;
+    const auto values = finite_values(facts, column);
+    return !values.empty() && *std::min_element(values.begin(), values.end()) >= 0.0 && !runs_forward(values);
+}
+
+void take_steps(const ColumnFacts& facts, std::size_t column, Layout& layout) {
+    layout.chosen.time = column;
+    layout.time_is_steps = true;
+    layout.inferences.push_back({"time",
+                                 fmt::format("the sum of the steps in {}", column_label(facts.names, column)),
+                                 "its name and its values are those of steps from row to row",
+                                 "--sample-rate, or --columns time=NAME",
+                                 {}});
+}
+
 /// Columns that could be the clock: by name, and by what their values do.
 struct Clocks {
     std::vector<std::size_t> forward, texts, counters, broken;
@@ -255,8 +295,9 @@ struct Clocks {
 Clocks find_clocks(const ColumnFacts& facts, const Forced& forced, const ReadOptions& options) {
     Clocks found;
     int best_rank = 1000;
+    const std::vector<ColumnName> names = read_column_names(facts.meanings(), facts.units);
     for (std::size_t c = 0; !forced.by_place && c < facts.names.size(); ++c) {
-        const ColumnName name = read_column_name(facts.meanings()[c]);
+        const ColumnName& name = names[c];
         const Convention* const known = convention_of(facts.meanings()[c], Role::time, facts.meanings());
         if ((name.role != Role::time && known == nullptr) || name.reference || forced.roles[c]) continue;
         const auto values = finite_values(facts, c);
@@ -338,6 +379,8 @@ void choose_time(const ColumnFacts& facts, const Forced& forced, const ReadOptio
         layout.chosen.time = pair->seconds;
         layout.time_fraction = pair->nanoseconds;
     }
+    if (layout.chosen.time && !pair && holds_steps(facts, *layout.chosen.time))
+        take_steps(facts, *layout.chosen.time, layout);
     if (layout.chosen.time) return;
     std::vector<LogWarning>& warnings = layout.warnings;
     const Clocks found = find_clocks(facts, forced, options);
@@ -378,6 +421,9 @@ void choose_time(const ColumnFacts& facts, const Forced& forced, const ReadOptio
     if (!texts.empty()) {
         layout.chosen.time = texts[0];
         return;
+    }
+    for (std::size_t c = 0; c < facts.columns && !forced.by_place; ++c) {
+        if (!forced.roles[c] && holds_steps(facts, c)) return take_steps(facts, c, layout);
     }
     if (use_step_of_head(facts, found, layout)) return;
     // One column called time that is no clock: the reader's own message names the row where it fails.

@@ -40,18 +40,47 @@ std::int64_t days_since_1970(int year, int month, int day) {
     return y * 365 + y / 4 - y / 100 + y / 400 + (153 * months + 2) / 5 + day - 1 - 719468;
 }
 
-/// "2024-05-01T" or "2024/05/01 ", and "2024:05:01:" as some loggers write it.
-std::optional<std::int64_t> read_date(std::string_view& text) {
+/// "2024-05-01T" or "2024/05/01 ", "2024:05:01:" as some loggers write it, "1.5.2024 " and "5/1/2024 ".
+std::optional<std::int64_t> read_date(std::string_view& text, bool day_first) {
     std::string_view rest = text;
-    const auto year = read_number(rest, 4, 4);
-    if (!year || !skip(rest, "-/:")) return std::nullopt;
-    const auto month = read_number(rest, 1, 2);
-    if (!month || !skip(rest, "-/:")) return std::nullopt;
-    const auto day = read_number(rest, 1, 2);
-    if (!day || !skip(rest, "T :_")) return std::nullopt;
-    if (*month < 1 || *month > 12 || *day < 1 || *day > 31) return std::nullopt;
+    const auto first = read_number(rest, 1, 4);
+    const std::size_t digits = text.size() - rest.size();
+    const bool year_first = digits == 4;
+    if (!first || digits == 3 || rest.empty()) return std::nullopt;
+    const char mark = rest.front();
+    if (!skip(rest, year_first ? "-/:" : "./-")) return std::nullopt;
+    const auto second = read_number(rest, 1, 2);
+    if (!second || !skip(rest, year_first ? "-/:" : "./-")) return std::nullopt;
+    const auto third = year_first ? read_number(rest, 1, 2) : read_number(rest, 4, 4);
+    if (!third) return std::nullopt;
+    // Only with slashes do people put the month first.
+    const bool month_first = mark == '/' && *first <= 12 && (*second > 12 || !day_first);
+    const int year = year_first ? *first : *third;
+    const int month = year_first ? *second : month_first ? *first : *second;
+    const int day = year_first ? *third : month_first ? *second : *first;
+    skip(rest, ",");
+    if (!skip(rest, year_first ? "T :_" : " T")) return std::nullopt;
+    while (skip(rest, " ")) {
+    }
+    if (month < 1 || month > 12 || day < 1 || day > 31) return std::nullopt;
     text = rest;
-    return days_since_1970(*year, *month, *day);
+    return days_since_1970(year, month, day);
+}
+
+/// "AM" or "PM" behind the time, and its blanks; the hours to be added to it. Empty where 13 PM is no hour.
+std::optional<int> read_half_day(std::string_view& text, int hours) {
+    while (skip(text, " ")) {
+    }
+    const bool noon = hours == 12;
+    for (const bool after_noon : {false, true}) {
+        for (const std::string_view word : {after_noon ? "PM" : "AM", after_noon ? "pm" : "am"}) {
+            if (!text.starts_with(word)) continue;
+            text.remove_prefix(word.size());
+            if (hours < 1 || hours > 12) return std::nullopt;
+            return after_noon ? (noon ? 0 : 12) : (noon ? -12 : 0);
+        }
+    }
+    return 0;
 }
 
 /// "Z", "+02:00", "-0700"; in seconds.
@@ -69,8 +98,8 @@ std::optional<std::int64_t> read_zone(std::string_view& text) {
 
 }  // namespace
 
-std::optional<ClockTime> clock_text(std::string_view text) {
-    const auto days = read_date(text);
+std::optional<ClockTime> clock_text(std::string_view text, StampForm form) {
+    const auto days = read_date(text, form.day_first);
     const auto hours = read_number(text, 1, 2);
     if (!hours || !skip(text, ":")) return std::nullopt;
     const auto minutes = read_number(text, 2, 2);
@@ -79,14 +108,17 @@ std::optional<ClockTime> clock_text(std::string_view text) {
     if (!seconds || *hours > 24 || *minutes > 59 || *seconds > 60) return std::nullopt;
     ClockTime time{
         days.value_or(0) * 86400 + *hours * 3600 + *minutes * 60 + *seconds, 0.0, days.has_value(), {}};
-    // ISO 8601 allows the comma; LabVIEW puts a colon before the point.
-    skip(text, ":");
-    if (skip(text, ".,")) {
+    // ISO 8601 allows the comma; LabVIEW puts a colon before the point, others one in its place.
+    if (skip(text, ":") | skip(text, ".,")) {
         const std::size_t digits = std::min(text.find_first_not_of("0123456789"), text.size());
-        if (digits == 0) return std::nullopt;
-        time.fraction_s = parse_number("0." + std::string(text.substr(0, digits))).value_or(0.0);
+        if (digits == 0 || (form.milliseconds && digits > 3)) return std::nullopt;
+        const std::string zeros(form.milliseconds ? 3 - digits : 0, '0');
+        time.fraction_s = parse_number("0." + zeros + std::string(text.substr(0, digits))).value_or(0.0);
         text.remove_prefix(digits);
     }
+    const auto half_day = read_half_day(text, *hours);
+    if (!half_day) return std::nullopt;
+    time.whole_s += 3600 * *half_day;
     while (skip(text, " ")) {
     }
     if (text.empty()) return time;
@@ -98,7 +130,7 @@ std::optional<ClockTime> clock_text(std::string_view text) {
 
 std::optional<double> read_stamp(std::string_view text, const StampRule& rule) {
     if (rule.text) {
-        const auto time = clock_text(text);
+        const auto time = clock_text(text, rule.form);
         if (!time) return std::nullopt;
         return since(time->whole_s, rule.origin) + time->fraction_s;
     }
@@ -189,7 +221,9 @@ std::int64_t midnight_s(const ClockTime& first) {
 }  // namespace
 
 TimePoint parse_time_point(std::string_view text, std::string_view label) {
-    if (const auto date = clock_text(text); date && date->dated) {
+    // With slashes and the year at the end, people mean either order.
+    const bool ordered = text.find('/') >= 4;
+    if (const auto date = clock_text(text); date && date->dated && ordered) {
         return {std::string(text), TimePoint::Form::date, 0.0,
                 date->whole_s,     date->fraction_s,      date->zone_s.has_value()};
     }

@@ -7,6 +7,8 @@
 #include <optional>
 #include <string_view>
 
+#include "ripplenotch/log/layout.hpp"
+
 namespace ripplenotch {
 
 /// How the time cells of a log are turned into numbers.
@@ -15,17 +17,24 @@ struct StampRule {
     bool text = false;        ///< cells as in clock_text()
     std::int64_t origin = 0;  ///< in the unit of the column; taken off before anything is rounded
     char decimal_mark = '.';
+    StampForm form = {};
 };
 
-/// Seconds since midnight of "12:30:01.5", since 1970 of "2024-05-01T12:30:01.5Z" or "2024/05/01 12:30:01":
-/// ISO 8601 dates and times in full, a zone offset at their end is taken into account. Empty for other texts.
+/// What clock_text() reads, for messages.
+inline constexpr std::string_view stamp_forms =
+    "12:30:01.5, 2024-05-01T12:30:01.5Z, 2024-05-01 12:30:01,500, 1.5.2024 12:30:01,5 or 5/1/2024 12:30:01 "
+    "PM";
+
+/// Seconds since midnight of "12:30:01.5", since 1970 of a date and time: ISO 8601 in full, a zone offset at
+/// its end is taken into account; with slashes; "1.5.2024 12:30:01", the day first; "5/1/2024 12:30:01 PM",
+/// in the order that the form says unless a field above 12 does. Empty for other texts.
 struct ClockTime {
     std::int64_t whole_s = 0;
     double fraction_s = 0.0;  ///< 0 to 1
     bool dated = false;
     std::optional<std::int64_t> zone_s;  ///< east of Greenwich, where the text says it; taken off already
 };
-[[nodiscard]] std::optional<ClockTime> clock_text(std::string_view text);
+[[nodiscard]] std::optional<ClockTime> clock_text(std::string_view text, StampForm form = {});
 
 /// What a time cell says, less the origin, exact to a double's last digit of the difference.
 [[nodiscard]] std::optional<double> read_stamp(std::string_view text, const StampRule& rule);

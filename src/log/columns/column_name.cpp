@@ -22,55 +22,36 @@ struct RoleWord {
 };
 
 constexpr std::array role_words = {
-    RoleWord{"torque", Role::torque, 0},
-    RoleWord{"torques", Role::torque, 0},
-    RoleWord{"tau", Role::torque, 0},
-    RoleWord{"effort", Role::torque, 0},
-    RoleWord{"efforts", Role::torque, 0},
-    RoleWord{"moment", Role::torque, 0},
-    RoleWord{"moments", Role::torque, 0},
-    RoleWord{"trq", Role::torque, 0},
-    RoleWord{"drehmoment", Role::torque, 0},
-    RoleWord{"velocity", Role::velocity, 0},
-    RoleWord{"velocities", Role::velocity, 0},
-    RoleWord{"vel", Role::velocity, 0},
-    RoleWord{"velo", Role::velocity, 0},
-    RoleWord{"speed", Role::velocity, 0},
-    RoleWord{"dq", Role::velocity, 0},
-    RoleWord{"qd", Role::velocity, 0},
-    RoleWord{"qdot", Role::velocity, 0},
-    RoleWord{"qvel", Role::velocity, 0},
-    RoleWord{"omega", Role::velocity, 0},
-    RoleWord{"drehzahl", Role::velocity, 0},
-    RoleWord{"geschwindigkeit", Role::velocity, 0},
-    RoleWord{"dtheta", Role::velocity, 1},
-    RoleWord{"position", Role::position, 0},
-    RoleWord{"positions", Role::position, 0},
-    RoleWord{"pos", Role::position, 0},
-    RoleWord{"q", Role::position, 0},
-    RoleWord{"angle", Role::position, 0},
-    RoleWord{"angles", Role::position, 0},
-    RoleWord{"qpos", Role::position, 0},
-    RoleWord{"winkel", Role::position, 0},
-    RoleWord{"theta", Role::position, 1},
-    RoleWord{"time", Role::time, 0},
-    RoleWord{"t", Role::time, 0},
-    RoleWord{"timestamp", Role::time, 0},
-    RoleWord{"stamp", Role::time, 0},
-    RoleWord{"timestamps", Role::time, 0},
-    RoleWord{"zeit", Role::time, 0},
-    RoleWord{"elapsed", Role::time, 0},
-    RoleWord{"duration", Role::time, 1},
-    RoleWord{"datetime", Role::time, 1},
+    RoleWord{"torque", Role::torque, 0},      RoleWord{"torques", Role::torque, 0},
+    RoleWord{"tau", Role::torque, 0},         RoleWord{"effort", Role::torque, 0},
+    RoleWord{"efforts", Role::torque, 0},     RoleWord{"moment", Role::torque, 0},
+    RoleWord{"moments", Role::torque, 0},     RoleWord{"trq", Role::torque, 0},
+    RoleWord{"torq", Role::torque, 0},        RoleWord{"drehmoment", Role::torque, 0},
+    RoleWord{"velocity", Role::velocity, 0},  RoleWord{"velocities", Role::velocity, 0},
+    RoleWord{"vel", Role::velocity, 0},       RoleWord{"velo", Role::velocity, 0},
+    RoleWord{"speed", Role::velocity, 0},     RoleWord{"dq", Role::velocity, 0},
+    RoleWord{"qd", Role::velocity, 0},        RoleWord{"qdot", Role::velocity, 0},
+    RoleWord{"qvel", Role::velocity, 0},      RoleWord{"omega", Role::velocity, 0},
+    RoleWord{"drehzahl", Role::velocity, 0},  RoleWord{"geschwindigkeit", Role::velocity, 0},
+    RoleWord{"dtheta", Role::velocity, 1},    RoleWord{"position", Role::position, 0},
+    RoleWord{"positions", Role::position, 0}, RoleWord{"pos", Role::position, 0},
+    RoleWord{"q", Role::position, 0},         RoleWord{"angle", Role::position, 0},
+    RoleWord{"angles", Role::position, 0},    RoleWord{"qpos", Role::position, 0},
+    RoleWord{"winkel", Role::position, 0},    RoleWord{"theta", Role::position, 1},
+    RoleWord{"time", Role::time, 0},          RoleWord{"t", Role::time, 0},
+    RoleWord{"timestamp", Role::time, 0},     RoleWord{"stamp", Role::time, 0},
+    RoleWord{"timestamps", Role::time, 0},    RoleWord{"zeit", Role::time, 0},
+    RoleWord{"elapsed", Role::time, 0},       RoleWord{"duration", Role::time, 1},
+    RoleWord{"datetime", Role::time, 1},      RoleWord{"asctime", Role::time, 1},
     RoleWord{"date", Role::time, 2},
 };
 
 constexpr std::array<std::string_view, 7> current_words = {"current", "currents", "iq",  "amps",
                                                            "strom",   "amperage", "curr"};
-constexpr std::array<std::string_view, 20> reference_words = {
-    "target",    "targets",     "ref",      "reference", "desired",  "des",   "cmd",
-    "command",   "commanded",   "commands", "goal",      "setpoint", "model", "sim",
-    "simulated", "feedforward", "ff",       "soll",      "planned",  "set"};
+constexpr std::array<std::string_view, 22> reference_words = {
+    "target",    "targets",  "ref",     "reference", "desired", "des",    "cmd",       "command",
+    "commanded", "commands", "goal",    "setpoint",  "model",   "sim",    "simulated", "feedforward",
+    "ff",        "soll",     "planned", "set",       "ctrl",    "control"};
 // Quantities of something else: of the tool, of the mains, or derived from the one that is wanted.
 constexpr std::array<std::string_view, 35> foreign_words = {
     "tcp",     "tool",      "pose",     "twist", "cartesian",   "wrench",        "force",
@@ -78,6 +59,10 @@ constexpr std::array<std::string_view, 35> foreign_words = {
     "hat",     "limit",     "limits",   "max",   "min",         "robot",         "main",
     "voltage", "execution", "cycle",    "delay", "temperature", "accelerations", "acceleration",
     "acc",     "ddq",       "ddot",     "qdd",   "override",    "deviation",     "derivative"};
+// Parts of a torque, as models and simulators write them beside the whole.
+constexpr std::array<std::string_view, 12> part_words = {
+    "friction", "passive",  "gravity", "grav", "coriolis",   "centrifugal",
+    "inertia",  "inertial", "damping", "bias", "constraint", "disturbance"};
 // Words that say how or where, not which joint.
 constexpr std::array<std::string_view, 25> general_words = {
     "state",  "states", "actual",   "act",   "measured", "meas", "msr",    "measurement", "value",
@@ -131,6 +116,18 @@ std::vector<Word> split_words(std::string_view name) {
     return words;
 }
 
+// "j1_current_a": behind a current, a lower-case a is its unit.
+void take_ampere(std::vector<Word>& words, std::string& unit) {
+    if (!unit.empty() || words.size() < 2 || words.back().glued) return;
+    const std::string& last = words.back().text;
+    if ((last != "a" && last != "ma") || !std::any_of(words.begin(), words.end() - 1, [](const Word& word) {
+            return contains(current_words, word.text);
+        }))
+        return;
+    unit = last == "a" ? "A" : "mA";
+    words.pop_back();
+}
+
 // What is left of a name once quantity and unit are gone: "j4", "3", "wrist_1_joint", or nothing.
 std::string joint_in_name(const std::vector<Word>& left) {
     std::vector<Word> words;
@@ -174,11 +171,13 @@ ColumnName read_column_name(std::string_view name) {
     if (element) parts.name += name.substr(bracket);
     column.unit = parts.unit;
     column.unit_is_sure = parts.bracketed;
-
     std::vector<Word> left;
     const RoleWord* found = nullptr;
-    bool foreign = false, filtered = false;
-    const std::vector<Word> words = split_words(parts.name);
+    bool foreign = false, filtered = false, part = false;
+    std::vector<Word> words = split_words(parts.name);
+    take_ampere(words, column.unit);
+    const bool of_current = std::any_of(words.begin(), words.end(),
+                                        [](const Word& word) { return contains(current_words, word.text); });
     for (std::size_t i = 0; i < words.size(); ++i) {
         const Word& word = words[i];
         // tau_J: the J is of the symbol; in tau_J1 it is of the joint.
@@ -186,13 +185,16 @@ ColumnName read_column_name(std::string_view name) {
         if (word.text == "j" && i > 0 && words[i - 1].text == "tau" && !numbered) continue;
         const auto role = std::find_if(role_words.begin(), role_words.end(),
                                        [&](const RoleWord& known) { return known.word == word.text; });
-        if (contains(foreign_words, word.text)) foreign = true;
+        if (contains(foreign_words, word.text) || (word.text == "d" && of_current)) foreign = true;
+        if (contains(part_words, word.text)) part = true;
         if (word.text == "motor" || word.text == "rotor") column.motor_side = true;
         if (word.text == "filtered" || word.text == "smoothed") filtered = true;
         if (contains(reference_words, word.text) || (word.text == "d" && found != nullptr)) {
             column.reference = true;
         } else if (contains(current_words, word.text)) {
             column.current = true;
+        } else if (word.text == "q" && of_current) {
+            continue;  // the axis of a motor's field, no coordinate
         } else if (role != role_words.end() && (found == nullptr || found->role == Role::time)) {
             found = role;
         } else {
@@ -209,6 +211,7 @@ ColumnName read_column_name(std::string_view name) {
     }
     const bool clock = column.role == Role::time;
     if (!clock) column.joint = joint_in_name(left);
+    foreign = foreign || (part && column.role == Role::torque);
     if (foreign || (clock && !is_clock_name(left))) column.role = Role::other;
     if (column.motor_side && !column.current) column.rank += 2;
     if (filtered) column.rank += 4;
@@ -216,6 +219,76 @@ ColumnName read_column_name(std::string_view name) {
     if (parts.bracketed && column.role != Role::other && !usual_unit(parts.unit, column.role))
         column.rank += 8;
     return column;
+}
+
+namespace {
+
+/// Letters that are a quantity where no other column is, and the names beside which they may be another one.
+struct Symbol {
+    std::string_view text;
+    Role role;
+    std::array<std::string_view, 4> rivals;
+};
+constexpr std::array symbols = {
+    Symbol{"v", Role::velocity, {"i", "I", "u", "U"}},   // a voltage beside a current
+    Symbol{"w", Role::velocity, {"x", "y", "z", "qx"}},  // of a quaternion
+    Symbol{"\xcf\x89", Role::velocity, {}},
+    Symbol{"T", Role::torque, {"i", "I", "iq", "current"}},  // a temperature beside a motor current
+    Symbol{"M", Role::torque, {}},
+    Symbol{"\xcf\x84", Role::torque, {}},
+    Symbol{"th", Role::position, {}},
+    Symbol{"phi", Role::position, {}},
+    Symbol{"\xce\xb8", Role::position, {}},
+    Symbol{"\xcf\x86", Role::position, {}},
+};
+
+/// "v" of "v", "v_3", "v3", "v[3]".
+std::string_view without_number(std::string_view name) {
+    if (name.ends_with(']')) name.remove_suffix(1);
+    while (!name.empty() && is_digits(name.substr(name.size() - 1))) name.remove_suffix(1);
+    while (!name.empty() && (name.back() == '_' || name.back() == '[' || name.back() == ' '))
+        name.remove_suffix(1);
+    return name;
+}
+
+}  // namespace
+
+std::vector<ColumnName> read_column_names(const std::vector<std::string>& names,
+                                          const std::vector<std::string>& units) {
+    std::vector<ColumnName> columns;
+    for (std::size_t c = 0; c < names.size(); ++c) {
+        columns.push_back(read_column_name(names[c]));
+        if (!columns[c].unit.empty() || units.empty() || units[c].empty()) continue;
+        columns[c].unit = units[c];
+        columns[c].unit_is_sure = true;
+    }
+    const auto has = [&columns](Role role, std::size_t but) {
+        for (std::size_t c = 0; c < columns.size(); ++c)
+            if (c != but && columns[c].role == role && columns[c].symbol == Role::other &&
+                !columns[c].reference)
+                return true;
+        return false;
+    };
+    for (std::size_t c = 0; c < names.size(); ++c) {
+        ColumnName& column = columns[c];
+        const std::string bare = split_unit(names[c]).name;
+        const auto symbol = std::find_if(symbols.begin(), symbols.end(), [&](const Symbol& known) {
+            return known.text == without_number(bare);
+        });
+        if (symbol == symbols.end() || has(symbol->role, c)) continue;
+        const bool by_unit = !column.unit.empty() && usual_unit(column.unit, symbol->role);
+        if (!column.unit.empty() && !by_unit) continue;
+        if (column.role == Role::time && !by_unit && !has(Role::time, c)) continue;
+        const bool rivalled = std::any_of(names.begin(), names.end(), [&](const std::string& name) {
+            return !name.empty() && contains(symbol->rivals, split_unit(name).name);
+        });
+        column.symbol = symbol->role;
+        column.role = rivalled && !by_unit ? Role::other : symbol->role;
+        column.joint = bare.substr(without_number(bare).size());
+        std::erase_if(column.joint,
+                      [](char sign) { return sign == '_' || sign == '[' || sign == ']' || sign == ' '; });
+    }
+    return columns;
 }
 
 std::string joint_key(std::string_view joint) {
@@ -300,6 +373,74 @@ std::vector<JointGroup> collect_groups(const KnownColumns& known, bool merge) {
 
 }  // namespace
 
+namespace {
+
+/// The columns of one role whose joints are numbers.
+struct Numbering {
+    std::size_t lowest = 0, highest = 0, first_column = 0, columns = 0;
+};
+
+/// Number behind the letters of a joint's key, "left_3".
+std::optional<std::size_t> number_of(std::string_view key) {
+    const std::size_t letters = key.find_last_not_of("0123456789");
+    key.remove_prefix(letters == std::string_view::npos ? 0 : letters + 1);
+    constexpr std::size_t most_digits = 4;
+    if (key.empty() || key.size() > most_digits) return std::nullopt;
+    std::size_t number = 0;
+    for (const char c : key) number = 10 * number + static_cast<std::size_t>(c - '0');
+    return number;
+}
+
+// One of them has what the other has not, at both ends; of single columns, another number.
+bool differ(const Numbering& a, const Numbering& b) {
+    if (a.columns == 1 && b.columns == 1) return a.lowest != b.lowest;
+    const auto shifted = [](const Numbering& from_0, const Numbering& from_1) {
+        return from_0.lowest == 0 && from_1.lowest == 1 && from_1.highest > from_0.highest;
+    };
+    return shifted(a, b) || shifted(b, a);
+}
+
+}  // namespace
+
+std::string mixed_numberings(const KnownColumns& known) {
+    const auto& forced = known.forced;
+    if (forced.column_of(Role::torque) &&
+        (forced.column_of(Role::velocity) || forced.column_of(Role::position)))
+        return "";
+    std::map<std::string, std::map<Role, Numbering>> numberings;  // by the letters before the number
+    for (std::size_t c = 0; c < known.facts.columns; ++c) {
+        const ColumnName& name = known.names[c];
+        if (name.reference || forced.roles[c] || name.role == Role::other || name.role == Role::time)
+            continue;
+        const std::string key = joint_key(name.joint);
+        const auto number = number_of(key);
+        if (!number) continue;
+        const auto [found, first] =
+            numberings[key.substr(0, key.find_last_not_of("0123456789") + 1)].try_emplace(
+                name.role, Numbering{*number, *number, c, 0});
+        Numbering& of_role = found->second;
+        if (*number < of_role.lowest) of_role.lowest = *number, of_role.first_column = c;
+        of_role.highest = std::max(of_role.highest, *number);
+        ++of_role.columns;
+    }
+    for (const auto& [letters, roles] : numberings) {
+        for (auto a = roles.begin(); a != roles.end(); ++a) {
+            for (auto b = std::next(a); b != roles.end(); ++b) {
+                if (!differ(a->second, b->second)) continue;
+                const std::size_t first = a->second.first_column, second = b->second.first_column;
+                const auto& names = known.facts.names;
+                return fmt::format(
+                    "{} is the first {} and {} the first {}: joints are numbered from {} and from {}; say "
+                    "which columns are one joint's, with --columns {}={},{}={}",
+                    column_label(names, first), role_name(a->first), column_label(names, second),
+                    role_name(b->first), a->second.lowest, b->second.lowest, role_name(a->first),
+                    names[first], role_name(b->first), names[second]);
+            }
+        }
+    }
+    return "";
+}
+
 std::vector<JointGroup> group_joints(const KnownColumns& known, bool joint_asked, bool needs_torque) {
     std::vector<JointGroup> groups = collect_groups(known, false);
     drop_unasked(known, joint_asked, groups);
@@ -318,9 +459,13 @@ std::vector<JointGroup> group_joints(const KnownColumns& known, bool joint_asked
         for (std::size_t r = 0; r < motion_roles.size(); ++r) {
             for (const JointGroup& group : groups) counts[r] += group.has(motion_roles[r]);
         }
-        if (std::all_of(counts.begin(), counts.end(), [](std::size_t n) { return n <= 1; })) {
+        // "tau_motor_side" and "tau_sensor" beside them: torques of the one joint that moves, to be chosen
+        // from.
+        const bool numbered = std::any_of(groups.begin(), groups.end(), [](const JointGroup& group) {
+            return number_of(group.key).has_value();
+        });
+        if (counts[0] <= 1 && counts[2] <= 1 && (counts[1] <= 1 || !numbered))
             groups = collect_groups(known, true);
-        }
     }
     const bool any_complete = std::any_of(groups.begin(), groups.end(), complete);
     if (any_complete) {

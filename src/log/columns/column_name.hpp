@@ -26,9 +26,17 @@ struct ColumnName {
     std::string unit;         ///< as written; empty when the name has none
     bool unit_is_sure = false;  ///< written in brackets, or a unit that is not read ("torque_percent")
     std::string joint;          ///< "j4", "3", "shoulder_pan_joint"; empty when the name has none
+    /// What a letter such as v, w or T stands for as a whole name, where the names beside it allow it: then
+    /// `role` is that one, too, unless another reading is as good.
+    Role symbol = Role::other;
 };
 
 [[nodiscard]] ColumnName read_column_name(std::string_view name);
+
+/// All names of a log, with what only the others beside a name decide: whether T is a time or a torque.
+/// `units` by column, from a row of them; may be empty.
+[[nodiscard]] std::vector<ColumnName> read_column_names(const std::vector<std::string>& names,
+                                                        const std::vector<std::string>& units);
 
 /// The same for "j3", "joint3", "J3" and "3"; other names in lower case.
 [[nodiscard]] std::string joint_key(std::string_view joint);
@@ -58,6 +66,10 @@ struct KnownColumns {
 /// was asked for by its name.
 [[nodiscard]] std::vector<JointGroup> group_joints(const KnownColumns& known, bool joint_asked,
                                                    bool needs_torque = true);
+
+/// A sentence where joints are numbered from 0 for one quantity and from 1 for another, so that equal numbers
+/// are not one joint's; empty otherwise, and where --columns says what belongs together.
+[[nodiscard]] std::string mixed_numberings(const KnownColumns& known);
 
 /// The one column for a role, empty when there is none. Throws DataError where several are equally good.
 [[nodiscard]] std::optional<std::size_t> choose_column(const KnownColumns& known, const JointGroup& group,

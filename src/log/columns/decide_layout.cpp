@@ -155,6 +155,7 @@ class Decision {
         if (layout_.chosen.time) give_role(*layout_.chosen.time, Role::time, "");
         if (layout_.time_fraction) give_role(*layout_.time_fraction, Role::time, "");
         settle_clock(facts_, layout_.chosen.time && stated_[*layout_.chosen.time], layout_);
+        compare_numberings();
         groups_ = group_joints(known(), options_.joint.has_value(),
                                !options_.every_joint || options_.torque_of_each);
         for (const JointGroup& group : groups_) layout_.joints.push_back(group.name);
@@ -162,6 +163,7 @@ class Decision {
         infer_motion(facts_, options_, motions_of(known(), groups_, stated_, options_, layout_), layout_);
         state_derived_velocity(layout_, facts_);
         take_constant_speed();
+        state_symbols();
         state_units(layout_, facts_, options_);
         report_repeated_names();
         check_channel_clocks(source_, facts_, layout_);
@@ -171,12 +173,15 @@ class Decision {
 
   private:
     void name_columns() {
+        if (facts_.names.empty())
+            names_.resize(facts_.columns);
+        else
+            names_ = read_column_names(facts_.meanings(), facts_.units);
         for (std::size_t c = 0; c < facts_.columns; ++c) {
             Column column;
             column.name = facts_.names.empty() ? fmt::format("column {}", c + 1) : facts_.names[c];
             layout_.columns.push_back(column);
-            names_.push_back(facts_.names.empty() ? ColumnName{} : read_column_name(facts_.meanings()[c]));
-            if (names_[c].unit.empty() && !facts_.units.empty()) {
+            if (names_[c].unit.empty() && facts_.names.empty() && !facts_.units.empty()) {
                 names_[c].unit = facts_.units[c];
                 names_[c].unit_is_sure = !facts_.units[c].empty();
             }
@@ -187,6 +192,13 @@ class Decision {
                 names_[c].current = names_[c].current || is_current_unit(names_[c].unit);
             }
         }
+    }
+
+    void compare_numberings() {
+        const std::string mixed = mixed_numberings(known());
+        if (mixed.empty()) return;
+        if (options_.needs_torque) raise<DataError>("{}: {}", source_, mixed);
+        layout_.warnings.push_back({"numbering of joints", mixed});
     }
 
     void choose_joint() {
@@ -227,6 +239,38 @@ class Decision {
         if (group != nullptr) layout_.chosen = columns_of(*group);
         for (const JointGroup& each : groups_) give_roles(each, group == &each ? &layout_.chosen : nullptr);
         if (options_.needs_torque) require_torque_and_velocity();
+    }
+
+    // What letters were taken for, and what they were not taken for because they may mean something else.
+    void state_symbols() {
+        for (const JointColumns& joint : layout_.all_chosen()) {
+            for (const auto& [column, role] :
+                 {std::pair{joint.velocity, Role::velocity}, std::pair{joint.torque, Role::torque},
+                  std::pair{joint.position, Role::position}}) {
+                if (!column || names_[*column].symbol != role || forced_.roles[*column]) continue;
+                layout_.inferences.push_back({std::string(role_name(role)),
+                                              column_label(facts_.names, *column),
+                                              "a symbol of it, and no other column is one",
+                                              fmt::format("--columns {}=NAME", role_name(role)),
+                                              {}});
+            }
+        }
+        for (const Role role : motion_roles) {
+            const std::string perhaps = maybe(role);
+            if (perhaps.empty() || forced_.column_of(role)) continue;
+            layout_.warnings.push_back(
+                {"symbols", fmt::format("{} is not read: {}", role_name(role), perhaps)});
+        }
+    }
+
+    std::string maybe(Role role) const {
+        for (std::size_t c = 0; c < names_.size(); ++c) {
+            if (names_[c].symbol == role && names_[c].role == Role::other && !forced_.roles[c])
+                return fmt::format("{} may be the {}, or something else; --columns {}={} takes it",
+                                   column_label(facts_.names, c), role_name(role), role_name(role),
+                                   facts_.names[c]);
+        }
+        return "";
     }
 
     // At the joint, as all motion is from here on.
@@ -317,9 +361,11 @@ class Decision {
                                            std::pair{layout_.chosen.velocity, Role::velocity}}) {
             if (column || (role == Role::velocity && may_go_without(layout_.chosen))) continue;
             if (role == Role::torque && options_.every_joint && !options_.torque_of_each) continue;
+            const std::string perhaps = maybe(role);
             raise<DataError>(
-                "{}: read {}{}, expected a {} column; say which it is, with --columns {}=NAME{}{}", source_,
-                names, facts_.left_out, role_name(role), role_name(role),
+                "{}: read {}{}, expected a {} column; {}say which it is, with --columns {}=NAME{}{}", source_,
+                names, facts_.left_out, role_name(role), perhaps.empty() ? "" : perhaps + "; ",
+                role_name(role),
                 facts_.names.empty() ? ", or all by place, with --columns time,velocity,torque" : "",
                 role == Role::velocity ? "; or how fast the joint turns, with --constant-speed 60rpm" : "");
         }

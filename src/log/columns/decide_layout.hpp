@@ -40,9 +40,11 @@ struct ColumnFacts {
         sample;  ///< the first rows by column; not-a-number where a cell is no number
     std::vector<std::int64_t> first_counts;  ///< whole numbers of the first row, exact; 0 where there is none
     std::vector<std::size_t> clock_of;  ///< by column: where its times stand, if each has its own; else empty
-    std::vector<bool> clock_texts;     ///< by column: its cells are dates or times of day; empty when none is
-    std::optional<double> row_step_s;  ///< where the head of the file says how long a row is
-    std::string dialect_options;       ///< "--delimiter ',' --decimal ." and the like, for Layout::options
+    std::vector<bool> clock_texts;  ///< by column: its cells are dates or times of day; empty when none is
+    std::vector<StampForm> stamp_forms;  ///< by column, where clock_texts are
+    bool sums_steps = false;             ///< the reader can sum a column of time steps
+    std::optional<double> row_step_s;    ///< where the head of the file says how long a row is
+    std::string dialect_options;         ///< "--delimiter ',' --decimal ." and the like, for Layout::options
     /// Rows of a velocity and a position, as they stand in the file: those of the first `bytes`, and at least
     /// those at hand.
     std::function<MotionSample(const MotionPlaces& places, std::size_t bytes)> motion_sample;

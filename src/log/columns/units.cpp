@@ -176,6 +176,9 @@ NameAndUnit split_unit(std::string_view column_name) {
         const bool index = !inside.empty() && std::all_of(inside.begin(), inside.end(), [](unsigned char c) {
             return std::isdigit(c) != 0;
         });
+        // An address, as "(P:00A305h)", is no unit.
+        if (inside.find(':') != std::string_view::npos)
+            return {std::string(without_padding(whole.substr(0, from))), "", false};
         if (!index) return {std::string(without_padding(whole.substr(0, from))), std::string(inside), true};
     }
     // The longest unit that follows an underscore or a blank: "_deg_s" before "_s".

@@ -19,6 +19,7 @@
 #include <string>
 
 #include "core/files/byte_source.hpp"
+#include "log/containers/mat.hpp"
 #include "log/records/joined_records.hpp"
 
 namespace ripplenotch {
@@ -373,6 +374,8 @@ class Hdf5Walk {
         if (matlab_ &&
             (matlab_class.empty() || matlab_class == "char" || ::H5Aexists(plain.id(), "MATLAB_empty") > 0))
             return;
+        if (matlab_ && ::H5Aexists(plain.id(), "MATLAB_object_decode") > 0)
+            return add_other(name, "", matlab_object_text(name, matlab_class));
         if (matlab_ &&
             (matlab_class == "cell" || matlab_class == "logical" || matlab_class == "function_handle"))
             return add_other(name, words, matlab_class);

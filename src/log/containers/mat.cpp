@@ -212,7 +212,15 @@ class MatWalk {
         const Element sides = element_at(*bytes, flags.next);
         if (code == opaque) {
             std::string name = path.empty() ? text_of(*bytes, sides) : path;
-            found.others.push_back({name, "", std::string(class_name(code)), "", {}, false});
+            std::string kind(class_name(code));
+            // The name, how it is stored ("MCOS"), and the class.
+            const std::uint64_t end = whole.data + whole.size;
+            if (path.empty() && sides.next < end) {
+                const Element storage = element_at(*bytes, sides.next);
+                if (storage.next < end)
+                    kind = matlab_object_text(name, text_of(*bytes, element_at(*bytes, storage.next)));
+            }
+            found.others.push_back({name, "", kind, "", {}, false});
             return;
         }
         std::vector<std::uint64_t> dimensions;
@@ -330,6 +338,26 @@ class MatWalk {
 
 MatContents find_mat_arrays(const std::shared_ptr<StoredBytes>& file) {
     return std::move(MatWalk(file).found);
+}
+
+std::string matlab_object_text(const std::string& name, const std::string& class_name) {
+    const std::string save = "save('run.mat', 't', 'tau')";
+    if (class_name == "timeseries")
+        return fmt::format("an object of class timeseries; in MATLAB: t = {0}.Time; tau = {0}.Data; {1}",
+                           name, save);
+    if (class_name == "table" || class_name == "timetable") {
+        const bool timed = class_name == "timetable";
+        return fmt::format(
+            "an object of class {}; in MATLAB: s = table2struct({}, 'ToScalar', true); save('run.mat', "
+            "'-struct', 's')",
+            class_name, timed ? fmt::format("timetable2table({})", name) : name);
+    }
+    if (class_name.starts_with("Simulink."))
+        return fmt::format(
+            "an object of class {0}; in MATLAB, for each signal: x = {1}.get('tau').Values; t = x.Time; tau "
+            "= x.Data; {2}",
+            class_name, class_name == "Simulink.SimulationOutput" ? name + ".logsout" : name, save);
+    return fmt::format("an object of class {}; in MATLAB, save its numbers as vectors: {}", class_name, save);
 }
 
 }  // namespace ripplenotch

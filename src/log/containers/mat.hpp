@@ -28,6 +28,9 @@ enum : std::uint32_t {
     utf16 = 17
 };
 
+/// Of an object that only MATLAB opens: its class, and the lines of MATLAB that save its numbers.
+[[nodiscard]] std::string matlab_object_text(const std::string& name, const std::string& class_name);
+
 }  // namespace ripplenotch::mat_type
 
 namespace ripplenotch {
@@ -65,5 +68,8 @@ struct MatContents {
 /// The arrays of a whole file, of which only the heads of its elements are read. Throws DataError, beginning
 /// with the file's name, where it is damaged or nested deeper than 16.
 [[nodiscard]] MatContents find_mat_arrays(const std::shared_ptr<StoredBytes>& file);
+
+/// Of an object that only MATLAB opens: its class, and the lines of MATLAB that save its numbers.
+[[nodiscard]] std::string matlab_object_text(const std::string& name, const std::string& class_name);
 
 }  // namespace ripplenotch

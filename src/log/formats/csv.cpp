@@ -10,6 +10,7 @@
 #include "log/table_writer.hpp"
 #include "log/text/csv_reader.hpp"
 #include "log/text/csv_writer.hpp"
+#include "log/text/long_table.hpp"
 #include "log/text/text_dialect.hpp"
 #include "ripplenotch/core/number.hpp"
 
@@ -58,6 +59,15 @@ class CsvTableWriter : public TableWriter {
     std::string text_;
 };
 
+std::unique_ptr<LogReader> open_text(std::unique_ptr<ByteSource> source, std::string first_bytes,
+                                     const ReadOptions& options) {
+    if (options.skip_lines == 0 && may_be_long(first_bytes)) {
+        source = widened(std::move(source), std::move(first_bytes), options);
+        first_bytes.clear();
+    }
+    return open_with<CsvReader>(std::move(source), std::move(first_bytes), options);
+}
+
 }  // namespace
 
 const LogFormat formats::csv{
@@ -66,7 +76,7 @@ const LogFormat formats::csv{
     .extensions = extensions,
     .binary = false,
     .sniff = nullptr,  // any text may be a text log
-    .open = open_with<CsvReader>,
+    .open = open_text,
     .rewrite = rewrite_with<CsvWriter, CsvReader>,
     .convert = convert_with<CsvTableWriter>,
     .write_columns = write_columns_with<CsvTableWriter>,

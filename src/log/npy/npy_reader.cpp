@@ -345,7 +345,8 @@ std::string left_out_of(const std::vector<ContentEntry>& contents) {
     constexpr std::size_t most = 4;
     std::vector<std::string> found;
     for (const ContentEntry& entry : contents) {
-        if (entry.read || found.size() == most || names_tell({entry.path}) == 0) continue;
+        const bool object = entry.type.starts_with("an object");
+        if (entry.read || found.size() == most || (names_tell({entry.path}) == 0 && !object)) continue;
         found.push_back(
             fmt::format("{} ({}{}{})", entry.path, entry.shape, entry.shape.empty() ? "" : ", ", entry.type));
     }

@@ -9,6 +9,7 @@
 
 #include "log/clock/choose_time.hpp"
 #include "log/read.hpp"
+#include "log/text/long_table.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/trace.hpp"
@@ -50,6 +51,11 @@ CsvReader::CsvReader(std::unique_ptr<ByteSource> source, std::string first_bytes
     dialect_ = sniff_text(first_bytes, source_ended_, *source_, options);
     layout_ = decide_layout(source_->name(), "csv", facts_of(first_bytes), options);
     layout_.outside = rows_outside(*source_);
+    if (const auto* const made = dynamic_cast<const ReshapedText*>(source_.get())) {
+        layout_.reshaped = true;
+        layout_.inferences.push_back(made->shape());
+        layout_.warnings.insert(layout_.warnings.end(), made->warnings().begin(), made->warnings().end());
+    }
     if (dialect_.head_lines > 0) {
         layout_.inferences.push_back({fmt::format("the first {} lines", dialect_.head_lines),
                                       "a head, passed on and not read",
@@ -73,6 +79,8 @@ ColumnFacts CsvReader::facts_of(std::string& opening) {
     facts.sample = std::move(dialect_.sample);
     facts.first_counts = dialect_.first_counts;
     facts.clock_texts = dialect_.clock_texts;
+    facts.stamp_forms = dialect_.stamp_forms;
+    facts.sums_steps = true;
     facts.clock_of = dialect_.clock_of;
     facts.row_step_s = dialect_.row_step_s;
     facts.dialect_options = dialect_options(dialect_);
@@ -149,7 +157,10 @@ bool CsvReader::fetch(RowBlock& block) {
     return !block.bytes.empty();  // a line that is too long is accept()'s, which has its number
 }
 
-void CsvReader::parse(RowBlock& block) const { block.parsed_bytes = quick_->read(block, 0, not_a_number); }
+// Rows whose times are sums are taken one by one.
+void CsvReader::parse(RowBlock& block) const {
+    if (!layout_.time_is_steps) block.parsed_bytes = quick_->read(block, 0, not_a_number);
+}
 
 void CsvReader::accept(RowBlock& block) {
     block.first_row = rows_;
@@ -184,7 +195,7 @@ std::size_t CsvReader::accept_from(RowBlock& block, std::size_t begin) {
             source_->name(), line_in_file());
     }
     // A row that needed care is seldom alone.
-    if (!plain_row_ || end_mark_seen_ || next == block.bytes.size()) return next;
+    if (!plain_row_ || end_mark_seen_ || layout_.time_is_steps || next == block.bytes.size()) return next;
     const std::size_t before = block.size();
     const std::size_t taken = quick_->read(block, next, before_.values[time_slot]);
     note_quick_rows(block, before);
@@ -248,6 +259,14 @@ bool CsvReader::accept_line(RowBlock& block, std::size_t begin, std::size_t end)
 }
 
 void CsvReader::append_row(RowBlock& block, ParsedRow& row) {
+    if (layout_.time_is_steps) {
+        if (row.values[time_slot] < 0.0)
+            complain(1,
+                     fmt::format("read the time step {}, expected none below 0; mend or remove the line, or "
+                                 "say --sample-rate",
+                                 shortest(row.values[time_slot])));
+        row.values[time_slot] = rows_ == 0 ? 0.0 : before_.values[time_slot] + row.values[time_slot];
+    }
     const double time = row.values[time_slot], before = before_.values[time_slot];
     if (layout_.chosen.time && time < before) {
         complain(1, time_backward({before, time, layout_.time_origin}));
@@ -348,14 +367,16 @@ double CsvReader::read_cell(std::string_view line, const Cell& cell, const Wante
         remedy =
             fmt::format("mend the line, or say --decimal {}", dialect_.rules.decimal_mark == '.' ? ',' : '.');
     }
-    complain(cell.begin + 1,
-             fmt::format("read {} in {}, expected a {}; {}",
-                         text.empty() ? std::string("nothing") : "'" + shown_cell(text) + "'", name,
-                         stamp && stamp_.text               ? "time of day or a date and time"
-                         : number && std::isfinite(*number) ? "number from -1e30 to 1e30"
-                         : number                           ? "finite number"
-                                                            : "number",
-                         remedy));
+    complain(
+        cell.begin + 1,
+        fmt::format("read {} in {}, expected a {}; {}",
+                    text.empty() ? std::string("nothing") : "'" + shown_cell(text) + "'", name,
+                    (stamp && stamp_.text) || (slot == time_slot && text.find(':') != std::string_view::npos)
+                        ? fmt::format("time of day or a date and time such as {}", stamp_forms)
+                    : number && std::isfinite(*number) ? "number from -1e30 to 1e30"
+                    : number                           ? "finite number"
+                                                       : "number",
+                    remedy));
 }
 
 void CsvReader::complain(std::size_t column, const std::string& sentence) const {

@@ -40,7 +40,7 @@ std::vector<WantedColumn> wanted_columns(const Layout& layout) {
 
 StampRule stamp_rule(const Layout& layout, char decimal_mark) {
     const bool careful = layout.time_fraction || layout.time_as_text || layout.time_origin != 0;
-    return {careful, layout.time_as_text, layout.time_origin, decimal_mark};
+    return {careful, layout.time_as_text, layout.time_origin, decimal_mark, layout.stamp_form};
 }
 
 std::vector<double> slot_factors(const Layout& layout, const std::vector<WantedColumn>& wanted) {

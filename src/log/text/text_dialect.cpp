@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <limits>
 #include <span>
 #include <utility>
@@ -53,10 +54,43 @@ GuessedRules rules_of(std::string_view bytes, const std::vector<TextLine>& conte
         source.name(), number_in_file(source, content[aside].number), content[aside].of(bytes).substr(0, 40));
 }
 
+// The first form by which all texts are times and run forward; of several such, that of the shortest time,
+// for a date in the wrong order jumps by a month at midnight.
+StampForm form_of(const std::vector<std::string_view>& texts) {
+    StampForm best;
+    double shortest_s = std::numeric_limits<double>::infinity();
+    for (const bool milliseconds : {false, true}) {
+        for (const bool day_first : {false, true}) {
+            const StampForm form{day_first, false, milliseconds};
+            double first_s = 0.0, last_s = -shortest_s;
+            bool forward = true, order_matters = false;
+            for (std::size_t k = 0; k < texts.size() && forward; ++k) {
+                const auto time = clock_text(texts[k], form);
+                const double now_s = time ? static_cast<double>(time->whole_s) + time->fraction_s : last_s;
+                forward = time && (k == 0 || now_s >= last_s);
+                if (k == 0 && day_first && time) {
+                    const auto other = clock_text(texts[k], {false, false, milliseconds});
+                    order_matters = other && other->whole_s != time->whole_s;
+                }
+                if (k == 0) first_s = now_s;
+                last_s = now_s;
+            }
+            if (order_matters && forward && last_s - first_s == shortest_s) best.either_order = true;
+            if (!forward || !(last_s - first_s < shortest_s)) continue;
+            best = form;
+            shortest_s = last_s - first_s;
+        }
+        if (std::isfinite(shortest_s)) break;
+    }
+    return best;
+}
+
 void look_at_sample(std::string_view bytes, std::span<const TextLine> rows, TextDialect& dialect) {
     dialect.sample.assign(dialect.columns, {});
     dialect.clock_texts.assign(dialect.columns, false);
+    dialect.stamp_forms.assign(dialect.columns, {});
     dialect.first_counts.assign(dialect.columns, 0);
+    std::vector<std::vector<std::string_view>> texts(dialect.columns);
     CellSplit split;
     for (std::size_t k = 0; k < rows.size() && k < rows_sampled; ++k) {
         const std::string_view line = rows[k].of(bytes);
@@ -64,15 +98,24 @@ void look_at_sample(std::string_view bytes, std::span<const TextLine> rows, Text
         if (split.cells.size() != dialect.columns) continue;
         for (std::size_t c = 0; c < dialect.columns; ++c) {
             const std::string_view cell = split.cells[c].of(line);
-            auto value = parse_number(cell, dialect.rules.decimal_mark);
+            const auto value = parse_number(cell, dialect.rules.decimal_mark);
             if (k == 0) std::from_chars(cell.data(), cell.data() + cell.size(), dialect.first_counts[c]);
             if (!value && (k == 0 || dialect.clock_texts[c])) {
-                if (const auto time = clock_text(cell))
-                    value = static_cast<double>(time->whole_s) + time->fraction_s;
-                dialect.clock_texts[c] = value.has_value();
-                if (k == 0 && value) dialect.first_counts[c] = 0;
+                dialect.clock_texts[c] = clock_text(cell).has_value();
+                if (dialect.clock_texts[c]) texts[c].push_back(cell);
+                if (k == 0 && dialect.clock_texts[c]) dialect.first_counts[c] = 0;
             }
             dialect.sample[c].push_back(value.value_or(std::numeric_limits<double>::quiet_NaN()));
+        }
+    }
+    for (std::size_t c = 0; c < dialect.columns; ++c) {
+        if (!dialect.clock_texts[c] || texts[c].size() != dialect.sample[c].size()) continue;
+        dialect.stamp_forms[c] = form_of(texts[c]);
+        dialect.sample[c].clear();
+        for (const std::string_view text : texts[c]) {
+            const auto time = clock_text(text, dialect.stamp_forms[c]);
+            dialect.sample[c].push_back(time ? static_cast<double>(time->whole_s) + time->fraction_s
+                                             : std::numeric_limits<double>::quiet_NaN());
         }
     }
 }
@@ -285,6 +328,7 @@ MotionSample text_motion_sample(std::string_view bytes, const TextDialect& diale
     TextRow row(dialect, motion_columns(places), stamp_rule(places.layout, dialect.rules.decimal_mark));
     const bool timed = places.layout.chosen.time.has_value();
     std::size_t lines = 0;
+    double sum = 0.0;
     MotionSample sample;
     for (std::size_t begin = 0; begin < bytes.size();) {
         const std::size_t found = bytes.find(dialect.line_end, begin);
@@ -293,7 +337,10 @@ MotionSample text_motion_sample(std::string_view bytes, const TextDialect& diale
         begin = found + 1;
         ++lines;
         if (!row.parse(line)) continue;
-        sample.time.push_back(timed ? row.value(time_slot) : static_cast<double>(lines));
+        if (places.layout.time_is_steps && !sample.time.empty()) sum += row.value(time_slot);
+        sample.time.push_back(places.layout.time_is_steps ? sum
+                              : timed                     ? row.value(time_slot)
+                                                          : static_cast<double>(lines));
         if (places.velocity) sample.velocity.push_back(row.value(velocity_slot));
         if (places.position) sample.position.push_back(row.value(position_slot));
     }

@@ -36,7 +36,8 @@ struct TextDialect {
     std::size_t head_lines = 0;        ///< above the names, or above the first row, that are neither
     /// Numbers of the first rows by column, not-a-number where a cell is none; evidence for choosing columns.
     std::vector<std::vector<double>> sample;
-    std::vector<bool> clock_texts;      ///< by column: dates or times of day; seconds in the sample
+    std::vector<bool> clock_texts;       ///< by column: dates or times of day; seconds in the sample
+    std::vector<StampForm> stamp_forms;  ///< by column, of its dates and times of day
     std::vector<std::size_t> clock_of;  ///< by column: where its times stand, if each has its own; else empty
     std::vector<std::int64_t> first_counts;  ///< by column: the first row's whole number, exact
 };

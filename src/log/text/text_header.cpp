@@ -151,7 +151,22 @@ std::size_t read_names(std::string_view bytes, const TextLines& lines, const std
         }
     }
     // "a,b,c" over "1,2,3,": the writer ends rows with a delimiter.
-    if (dialect.names.size() + 1 == dialect.columns) dialect.names.emplace_back();
+    if (dialect.names.size() + 1 == dialect.columns) {
+        const TextLine& row = lines.content[std::min(taken, lines.content.size() - 1)];
+        split_cells(row.of(bytes), dialect.rules.delimiter, split);
+        const auto text = [&](std::size_t cell) { return split.cells[cell].of(row.of(bytes)); };
+        const std::size_t cells = split.cells.size();
+        for (std::size_t c = 0; c + 1 < cells && dialect.rules.delimiter == ','; ++c) {
+            if (!clock_text(text(c)) || text(c).find('.') != std::string_view::npos ||
+                text(c + 1).size() != 3 || !is_number(text(c + 1), '.'))
+                continue;
+            raise<DataError>(
+                "{}:{}: read the time '{},{}' in two cells, expected one: the comma of its milliseconds "
+                "separates cells; write a point, quote the times, or separate cells by ;",
+                source, row.number, text(c), text(c + 1));
+        }
+        dialect.names.emplace_back();
+    }
     // LabVIEW: a column of comments that rows without one leave out.
     if (dialect.names.size() == dialect.columns + 1 &&
         (dialect.names.back().empty() || dialect.names.back() == "Comment"))
