@@ -2,7 +2,9 @@
 // Stamps with more digits than a double holds, in two columns, as dates; the unit of a clock that states
 // none.
 
+#include <fmt/format.h>
 #include <cmath>
+
 #include <string>
 
 #include "log/clock/stamp.hpp"

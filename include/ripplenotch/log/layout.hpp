@@ -150,7 +150,8 @@ struct JointColumns {
 /// How dates and times are written where their fields alone do not say it.
 struct StampForm {
     bool day_first = true;      ///< 3/4/2025 is in April
-    bool either_order = false;  ///< no field says which; only the day depends on it
+    bool either_order = false;  ///< no field of the opening says which: the next day is the nearer one
+    std::int64_t other_s = 0;   ///< how much later the other order has the first date
     bool milliseconds = false;  ///< digits behind the seconds count them, without zeros in front: .5 is 5 ms
     bool operator==(const StampForm&) const = default;
 };

@@ -109,7 +109,7 @@ void settle_clock(const ColumnFacts& facts, bool unit_is_stated, Layout& layout)
     if (layout.time_as_text) layout.stamp_form = facts.stamp_forms[*layout.chosen.time];
     set_origin(facts, opening, layout);
     const std::string label = column_label(facts.names, *layout.chosen.time);
-    if (layout.time_as_text && layout.stamp_form.either_order)
+    if (layout.time_as_text && layout.stamp_form.either_order && layout.stamp_form.other_s != 0)
         layout.inferences.push_back({fmt::format("dates in {}", label),
                                      layout.stamp_form.day_first ? "day/month/year" : "month/day/year",
                                      "no field says which; only the day depends on it",

@@ -132,7 +132,16 @@ std::optional<double> read_stamp(std::string_view text, const StampRule& rule) {
     if (rule.text) {
         const auto time = clock_text(text, rule.form);
         if (!time) return std::nullopt;
-        return since(time->whole_s, rule.origin) + time->fraction_s;
+        double whole_s = since(time->whole_s, rule.origin);
+        if (rule.form.either_order) {
+            StampForm other = rule.form;
+            other.day_first = !other.day_first;
+            const auto by_other = clock_text(text, other);
+            const double other_s =
+                by_other ? since(by_other->whole_s - rule.form.other_s, rule.origin) : -1.0;
+            if (other_s >= 0.0 && (whole_s < 0.0 || other_s < whole_s)) whole_s = other_s;
+        }
+        return whole_s + time->fraction_s;
     }
     std::int64_t whole = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), whole);

@@ -61,21 +61,20 @@ StampForm form_of(const std::vector<std::string_view>& texts) {
     double shortest_s = std::numeric_limits<double>::infinity();
     for (const bool milliseconds : {false, true}) {
         for (const bool day_first : {false, true}) {
-            const StampForm form{day_first, false, milliseconds};
+            const StampForm form{.day_first = day_first, .milliseconds = milliseconds};
             double first_s = 0.0, last_s = -shortest_s;
-            bool forward = true, order_matters = false;
+            bool forward = true;
             for (std::size_t k = 0; k < texts.size() && forward; ++k) {
                 const auto time = clock_text(texts[k], form);
                 const double now_s = time ? static_cast<double>(time->whole_s) + time->fraction_s : last_s;
                 forward = time && (k == 0 || now_s >= last_s);
-                if (k == 0 && day_first && time) {
-                    const auto other = clock_text(texts[k], {false, false, milliseconds});
-                    order_matters = other && other->whole_s != time->whole_s;
-                }
                 if (k == 0) first_s = now_s;
                 last_s = now_s;
             }
-            if (order_matters && forward && last_s - first_s == shortest_s) best.either_order = true;
+            if (day_first && forward && last_s - first_s == shortest_s && texts.front().find('/') < 3) {
+                best.either_order = true;
+                best.other_s = static_cast<std::int64_t>(first_s) - clock_text(texts.front(), best)->whole_s;
+            }
             if (!forward || !(last_s - first_s < shortest_s)) continue;
             best = form;
             shortest_s = last_s - first_s;
