@@ -122,7 +122,9 @@ std::string_view without_padding(std::string_view text) {
 
 constexpr std::array measured_roles = {Role::time, Role::velocity, Role::torque, Role::position};
 
+// A number in front is that of a joint, "qd_1_deg_s", and no scale: that is for --scale alone.
 bool any_role_knows(std::string_view unit) {
+    if (std::isdigit(static_cast<unsigned char>(unit.front())) != 0) return false;
     return std::any_of(measured_roles.begin(), measured_roles.end(),
                        [&](Role role) { return role_factor(role, unit, 1.0).has_value(); });
 }
