@@ -246,6 +246,15 @@ std::optional<double> attenuation_db(const OrderLevel& level) {
     return 20.0 * portable::log10(raw / filtered);
 }
 
+double ripple_rms_nm(const RippleLevels& levels, std::size_t signal) {
+    double power = 0.0;
+    for (const OrderLevel& level : levels.orders) {
+        const double a = level.amplitude_nm[signal];
+        if (level.windows > 0) power += 0.5 * a * a;
+    }
+    return std::sqrt(power);
+}
+
 std::optional<double> predicted_nm(const FilterMetrics& metrics, std::size_t order) {
     if (!metrics.levels) return std::nullopt;
     const OrderLevel& level = metrics.levels->orders[order];
@@ -267,15 +276,6 @@ struct Runner {
     double error_squares = 0.0;
     std::optional<SwitchLedger> ledger = std::nullopt;  ///< ledger of a method that switches
 };
-
-double ripple_rms_nm(const RippleLevels& levels, std::size_t signal) {
-    double power = 0.0;
-    for (const OrderLevel& level : levels.orders) {
-        const double a = level.amplitude_nm[signal];
-        if (level.windows > 0) power += 0.5 * a * a;
-    }
-    return std::sqrt(power);
-}
 
 void fill_levels(MethodFigures& figures, const RippleLevels& levels, std::size_t signal) {
     if (levels.windows == 0) return;

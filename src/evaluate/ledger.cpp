@@ -189,14 +189,6 @@ constexpr double growth_db = 1.0;  // chosen, not derived: less is within what n
 // the log is in what is measured and not in what is predicted.
 constexpr double far_from_predicted = 3.0, share_that_counts = 0.1;
 
-/// Rms of all orders together.
-double ripple_rms_nm(const RippleLevels& levels, std::size_t signal) {
-    double power = 0.0;
-    for (const OrderLevel& order : levels.orders)
-        if (order.windows > 0) power += 0.5 * order.amplitude_nm[signal] * order.amplitude_nm[signal];
-    return std::sqrt(power);
-}
-
 const TimedSwitch* largest_jump(const StreamReport& stream) {
     const auto by_jump = [](const TimedSwitch& a, const TimedSwitch& b) {
         return std::abs(a.change.jump_nm) < std::abs(b.change.jump_nm);

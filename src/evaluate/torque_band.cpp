@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a method does to a torque without ripple, within the band in which the torque moves and beside it.
+// What a method does to a torque without ripple, within the band in which the torque moves and outside of it.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace ripplenotch {
 namespace {
 
 constexpr double share_of_variance = 0.99;  // chosen, not derived; stated in docs/commands/recommend.md
-// Periods of a torque in a log that are fewer than this are not told from its mean and trend.
+// Periods of a torque in a log that are fewer than this are not distinguished from its mean and trend.
 constexpr double fewest_periods = 4.0;
 constexpr double mean_over_median = 1.4426950408889634;  // of a noise bin's power, which is exponential
 constexpr int band_limit_order = 4;                      // once forward and once backward

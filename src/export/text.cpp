@@ -281,6 +281,12 @@ std::string comment_lines(std::span<const std::string> lines, std::string_view m
     return text;
 }
 
+std::string xml_comment(std::span<const std::string> lines) {
+    std::string text = comment_lines(lines, "  ");
+    for (std::size_t at = 0; (at = text.find("--", at)) != std::string::npos;) text.replace(at, 2, "- -");
+    return "<!--\n" + text + "-->\n";
+}
+
 void check_identifier(std::string_view name, std::string_view what) {
     const auto allowed = [](char c) { return c == '_' || std::isalnum(static_cast<unsigned char>(c)) != 0; };
     const bool good = !name.empty() && std::isdigit(static_cast<unsigned char>(name.front())) == 0 &&

@@ -164,6 +164,9 @@ using Fields = std::vector<std::pair<std::string_view, std::string>>;
 /// Each line after `mark`; a line cannot end the comment or start another line.
 [[nodiscard]] std::string comment_lines(std::span<const std::string> lines, std::string_view mark);
 
+/// The same as an XML comment, in which two hyphens cannot stand.
+[[nodiscard]] std::string xml_comment(std::span<const std::string> lines);
+
 /// Throws UsageError unless `name` can be a name in C, MATLAB and YAML: letters, digits, underscores, no
 /// digit first.
 void check_identifier(std::string_view name, std::string_view what);

@@ -10,10 +10,8 @@ import subprocess
 import unittest
 
 import commands
-from commands import DATA
+from commands import COMPILER, DATA, FILTER, SELF_TEST
 
-COMPILER = shutil.which(os.environ.get("CC", "cc"))
-STRICT = ["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-Wdouble-promotion", "-Wconversion", "-Wshadow"]
 SWITCHING = ("c-header", "cmsis-dsp", "scipy", "matlab", "json")
 FIXED = ("--method", "fixed,centers=60Hz:120Hz,q=2", "--sample-rate", "1kHz")
 SLOW = ("--method", "fixed,centers=2Hz,q=1", "--sample-rate", "4kHz")
@@ -58,40 +56,9 @@ class Case(commands.Case):
         done = self.run_tool("export", *words, "--verify", "--json", "--force")
         return json.loads(done.stdout), done
 
-    def compiled(self, source, *flags):
-        (self.folder / "main.c").write_text(source)
-        subprocess.run([COMPILER, *STRICT, *flags, "main.c", "-o", "main", "-lm"], cwd=self.folder, check=True, timeout=60)
-        return subprocess.run(["./main"], cwd=self.folder, check=True, capture_output=True, text=True, timeout=60).stdout
-
 
 @unittest.skipUnless(COMPILER, "no C compiler")
 class CHeader(Case):
-    SELF_TEST = """
-#define RIPPLENOTCH_SELF_TEST
-#include "notch.h"
-#include <stdio.h>
-int main(void)
-{
-    const double error = (double)ripplenotch_self_test();
-    printf("%.17g\\n", error);
-    return !(error <= (double)RIPPLENOTCH_GOLDEN_TOLERANCE_NM);
-}
-"""
-    FILTER = """
-#include "notch.h"
-#include <stdio.h>
-int main(void)
-{
-    double speed, torque;
-    ripplenotch_state state;
-    ripplenotch_init(&state);
-    while (scanf("%lf %lf", &speed, &torque) == 2) {
-        printf("%.17g\\n", (double)ripplenotch_step(&state, (ripplenotch_real)torque, (ripplenotch_real)speed));
-    }
-    return 0;
-}
-"""
-
     def test_every_precision_and_form_compiles_without_a_warning_and_passes_its_own_test_vector(self):
         self.table()
         for source in (["table.json"], FIXED):
@@ -102,9 +69,9 @@ int main(void)
                     self.good("export", *source, *words, "--to", f"c-header,precision={precision},form={form}", "-o", "notch.h",
                               "--force")
                     # Not contracted, it is the same arithmetic to the last bit.
-                    self.assertEqual(float(self.compiled(self.SELF_TEST, "-O2", "-ffp-contract=off")), 0.0, (precision, form))
+                    self.assertEqual(float(self.compiled(SELF_TEST, "-O2", "-ffp-contract=off")), 0.0, (precision, form))
                     if form == "svf":
-                        self.compiled(self.SELF_TEST, "-O3", "-ffast-math")  # within the tolerance all the same
+                        self.compiled(SELF_TEST, "-O3", "-ffast-math")  # within the tolerance all the same
 
     def test_the_test_vector_notices_one_wrong_bit_in_the_table(self):
         self.table()
@@ -114,16 +81,13 @@ int main(void)
         row = next(i for i, line in enumerate(lines) if line.startswith("        {0x1"))
         lines[row] = lines[row].replace("{0x1.", "{0x1.1", 1)
         path.write_text("\n".join(lines))
-        (self.folder / "main.c").write_text(self.SELF_TEST)
+        (self.folder / "main.c").write_text(SELF_TEST)
         subprocess.run([COMPILER, "main.c", "-o", "main"], cwd=self.folder, check=True)
         self.assertEqual(subprocess.run(["./main"], cwd=self.folder, stdout=subprocess.DEVNULL).returncode, 1)
 
     def filtered_by_header(self, rows):
-        (self.folder / "main.c").write_text(self.FILTER)
-        subprocess.run([COMPILER, *STRICT, "main.c", "-o", "main"], cwd=self.folder, check=True)
         text = "".join(f"{speed} {torque}\n" for speed, torque in rows)
-        done = subprocess.run(["./main"], cwd=self.folder, input=text, capture_output=True, text=True, check=True)
-        return [float(line) for line in done.stdout.split()]
+        return [float(line) for line in self.compiled(FILTER, stdin=text).split()]
 
     def filtered_by_tool(self, rows, method):
         log = "time_s,velocity_deg_s,torque_nm\n" + "".join(f"{k / 1000},{v},{t}\n" for k, (v, t) in enumerate(rows))

@@ -4,6 +4,7 @@ of the commands."""
 
 import os
 import pathlib
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -14,6 +15,34 @@ SOURCE = pathlib.Path(os.environ["RIPPLENOTCH_SOURCE"])
 DATA = SOURCE / "data"
 LOGS = pathlib.Path(os.environ.get("RIPPLENOTCH_LOGS", "no-such-folder"))  # real logs, which few have
 SHORT = os.environ.get("RIPPLENOTCH_SHORT") == "1"  # what takes long is left to scripts/nightly
+# Exported C is compiled as strictly as firmware compiles it, where there is a compiler.
+COMPILER = shutil.which(os.environ.get("CC", "cc"))
+STRICT = ("-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-Wdouble-promotion", "-Wconversion", "-Wshadow")
+SELF_TEST = """
+#define RIPPLENOTCH_SELF_TEST
+#include "notch.h"
+#include <stdio.h>
+int main(void)
+{
+    const double error = (double)ripplenotch_self_test();
+    printf("%.17g\\n", error);
+    return !(error <= (double)RIPPLENOTCH_GOLDEN_TOLERANCE_NM);
+}
+"""
+FILTER = """
+#include "notch.h"
+#include <stdio.h>
+int main(void)
+{
+    double speed, torque;
+    ripplenotch_state state;
+    ripplenotch_init(&state);
+    while (scanf("%lf %lf", &speed, &torque) == 2) {
+        printf("%.17g\\n", (double)ripplenotch_step(&state, (ripplenotch_real)torque, (ripplenotch_real)speed));
+    }
+    return 0;
+}
+"""
 sys.path.insert(0, str(SOURCE / "scripts"))
 sys.dont_write_bytecode = True
 
@@ -116,6 +145,12 @@ class Case(unittest.TestCase):
 
     def good(self, *words, **more):
         return good(*words, **self.here(more))
+
+    def compiled(self, source, *flags, stdin=None):
+        """What a C program with the header notch.h prints, compiled without a warning."""
+        (self.folder / "main.c").write_text(source)
+        subprocess.run([COMPILER, *STRICT, *flags, "main.c", "-o", "main", "-lm"], cwd=self.folder, check=True, timeout=60)
+        return subprocess.run(["./main"], cwd=self.folder, input=stdin, check=True, capture_output=True, text=True, timeout=60).stdout
 
 
 class SharedCase(Case):

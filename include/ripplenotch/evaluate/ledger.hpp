@@ -81,6 +81,9 @@ struct FilterMetrics {
 /// Orders of which far more is left than was predicted, one sentence each.
 [[nodiscard]] std::vector<std::string> short_of_prediction(const FilterMetrics& metrics);
 
+/// Ripple of all measured orders together, rms, of one of the meter's signals: 0 is the raw torque.
+[[nodiscard]] double ripple_rms_nm(const RippleLevels& levels, std::size_t signal);
+
 /// The remaining ripple of one order at the speeds of this log, predicted from the filter's response: from
 /// the amplitude in the table or joint if stated, else from the measured one before filtering. Empty when it
 /// was not computed.

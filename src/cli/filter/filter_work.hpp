@@ -52,7 +52,8 @@ struct JointWork {
     std::unique_ptr<ByteSink> metrics_sink;
 };
 
-/// Whether something is told, or decided, by how large the ripple is; else it is measured for warnings alone.
+/// Whether a result or an exit code depends on how large the ripple is; else it is measured for warnings
+/// alone.
 [[nodiscard]] bool must_measure(const FilterRequest& request, const FilterJob& job);
 
 /// The work of each joint that `stream` reads, with its filter ready and its outputs open. `spool` holds the

@@ -105,20 +105,21 @@ std::string recommendation_view(const RecommendationReport& report) {
     if (!found.orders.empty()) text += orders_text(found);
     if (!found.methods.empty()) {
         text += methods_text(found);
-        text += "\n" + paragraph(fmt::format(
-                           "Trained up to {:.6g} s, judged from there on in {} windows. The torque's band, "
-                           "{}: {:.3g} to "
-                           "{:.3g} Hz. Off by, rms: the ripple left, what is distorted of the torque without "
-                           "ripple within "
-                           "its band, and what is added to it beside that. Gain, within the band, and step: "
-                           "at the log's "
-                           "median speed; late: at any of its speeds.",
-                           report.split_s, found.windows,
-                           found.band->stated ? "as stated"
-                           : found.band->at_rest
-                               ? "which does not rise above the noise, as far as this log resolves it"
-                               : "99 % of what rises above the noise",
-                           found.band->from.value(), found.band->to.value()));
+        text +=
+            "\n" +
+            paragraph(fmt::format(
+                "Trained up to {:.6g} s, judged from there on in {} windows. The torque's band, "
+                "{}: {:.3g} to "
+                "{:.3g} Hz. Off by, rms: the ripple left, what is distorted of the torque without "
+                "ripple within "
+                "its band, and what is added to it outside of that. Gain, within the band, and step: "
+                "at the log's "
+                "median speed; late: at any of its speeds.",
+                report.split_s, found.windows,
+                found.band->stated    ? "as stated"
+                : found.band->at_rest ? "which does not rise above the noise, as far as this log resolves it"
+                                      : "99 % of what rises above the noise",
+                found.band->from.value(), found.band->to.value()));
     }
     if (!report.check.empty()) text += next_commands("To measure it again:", {report.check});
     return text + bulleted("Assumed:", report.assumed) + bulleted("Not tried:", report.left_out);

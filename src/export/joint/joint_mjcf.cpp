@@ -18,12 +18,6 @@ namespace ripplenotch {
 
 namespace {
 
-// Two hyphens end a comment.
-std::string without_ends(std::string line) {
-    for (std::size_t at = 0; (at = line.find("--", at)) != std::string::npos;) line.replace(at, 2, "- -");
-    return line;
-}
-
 constexpr std::string_view motor_words = R"(input="none" motorconst="1e-9" resistance="1")";
 
 }  // namespace
@@ -36,8 +30,7 @@ std::string mjcf_comment(const JointMjcf& mjcf, std::span<const std::string> hea
         lines.push_back(fmt::format("not held: {}: {}", part.effect, part.words));
     lines.emplace_back(
         "A torque sensor shows qfrc_inverse, plus the force of ripple_*, less that of friction_*.");
-    for (std::string& line : lines) line = without_ends(std::move(line));
-    return "<!--\n" + comment_lines(lines, "  ") + "-->\n";
+    return xml_comment(lines);
 }
 
 std::string damping_words(const JointMjcf& mjcf) {

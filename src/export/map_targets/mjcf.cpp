@@ -36,7 +36,7 @@ Cogging cogging_of(const RippleMap& flat, std::size_t i) {
 Written write(const RippleMap& map, const Settings& settings, std::span<const std::string> heading) {
     const RippleMap flat = flat_map(map, settings);
     std::string text;
-    if (!heading.empty()) text += "<!--\n" + comment_lines(heading, "  ") + "-->\n";
+    if (!heading.empty()) text += xml_comment(heading);
     // The compiler requires a motor constant and a resistance above 0.
     text += "<mujoco>\n  <actuator>\n";
     for (std::size_t i = 0; i < flat.orders.size(); ++i) {

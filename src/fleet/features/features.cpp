@@ -24,7 +24,7 @@ namespace {
 
 constexpr double widest_phase_deg = 45.0;  // half of its interval
 
-/// What the descriptors of a log are told from.
+/// What the descriptors of a log are computed from.
 struct FeatureSource {
     const Identification& found;
     const JointFit& joint;
@@ -67,9 +67,9 @@ void ripple_phase(const FeatureSource& from, Descriptor& one) {
     one.ci95 = Interval{*ripple.phase_deg - half_deg, *ripple.phase_deg + half_deg};
 }
 
-template <void (JointFit::*tell)(Descriptor&) const>
+template <void (JointFit::*estimate)(Descriptor&) const>
 void fitted(const FeatureSource& from, Descriptor& one) {
-    (from.joint.*tell)(one);
+    (from.joint.*estimate)(one);
 }
 
 void noise_floor(const FeatureSource& from, Descriptor& one) {
@@ -94,7 +94,7 @@ struct DescriptorKind {
     std::string_view stem;    ///< "ripple_N_amplitude": with an order in the place of N
     std::string_view unit;    ///< as it ends the name
     bool scales_with_torque;  ///< whether a torque sensor of another gain shows another value
-    void (*tell)(const FeatureSource& from, Descriptor& one);
+    void (*estimate)(const FeatureSource& from, Descriptor& one);
 
     [[nodiscard]] bool is_of_order() const { return stem.starts_with("ripple_N"); }
 };
@@ -123,7 +123,7 @@ std::vector<Descriptor> descriptors_of(FeatureSource from, std::span<const Rippl
         one.stem = kind.stem;
         if (from.ripple != nullptr) one.stem.replace(one.stem.find('N'), 1, shortest(from.ripple->order));
         one.unit = kind.unit;
-        kind.tell(from, one);
+        kind.estimate(from, one);
     };
     const auto is_of_order = [](const DescriptorKind& kind) { return kind.is_of_order(); };
     const auto first = std::find_if(descriptor_kinds.begin(), descriptor_kinds.end(), is_of_order);

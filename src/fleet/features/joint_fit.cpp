@@ -159,7 +159,7 @@ const FittedValue* JointFit::fitted(const std::string& effect, const std::string
     return nullptr;
 }
 
-void JointFit::tell(Descriptor& one, const Wanted& wanted, std::string reason) const {
+void JointFit::estimate(Descriptor& one, const Wanted& wanted, std::string reason) const {
     one.reason = std::move(reason);
     if (!one.reason.empty()) return;
     const FittedValue* value = fitted(wanted.effect, wanted.parameter);
@@ -192,7 +192,7 @@ std::string JointFit::one_way() const {
     return "";
 }
 
-// The same of friction at rest beside friction that grows with the speed.
+// The same of friction at rest in addition to friction that grows with the speed.
 std::string JointFit::one_speed() const {
     const std::string reason = one_way();
     if (!reason.empty() || facts_.several_speeds()) return reason;
@@ -201,19 +201,20 @@ std::string JointFit::one_speed() const {
 
 void JointFit::coulomb_friction(Descriptor& one) const {
     const bool winds = fitted("hysteresis", "torque_nm") != nullptr;
-    tell(one, {winds ? "hysteresis" : "coulomb-friction", "torque_nm", std::sqrt(facts_.mix.moving_share)},
-         one_speed());
+    estimate(one,
+             {winds ? "hysteresis" : "coulomb-friction", "torque_nm", std::sqrt(facts_.mix.moving_share)},
+             one_speed());
 }
 
 void JointFit::viscous_friction(Descriptor& one) const {
-    tell(one, {"viscous-friction", "coefficient_nm_per_deg_s", facts_.speed_rms_deg_s}, one_speed());
+    estimate(one, {"viscous-friction", "coefficient_nm_per_deg_s", facts_.speed_rms_deg_s}, one_speed());
 }
 
 void JointFit::load_friction(Descriptor& one) const {
     const std::string reason = one_way();
     const bool is_told = fitted("load-friction", "torque_nm") != nullptr || !reason.empty();
-    tell(one, {"load-friction", "torque_nm", std::max(load_rms_nm().value_or(0.0), 1e-9)},
-         is_told ? reason : "the joint carries too little beside its friction");
+    estimate(one, {"load-friction", "torque_nm", std::max(load_rms_nm().value_or(0.0), 1e-9)},
+             is_told ? reason : "the load of the joint is too small against its friction");
 }
 
 void JointFit::lost_motion(Descriptor& one) const {
@@ -225,18 +226,18 @@ void JointFit::lost_motion(Descriptor& one) const {
 }
 
 void JointFit::inertia(Descriptor& one) const {
-    tell(one, {"inertia", "inertia_kgm2", facts_.acceleration_rms_rad_s2}, "");
+    estimate(one, {"inertia", "inertia_kgm2", facts_.acceleration_rms_rad_s2}, "");
 }
 
 void JointFit::gravity(Descriptor& one) const {
     const bool far = facts_.mix.travel_deg >= least_travel_deg;
-    tell(one, {"gravity", "amplitude_nm", std::sqrt(0.5)},
-         far ? ""
-             : fmt::format("the joint travels {:.3g} deg, and a weight needs {:g}", facts_.mix.travel_deg,
-                           least_travel_deg));
+    estimate(one, {"gravity", "amplitude_nm", std::sqrt(0.5)},
+             far ? ""
+                 : fmt::format("the joint travels {:.3g} deg, and a weight needs {:g}", facts_.mix.travel_deg,
+                               least_travel_deg));
 }
 
-void JointFit::sensor_zero(Descriptor& one) const { tell(one, {"offset", "torque_nm", 1.0}, one_way()); }
+void JointFit::sensor_zero(Descriptor& one) const { estimate(one, {"offset", "torque_nm", 1.0}, one_way()); }
 
 // Second differences, of which the few at reversals and jumps do not count: their median.
 double JointFit::noise_nm() const {

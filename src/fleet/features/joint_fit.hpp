@@ -43,7 +43,7 @@ class JointFit {
     [[nodiscard]] std::vector<unsigned char> near_samples() const;
     [[nodiscard]] std::string one_way() const;
     [[nodiscard]] std::string one_speed() const;
-    void tell(Descriptor& one, const Wanted& wanted, std::string reason) const;
+    void estimate(Descriptor& one, const Wanted& wanted, std::string reason) const;
     [[nodiscard]] const FittedValue* fitted(const std::string& effect, const std::string& parameter) const;
 
     const Motion& motion_;

@@ -117,7 +117,7 @@ void HeldCounter::note_changes(const RowChannels& rows, std::size_t pairs) {
 }
 
 // Of a sample written several times, all channels change in one row or in none.
-bool HeldCounter::tells(std::size_t repeats, std::size_t with_torque) const {
+bool HeldCounter::is_evidence(std::size_t repeats, std::size_t with_torque) const {
     const std::size_t changes = counts_.moving - repeats, of_torque = counts_.moving - counts_.torque;
     if (2 * repeats < counts_.moving) return true;
     const auto both = static_cast<double>(changes + with_torque) - static_cast<double>(counts_.torque);
@@ -125,10 +125,11 @@ bool HeldCounter::tells(std::size_t repeats, std::size_t with_torque) const {
 }
 
 HeldCounter::Way HeldCounter::way() const {
-    const bool velocity_tells = tells(counts_.velocity, counts_.velocity_and_torque);
-    const bool position_tells = has_position_ && tells(counts_.position, counts_.position_and_torque);
-    if (velocity_tells) return position_tells ? with_both : with_velocity;
-    return position_tells ? with_position : torque_alone;
+    const bool velocity_is_evidence = is_evidence(counts_.velocity, counts_.velocity_and_torque);
+    const bool position_is_evidence =
+        has_position_ && is_evidence(counts_.position, counts_.position_and_torque);
+    if (velocity_is_evidence) return position_is_evidence ? with_both : with_velocity;
+    return position_is_evidence ? with_position : torque_alone;
 }
 
 bool HeldCounter::torque_is_coarse() const {

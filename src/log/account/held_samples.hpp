@@ -12,11 +12,11 @@
 namespace ripplenotch {
 
 /// Counts rows whose torque and every other telling channel equal the row before, while the joint moves by
-/// more than 0.2 deg/s. A channel tells when it changes in most moving rows, or when the torque changes only
-/// together with it, which is known at the end only:
-/// a coarsely quantised torque repeats by itself, and so does the velocity of a perfectly steady motion. So
-/// repetitions are counted for every set of telling channels, and one count is chosen then. Where no channel
-/// tells, the torque alone does, unless it is coarse: its usual change is only a few of its smallest.
+/// more than 0.2 deg/s. A channel is evidence when it changes in most moving rows, or when the torque changes
+/// only together with it, which is known at the end only: a coarsely quantised torque repeats by itself, and
+/// so does the velocity of a perfectly steady motion. So repetitions are counted for every set of telling
+/// channels, and one count is chosen then. Where no channel tells, the torque alone does, unless it is
+/// coarse: its usual change is only a few of its smallest.
 class HeldCounter {
   public:
     /// `by_position`: the velocity is the slope of the position from row to row, which is 0 within a hold;
@@ -42,7 +42,7 @@ class HeldCounter {
     void count_pairs(const RowChannels& rows, std::size_t pairs);
     void measure_runs(const RowChannels& rows, std::size_t pairs);
     void note_changes(const RowChannels& rows, std::size_t pairs);
-    [[nodiscard]] bool tells(std::size_t repeats, std::size_t with_torque) const;
+    [[nodiscard]] bool is_evidence(std::size_t repeats, std::size_t with_torque) const;
     [[nodiscard]] Way way() const;
     [[nodiscard]] bool torque_is_coarse() const;
 

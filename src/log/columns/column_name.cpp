@@ -59,7 +59,7 @@ constexpr std::array<std::string_view, 35> foreign_words = {
     "hat",     "limit",     "limits",   "max",   "min",         "robot",         "main",
     "voltage", "execution", "cycle",    "delay", "temperature", "accelerations", "acceleration",
     "acc",     "ddq",       "ddot",     "qdd",   "override",    "deviation",     "derivative"};
-// Parts of a torque, as models and simulators write them beside the whole.
+// Parts of a torque, as models and simulators write them next to the whole.
 constexpr std::array<std::string_view, 12> part_words = {
     "friction", "passive",  "gravity", "grav", "coriolis",   "centrifugal",
     "inertia",  "inertial", "damping", "bias", "constraint", "disturbance"};
@@ -249,17 +249,18 @@ ColumnName read_column_name(std::string_view name) {
 
 namespace {
 
-/// Letters that are a quantity where no other column is, and the names beside which they may be another one.
+/// Letters that are a quantity where no other column is, and the names of other columns with which they may
+/// be another one.
 struct Symbol {
     std::string_view text;
     Role role;
     std::array<std::string_view, 4> rivals;
 };
 constexpr std::array symbols = {
-    Symbol{"v", Role::velocity, {"i", "I", "u", "U"}},   // a voltage beside a current
+    Symbol{"v", Role::velocity, {"i", "I", "u", "U"}},   // a voltage next to a current
     Symbol{"w", Role::velocity, {"x", "y", "z", "qx"}},  // of a quaternion
     Symbol{"\xcf\x89", Role::velocity, {}},
-    Symbol{"T", Role::torque, {"i", "I", "iq", "current"}},  // a temperature beside a motor current
+    Symbol{"T", Role::torque, {"i", "I", "iq", "current"}},  // a temperature next to a motor current
     Symbol{"M", Role::torque, {}},
     Symbol{"\xcf\x84", Role::torque, {}},
     Symbol{"th", Role::position, {}},
@@ -358,9 +359,9 @@ void drop_unasked(const KnownColumns& known, bool joint_asked, std::vector<Joint
         groups.clear();
     if (joint_asked) return;
     groups.erase(std::remove_if(groups.begin(), groups.end(), is_unasked), groups.end());
-    const bool told = std::any_of(groups.begin(), groups.end(),
-                                  [&](const JointGroup& group) { return group.key == of_torque; });
-    if (groups.size() > 1 && !told) groups.clear();
+    const bool distinct = std::any_of(groups.begin(), groups.end(),
+                                      [&](const JointGroup& group) { return group.key == of_torque; });
+    if (groups.size() > 1 && !distinct) groups.clear();
 }
 
 std::vector<JointGroup> collect_groups(const KnownColumns& known, bool merge) {
@@ -479,13 +480,13 @@ std::vector<JointGroup> group_joints(const KnownColumns& known, bool joint_asked
         groups.push_back({joint_key(joint), joint, {}});
     }
     if (std::none_of(groups.begin(), groups.end(), complete) && groups.size() > 1 && !joint_asked) {
-        // "motor_torque" beside "link_velocity": one joint whose columns are named after different
+        // "motor_torque" and "link_velocity": one joint whose columns are named after different
         // things.
         std::array<std::size_t, 3> counts{};
         for (std::size_t r = 0; r < motion_roles.size(); ++r) {
             for (const JointGroup& group : groups) counts[r] += group.has(motion_roles[r]);
         }
-        // "tau_motor_side" and "tau_sensor" beside them: torques of the one joint that moves, to be chosen
+        // "tau_motor_side" and "tau_sensor" with them: torques of the one joint that moves, to be chosen
         // from.
         const bool numbered = std::any_of(groups.begin(), groups.end(), [](const JointGroup& group) {
             return number_of(group.key).has_value();

@@ -26,14 +26,14 @@ struct ColumnName {
     std::string unit;         ///< as written; empty when the name has none
     bool unit_is_sure = false;  ///< written in brackets, or a unit that is not read ("torque_percent")
     std::string joint;          ///< "j4", "3", "shoulder_pan_joint"; empty when the name has none
-    /// What a letter such as v, w or T stands for as a whole name, where the names beside it allow it: then
+    /// What a letter such as v, w or T stands for as a whole name, where the other names allow it: then
     /// `role` is that one, too, unless another reading is as good.
     Role symbol = Role::other;
 };
 
 [[nodiscard]] ColumnName read_column_name(std::string_view name);
 
-/// All names of a log, with what only the others beside a name decide: whether T is a time or a torque.
+/// All names of a log, with what only the other names decide: whether T is a time or a torque.
 /// `units` by column, from a row of them; may be empty.
 [[nodiscard]] std::vector<ColumnName> read_column_names(const std::vector<std::string>& names,
                                                         const std::vector<std::string>& units);

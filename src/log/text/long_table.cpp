@@ -38,7 +38,7 @@ namespace {
 using Words = std::span<const std::string_view>;
 constexpr std::array<std::string_view, 10> signal_words = {
     "signal", "variable", "name", "channel", "topic", "key", "parameter", "field", "series", "signalname"};
-// Beside them: whose signal it is.
+// In addition: whose signal it is.
 constexpr std::array<std::string_view, 6> owner_words = {"joint", "axis",  "actuator",
                                                          "motor", "robot", "device"};
 constexpr std::array<std::string_view, 7> value_words = {"value", "values", "data",   "wert",
