@@ -119,7 +119,7 @@ class PreviewIsExport(commands.Case):
         self.assertNotIn("speed_deg_s", text)
 
     def test_what_would_run_otherwise_is_refused_with_what_runs(self):
-        for words, said in ((("--transition", "reset"), "one of keep-state-variable"), (("--transition", "kep"), "transition"),
+        for words, said in ((("--transition", "reset"), "one of keep-state-variable"), (("--transition", "kep"), "none of parallel, keep"),
                             (("--to", "c-header,form=df1"), "--transition keep"),
                             (("--to", "c-header,form=df2t"), "--transition parallel"),
                             (("--to", "c-header,precision=q31"), "range=200Nm"),
