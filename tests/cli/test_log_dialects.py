@@ -57,8 +57,6 @@ COLUMNS = {
     "sec": lambda r: str(r.ns // 10**9), "nanosec": lambda r: str(r.ns % 10**9),
     "wrapped rad": lambda r: f"{(r.position * DEG) % (2 * math.pi):.8f}",
     "wrapped deg": lambda r: f"{r.position % 360.0:.6f}",
-    "count": lambda r: str(round(r.position * 524288 / 360)), "count/s": lambda r: str(round(r.velocity * 524288 / 360)),
-    "per mille": lambda r: str(round(r.torque / 0.004)),
     "motor rpm": lambda r: f"{RATIO * r.velocity / 6:.5f}", "motor deg": lambda r: f"{RATIO * r.position:.4f}",
     "motor deg/s": lambda r: f"{RATIO * r.velocity:.5f}", "motor rad": lambda r: f"{RATIO * r.position * DEG:.6f}",
     "iso": lambda r: (datetime.datetime(2024, 5, 1, 12, 30) + datetime.timedelta(seconds=r.t)).isoformat(
@@ -178,7 +176,6 @@ def blocks():
 
 # name -> bytes, and the options that make it right where it may be refused
 RAD, REFUSED_RAD = "t|rad/s|Nm|rad", ["--unit", "velocity=rad/s"]
-COUNTS = ["--scale", "position=360deg/524288", "--scale", "velocity=360deg/s/524288", "--scale", "torque=0.004Nm"]
 DIALECTS = {
     "units in the header": (table("time_s|velocity_deg_s|torque_nm|position_deg", "t|deg/s|Nm|deg"), None),
     "brackets and radians": (table("t [s]|dq [rad/s]|tau [Nm]|q [rad]", RAD), None),
@@ -262,12 +259,6 @@ DIALECTS = {
                                             ["--gear-ratio", "100"]),
     "both of the motor": (table("time_s|motor_velocity_rpm|torque_nm|motor_position_deg", "t|motor rpm|Nm|motor deg"),
                           ["--gear-ratio", "100"]),
-    # Counts and per mille, which no unit is for but what one of them is.
-    "CiA 402 objects": (table("time_s|position_actual_value_0x6064|velocity_actual_value_0x606C|torque_actual_value_0x6077",
-                              "t|count|count/s|per mille"), COUNTS),
-    "counts by name": (table("time_s|position_counts|velocity_counts|torque_permille", "t|count|count/s|per mille"), COUNTS),
-    "increments in brackets": (table("time_s|position [inc]|velocity [inc/s]|torque [permille]", "t|count|count/s|per mille"),
-                               COUNTS),
     # Heads and formats.
     "LabVIEW": (lvm(), ["--unit", "velocity=deg/s,position=deg"]),  # what Y_Unit_Label says is not read
     "TwinCAT Scope": (twincat("ms"), None),

@@ -411,11 +411,8 @@ void attach_log_columns(Options& options, ReadOptions& log) {
         "--columns", [&log](Text text) { log.columns = split_outside_brackets(text); }, "LIST",
         "what the columns are: by place 'time,velocity,torque' (- skips one), or by name 'torque=tau_J'");
     options.parsed(
-        "--unit,--scale", [&log](Text text) { read_units(text, log.units); }, "COLUMN=UNIT",
-        "unit of a column: velocity=rad/s, torque=mNm, time=ms; or what one count is: "
-        "position=360deg/524288; "
-        "repeatable",
-        true);
+        "--unit", [&log](Text text) { read_units(text, log.units); }, "COLUMN=UNIT",
+        "unit of a column: velocity=rad/s, torque=mNm, time=ms; repeatable", true);
     options.parsed(
         "--side", [&log](Text text) { read_sides(text, log.sides); }, "SIDE",
         "where motion is measured: motor (before the gear) or joint; or by column, velocity=motor");

@@ -159,28 +159,6 @@ bool is_clock_name(const std::vector<Word>& left) {
     });
 }
 
-// "position_actual_value_0x6064": an object of the drive profile CiA 402 (objects 0x6000 to 0x6FFF), whose
-// index is the number of no joint. Its values are counts, of torques and currents per mille of the rated
-// ones.
-std::string take_object_index(std::string& name) {
-    const std::string lower = lower_case(name);
-    for (std::size_t at = lower.find("0x6"); at != std::string::npos; at = lower.find("0x6", at + 1)) {
-        if (at + 6 > lower.size()) break;
-        const std::string_view index = std::string_view(lower).substr(at + 2, 4);
-        const bool is_index =
-            std::all_of(index.begin(), index.end(), [](unsigned char c) { return std::isxdigit(c) != 0; });
-        if (!is_index ||
-            (at + 6 < lower.size() && std::isalnum(static_cast<unsigned char>(lower[at + 6])) != 0))
-            continue;
-        name.erase(at, 6);
-        while (!name.empty() && (name.back() == '_' || name.back() == ' ' || name.back() == ':'))
-            name.pop_back();
-        // Target torque to torque actual value, and current actual value.
-        return index >= "6071" && index <= "6078" ? "permille" : "counts";
-    }
-    return "";
-}
-
 }  // namespace
 
 ColumnName read_column_name(std::string_view name) {
@@ -190,10 +168,6 @@ ColumnName read_column_name(std::string_view name) {
     const bool element =
         bracket != std::string_view::npos && is_digits(name.substr(bracket + 1, name.size() - bracket - 2));
     NameAndUnit parts = split_unit(element ? name.substr(0, bracket) : name);
-    if (const std::string count = take_object_index(parts.name); !count.empty() && parts.unit.empty()) {
-        parts.unit = count;
-        parts.bracketed = true;
-    }
     if (element) parts.name += name.substr(bracket);
     column.unit = parts.unit;
     column.unit_is_sure = parts.bracketed;

@@ -405,11 +405,9 @@ class Decision {
             column.unit_assumed = column.unit_assumed && !stated_[c];
         } else if (is_chosen(c)) {
             raise<DataError>(
-                "{}: read {} in '{}', expected a {} in {}; if the header is wrong, say --unit {}={}, and of "
-                "counts or per mille "
-                "what one is, for example --scale {}",
-                source_, column_label(facts_.names, c), written, role_name(role), unit_list(role),
-                role_name(role), base_unit(dimension_of(role)), scale_example(role));
+                "{}: read {} in '{}', expected a {} in {}; if the header is wrong, say --unit {}={}", source_,
+                column_label(facts_.names, c), written, role_name(role), unit_list(role), role_name(role),
+                base_unit(dimension_of(role)));
         } else {
             column.role = Role::other;
             column.joint.clear();

@@ -11,7 +11,6 @@
 
 #include "core/text/lower_case.hpp"
 #include "ripplenotch/core/error.hpp"
-#include "ripplenotch/core/number.hpp"
 
 namespace ripplenotch {
 
@@ -103,10 +102,9 @@ constexpr std::array spellings = {
 
 // Units of torque that this tool does not read, at the end of a name without brackets; a column of them is
 // not in Nm.
-constexpr std::array<std::string_view, 25> unread_units = {
-    "counts", "count",   "cnt",    "increments", "inc",      "ticks", "lsb",    "lbf_in", "in_lbf",
-    "lb_in",  "in_lb",   "lbf_ft", "ft_lbf",     "lb_ft",    "ft_lb", "ozf_in", "in_ozf", "oz_in",
-    "in_oz",  "percent", "pct",    "percents",   "permille", "volts", "kgf_cm"};
+constexpr std::array<std::string_view, 18> unread_units = {
+    "lbf_in", "in_lbf", "lb_in", "in_lb",   "lbf_ft", "ft_lbf",   "lb_ft",    "ft_lb", "ozf_in",
+    "in_ozf", "oz_in",  "in_oz", "percent", "pct",    "percents", "permille", "volts", "kgf_cm"};
 
 std::string lower_without_blanks(std::string_view text) {
     std::string lower = lower_case(text);
@@ -122,9 +120,7 @@ std::string_view without_padding(std::string_view text) {
 
 constexpr std::array measured_roles = {Role::time, Role::velocity, Role::torque, Role::position};
 
-// A number in front is that of a joint, "qd_1_deg_s", and no scale: that is for --scale alone.
 bool any_role_knows(std::string_view unit) {
-    if (std::isdigit(static_cast<unsigned char>(unit.front())) != 0) return false;
     return std::any_of(measured_roles.begin(), measured_roles.end(),
                        [&](Role role) { return role_factor(role, unit, 1.0).has_value(); });
 }
@@ -149,49 +145,7 @@ Dimension dimension_of(Role role) {
 
 bool is_current_unit(std::string_view unit) { return unit_factor(Dimension::current, unit).has_value(); }
 
-namespace {
-
-// "360deg/524288" and "0.04Nm": what one count of a drive or converter is.
-std::optional<double> scaled_factor(Role role, std::string_view text, double nm_per_ampere) {
-    std::size_t end = 0;
-    while (end < text.size() && std::string_view("+-.0123456789eE").find(text[end]) != std::string_view::npos)
-        ++end;
-    const auto number = parse_number(text.substr(0, end));
-    if (!number || *number == 0.0) return std::nullopt;
-    text.remove_prefix(end);
-    double divisor = 1.0;
-    if (const std::size_t slash = text.rfind('/'); slash != std::string_view::npos) {
-        if (const auto by = parse_number(text.substr(slash + 1)); by && *by != 0.0) {
-            divisor = *by;
-            text = text.substr(0, slash);
-        }
-    }
-    const auto usual = usual_unit(text, role);
-    const auto factor = usual ? role_factor(role, *usual, nm_per_ampere) : std::nullopt;
-    return factor ? std::optional(*factor * *number / divisor) : std::nullopt;
-}
-
-}  // namespace
-
-std::string_view scale_example(Role role) {
-    switch (role) {
-        case Role::time:
-            return "time=250us";
-        case Role::velocity:
-            return "velocity=60rpm/524288";
-        case Role::torque:
-            return "torque=0.04Nm";
-        case Role::position:
-        case Role::other:
-            break;
-    }
-    return "position=360deg/524288";
-}
-
 std::optional<double> role_factor(Role role, std::string_view unit, double nm_per_ampere) {
-    if (!unit.empty() && std::string_view("+-.0123456789").find(unit.front()) != std::string_view::npos) {
-        if (const auto scaled = scaled_factor(role, unit, nm_per_ampere)) return scaled;
-    }
     if (role == Role::torque) {
         if (const auto amperes = unit_factor(Dimension::current, unit)) return *amperes * nm_per_ampere;
     }

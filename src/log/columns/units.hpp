@@ -21,12 +21,8 @@ namespace ripplenotch {
 /// What a role measures: time, speed, torque (or current), angle.
 [[nodiscard]] Dimension dimension_of(Role role);
 
-/// Factor from `unit` to the tool's unit for the role; torque accepts A and mA, with `nm_per_ampere`. A unit
-/// may be scaled, "0.04Nm" or "360deg/524288": what one count of a drive is.
+/// Factor from `unit` to the tool's unit for the role; torque accepts A and mA, with `nm_per_ampere`.
 [[nodiscard]] std::optional<double> role_factor(Role role, std::string_view unit, double nm_per_ampere);
-
-/// A scaled unit of the role, as an example: "position=360deg/524288".
-[[nodiscard]] std::string_view scale_example(Role role);
 
 /// True for A and mA.
 [[nodiscard]] bool is_current_unit(std::string_view unit);
