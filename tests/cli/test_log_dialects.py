@@ -144,20 +144,6 @@ def twincat_shared():
     return table(None, "ms|deg/s|Nm|deg", delimiter="\t", head=head) + b"EOF\n"
 
 
-def twincat_block(delimiter, decimal, shared):
-    """The whole block of keys, numbers among its values, and units with their quantity."""
-    keys = {"Name": ("ActVelo", "ActTorque", "ActPos"), "SymbolComment": ("", "", ""), "Data-Type": ("REAL64",) * 3,
-            "SampleTime[ms]": ("2",) * 3, "VariableSize": ("8",) * 3, "SymbolBased": ("True",) * 3, "IndexGroup": ("16448",) * 3,
-            "NetID": ("192.168.1.2.1.1",) * 3, "Port": ("851",) * 3, "Offset": ("0",) * 3, "ScaleFactor": ("1",) * 3,
-            "Unit": ("°/s (Velocity)", "mNm (Torque)", "° (Angle)"), "Unit ScaleFactor": ("1",) * 3, "Unit Offset": ("0",) * 3}
-    head = f"Name{delimiter}run\nStarttime of export{delimiter}133600000000000000{delimiter}Montag, 2. Mai 2022\n\n"
-    for key, values in keys.items():
-        cells = [key, *values] if shared else [cell for value in values for cell in (key, value)]
-        head += delimiter.join(cells) + "\n"
-    columns = "ms|deg/s|mNm|deg" if shared else "ms|deg/s|ms|mNm|ms|deg"
-    return table(None, columns, delimiter=delimiter, decimal=decimal, head=head + "\n")
-
-
 def tidy():
     lines = ["time_ms,signal,value"]
     for r in ROWS:
@@ -264,10 +250,6 @@ DIALECTS = {
     "TwinCAT Scope": (twincat("ms"), None),
     "TwinCAT Scope, FILETIME": (twincat("filetime"), None),
     "TwinCAT Scope, one column of times": (twincat_shared(), None),
-    **{f"TwinCAT Scope, all keys, {name}, {'shared' if shared else 'own'} times": (twincat_block(delimiter, decimal, shared), None)
-       for name, delimiter, decimal in (("tab", "\t", "."), ("tab and comma", "\t", ","), ("semicolon", ";", "."),
-                                        ("semicolon and comma", ";", ","), ("comma", ",", "."))
-       for shared in (True, False)},
     "npy by rows": (npy(False, False), ["--unit", "velocity=deg/s"]),
     "npy in Fortran order": (npy(True, False), ["--unit", "velocity=deg/s"]),
     "npy with a row a signal": (npy(False, True), ["--unit", "velocity=deg/s"]),
@@ -312,15 +294,6 @@ class OneLogInManyDialects(Case):
                 self.assertAlmostEqual(json.loads(again.stdout)["gear_ratio"]["value"], RATIO, delta=0.5)
                 refused.append(name)
         print(f"\n{len(right)} right without an option, {len(refused)} refused with it: {', '.join(refused)}")
-
-
-class UnitsWithTheirQuantity(Case):
-    def test_a_torque_in_mnm_is_not_a_thousand_times_too_large(self):
-        path = self.folder / "log.csv"
-        path.write_bytes(twincat_block(",", ".", True))
-        found = json.loads(run("info", path, "--json").stdout)
-        largest = found["joints"][0]["torque_nm"]["max"]
-        self.assertAlmostEqual(largest, max(r.torque for r in ROWS), delta=0.01)
 
 
 class ChannelsWithClocksOfTheirOwn(unittest.TestCase):

@@ -210,22 +210,13 @@ std::size_t read_header(std::string_view bytes, const TextLines& lines, const st
 
 namespace {
 
-constexpr std::size_t rows_in_a_row = 3;   // so many rows make a table
-constexpr std::size_t longest_block = 64;  // chosen, not derived: TwinCAT Scope writes about twenty lines
-
-/// "Name A Name B" over pairs of time and value, "Name A B" where channels share their times.
-bool speaks_of_channels(const std::vector<std::string>& cells, std::string_view key, std::size_t columns) {
-    return columns > 1 && cells.size() >= columns && cells[0] == key && cells[1] != key;
-}
+constexpr std::size_t rows_in_a_row = 3;  // so many rows make a table
 
 class Lines {
   public:
     Lines(std::string_view bytes, const std::vector<TextLine>& content, const CellRules& rules,
           std::size_t columns)
-        : bytes_(bytes), content_(content), rules_(rules), columns_(columns) {
-        for (std::size_t line = 0; line < std::min(content.size(), longest_block) && !has_keys_; ++line)
-            has_keys_ = speaks_of_channels(cells(line), "Name", columns);
-    }
+        : bytes_(bytes), content_(content), rules_(rules), columns_(columns) {}
 
     [[nodiscard]] std::vector<std::string> cells(std::size_t line) const {
         const std::string_view text = content_[line].of(bytes_);
@@ -236,11 +227,9 @@ class Lines {
         return cells;
     }
 
-    /// As many cells as a row, numbers in most of them, words in few; under a block of keys, "Port 851 851",
-    /// the time in front is a number, too.
+    /// As many cells as a row, numbers in most of them, words in few.
     [[nodiscard]] bool is_row(std::size_t line) const {
         const std::vector<std::string> texts = cells(line);
-        if (has_keys_ && !parse_number(texts.front(), rules_.decimal_mark)) return false;
         const auto numbers = std::count_if(texts.begin(), texts.end(), [this](const std::string& text) {
             return parse_number(text, rules_.decimal_mark).has_value() || clock_text(text).has_value();
         });
@@ -279,11 +268,12 @@ class Lines {
     const std::vector<TextLine>& content_;
     const CellRules& rules_;
     std::size_t columns_;
-    bool has_keys_ = false;  ///< TwinCAT Scope: a block of keys with a value for each channel
 };
 
-// "mNm (Torque)": TwinCAT writes the quantity behind its unit.
-std::string_view without_quantity(std::string_view unit) { return unit.substr(0, unit.find(" (")); }
+/// "Name A Name B" over pairs of time and value, "Name A B" where two channels share their times.
+bool speaks_of_channels(const std::vector<std::string>& cells, std::string_view key, std::size_t columns) {
+    return columns > 1 && cells.size() >= columns && cells[0] == key && cells[1] != key;
+}
 
 // TwinCAT Scope: a line of "Name", channel, "Name", channel, ...; "Name" stands over a column of times, which
 // channels of one rate may share. Times are milliseconds since the start, or FILETIME.
@@ -305,8 +295,7 @@ void read_channels(const Lines& lines, std::size_t columns, Preamble& found) {
         if (!found.names.empty() && speaks_of_channels(cells, "Unit", columns)) {
             found.units.assign(columns, "");
             for (std::size_t c = 1; c < columns; ++c) {
-                const std::string_view unit = without_quantity(cells[c]);
-                if (found.clock_of[c] != c && usual_unit(unit, Role::other)) found.units[c] = unit;
+                if (found.clock_of[c] != c && usual_unit(cells[c], Role::other)) found.units[c] = cells[c];
             }
         }
     }
