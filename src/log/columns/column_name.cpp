@@ -8,6 +8,7 @@
 #include <cctype>
 
 #include "core/text/lower_case.hpp"
+#include "log/columns/drive_objects.hpp"
 #include "log/columns/units.hpp"
 #include "ripplenotch/core/error.hpp"
 
@@ -170,7 +171,8 @@ ColumnName read_column_name(std::string_view name) {
     const std::size_t bracket = name.ends_with(']') ? name.rfind('[') : std::string_view::npos;
     const bool element =
         bracket != std::string_view::npos && is_digits(name.substr(bracket + 1, name.size() - bracket - 2));
-    NameAndUnit parts = split_unit(element ? name.substr(0, bracket) : name);
+    const NamedObject named = drive_object(element ? name.substr(0, bracket) : name);
+    NameAndUnit parts = split_unit(named.name);
     if (element) parts.name += name.substr(bracket);
     column.unit = parts.unit;
     column.unit_is_sure = parts.bracketed;
@@ -178,7 +180,16 @@ ColumnName read_column_name(std::string_view name) {
     std::vector<Word> left;
     const RoleWord* found = nullptr;
     bool foreign = false, filtered = false;
-    const std::vector<Word> words = split_words(parts.name);
+    std::vector<Word> words = split_words(parts.name);
+    std::string spoken;
+    for (Word& word : words) {
+        spoken += (spoken.empty() ? "" : " ") + word.text;
+        if (const auto german = german_quantity(word.text)) {
+            word.text = german->quantity;
+            column.reference = column.reference || german->reference;
+        }
+    }
+    const DriveObject* const object = named.object != nullptr ? named.object : drive_object_named(spoken);
     for (std::size_t i = 0; i < words.size(); ++i) {
         const Word& word = words[i];
         // tau_J: the J is of the symbol; in tau_J1 it is of the joint.
@@ -206,6 +217,18 @@ ColumnName read_column_name(std::string_view name) {
         column.role = found->role;
         column.rank = found->rank;
         column.current = false;
+    }
+    if (object != nullptr) {
+        if (found == nullptr && !column.current) {
+            column.role = object->role;
+            column.rank = object->current ? 1 : 0;
+        }
+        column.reference = column.reference || object->reference;
+        column.current = column.current || object->current;
+        if (column.unit.empty()) {
+            column.unit = object->unit;
+            column.unit_is_sure = false;
+        }
     }
     const bool clock = column.role == Role::time;
     if (!clock) column.joint = joint_in_name(left);

@@ -159,6 +159,7 @@ class Decision {
                                !options_.every_joint || options_.torque_of_each);
         for (const JointGroup& group : groups_) layout_.joints.push_back(group.name);
         choose_joint();
+        refuse_unscaled();
         infer_motion(facts_, options_, motions_of(known(), groups_, stated_, options_, layout_), layout_);
         state_derived_velocity(layout_, facts_);
         take_constant_speed();
@@ -176,7 +177,10 @@ class Decision {
             column.name = facts_.names.empty() ? fmt::format("column {}", c + 1) : facts_.names[c];
             layout_.columns.push_back(column);
             names_.push_back(facts_.names.empty() ? ColumnName{} : read_column_name(facts_.meanings()[c]));
-            if (names_[c].unit.empty() && !facts_.units.empty()) {
+            // What the file states comes before what a drive's profile says of all drives.
+            const bool open = names_[c].unit.empty() ||
+                              (is_device_unit(names_[c].unit) && !names_[c].unit_is_sure);
+            if (open && !facts_.units.empty() && !facts_.units[c].empty()) {
                 names_[c].unit = facts_.units[c];
                 names_[c].unit_is_sure = !facts_.units[c].empty();
             }
@@ -340,6 +344,24 @@ class Decision {
             written = *usual;
             stated_[c] = true;
         }
+        const ColumnScale* const scale = asked_scale(options_, column.name, role);
+        if (scale != nullptr) {
+            const auto usual = usual_unit(scale->unit, role);
+            if (asked_unit(options_, column.name, role))
+                raise<UsageError>("--scale and --unit both state the unit of {}; leave one out",
+                                  column_label(facts_.names, c));
+            if (!usual || !role_factor(role, *usual, 1.0) || (role == Role::time && scale->offset != 0.0)) {
+                raise<UsageError>("--scale: '{}' is no {}; write its unit as one of {}{}", scale->text,
+                                  role_name(role), unit_list(role),
+                                  role == Role::time ? ", without an offset" : "");
+            }
+            written = *usual;
+            stated_[c] = true;
+            column.scale = scale->text;
+        } else if (!asked_unit(options_, column.name, role) && is_chosen(c)) {
+            ask_for_scale(c, role, written);
+        }
+        if (is_device_unit(written)) written.clear(), stated_[c] = false;
         if (written.empty()) {
             const Convention* const known =
                 facts_.names.empty() ? nullptr : convention_of(facts_.meanings()[c], role, facts_.meanings());
@@ -355,7 +377,8 @@ class Decision {
             usual ? role_factor(role, *usual, options_.nm_per_ampere.value_or(1.0)) : std::nullopt;
         if (factor) {
             column.unit = *usual;
-            column.factor = *factor;
+            column.factor = *factor * (scale != nullptr ? scale->factor : 1.0);
+            column.shift = *factor * (scale != nullptr ? scale->offset : 0.0);
             column.unit_assumed = column.unit_assumed && !stated_[c];
         } else if (is_chosen(c)) {
             raise<DataError>(
@@ -366,6 +389,60 @@ class Decision {
             column.role = Role::other;
             column.joint.clear();
         }
+    }
+
+    // Notes what a column lacks to be a quantity.
+    void ask_for_scale(std::size_t c, Role role, const std::string& written) {
+        const std::string label = column_label(facts_.names, c);
+        if (!facts_.scales.empty() && !facts_.scales[c].words.empty()) {
+            const HeadScale& head = facts_.scales[c];
+            const auto usual = usual_unit(written, role);
+            const std::string unit = usual ? *usual : std::string(base_unit(dimension_of(role)));
+            unscaled_.push_back(
+                {fmt::format("{} over {}, and not whether the export scaled the values", head.words, label),
+                 fmt::format("--scale {}={}{}{} where it did not, --unit {}={} where it did", role_name(role),
+                             shortest(head.factor), unit,
+                             head.offset == 0.0 ? "" : fmt::format("{:+}{}", head.offset, unit), role_name(role),
+                             unit)});
+        } else if (is_device_unit(written)) {
+            unscaled_.push_back({fmt::format("{} in {}", label, written), scale_example(role)});
+        } else if (written.empty() && role != Role::time && counts_only(c) &&
+                   (facts_.names.empty() ||
+                    convention_of(facts_.meanings()[c], role, facts_.meanings()) == nullptr)) {
+            unscaled_.push_back(
+                {fmt::format("{} in whole numbers throughout, as counts are, and no unit", label),
+                 fmt::format("{} (or --unit {}={})", scale_example(role), role_name(role),
+                             base_unit(dimension_of(role)))});
+        }
+    }
+
+    // A physical quantity has decimals; so many different whole numbers are none by chance.
+    bool counts_only(std::size_t c) const {
+        constexpr std::size_t fewest = 64;
+        if (c >= facts_.sample.size()) return false;
+        std::set<double> different;
+        for (const double value : facts_.sample[c]) {
+            if (!std::isfinite(value)) continue;
+            if (value != std::floor(value)) return false;
+            different.insert(value);
+        }
+        return different.size() >= fewest;
+    }
+
+    // All at once: each is one option more.
+    void refuse_unscaled() {
+        if (unscaled_.empty()) return;
+        std::vector<std::string> read, options;
+        for (const auto& [what, option] : unscaled_) {
+            read.push_back(what);
+            options.push_back(option);
+        }
+        const std::string what = fmt::format("{}", fmt::join(read, "; ")),
+                          say = fmt::format("{}", fmt::join(options, " "));
+        if (options_.needs_torque)
+            raise<DataError>("{}: read {}, expected quantities; say what 1 is, as in {}", source_, what, say);
+        layout_.warnings.push_back(
+            {"unscaled", fmt::format("read {}; commands that use it ask what 1 is, as in {}", what, say), true});
     }
 
     bool is_chosen(std::size_t c) const {
@@ -392,6 +469,7 @@ class Decision {
     std::vector<ColumnName> names_;
     std::vector<bool> stated_;  ///< by column: the log or an option says its unit
     std::vector<JointGroup> groups_;
+    std::vector<std::pair<std::string, std::string>> unscaled_;  ///< what was read, and the option that says more
 };
 
 }  // namespace

@@ -51,9 +51,13 @@ CsvReader::CsvReader(std::unique_ptr<ByteSource> source, std::string first_bytes
     layout_ = decide_layout(source_->name(), "csv", facts_of(first_bytes), options);
     layout_.outside = rows_outside(*source_);
     if (dialect_.head_lines > 0) {
+        const bool scope = !dialect_.scales.empty();
         layout_.inferences.push_back({fmt::format("the first {} lines", dialect_.head_lines),
-                                      "a head, passed on and not read",
-                                      "they are no rows, and the names do not stand in the first of them",
+                                      scope ? "the head of a TwinCAT Scope export, with its names and units"
+                                            : "a head, passed on and not read",
+                                      scope ? "'Name' stands over numbers that run forward, which are times, and "
+                                              "over each channel"
+                                            : "they are no rows, and the names do not stand in the first of them",
                                       fmt::format("--skip-lines {}", dialect_.head_lines),
                                       {}});
     }
@@ -74,7 +78,9 @@ ColumnFacts CsvReader::facts_of(std::string& opening) {
     facts.first_counts = dialect_.first_counts;
     facts.clock_texts = dialect_.clock_texts;
     facts.clock_of = dialect_.clock_of;
+    facts.scales = dialect_.scales;
     facts.row_step_s = dialect_.row_step_s;
+    facts.row_step_key = dialect_.row_step_key;
     facts.dialect_options = dialect_options(dialect_);
     facts.motion_sample = [this, &opening](const MotionPlaces& places, std::size_t bytes) {
         if (!source_ended_ && opening.size() < bytes) source_ended_ = read_up_to(*source_, opening, bytes);

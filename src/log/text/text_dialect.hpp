@@ -33,6 +33,8 @@ struct TextDialect {
     std::size_t data_offset = 0;       ///< of the first row's first byte
     std::size_t data_line = 1;         ///< its line number, from 1
     std::optional<double> row_step_s;  ///< as the head of the file says it
+    std::string row_step_key = "Delta_X";  ///< under this word
+    std::vector<HeadScale> scales;         ///< by column, of a head that says some; else empty
     std::size_t head_lines = 0;        ///< above the names, or above the first row, that are neither
     /// Numbers of the first rows by column, not-a-number where a cell is none; evidence for choosing columns.
     std::vector<std::vector<double>> sample;
