@@ -167,6 +167,8 @@ bool is_clock_name(const std::vector<Word>& left) {
 
 ColumnName read_column_name(std::string_view name) {
     ColumnName column;
+    // The main program of a PLC; in lower case it is the mains.
+    if (name.starts_with("MAIN.")) name.remove_prefix(std::string_view("MAIN.").size());
     // In an element of a list, "tau_nm[2]", the unit stands in front of the number.
     const std::size_t bracket = name.ends_with(']') ? name.rfind('[') : std::string_view::npos;
     const bool element =

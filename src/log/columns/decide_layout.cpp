@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include "log/columns/column_name.hpp"
@@ -15,45 +16,6 @@
 #include "ripplenotch/core/number.hpp"
 
 namespace ripplenotch {
-
-namespace {
-
-// Tables in which each channel has a column of times beside it.
-
-// The first row of which two clocks are more than half a step apart, if there is one.
-std::optional<std::size_t> first_apart(const std::vector<double>& clock, const std::vector<double>& other) {
-    const std::size_t rows = std::min(clock.size(), other.size());
-    if (rows < 2) return std::nullopt;
-    const double half_step = 0.5 * std::abs(clock[1] - clock[0]);
-    for (std::size_t row = 0; row < rows; ++row)
-        if (std::abs(other[row] - clock[row]) > half_step) return row;  // an empty cell is not apart
-    return std::nullopt;
-}
-
-// Throws DataError where a chosen column's own times are not those that were chosen, as far as the opening
-// shows: its rows would be moments of another clock.
-void check_channel_clocks(const std::string& source, const ColumnFacts& facts, const Layout& layout) {
-    if (facts.clock_of.empty() || !layout.chosen.time) return;
-    const std::size_t time = *layout.chosen.time;
-    for (const JointColumns& joint : layout.all_chosen()) {
-        for (const auto& column : {joint.velocity, joint.torque, joint.position}) {
-            if (!column) continue;
-            const std::size_t own = facts.clock_of[*column];
-            if (own == time) continue;
-            const auto row = first_apart(facts.sample[time], facts.sample[own]);
-            if (!row) continue;
-            raise<DataError>(
-                "{}: read {} at times of its own: {} in row {} (column {}), where column {} has {}; expected "
-                "one "
-                "clock; export all channels at one rate from one start, or name channels of one clock with "
-                "--columns time=NUMBER,...",
-                source, column_label(facts.names, *column), facts.sample[own][*row], *row + 1, own + 1,
-                time + 1, facts.sample[time][*row]);
-        }
-    }
-}
-
-}  // namespace
 
 // --columns: by place "time,velocity,torque" ("-" skips one), or by name "torque=tau_J" or number "torque=3".
 
@@ -165,7 +127,6 @@ class Decision {
         take_constant_speed();
         state_units(layout_, facts_, options_);
         report_repeated_names();
-        check_channel_clocks(source_, facts_, layout_);
         layout_.options = options_line(layout_, facts_, options_);
         return std::move(layout_);
     }
@@ -416,17 +377,21 @@ class Decision {
         }
     }
 
-    // A physical quantity has decimals; so many different whole numbers are none by chance.
+    // A physical quantity has decimals; so many different whole numbers are none by chance. Even steps are a
+    // made-up ramp, or one that wraps.
     bool counts_only(std::size_t c) const {
-        constexpr std::size_t fewest = 64;
+        constexpr std::size_t fewest = 64, fewest_steps = 3;
         if (c >= facts_.sample.size()) return false;
-        std::set<double> different;
+        std::set<double> different, steps;
+        double before = std::numeric_limits<double>::quiet_NaN();
         for (const double value : facts_.sample[c]) {
             if (!std::isfinite(value)) continue;
             if (value != std::floor(value)) return false;
             different.insert(value);
+            if (value != before && std::isfinite(before)) steps.insert(value - before);
+            before = value;
         }
-        return different.size() >= fewest;
+        return different.size() >= fewest && steps.size() >= fewest_steps;
     }
 
     // All at once: each is one option more.

@@ -45,7 +45,6 @@ struct ColumnFacts {
     std::vector<std::vector<double>>
         sample;  ///< the first rows by column; not-a-number where a cell is no number
     std::vector<std::int64_t> first_counts;  ///< whole numbers of the first row, exact; 0 where there is none
-    std::vector<std::size_t> clock_of;  ///< by column: where its times stand, if each has its own; else empty
     std::vector<bool> clock_texts;     ///< by column: its cells are dates or times of day; empty when none is
     std::vector<HeadScale> scales;     ///< by column; empty where the head states none
     std::optional<double> row_step_s;  ///< where the head of the file says how long a row is

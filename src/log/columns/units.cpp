@@ -189,6 +189,8 @@ NameAndUnit split_unit(std::string_view column_name) {
     for (std::size_t at = 1; at < whole.size(); ++at) {
         if (whole[at] != '_' && whole[at] != ' ') continue;
         const std::string_view rest = whole.substr(at + 1);
+        if (is_device_unit(rest))  // "_counts_s" before "_s"
+            return {std::string(without_padding(whole.substr(0, at))), std::string(rest), true};
         if (rest == "nm" || rest == "mnm" || usual_unit(rest, Role::other)) {
             return {std::string(without_padding(whole.substr(0, at))), std::string(rest), false};
         }
@@ -197,8 +199,7 @@ NameAndUnit split_unit(std::string_view column_name) {
         if (whole[at] != '_' && whole[at] != ' ') continue;
         const std::string_view rest = whole.substr(at + 1);
         const std::string lower = lower_without_blanks(rest);
-        if (std::find(unread_units.begin(), unread_units.end(), lower) != unread_units.end() ||
-            is_device_unit(rest))
+        if (std::find(unread_units.begin(), unread_units.end(), lower) != unread_units.end())
             return {std::string(without_padding(whole.substr(0, at))), std::string(rest), true};
     }
     return {std::string(whole), "", false};

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "log/formats.hpp"
-#include "log/rows_in_range.hpp"
 #include "log/table_writer.hpp"
 #include "log/text/csv_reader.hpp"
 #include "log/text/csv_writer.hpp"
+#include "log/text/scope_channels.hpp"
 #include "log/text/text_dialect.hpp"
 #include "ripplenotch/core/number.hpp"
 
@@ -58,6 +58,14 @@ class CsvTableWriter : public TableWriter {
     std::string text_;
 };
 
+// Channels that were joined by time have no rows in the file that could be written again.
+std::unique_ptr<LogWriter> rewrite(std::unique_ptr<ByteSink> sink, const LogReader& reader,
+                                   const WriteOptions& options) {
+    const bool rows = dynamic_cast<const CsvReader*>(&reader.base()) != nullptr;
+    return rows ? rewrite_with<CsvWriter, CsvReader>(std::move(sink), reader, options)
+                : convert_with<CsvTableWriter>(std::move(sink), reader, options);
+}
+
 }  // namespace
 
 const LogFormat formats::csv{
@@ -66,8 +74,8 @@ const LogFormat formats::csv{
     .extensions = extensions,
     .binary = false,
     .sniff = nullptr,  // any text may be a text log
-    .open = open_with<CsvReader>,
-    .rewrite = rewrite_with<CsvWriter, CsvReader>,
+    .open = open_text,
+    .rewrite = rewrite,
     .convert = convert_with<CsvTableWriter>,
     .write_columns = write_columns_with<CsvTableWriter>,
 };

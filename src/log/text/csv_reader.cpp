@@ -31,13 +31,13 @@ std::size_t line_ends(std::string_view bytes) {
         std::count_if(bytes.begin(), bytes.end(), [](char c) { return c == '\n' || c == '\r'; }));
 }
 
+}  // namespace
+
 std::string dialect_options(const TextDialect& dialect) {
     const std::string name = delimiter_name(dialect.rules.delimiter);
     return fmt::format("--delimiter {} --decimal {}{}", name == ";" ? "';'" : name,
                        dialect.rules.decimal_mark, dialect.has_header ? "" : " --no-header");
 }
-
-}  // namespace
 
 CsvReader::CsvReader(std::unique_ptr<ByteSource> source, std::string first_bytes, const ReadOptions& options)
     : source_(std::move(source)), options_(options) {
@@ -77,7 +77,6 @@ ColumnFacts CsvReader::facts_of(std::string& opening) {
     facts.sample = std::move(dialect_.sample);
     facts.first_counts = dialect_.first_counts;
     facts.clock_texts = dialect_.clock_texts;
-    facts.clock_of = dialect_.clock_of;
     facts.scales = dialect_.scales;
     facts.row_step_s = dialect_.row_step_s;
     facts.row_step_key = dialect_.row_step_key;
