@@ -5,6 +5,8 @@ https://infosys.beckhoff.com/content/1033/te13xx_tc3_scopeview/6193063051.html."
 import functools
 import itertools
 import json
+import shlex
+import struct
 import unittest
 
 from commands import Case, run
@@ -258,7 +260,22 @@ class CountsAndPerMille(Case):
     def test_the_option_line_of_info_makes_the_same_reading(self):
         text = self.table(self.NAMES[0])
         told = json.loads(run("info", "-", "--json", *self.SCALES, stdin=text).stdout)
-        self.assertIn("--scale velocity=360deg/s/524288", told["read_as"] if "read_as" in told else json.dumps(told))
+        self.assertIn("--scale velocity=360deg/s/524288", told["options"])
+        again = run("info", "-", "--json", *shlex.split(told["options"]), stdin=text)
+        self.assertEqual(json.loads(again.stdout)["joints"], told["joints"])
+
+    def test_an_array_is_scaled_alike(self):
+        descr = "[('timestamp_us', '<i8'), ('position', '<i4'), ('velocity', '<i4'), ('torque', '<i2')]"
+        head = f"{{'descr': {descr}, 'fortran_order': False, 'shape': ({len(ROWS)},), }}"
+        head += " " * (-(len(head) + 11) % 64) + "\n"
+        rows = [tuple(map(int, line.split(","))) for line in self.table(self.NAMES[-1]).splitlines()[1:]]
+        path = self.folder / "counts.npy"
+        path.write_bytes(b"\x93NUMPY\x01\x00" + struct.pack("<H", len(head)) + head.encode()
+                         + b"".join(struct.pack("<qiih", *row) for row in rows))
+        self.assertIn("--scale torque=0.04Nm", run("identify", path, "-q").stderr)
+        done = run("identify", path, "--json", "-q", *self.SCALES)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertAlmostEqual(json.loads(done.stdout)["gear_ratio"]["value"], RATIO, delta=0.1)
 
     def test_filter_writes_in_the_units_of_the_file(self):
         path, out = self.folder / "counts.csv", self.folder / "out.csv"
@@ -275,26 +292,11 @@ class CountsAndPerMille(Case):
             f"{row.t:.3f},{row.velocity:.4f},{row.torque:.4f}\n" for row in ROWS))
         told = {option: json.loads(run("info", path, "--json", *option).stdout) for option in
                 ((), ("--scale", "torque=1Nm+100Nm"))}
-        low = [min(self.numbers(one, "torque")) for one in told.values()]
+        low = [one["joints"][0]["torque_nm"]["min"] for one in told.values()]
         self.assertAlmostEqual(low[1] - low[0], 100.0, places=3)
         done = run("filter", path, "-o", out, "--method", "lowpass,cutoff=20Hz", "--scale", "torque=1Nm+100Nm")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertGreater(float(out.read_text().splitlines()[2000].split(",")[2]), 90.0)
-
-    def numbers(self, told, word):
-        text = json.dumps(told["joints"][0]) if "joints" in told else json.dumps(told)
-        found = json.loads(text)
-        return [value for key, value in self.flat(found) if word in key and isinstance(value, (int, float))]
-
-    def flat(self, tree, path=""):
-        if isinstance(tree, dict):
-            for key, value in tree.items():
-                yield from self.flat(value, f"{path}.{key}")
-        elif isinstance(tree, list):
-            for value in tree:
-                yield from self.flat(value, path)
-        else:
-            yield path, tree
 
     def test_what_is_no_scale_is_refused(self):
         text = self.table(self.NAMES[0])

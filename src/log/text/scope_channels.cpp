@@ -157,7 +157,7 @@ class Channels {
         while (rows.next()) take_row(rows, group);
         if (group.time_ns.size() < 2)
             raise<DataError>("{}: read {} rows of {}, expected two at least", source_, group.time_ns.size(),
-                             column_label(dialect_.names, group.channels.front()));
+                             column_label(dialect_.names, group.clock));
         return group;
     }
 
@@ -236,14 +236,11 @@ Records scope_records(std::unique_ptr<ByteSource> source, std::string first_byte
     const CsvReader whole(std::make_unique<ByteSource>(name, text), "", first);
     const TextDialect& dialect = whole.dialect();
     const auto read = columns_read(whole.layout(), dialect);
-    const std::size_t clock = dialect.clock_of[read.front().second];
+    // The torque's own rows, which are then not interpolated, unless another clock is named.
     const bool names_time = std::any_of(options.columns.begin(), options.columns.end(),
                                         [](const std::string& entry) { return entry.starts_with("time="); });
-    if (names_time && whole.layout().chosen.time != clock)
-        raise<UsageError>(
-            "--columns: column {} is not the clock of the torque, whose rows are taken (column {}); leave time "
-            "out: each channel is joined by its own",
-            *whole.layout().chosen.time + 1, clock + 1);
+    const std::size_t clock = names_time ? dialect.clock_of[*whole.layout().chosen.time]
+                                         : dialect.clock_of[read.front().second];
     std::vector<std::size_t> of_base;
     for (const auto& [role, column] : read)
         if (dialect.clock_of[column] == clock) of_base.push_back(column);
@@ -256,8 +253,10 @@ Records scope_records(std::unique_ptr<ByteSource> source, std::string first_byte
     NpyField time;
     time.kind = 'i';
     time.big_endian = std::endian::native == std::endian::big;
-    time.scale = 1e-9;
-    table.add(time, "time", "time", "s");
+    const bool ticks = dialect.names.front().ends_with("[100ns]");
+    time.scale = ticks ? 1.0 / ns_per_tick : 1.0 / ns_per_ms;
+    // As --columns takes it: by its number where it has no name.
+    table.add(time, clock == 0 ? dialect.names[0] : std::to_string(clock + 1), "time", ticks ? "100ns" : "ms");
     NpyField number;
     number.big_endian = time.big_endian;
     std::vector<std::size_t> placed = of_base;
@@ -274,10 +273,13 @@ Records scope_records(std::unique_ptr<ByteSource> source, std::string first_byte
         placed.push_back(column);
     }
     if (!options.columns.empty()) {
-        table.columns.emplace_back("time=1");
+        table.columns.push_back("time=" + table.fields.front().name);
         for (const auto& [role, column] : read) {
+            const std::string& called = dialect.names[column];
+            const bool repeated = std::count(dialect.names.begin(), dialect.names.end(), called) > 1;
             const auto place = std::find(placed.begin(), placed.end(), column) - placed.begin();
-            table.columns.push_back(fmt::format("{}={}", role_name(role), place + 2));
+            table.columns.push_back(fmt::format("{}={}", role_name(role),
+                                                repeated ? std::to_string(place + 2) : called));
         }
     }
     auto records = std::make_unique<ChannelRecords>(name, std::move(base.time_ns), std::move(base.values));
