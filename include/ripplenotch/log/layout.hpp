@@ -86,8 +86,8 @@ struct ColumnScale {
 struct Column {
     std::string name;  ///< as in the header, without quotes; "column 3" when there is no header
     Role role = Role::other;
-    std::string unit;           ///< as understood ("rad/s"); empty for role other
-    double factor = 1.0;        ///< file value * factor + shift = value in the tool's unit, of the joint
+    std::string unit;     ///< as understood ("rad/s"); empty for role other
+    double factor = 1.0;  ///< file value * factor + shift = value in the tool's unit, of the joint
     double shift = 0.0;
     std::string scale;          ///< as --scale states it; else empty
     bool unit_assumed = false;  ///< nothing settled the unit: it is in Layout::assumptions
@@ -122,8 +122,8 @@ struct ReadOptions {
     std::vector<std::string> columns;          ///< "time,velocity,torque" by place, or "torque=tau_J" by name
     std::map<std::string, std::string> units;  ///< role or column name -> unit
     std::map<std::string, ColumnScale> scales;  ///< role or column name -> what its numbers are in a unit
-    std::optional<Hertz> sample_rate;          ///< for logs without time; overrides the log's own time
-    std::optional<DegPerSec> constant_speed;   ///< of a log that holds no motion (--constant-speed)
+    std::optional<Hertz> sample_rate;           ///< for logs without time; overrides the log's own time
+    std::optional<DegPerSec> constant_speed;    ///< of a log that holds no motion (--constant-speed)
     std::optional<char> delimiter;
     std::optional<char> decimal_mark;
     std::optional<bool> header;

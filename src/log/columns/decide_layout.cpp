@@ -139,8 +139,8 @@ class Decision {
             layout_.columns.push_back(column);
             names_.push_back(facts_.names.empty() ? ColumnName{} : read_column_name(facts_.meanings()[c]));
             // What the file states comes before what a drive's profile says of all drives.
-            const bool open = names_[c].unit.empty() ||
-                              (is_device_unit(names_[c].unit) && !names_[c].unit_is_sure);
+            const bool open =
+                names_[c].unit.empty() || (is_device_unit(names_[c].unit) && !names_[c].unit_is_sure);
             if (open && !facts_.units.empty() && !facts_.units[c].empty()) {
                 names_[c].unit = facts_.units[c];
                 names_[c].unit_is_sure = !facts_.units[c].empty();
@@ -363,8 +363,8 @@ class Decision {
                 {fmt::format("{} over {}, and not whether the export scaled the values", head.words, label),
                  fmt::format("--scale {}={}{}{} where it did not, --unit {}={} where it did", role_name(role),
                              shortest(head.factor), unit,
-                             head.offset == 0.0 ? "" : fmt::format("{:+}{}", head.offset, unit), role_name(role),
-                             unit)});
+                             head.offset == 0.0 ? "" : fmt::format("{:+}{}", head.offset, unit),
+                             role_name(role), unit)});
         } else if (is_device_unit(written)) {
             unscaled_.push_back({fmt::format("{} in {}", label, written), scale_example(role)});
         } else if (written.empty() && role != Role::time && counts_only(c) &&
@@ -407,7 +407,8 @@ class Decision {
         if (options_.needs_torque)
             raise<DataError>("{}: read {}, expected quantities; say what 1 is, as in {}", source_, what, say);
         layout_.warnings.push_back(
-            {"unscaled", fmt::format("read {}; commands that use it ask what 1 is, as in {}", what, say), true});
+            {"unscaled", fmt::format("read {}; commands that use it ask what 1 is, as in {}", what, say),
+             true});
     }
 
     bool is_chosen(std::size_t c) const {
@@ -434,7 +435,8 @@ class Decision {
     std::vector<ColumnName> names_;
     std::vector<bool> stated_;  ///< by column: the log or an option says its unit
     std::vector<JointGroup> groups_;
-    std::vector<std::pair<std::string, std::string>> unscaled_;  ///< what was read, and the option that says more
+    std::vector<std::pair<std::string, std::string>>
+        unscaled_;  ///< what was read, and the option that says more
 };
 
 }  // namespace

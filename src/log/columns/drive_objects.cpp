@@ -10,25 +10,18 @@
 #include <tuple>
 #include <utility>
 
-
 namespace ripplenotch {
 namespace {
 
 constexpr std::string_view counts = "counts", rate = "counts/s", share = "per mille";
 
 constexpr std::array objects = {
-    DriveObject{0x6062, Role::position, counts, true},
-    DriveObject{0x6063, Role::position, counts},
-    DriveObject{0x6064, Role::position, counts},
-    DriveObject{0x6069, Role::velocity, rate},
-    DriveObject{0x606B, Role::velocity, rate, true},
-    DriveObject{0x606C, Role::velocity, rate},
-    DriveObject{0x6071, Role::torque, share, true},
-    DriveObject{0x6074, Role::torque, share, true},
-    DriveObject{0x6077, Role::torque, share},
-    DriveObject{0x6078, Role::torque, share, false, true},
-    DriveObject{0x607A, Role::position, counts, true},
-    DriveObject{0x60FF, Role::velocity, rate, true},
+    DriveObject{0x6062, Role::position, counts, true}, DriveObject{0x6063, Role::position, counts},
+    DriveObject{0x6064, Role::position, counts},       DriveObject{0x6069, Role::velocity, rate},
+    DriveObject{0x606B, Role::velocity, rate, true},   DriveObject{0x606C, Role::velocity, rate},
+    DriveObject{0x6071, Role::torque, share, true},    DriveObject{0x6074, Role::torque, share, true},
+    DriveObject{0x6077, Role::torque, share},          DriveObject{0x6078, Role::torque, share, false, true},
+    DriveObject{0x607A, Role::position, counts, true}, DriveObject{0x60FF, Role::velocity, rate, true},
 };
 constexpr unsigned first_index = 0x6000, next_axis = 0x800, last_index = 0x9FFF;
 
@@ -36,18 +29,17 @@ struct ObjectName {
     std::string_view words;
     unsigned index;
 };
+// "Target velocity" is one of them, and everybody's name.
 constexpr std::array object_names = {
     ObjectName{"position actual value", 0x6064}, ObjectName{"position actual internal value", 0x6063},
     ObjectName{"velocity actual value", 0x606C}, ObjectName{"velocity sensor actual value", 0x6069},
     ObjectName{"torque actual value", 0x6077},   ObjectName{"current actual value", 0x6078},
-    ObjectName{"target position", 0x607A},       ObjectName{"target velocity", 0x60FF},
-    ObjectName{"target torque", 0x6071},         ObjectName{"position demand value", 0x6062},
-    ObjectName{"velocity demand value", 0x606B}, ObjectName{"torque demand", 0x6074},
+    ObjectName{"position demand value", 0x6062}, ObjectName{"velocity demand value", 0x606B},
 };
 
 const DriveObject* object_at(unsigned index) {
-    const auto* const found = std::find_if(objects.begin(), objects.end(),
-                                           [index](const DriveObject& object) { return object.index == index; });
+    const auto* const found = std::find_if(
+        objects.begin(), objects.end(), [index](const DriveObject& object) { return object.index == index; });
     return found == objects.end() ? nullptr : found;
 }
 

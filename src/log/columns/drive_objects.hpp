@@ -11,7 +11,8 @@
 namespace ripplenotch {
 
 /// An object of the CiA 402 drive profile. Its numbers are counts or per mille of a rated value: what these
-/// are is set in the drive (https://www.can-cia.org/can-knowledge/cia-402-series-canopen-device-profile-for-drives-and-motion-control).
+/// are is set in the drive
+/// (https://www.can-cia.org/can-knowledge/cia-402-series-canopen-device-profile-for-drives-and-motion-control).
 struct DriveObject {
     unsigned index = 0;  ///< of the first axis
     Role role = Role::other;

@@ -340,7 +340,8 @@ class Inference {
             return;
         const bool both = subject_->velocity && subject_->position && !subject_->position->unit_is_stated;
         raise<DataError>(
-            "{}: read {:.4g} in {}, of which no unit is stated: in {} the {} would turn at {:.3g} deg/s, expected "
+            "{}: read {:.4g} in {}, of which no unit is stated: in {} the {} would turn at {:.3g} deg/s, "
+            "expected "
             "at most {:g}; say what 1 is, as in {}{}, or --unit if that is the speed",
             layout_.source, evidence_.fastest, label(*column), read.unit, motor ? "motor" : "joint", deg_s,
             motor ? no_motor_deg_s : no_joint_deg_s,

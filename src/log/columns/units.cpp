@@ -103,15 +103,16 @@ constexpr std::array spellings = {
 
 // Units of torque that this tool does not read, at the end of a name without brackets; a column of them is
 // not in Nm.
-constexpr std::array<std::string_view, 14> unread_units = {
-    "lbf_in", "in_lbf", "lb_in",  "in_lb", "lbf_ft", "ft_lbf", "lb_ft",
-    "ft_lb",  "ozf_in", "in_ozf", "oz_in", "in_oz",  "volts",  "kgf_cm"};
+constexpr std::array<std::string_view, 14> unread_units = {"lbf_in", "in_lbf", "lb_in", "in_lb",  "lbf_ft",
+                                                           "ft_lbf", "lb_ft",  "ft_lb", "ozf_in", "in_ozf",
+                                                           "oz_in",  "in_oz",  "volts", "kgf_cm"};
 
 // Numbers as a drive or a converter has them. What they are in a physical unit is set in the device.
 constexpr std::array<std::string_view, 25> device_units = {
-    "count",    "counts",    "cnt",      "cnts",      "cts",       "inc",        "incr",  "incs",
-    "increment", "increments", "inkremente", "inkr", "pulse", "pulses", "ticks", "lsb",
-    "permille", "per_mille", "permill", "promille", "percent",   "pct",       "percents",   "%",     "\xe2\x80\xb0"};
+    "count", "counts",    "cnt",        "cnts",        "cts",     "inc",      "incr",
+    "incs",  "increment", "increments", "inkremente",  "inkr",    "pulse",    "pulses",
+    "ticks", "lsb",       "permille",   "per_mille",   "permill", "promille", "percent",
+    "pct",   "percents",  "%",          "\xe2\x80\xb0"};
 
 std::string lower_without_blanks(std::string_view text) {
     std::string lower = lower_case(text);
@@ -264,8 +265,8 @@ void require_used(const Layout& layout, std::string_view option, const std::stri
     for (const Column& column : layout.columns) {
         if (column.name == key) return;
     }
-    raise<UsageError>("{}: '{}' is neither a role (time, velocity, torque, position) nor a column of {}", option,
-                      key, layout.source);
+    raise<UsageError>("{}: '{}' is neither a role (time, velocity, torque, position) nor a column of {}",
+                      option, key, layout.source);
 }
 
 }  // namespace
@@ -287,9 +288,10 @@ ColumnScale parse_scale(std::string_view text, std::string_view label) {
     ColumnScale scale;
     scale.text = text;
     const auto complain = [&](std::string_view why) {
-        raise<UsageError>("{}: '{}': {}; write FACTOR and UNIT, then /DIVISOR, then +OFFSET, as in 0.04Nm, "
-                          "360deg/524288 or 2Nm+10Nm",
-                          label, text, why);
+        raise<UsageError>(
+            "{}: '{}': {}; write FACTOR and UNIT, then /DIVISOR, then +OFFSET, as in 0.04Nm, "
+            "360deg/524288 or 2Nm+10Nm",
+            label, text, why);
     };
     // The longest beginning that is a number; what follows it is left.
     const auto take_number = [](std::string_view& rest) -> std::optional<double> {
@@ -311,7 +313,8 @@ ColumnScale parse_scale(std::string_view text, std::string_view label) {
     // Units have letters behind their '/', a divisor has digits.
     std::size_t end = 0;
     while (end < rest.size() && rest[end] != '+' && rest[end] != '-' &&
-           !(rest[end] == '/' && end + 1 < rest.size() && std::isdigit(static_cast<unsigned char>(rest[end + 1])) != 0))
+           !(rest[end] == '/' && end + 1 < rest.size() &&
+             std::isdigit(static_cast<unsigned char>(rest[end + 1])) != 0))
         ++end;
     scale.unit = without_padding(rest.substr(0, end));
     rest.remove_prefix(end);
@@ -338,10 +341,9 @@ bool is_device_unit(std::string_view written) {
 }
 
 std::string scale_example(Role role) {
-    constexpr std::array examples = {std::pair{Role::velocity, "velocity=360deg/s/524288"},
-                                     std::pair{Role::torque, "torque=0.04Nm"},
-                                     std::pair{Role::position, "position=360deg/524288"},
-                                     std::pair{Role::time, "time=1us"}};
+    constexpr std::array examples = {
+        std::pair{Role::velocity, "velocity=360deg/s/524288"}, std::pair{Role::torque, "torque=0.04Nm"},
+        std::pair{Role::position, "position=360deg/524288"}, std::pair{Role::time, "time=1us"}};
     for (const auto& [known, example] : examples)
         if (known == role) return fmt::format("--scale {}", example);
     return "";

@@ -52,14 +52,15 @@ CsvReader::CsvReader(std::unique_ptr<ByteSource> source, std::string first_bytes
     layout_.outside = rows_outside(*source_);
     if (dialect_.head_lines > 0) {
         const bool scope = !dialect_.scales.empty();
-        layout_.inferences.push_back({fmt::format("the first {} lines", dialect_.head_lines),
-                                      scope ? "the head of a TwinCAT Scope export, with its names and units"
-                                            : "a head, passed on and not read",
-                                      scope ? "'Name' stands over numbers that run forward, which are times, and "
-                                              "over each channel"
-                                            : "they are no rows, and the names do not stand in the first of them",
-                                      fmt::format("--skip-lines {}", dialect_.head_lines),
-                                      {}});
+        layout_.inferences.push_back(
+            {fmt::format("the first {} lines", dialect_.head_lines),
+             scope ? "the head of a TwinCAT Scope export, with its names and units"
+                   : "a head, passed on and not read",
+             scope ? "'Name' stands over numbers that run forward, which are times, and "
+                     "over each channel"
+                   : "they are no rows, and the names do not stand in the first of them",
+             fmt::format("--skip-lines {}", dialect_.head_lines),
+             {}});
     }
     head_ = first_bytes.substr(0, dialect_.data_offset);
     ahead_ = std::move(first_bytes);

@@ -60,11 +60,13 @@ class Rows {
         const auto number = parse_number(cell(column), dialect_.rules.decimal_mark);
         return number && is_reading(*number) ? number : std::nullopt;
     }
-    [[noreturn]] void complain(const std::string& source, std::size_t column, const std::string& expected) const {
-        raise<DataError>("{}:{}:{}: read {} in {}, expected {}", source, number_ - 1,
-                         column < split_.cells.size() ? split_.cells[column].begin + 1 : line_.size() + 1,
-                         cell(column).empty() ? "nothing" : "'" + std::string(cell(column).substr(0, 40)) + "'",
-                         column_label(dialect_.names, column), expected);
+    [[noreturn]] void complain(const std::string& source, std::size_t column,
+                               const std::string& expected) const {
+        raise<DataError>(
+            "{}:{}:{}: read {} in {}, expected {}", source, number_ - 1,
+            column < split_.cells.size() ? split_.cells[column].begin + 1 : line_.size() + 1,
+            cell(column).empty() ? "nothing" : "'" + std::string(cell(column).substr(0, 40)) + "'",
+            column_label(dialect_.names, column), expected);
     }
 
   private:
@@ -147,7 +149,9 @@ struct Group {
 class Channels {
   public:
     Channels(const std::string& source, std::string_view text, const TextDialect& dialect)
-        : source_(source), text_(text), dialect_(dialect),
+        : source_(source),
+          text_(text),
+          dialect_(dialect),
           ticks_(!dialect.names.empty() && dialect.names.front().ends_with("[100ns]")) {}
 
     [[nodiscard]] Group read(std::size_t clock, std::vector<std::size_t> channels) const {
@@ -227,7 +231,8 @@ std::vector<std::pair<Role, std::size_t>> columns_read(const Layout& layout, con
     return read;
 }
 
-Records scope_records(std::unique_ptr<ByteSource> source, std::string first_bytes, const ReadOptions& options) {
+Records scope_records(std::unique_ptr<ByteSource> source, std::string first_bytes,
+                      const ReadOptions& options) {
     const std::string name = source->name();
     const auto text = std::make_shared<const std::string>(rest_of(*source, std::move(first_bytes)));
     ReadOptions first = options;
@@ -239,8 +244,8 @@ Records scope_records(std::unique_ptr<ByteSource> source, std::string first_byte
     // The torque's own rows, which are then not interpolated, unless another clock is named.
     const bool names_time = std::any_of(options.columns.begin(), options.columns.end(),
                                         [](const std::string& entry) { return entry.starts_with("time="); });
-    const std::size_t clock = names_time ? dialect.clock_of[*whole.layout().chosen.time]
-                                         : dialect.clock_of[read.front().second];
+    const std::size_t clock =
+        names_time ? dialect.clock_of[*whole.layout().chosen.time] : dialect.clock_of[read.front().second];
     std::vector<std::size_t> of_base;
     for (const auto& [role, column] : read)
         if (dialect.clock_of[column] == clock) of_base.push_back(column);
@@ -256,7 +261,8 @@ Records scope_records(std::unique_ptr<ByteSource> source, std::string first_byte
     const bool ticks = dialect.names.front().ends_with("[100ns]");
     time.scale = ticks ? 1.0 / ns_per_tick : 1.0 / ns_per_ms;
     // As --columns takes it: by its number where it has no name.
-    table.add(time, clock == 0 ? dialect.names[0] : std::to_string(clock + 1), "time", ticks ? "100ns" : "ms");
+    table.add(time, clock == 0 ? dialect.names[0] : std::to_string(clock + 1), "time",
+              ticks ? "100ns" : "ms");
     NpyField number;
     number.big_endian = time.big_endian;
     std::vector<std::size_t> placed = of_base;
@@ -267,19 +273,20 @@ Records scope_records(std::unique_ptr<ByteSource> source, std::string first_byte
         if (dialect.clock_of[column] == clock) continue;
         Group side = channels.read(dialect.clock_of[column], {column});
         const std::int64_t limit = join_limit_ns(side.period_ns());
-        sides.push_back({dialect.names[column], dialect.names[column],
-                         std::make_unique<ChannelRecords>(name, std::move(side.time_ns), std::move(side.values)),
-                         number, limit, dialect.units[column], "value"});
+        sides.push_back(
+            {dialect.names[column], dialect.names[column],
+             std::make_unique<ChannelRecords>(name, std::move(side.time_ns), std::move(side.values)), number,
+             limit, dialect.units[column], "value"});
         placed.push_back(column);
     }
-    if (!options.columns.empty()) {
+    if (!options.columns.empty() && read.front().first != Role::other) {
         table.columns.push_back("time=" + table.fields.front().name);
         for (const auto& [role, column] : read) {
             const std::string& called = dialect.names[column];
             const bool repeated = std::count(dialect.names.begin(), dialect.names.end(), called) > 1;
             const auto place = std::find(placed.begin(), placed.end(), column) - placed.begin();
-            table.columns.push_back(fmt::format("{}={}", role_name(role),
-                                                repeated ? std::to_string(place + 2) : called));
+            table.columns.push_back(
+                fmt::format("{}={}", role_name(role), repeated ? std::to_string(place + 2) : called));
         }
     }
     auto records = std::make_unique<ChannelRecords>(name, std::move(base.time_ns), std::move(base.values));
@@ -294,10 +301,10 @@ std::unique_ptr<LogReader> open_text(std::unique_ptr<ByteSource> source, std::st
                                      const ReadOptions& options) {
     std::string_view begin = first_bytes;
     if (begin.starts_with(byte_order_mark)) begin.remove_prefix(byte_order_mark.size());
-    if (!begin.starts_with("Name")) return open_with<CsvReader>(std::move(source), std::move(first_bytes), options);
+    if (!begin.starts_with("Name"))
+        return open_with<CsvReader>(std::move(source), std::move(first_bytes), options);
     first_bytes.resize(read_on(*source, first_bytes, first_bytes.size(), opening_size));
-    const TextDialect dialect =
-        sniff_text(first_bytes, first_bytes.size() < opening_size, *source, options);
+    const TextDialect dialect = sniff_text(first_bytes, first_bytes.size() < opening_size, *source, options);
     if (clocks_of(dialect).size() < 2)
         return open_with<CsvReader>(std::move(source), std::move(first_bytes), options);
     const std::string name = source->name();

@@ -15,14 +15,15 @@ namespace ripplenotch {
 namespace {
 
 constexpr std::string_view name_key = "Name";
-constexpr std::size_t most_lines = 60;        // the longest heads have 17 lines for channels and 4 for the project
-constexpr double ticks_since_1601 = 1e16;     // no recording has so many milliseconds
+constexpr std::size_t most_lines = 60;  // the longest heads have 17 lines for channels and 4 for the project
+constexpr double ticks_since_1601 = 1e16;  // no recording has so many milliseconds
 
 // The lines of a head, less "Name".
 constexpr std::array<std::string_view, 18> keys = {
-    "SymbolComment", "Data-Type",   "SampleTime[ms]", "VariableSize", "SymbolBased", "IndexGroup",
-    "IndexOffset",   "SymbolName",  "NetID",          "NetId",        "Port",        "Offset",
-    "ScaleFactor",   "BitMask",     "Unit",           "Comment",      "Unit ScaleFactor", "Unit Offset"};
+    "SymbolComment", "Data-Type",        "SampleTime[ms]", "VariableSize", "SymbolBased",
+    "IndexGroup",    "IndexOffset",      "SymbolName",     "NetID",        "NetId",
+    "Port",          "Offset",           "ScaleFactor",    "BitMask",      "Unit",
+    "Comment",       "Unit ScaleFactor", "Unit Offset"};
 
 std::optional<double> number_of(std::string_view cell) {
     const auto number = parse_number(cell, '.');
@@ -60,7 +61,8 @@ class Head {
     }
 
     /// What the head says under `key` of each column, as cells; empty where there is no such line.
-    [[nodiscard]] std::vector<std::string> under(std::string_view key, std::size_t from, std::size_t end) const {
+    [[nodiscard]] std::vector<std::string> under(std::string_view key, std::size_t from,
+                                                 std::size_t end) const {
         for (std::size_t line = from; line < end; ++line) {
             std::vector<std::string> found = cells(line);
             if (!found.empty() && found.front() == key) return found;
@@ -113,7 +115,7 @@ void read_scales(const Head& head, std::size_t shift, ScopeHeader& found) {
             if (key.factor && key.of_unit && is_size_of(*number, found.units[c])) continue;
             HeadScale& scale = found.scales[c];
             scale.words += (scale.words.empty() ? "" : ", ") + std::string(key.key) + " " + shortest(*number);
-            (key.factor ? scale.factor *= *number : scale.offset += *number);
+            (key.factor ? scale.factor *= * number : scale.offset += *number);
         }
     }
 }
@@ -127,7 +129,8 @@ std::optional<double> common_step(const Head& head, const ScopeHeader& found, co
         if (!number || !(*number > 0.0)) continue;
         if (step_ms.value_or(*number) != *number)
             raise<DataError>(
-                "{}: read channels of {} and {} ms without times, expected a column of times; export again with "
+                "{}: read channels of {} and {} ms without times, expected a column of times; export again "
+                "with "
                 "Timelines: All, or channels of one sample time",
                 source, shortest(*step_ms), shortest(*number));
         step_ms = number;

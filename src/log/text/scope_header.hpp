@@ -21,9 +21,9 @@ struct ScopeHeader {
     std::size_t names_line = 0, first_row = 0;  ///< of the lines of content
     /// By column; those of times have no name but the first.
     std::vector<std::string> names, units;
-    std::vector<std::size_t> clock_of;    ///< where a column's times stand; empty in an export without times
-    std::vector<HeadScale> scales;        ///< by column
-    std::optional<double> row_step_s;     ///< of an export without times
+    std::vector<std::size_t> clock_of;  ///< where a column's times stand; empty in an export without times
+    std::vector<HeadScale> scales;      ///< by column
+    std::optional<double> row_step_s;   ///< of an export without times
 };
 
 /// None where `content`, the lines of `bytes`, does not begin as such an export does. Throws DataError, which

@@ -27,8 +27,8 @@ namespace ripplenotch {
                                       const std::string& source, const ReadOptions& options,
                                       TextDialect& dialect);
 
-// What some programs write above a table: the head of a LabVIEW measurement file, and any other lines that are
-// no row of it.
+// What some programs write above a table: the head of a LabVIEW measurement file, and any other lines that
+// are no row of it.
 
 struct Preamble {
     std::size_t lines = 0;  ///< of content, before the names or, without names, the first row
