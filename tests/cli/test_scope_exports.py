@@ -250,6 +250,15 @@ class CountsAndPerMille(Case):
                 self.assertAlmostEqual(found["gear_ratio"]["value"], RATIO, delta=0.1)
                 self.assertAlmostEqual(max(line["amplitude_nm"] for line in found["lines"]), 0.4, delta=0.02)
 
+    def test_counts_that_begin_at_rest_are_asked_for(self):
+        lines = ["time_s,velocity,torque_nm"]
+        for k in range(4000 + len(ROWS)):
+            row = ROWS[max(0, k - 4000)]
+            lines.append(f"{k / RATE:.3f},{round(row.velocity / 360 * 4096)},{row.torque:.5f}")
+        done = run("identify", "-", "-q", stdin="\n".join(lines) + "\n")
+        self.assertEqual((done.returncode, done.stdout), (3, ""))
+        self.assertIn("'velocity' (column 2) in whole numbers throughout", done.stderr)
+
     def test_a_speed_that_nothing_has_is_asked_for(self):
         text = "time_s,velocity,torque_nm\n" + "".join(
             f"{row.t:.3f},{row.velocity * 14563.5 / 10 + 0.5:.4f},{row.torque:.4f}\n" for row in ROWS)

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <set>
 
 #include "log/columns/column_name.hpp"
@@ -367,7 +366,8 @@ class Decision {
                              role_name(role), unit)});
         } else if (is_device_unit(written)) {
             unscaled_.push_back({fmt::format("{} in {}", label, written), scale_example(role)});
-        } else if (written.empty() && role != Role::time && counts_only(c) &&
+        } else if (written.empty() && role != Role::time && c < facts_.sample.size() &&
+                   counts_only(facts_.sample[c]) &&
                    (facts_.names.empty() ||
                     convention_of(facts_.meanings()[c], role, facts_.meanings()) == nullptr)) {
             unscaled_.push_back(
@@ -375,23 +375,6 @@ class Decision {
                  fmt::format("{} (or --unit {}={})", scale_example(role), role_name(role),
                              base_unit(dimension_of(role)))});
         }
-    }
-
-    // A physical quantity has decimals; so many different whole numbers are none by chance. Even steps are a
-    // made-up ramp, or one that wraps.
-    bool counts_only(std::size_t c) const {
-        constexpr std::size_t fewest = 64, fewest_steps = 3;
-        if (c >= facts_.sample.size()) return false;
-        std::set<double> different, steps;
-        double before = std::numeric_limits<double>::quiet_NaN();
-        for (const double value : facts_.sample[c]) {
-            if (!std::isfinite(value)) continue;
-            if (value != std::floor(value)) return false;
-            different.insert(value);
-            if (value != before && std::isfinite(before)) steps.insert(value - before);
-            before = value;
-        }
-        return different.size() >= fewest && steps.size() >= fewest_steps;
     }
 
     // All at once: each is one option more.

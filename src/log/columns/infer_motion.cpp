@@ -105,6 +105,8 @@ MotionEvidence motion_evidence(const std::vector<double>& time_s, const std::vec
         if (!position.empty()) q.push_back(position[i]);
     }
     MotionEvidence evidence;
+    evidence.velocity_counts = counts_only(v);
+    evidence.position_counts = counts_only(q);
     evidence.farthest = nearly_largest(q);
     evidence.wrap = wrap_period(q);
     if (evidence.wrap) Unwrapper(*evidence.wrap).apply(q);
@@ -231,6 +233,7 @@ class Inference {
         if (best == readings.end()) return;  // --side says what cannot be
         best_ = *best;
         if (!fits) readings.insert(readings.end(), fitting.begin(), fitting.end());
+        if (options_.needs_torque) refuse_counts();
         refuse_no_speed();
         settle_on_best();
         refuse_motor_units();
@@ -262,6 +265,8 @@ class Inference {
             const MotionEvidence one = evidence_of(joint, bytes);
             evidence_.fastest = std::max(evidence_.fastest, one.fastest);
             evidence_.farthest = std::max(evidence_.farthest, one.farthest);
+            evidence_.velocity_counts = evidence_.velocity_counts || one.velocity_counts;
+            evidence_.position_counts = evidence_.position_counts || one.position_counts;
             if (!evidence_.wrap) evidence_.wrap = one.wrap;
             if (one.scale && (!scale || joint.chosen)) {
                 evidence_.scale = one.scale;
@@ -327,6 +332,22 @@ class Inference {
             const bool motor = one.velocity.side == Shaft::motor || one.position.side == Shaft::motor;
             return named || !motor || one.ratio;
         });
+    }
+
+    // Counts that did not show in the first rows, at rest.
+    void refuse_counts() const {
+        for (const auto& [column, counts, role] :
+             {std::tuple(&subject_->velocity, evidence_.velocity_counts, Role::velocity),
+              std::tuple(&subject_->position, evidence_.position_counts, Role::position)}) {
+            if (!*column || !counts || (*column)->unit_is_stated || (*column)->convention != nullptr)
+                continue;
+            raise<DataError>(
+                "{}: read {} in whole numbers throughout, as counts are, and no unit, expected quantities; "
+                "say "
+                "what 1 is, as in {} (or --unit {}={})",
+                layout_.source, label(**column), scale_example(role), role_name(role),
+                base_unit(dimension_of(role)));
+        }
     }
 
     // Whatever unit was taken, nothing turns so fast: the numbers are those of a device.

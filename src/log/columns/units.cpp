@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
+#include <set>
 #include <utility>
 
 #include "core/text/lower_case.hpp"
@@ -338,6 +340,22 @@ bool is_device_unit(std::string_view written) {
     for (const std::string_view rate : {"/s", "_s", "/sec", "_per_s"})
         if (unit.ends_with(rate)) unit.resize(unit.size() - rate.size());
     return std::find(device_units.begin(), device_units.end(), unit) != device_units.end();
+}
+
+bool counts_only(const std::vector<double>& values) {
+    constexpr std::size_t fewest = 64, most_steps = 4096;  // by hand
+    std::set<double> different, steps;
+    std::optional<double> before;
+    for (const double value : values) {
+        if (!std::isfinite(value)) continue;
+        if (value != std::floor(value)) return false;
+        if (different.size() < fewest) different.insert(value);
+        if (before && value != *before && steps.size() < most_steps) steps.insert(value - *before);
+        before = value;
+    }
+    const bool rounded =
+        std::any_of(steps.begin(), steps.end(), [&](double step) { return steps.count(step + 1.0) > 0; });
+    return different.size() >= fewest && rounded;
 }
 
 std::string scale_example(Role role) {

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "log/columns/decide_layout.hpp"
 #include "ripplenotch/core/quantity.hpp"
@@ -46,6 +47,9 @@ struct NameAndUnit {
 
 /// Counts, per mille and other numbers of a device, which are a quantity only with a scale.
 [[nodiscard]] bool is_device_unit(std::string_view written);
+/// Many different whole numbers and none with decimals: a physical quantity has decimals. Steps that differ
+/// by one come from rounding; a made-up ramp has none. Not-a-numbers are left out.
+[[nodiscard]] bool counts_only(const std::vector<double>& values);
 /// How one of them is stated: "--scale position=360deg/524288".
 [[nodiscard]] std::string scale_example(Role role);
 
