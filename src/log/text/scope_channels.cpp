@@ -189,13 +189,16 @@ class Channels {
     }
 
     std::int64_t time_of(const Rows& rows, std::size_t clock) const {
+        constexpr double longest_ns = 9e18;  // 285 years: what a count of nanoseconds holds
+        std::int64_t ticks = 0, since = 0;
         if (ticks_) {
             const std::string_view text = rows.cell(clock);
-            std::int64_t ticks = 0;
             const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), ticks);
-            if (error == std::errc() && end == text.data() + text.size())
-                return ns_per_tick * (ticks - dialect_.first_counts.front());
-        } else if (const auto ms = rows.number(clock)) {
+            if (error == std::errc() && end == text.data() + text.size() &&
+                !__builtin_sub_overflow(ticks, dialect_.first_counts.front(), &since) &&
+                !__builtin_mul_overflow(since, ns_per_tick, &since))
+                return since;
+        } else if (const auto ms = rows.number(clock); ms && std::abs(ns_per_ms * *ms) < longest_ns) {
             return std::llround(ns_per_ms * *ms);
         }
         rows.complain(source_, clock, "a time; mend or remove the line");
@@ -244,8 +247,8 @@ Records scope_records(std::unique_ptr<ByteSource> source, std::string first_byte
     // The torque's own rows, which are then not interpolated, unless another clock is named.
     const bool names_time = std::any_of(options.columns.begin(), options.columns.end(),
                                         [](const std::string& entry) { return entry.starts_with("time="); });
-    const std::size_t clock =
-        names_time ? dialect.clock_of[*whole.layout().chosen.time] : dialect.clock_of[read.front().second];
+    const auto named = whole.layout().chosen.time;  // none where a rate was stated
+    const std::size_t clock = dialect.clock_of[names_time && named ? *named : read.front().second];
     std::vector<std::size_t> of_base;
     for (const auto& [role, column] : read)
         if (dialect.clock_of[column] == clock) of_base.push_back(column);
