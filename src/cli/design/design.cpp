@@ -406,8 +406,8 @@ std::function<ExitCode()> attach_design(Options& options) {
     options.number("--min-ripple-reduction", request->min_ripple_reduction_db, Dimension::decibel,
                    "the same for the ripple of all orders together, by their amplitudes");
     options.number("--hysteresis", request->hysteresis, Dimension::speed,
-                   "a band is left only when the speed is this far outside it (default: three times the "
-                   "noise of the speed in JOINT, else 0)");
+                     "a band is left only when the speed is this far outside it (default: three times the "
+                     "noise of the speed in JOINT, else 0)");
     options.duration("--max-delay", request->max_delay,
                      "choose bands and Q whose DC delay is no longer, e.g. 20ms; where both are stated, exit "
                      "code 1 when a band's is");

@@ -78,9 +78,8 @@ std::size_t samples(const Settings& settings, std::string_view key, Hertz sample
 
 std::unique_ptr<Transition> transition(const SwitchingDesign& design, const CandidateTable& table) {
     Candidates candidates(table.bands());
-    const auto kind =
-        std::find_if(std::begin(transition_kinds), std::end(transition_kinds),
-                     [&](const TransitionKind* known) { return known->name == design.transition; });
+    const auto kind = std::find_if(std::begin(transition_kinds), std::end(transition_kinds),
+                                   [&](const TransitionKind* known) { return known->name == design.transition; });
     return (*kind)->make(std::move(candidates), design.crossfade_samples);
 }
 
