@@ -227,6 +227,9 @@ std::unique_ptr<LogReader> open_log(std::unique_ptr<ByteSource> source, const Re
     if (options.range.given() && !layout.outside)
         raise<UsageError>("{}: --from and --to: rows of a log in format {} are read all or none",
                           layout.source, format.name);
+    if (std::any_of(layout.columns.begin(), layout.columns.end(),
+                    [](const Column& column) { return column.shift != 0.0; }))
+        reader = std::make_unique<ShiftedColumns>(std::move(reader));
     if (layout.velocity_from_position) return std::make_unique<DerivedVelocity>(std::move(reader));
     if (layout.constant_speed) {
         const DegPerSec speed = *layout.constant_speed;
@@ -254,7 +257,12 @@ std::unique_ptr<LogWriter> rewrite_log(const std::string& path, const LogReader&
                                        ByteSink::Overwrite overwrite) {
     require_written(format, path);
     auto sink = std::make_unique<ByteSink>(path, overwrite, format.binary);
-    const bool same = reader.layout().format == format.name && format.rewrite != nullptr;
+    // The cells of a torque with an offset are not its multiples.
+    const std::vector<JointColumns> joints = reader.layout().all_chosen();
+    const bool shifted = std::any_of(joints.begin(), joints.end(), [&](const JointColumns& joint) {
+        return joint.torque && reader.layout().columns[*joint.torque].shift != 0.0;
+    });
+    const bool same = reader.layout().format == format.name && format.rewrite != nullptr && !shifted;
     return same ? format.rewrite(std::move(sink), reader, options)
                 : format.convert(std::move(sink), reader, options);
 }

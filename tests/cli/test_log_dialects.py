@@ -10,6 +10,7 @@ import math
 import random
 import re
 import resource
+import shlex
 import struct
 import unittest
 
@@ -311,21 +312,30 @@ class ChannelsWithClocksOfTheirOwn(unittest.TestCase):
         self.assertEqual([c["role"] for c in json.loads(done.stdout)["columns"]],
                          ["time", "velocity", "other", "torque", "other", "position"])
 
-    def test_two_clocks_are_refused_with_the_first_times_that_differ(self):
+    def test_two_clocks_are_joined_by_time_and_that_is_said(self):
         for at_k in (lambda k: f"{4.0 * k}", lambda k: f"{2.0 * k + 100.0}"):  # half the rate; a later start
             done = self.info(lambda k, cells: cells[:2] + [at_k(k)] + cells[3:])
-            self.assertEqual((done.returncode, done.stdout), (3, ""))
-            self.assertIn("'Axis1.ActTorque' (column 4) at times of its own", done.stderr)
-            self.assertIn("export all channels at one rate", done.stderr)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            told = json.loads(done.stdout)
+            self.assertEqual([c["name"] for c in told["columns"]], ["3", "Axis1.ActTorque", "Axis1.ActVelo", "Axis1.ActPos"])
+            self.assertIn("Axis1.ActVelo has a clock of its own: joined to the rows by --join linear", told["warnings"][0])
 
     def test_what_is_within_half_a_step_is_the_same_row(self):
         done = self.info(lambda k, cells: cells[:2] + [f"{2.0 * k + 0.4}"] + cells[3:])
         self.assertEqual(done.returncode, 0, done.stderr)
 
-    def test_the_clock_that_is_named_counts(self):
-        velocity_late = lambda k, cells: [f"{2.0 * k + 100.0}"] + cells[1:]  # noqa: E731
-        self.assertIn("'Axis1.ActTorque' (column 4)", self.info(velocity_late).stderr)
-        self.assertIn("'Axis1.ActVelo' (column 2)", self.info(velocity_late, "--columns", "time=3").stderr)
+    def test_a_clock_is_compared_in_every_row(self):
+        late = lambda k, cells: cells[:2] + [f"{2.0 * k + (4.0 if k > 4000 else 0.0)}"] + cells[3:]  # noqa: E731
+        self.assertIn("has a clock of its own", self.info(late).stdout)
+
+    def test_the_clock_that_is_named_counts_and_the_option_line_names_it(self):
+        slow = lambda k, cells: cells[:2] + [f"{4.0 * k}"] + cells[3:]  # noqa: E731
+        for words, rate in (((), 250.0), (("--columns", "time=3"), 250.0), (("--columns", "time=1"), 500.0)):
+            told = json.loads(self.info(slow, *words).stdout)
+            self.assertAlmostEqual(told["sample_rate_hz"], rate)
+            again = self.info(slow, *shlex.split(told["options"]))
+            self.assertEqual(again.returncode, 0, again.stderr)
+            self.assertEqual(json.loads(again.stdout)["joints"], told["joints"])
 
 
 class WhatIsSaidWithoutAUnit(Case):

@@ -71,12 +71,25 @@ enum class Role { time, velocity, torque, position, other };
 /// Where a motion is measured: behind the gear, or on the motor's shaft before it.
 enum class Shaft { joint, motor };
 
+/// What one unit of a column's numbers is (--scale): "360deg/524288", "0.04Nm", "2Nm+10Nm".
+struct ColumnScale {
+    std::string text;     ///< as typed
+    double factor = 1.0;  ///< divided by the divisor, if there is one
+    std::string unit;
+    double offset = 0.0;  ///< in `unit`, added after
+};
+/// Throws UsageError, which begins with `label`, for other texts. Whether the unit fits the column, the log
+/// says.
+[[nodiscard]] ColumnScale parse_scale(std::string_view text, std::string_view label);
+
 /// One column of the file, in file order.
 struct Column {
     std::string name;  ///< as in the header, without quotes; "column 3" when there is no header
     Role role = Role::other;
-    std::string unit;           ///< as understood ("rad/s"); empty for role other
-    double factor = 1.0;        ///< file value * factor = value in the tool's unit, of the joint
+    std::string unit;     ///< as understood ("rad/s"); empty for role other
+    double factor = 1.0;  ///< file value * factor + shift = value in the tool's unit, of the joint
+    double shift = 0.0;
+    std::string scale;          ///< as --scale states it; else empty
     bool unit_assumed = false;  ///< nothing settled the unit: it is in Layout::assumptions
     std::string joint;          ///< "" when the file holds one unnamed joint
     Shaft side = Shaft::joint;  ///< of a velocity or position, as measured; the factor divides by the ratio
@@ -108,9 +121,10 @@ struct ReadOptions {
     bool torque_of_each = true;                ///< with every_joint: false reads joints without a torque, too
     std::vector<std::string> columns;          ///< "time,velocity,torque" by place, or "torque=tau_J" by name
     std::map<std::string, std::string> units;  ///< role or column name -> unit
-    std::optional<Hertz> sample_rate;          ///< for logs without time; overrides the log's own time
-    std::optional<DegPerSec> constant_speed;   ///< of a log that holds no motion (--constant-speed)
-    std::vector<DegPerSec> constant_speeds;    ///< of several such logs, in their order; else empty
+    std::map<std::string, ColumnScale> scales;  ///< role or column name -> what its numbers are in a unit
+    std::optional<Hertz> sample_rate;           ///< for logs without time; overrides the log's own time
+    std::optional<DegPerSec> constant_speed;    ///< of a log that holds no motion (--constant-speed)
+    std::vector<DegPerSec> constant_speeds;     ///< of several such logs, in their order; else empty
     std::optional<char> delimiter;
     std::optional<char> decimal_mark;
     std::optional<bool> header;

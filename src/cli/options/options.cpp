@@ -352,6 +352,14 @@ void read_units(const std::string& text, std::map<std::string, std::string>& uni
     }
 }
 
+void read_scale(const std::string& text, std::map<std::string, ColumnScale>& scales) {
+    // Names of columns have '=' seldom, scales never.
+    const std::size_t equals = text.rfind('=');
+    if (equals == std::string::npos || equals == 0)
+        raise<UsageError>("--scale: '{}' is not COLUMN=FACTOR, for example position=360deg/524288", text);
+    scales[text.substr(0, equals)] = parse_scale(std::string_view(text).substr(equals + 1), "--scale");
+}
+
 // "motor", "velocity=motor,position=joint"
 void read_sides(const std::string& text, std::map<Role, Shaft>& sides) {
     for (const std::string& piece : split_commas(text)) {
@@ -413,6 +421,11 @@ void attach_log_columns(Options& options, ReadOptions& log) {
     options.parsed(
         "--unit", [&log](Text text) { read_units(text, log.units); }, "COLUMN=UNIT",
         "unit of a column: velocity=rad/s, torque=mNm, time=ms; repeatable", true);
+    options.parsed(
+        "--scale", [&log](Text text) { read_scale(text, log.scales); }, "COLUMN=FACTOR",
+        "what 1 in a column is: position=360deg/524288 (counts), torque=0.04Nm (per mille), torque=2Nm+10Nm "
+        "with an offset; repeatable",
+        true);
     options.parsed(
         "--side", [&log](Text text) { read_sides(text, log.sides); }, "SIDE",
         "where motion is measured: motor (before the gear) or joint; or by column, velocity=motor");

@@ -309,7 +309,8 @@ Clocks find_clocks(const ColumnFacts& facts, const Forced& forced, const ReadOpt
         if (name.rank < best_rank) found = {{}, found.texts, {}, {}}, best_rank = name.rank;
         const bool has_unit = known != nullptr || !name.unit.empty() ||
                               (!facts.units.empty() && !facts.units[c].empty()) ||
-                              options.units.count("time") + options.units.count(facts.names[c]) > 0;
+                              asked_unit(options, facts.names[c], Role::time) ||
+                              asked_scale(options, facts.names[c], Role::time) != nullptr;
         if (!has_unit && counts_rows(values)) {
             found.counters.push_back(c);
         } else if (runs_forward(values) || facts.sample.empty() || facts.sample[c].size() < 2) {
@@ -353,7 +354,7 @@ bool use_step_of_head(const ColumnFacts& facts, const Clocks& clocks, Layout& la
     layout.stated_rate = Hertz(1.0 / *facts.row_step_s);
     layout.inferences.push_back({"time",
                                  fmt::format("{} s a row", *facts.row_step_s),
-                                 "no column is a time, and the head of the file says Delta_X",
+                                 "no column is a time, and the head of the file says " + facts.row_step_key,
                                  fmt::format("--sample-rate {}Hz", shortest(layout.stated_rate->value())),
                                  {}});
     return true;

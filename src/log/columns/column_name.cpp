@@ -8,6 +8,7 @@
 #include <cctype>
 
 #include "core/text/lower_case.hpp"
+#include "log/columns/drive_objects.hpp"
 #include "log/columns/units.hpp"
 #include "ripplenotch/core/error.hpp"
 
@@ -163,11 +164,14 @@ bool is_clock_name(const std::vector<Word>& left) {
 
 ColumnName read_column_name(std::string_view name) {
     ColumnName column;
+    // The main program of a PLC; in lower case it is the mains.
+    if (name.starts_with("MAIN.")) name.remove_prefix(std::string_view("MAIN.").size());
     // In an element of a list, "tau_nm[2]", the unit stands in front of the number.
     const std::size_t bracket = name.ends_with(']') ? name.rfind('[') : std::string_view::npos;
     const bool element =
         bracket != std::string_view::npos && is_digits(name.substr(bracket + 1, name.size() - bracket - 2));
-    NameAndUnit parts = split_unit(element ? name.substr(0, bracket) : name);
+    const NamedObject named = drive_object(element ? name.substr(0, bracket) : name);
+    NameAndUnit parts = split_unit(named.name);
     if (element) parts.name += name.substr(bracket);
     column.unit = parts.unit;
     column.unit_is_sure = parts.bracketed;
@@ -175,9 +179,18 @@ ColumnName read_column_name(std::string_view name) {
     const RoleWord* found = nullptr;
     bool foreign = false, filtered = false, part = false;
     std::vector<Word> words = split_words(parts.name);
+    std::string spoken;
+    for (Word& word : words) {
+        spoken += (spoken.empty() ? "" : " ") + word.text;
+        if (const auto german = german_quantity(word.text)) {
+            word.text = german->quantity;
+            column.reference = column.reference || german->reference;
+        }
+    }
     take_ampere(words, column.unit);
     const bool of_current = std::any_of(words.begin(), words.end(),
                                         [](const Word& word) { return contains(current_words, word.text); });
+    const DriveObject* const object = named.object != nullptr ? named.object : drive_object_named(spoken);
     for (std::size_t i = 0; i < words.size(); ++i) {
         const Word& word = words[i];
         // tau_J: the J is of the symbol; in tau_J1 it is of the joint.
@@ -208,6 +221,18 @@ ColumnName read_column_name(std::string_view name) {
         column.role = found->role;
         column.rank = found->rank;
         column.current = false;
+    }
+    if (object != nullptr) {
+        if (found == nullptr && !column.current) {
+            column.role = object->role;
+            column.rank = object->current ? 1 : 0;
+        }
+        column.reference = column.reference || object->reference;
+        column.current = column.current || object->current;
+        if (column.unit.empty()) {
+            column.unit = object->unit;
+            column.unit_is_sure = false;
+        }
     }
     const bool clock = column.role == Role::time;
     if (!clock) column.joint = joint_in_name(left);
@@ -259,7 +284,10 @@ std::vector<ColumnName> read_column_names(const std::vector<std::string>& names,
     std::vector<ColumnName> columns;
     for (std::size_t c = 0; c < names.size(); ++c) {
         columns.push_back(read_column_name(names[c]));
-        if (!columns[c].unit.empty() || units.empty() || units[c].empty()) continue;
+        // What the file states comes before what a drive's profile says of all drives.
+        const bool open =
+            columns[c].unit.empty() || (is_device_unit(columns[c].unit) && !columns[c].unit_is_sure);
+        if (!open || units.empty() || units[c].empty()) continue;
         columns[c].unit = units[c];
         columns[c].unit_is_sure = true;
     }

@@ -16,45 +16,6 @@
 
 namespace ripplenotch {
 
-namespace {
-
-// Tables in which each channel has a column of times beside it.
-
-// The first row of which two clocks are more than half a step apart, if there is one.
-std::optional<std::size_t> first_apart(const std::vector<double>& clock, const std::vector<double>& other) {
-    const std::size_t rows = std::min(clock.size(), other.size());
-    if (rows < 2) return std::nullopt;
-    const double half_step = 0.5 * std::abs(clock[1] - clock[0]);
-    for (std::size_t row = 0; row < rows; ++row)
-        if (std::abs(other[row] - clock[row]) > half_step) return row;  // an empty cell is not apart
-    return std::nullopt;
-}
-
-// Throws DataError where a chosen column's own times are not those that were chosen, as far as the opening
-// shows: its rows would be moments of another clock.
-void check_channel_clocks(const std::string& source, const ColumnFacts& facts, const Layout& layout) {
-    if (facts.clock_of.empty() || !layout.chosen.time) return;
-    const std::size_t time = *layout.chosen.time;
-    for (const JointColumns& joint : layout.all_chosen()) {
-        for (const auto& column : {joint.velocity, joint.torque, joint.position}) {
-            if (!column) continue;
-            const std::size_t own = facts.clock_of[*column];
-            if (own == time) continue;
-            const auto row = first_apart(facts.sample[time], facts.sample[own]);
-            if (!row) continue;
-            raise<DataError>(
-                "{}: read {} at times of its own: {} in row {} (column {}), where column {} has {}; expected "
-                "one "
-                "clock; export all channels at one rate from one start, or name channels of one clock with "
-                "--columns time=NUMBER,...",
-                source, column_label(facts.names, *column), facts.sample[own][*row], *row + 1, own + 1,
-                time + 1, facts.sample[time][*row]);
-        }
-    }
-}
-
-}  // namespace
-
 // --columns: by place "time,velocity,torque" ("-" skips one), or by name "torque=tau_J" or number "torque=3".
 
 std::string column_label(const std::vector<std::string>& names, std::size_t column) {
@@ -160,13 +121,13 @@ class Decision {
                                !options_.every_joint || options_.torque_of_each);
         for (const JointGroup& group : groups_) layout_.joints.push_back(group.name);
         choose_joint();
+        refuse_unscaled();
         infer_motion(facts_, options_, motions_of(known(), groups_, stated_, options_, layout_), layout_);
         state_derived_velocity(layout_, facts_);
         take_constant_speed();
         state_symbols();
         state_units(layout_, facts_, options_);
         report_repeated_names();
-        check_channel_clocks(source_, facts_, layout_);
         layout_.options = options_line(layout_, facts_, options_);
         return std::move(layout_);
     }
@@ -386,6 +347,24 @@ class Decision {
             written = *usual;
             stated_[c] = true;
         }
+        const ColumnScale* const scale = asked_scale(options_, column.name, role);
+        if (scale != nullptr) {
+            const auto usual = usual_unit(scale->unit, role);
+            if (asked_unit(options_, column.name, role))
+                raise<UsageError>("--scale and --unit both state the unit of {}; leave one out",
+                                  column_label(facts_.names, c));
+            if (!usual || !role_factor(role, *usual, 1.0) || (role == Role::time && scale->offset != 0.0)) {
+                raise<UsageError>("--scale: '{}' is no {}; write its unit as one of {}{}", scale->text,
+                                  role_name(role), unit_list(role),
+                                  role == Role::time ? ", without an offset" : "");
+            }
+            written = *usual;
+            stated_[c] = true;
+            column.scale = scale->text;
+        } else if (!asked_unit(options_, column.name, role) && is_chosen(c)) {
+            ask_for_scale(c, role, written);
+        }
+        if (is_device_unit(written)) written.clear(), stated_[c] = false;
         if (written.empty()) {
             const Convention* const known =
                 facts_.names.empty() ? nullptr : convention_of(facts_.meanings()[c], role, facts_.meanings());
@@ -401,7 +380,8 @@ class Decision {
             usual ? role_factor(role, *usual, options_.nm_per_ampere.value_or(1.0)) : std::nullopt;
         if (factor) {
             column.unit = *usual;
-            column.factor = *factor;
+            column.factor = *factor * (scale != nullptr ? scale->factor : 1.0);
+            column.shift = *factor * (scale != nullptr ? scale->offset : 0.0);
             column.unit_assumed = column.unit_assumed && !stated_[c];
         } else if (is_chosen(c)) {
             raise<DataError>(
@@ -412,6 +392,49 @@ class Decision {
             column.role = Role::other;
             column.joint.clear();
         }
+    }
+
+    // Notes what a column lacks to be a quantity.
+    void ask_for_scale(std::size_t c, Role role, const std::string& written) {
+        const std::string label = column_label(facts_.names, c);
+        if (!facts_.scales.empty() && !facts_.scales[c].words.empty()) {
+            const HeadScale& head = facts_.scales[c];
+            const auto usual = usual_unit(written, role);
+            const std::string unit = usual ? *usual : std::string(base_unit(dimension_of(role)));
+            unscaled_.push_back(
+                {fmt::format("{} over {}, and not whether the export scaled the values", head.words, label),
+                 fmt::format("--scale {}={}{}{} where it did not, --unit {}={} where it did", role_name(role),
+                             shortest(head.factor), unit,
+                             head.offset == 0.0 ? "" : fmt::format("{:+}{}", head.offset, unit),
+                             role_name(role), unit)});
+        } else if (is_device_unit(written)) {
+            unscaled_.push_back({fmt::format("{} in {}", label, written), scale_example(role)});
+        } else if (written.empty() && role != Role::time && c < facts_.sample.size() &&
+                   counts_only(facts_.sample[c]) &&
+                   (facts_.names.empty() ||
+                    convention_of(facts_.meanings()[c], role, facts_.meanings()) == nullptr)) {
+            unscaled_.push_back(
+                {fmt::format("{} in whole numbers throughout, as counts are, and no unit", label),
+                 fmt::format("{} (or --unit {}={})", scale_example(role), role_name(role),
+                             base_unit(dimension_of(role)))});
+        }
+    }
+
+    // All at once: each is one option more.
+    void refuse_unscaled() {
+        if (unscaled_.empty()) return;
+        std::vector<std::string> read, options;
+        for (const auto& [what, option] : unscaled_) {
+            read.push_back(what);
+            options.push_back(option);
+        }
+        const std::string what = fmt::format("{}", fmt::join(read, "; ")),
+                          say = fmt::format("{}", fmt::join(options, " "));
+        if (options_.needs_torque)
+            raise<DataError>("{}: read {}, expected quantities; say what 1 is, as in {}", source_, what, say);
+        layout_.warnings.push_back(
+            {"unscaled", fmt::format("read {}; commands that use it ask what 1 is, as in {}", what, say),
+             true});
     }
 
     bool is_chosen(std::size_t c) const {
@@ -438,6 +461,8 @@ class Decision {
     std::vector<ColumnName> names_;
     std::vector<bool> stated_;  ///< by column: the log or an option says its unit
     std::vector<JointGroup> groups_;
+    std::vector<std::pair<std::string, std::string>>
+        unscaled_;  ///< what was read, and the option that says more
 };
 
 }  // namespace

@@ -26,6 +26,12 @@ struct MotionPlaces {
     std::optional<std::size_t> velocity, position;
 };
 
+/// A scale that the head of a file states for a column, and not whether the values have it.
+struct HeadScale {
+    std::string words;  ///< "ScaleFactor 2, Offset 10"; empty where there is none
+    double factor = 1.0, offset = 0.0;
+};
+
 /// What a format knows of its columns before any decision.
 struct ColumnFacts {
     std::vector<std::string> names;    ///< one a column; empty when the file names none
@@ -39,11 +45,12 @@ struct ColumnFacts {
     std::vector<std::vector<double>>
         sample;  ///< the first rows by column; not-a-number where a cell is no number
     std::vector<std::int64_t> first_counts;  ///< whole numbers of the first row, exact; 0 where there is none
-    std::vector<std::size_t> clock_of;  ///< by column: where its times stand, if each has its own; else empty
     std::vector<bool> clock_texts;  ///< by column: its cells are dates or times of day; empty when none is
     std::vector<StampForm> stamp_forms;  ///< by column, where clock_texts are
     bool sums_steps = false;             ///< the reader can sum a column of time steps
+    std::vector<HeadScale> scales;       ///< by column; empty where the head states none
     std::optional<double> row_step_s;    ///< where the head of the file says how long a row is
+    std::string row_step_key;            ///< the word in the head that says it
     std::string dialect_options;         ///< "--delimiter ',' --decimal ." and the like, for Layout::options
     /// Rows of a velocity and a position, as they stand in the file: those of the first `bytes`, and at least
     /// those at hand.

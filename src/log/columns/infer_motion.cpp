@@ -10,6 +10,7 @@
 
 #include "log/account/account.hpp"
 #include "log/columns/motion_reading.hpp"
+#include "log/columns/units.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 
@@ -104,6 +105,8 @@ MotionEvidence motion_evidence(const std::vector<double>& time_s, const std::vec
         if (!position.empty()) q.push_back(position[i]);
     }
     MotionEvidence evidence;
+    evidence.velocity_counts = counts_only(v);
+    evidence.position_counts = counts_only(q);
     evidence.farthest = nearly_largest(q);
     evidence.wrap = wrap_period(q);
     if (evidence.wrap) Unwrapper(*evidence.wrap).apply(q);
@@ -197,13 +200,18 @@ GuessedRules guess_rules(std::string_view bytes, const TextLine& first, const st
         if (options.decimal_mark && rules.decimal_mark != *options.decimal_mark) continue;
         consider(rules);
     }
-    if (best.columns == 0 && options.delimiter)
-        consider({*options.delimiter, options.decimal_mark.value_or('.')});
+    if (best.columns == 0 && options.delimiter) {
+        for (const char mark : {'.', ','})
+            if (options.decimal_mark.value_or(mark) == mark) consider({*options.delimiter, mark});
+    }
     return {best.rules, best.columns, best.numbers};
 }
 
 namespace {
 
+// 1667 rpm, eight times the fastest joint behind a gear and twice a direct drive of an arm; 20000 rpm of a
+// motor, before the gear.
+constexpr double no_joint_deg_s = 10000.0, no_motor_deg_s = 120000.0;
 constexpr double same_speed = 0.02;  // readings whose speeds differ by less are one
 constexpr double never_meant = 4.6;  // dearer by more than two conventions broken: not worth a word
 
@@ -225,6 +233,8 @@ class Inference {
         if (best == readings.end()) return;  // --side says what cannot be
         best_ = *best;
         if (!fits) readings.insert(readings.end(), fitting.begin(), fitting.end());
+        if (options_.needs_torque) refuse_counts();
+        refuse_no_speed();
         settle_on_best();
         refuse_motor_units();
         const std::vector<OtherReading> possible = others(readings, open_margin);
@@ -255,6 +265,8 @@ class Inference {
             const MotionEvidence one = evidence_of(joint, bytes);
             evidence_.fastest = std::max(evidence_.fastest, one.fastest);
             evidence_.farthest = std::max(evidence_.farthest, one.farthest);
+            evidence_.velocity_counts = evidence_.velocity_counts || one.velocity_counts;
+            evidence_.position_counts = evidence_.position_counts || one.position_counts;
             if (!evidence_.wrap) evidence_.wrap = one.wrap;
             if (one.scale && (!scale || joint.chosen)) {
                 evidence_.scale = one.scale;
@@ -276,6 +288,10 @@ class Inference {
                               : layout_.stated_rate ? 1.0 / layout_.stated_rate->value()
                                                     : 1.0;
         for (double& time : rows.time) time *= factor;
+        if (joint.velocity) {
+            const Column& column = layout_.columns[joint.velocity->column];
+            for (double& value : rows.velocity) value += column.shift / column.factor;
+        }
         return motion_evidence(rows.time, rows.velocity, rows.position);
     }
 
@@ -318,6 +334,42 @@ class Inference {
         });
     }
 
+    // Counts that did not show in the first rows, at rest.
+    void refuse_counts() const {
+        for (const auto& [column, counts, role] :
+             {std::tuple(&subject_->velocity, evidence_.velocity_counts, Role::velocity),
+              std::tuple(&subject_->position, evidence_.position_counts, Role::position)}) {
+            if (!*column || !counts || (*column)->unit_is_stated || (*column)->convention != nullptr)
+                continue;
+            raise<DataError>(
+                "{}: read {} in whole numbers throughout, as counts are, and no unit, expected quantities; "
+                "say "
+                "what 1 is, as in {} (or --unit {}={})",
+                layout_.source, label(**column), scale_example(role), role_name(role),
+                base_unit(dimension_of(role)));
+        }
+    }
+
+    // Whatever unit was taken, nothing turns so fast: the numbers are those of a device.
+    void refuse_no_speed() const {
+        const auto& column = subject_->velocity ? subject_->velocity : subject_->position;
+        const ReadColumn& read = subject_->velocity ? best_.velocity : best_.position;
+        const bool motor = read.side == Shaft::motor && !best_.ratio;
+        const double deg_s = evidence_.fastest * (motor ? read.unit_factor : read.factor);
+        if (!options_.needs_torque || column->unit_is_stated ||
+            deg_s <= (motor ? no_motor_deg_s : no_joint_deg_s))
+            return;
+        const bool both = subject_->velocity && subject_->position && !subject_->position->unit_is_stated;
+        raise<DataError>(
+            "{}: read {:.4g} in {}, of which no unit is stated: in {} the {} would turn at {:.3g} deg/s, "
+            "expected "
+            "at most {:g}; say what 1 is, as in {}{}, or --unit if that is the speed",
+            layout_.source, evidence_.fastest, label(*column), read.unit, motor ? "motor" : "joint", deg_s,
+            motor ? no_motor_deg_s : no_joint_deg_s,
+            scale_example(subject_->velocity ? Role::velocity : Role::position),
+            both ? " " + scale_example(Role::position) : "");
+    }
+
     void refuse_motor_units() const {
         if (!layout_.motor_units || !options_.needs_torque || options_.takes_motor_units) return;
         const auto& column = subject_->velocity ? subject_->velocity : subject_->position;
@@ -339,6 +391,7 @@ class Inference {
         if (read.side != Shaft::motor) return;
         column.motor_ratio = ratio;
         column.factor /= ratio.value_or(1.0);
+        column.shift /= ratio.value_or(1.0);
     }
 
     /// Readings that cost less than `margin` more and say another speed, each once, the likeliest first.

@@ -26,6 +26,7 @@ struct MotionEvidence {
     std::optional<double> wrap;  ///< the position starts again after so much
     double fastest = 0.0;        ///< largest magnitude of the velocity; without one, of the position's slope
     double farthest = 0.0;       ///< largest magnitude of the position
+    bool velocity_counts = false, position_counts = false;  ///< they are whole numbers throughout
 };
 
 /// Vectors of equal length, in seconds and file units; velocity or position may be empty. Rows with a

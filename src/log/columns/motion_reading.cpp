@@ -72,6 +72,21 @@ void DerivedVelocity::derive(RowBlock& block, std::size_t k) {
     before_[k] = point(block, joints_[k], size - 1);
 }
 
+bool ShiftedColumns::next(RowBlock& block) {
+    if (!reader_->next(block)) return false;
+    const std::vector<JointColumns> joints = layout().all_chosen();
+    for (std::size_t j = 0; j < joints.size(); ++j) {
+        JointRows& rows = block.joints[j];
+        for (const auto& [column, values] : {std::pair{joints[j].velocity, &rows.velocity_deg_s},
+                                             std::pair{joints[j].torque, &rows.torque_nm},
+                                             std::pair{joints[j].position, &rows.position_deg}}) {
+            if (!column) continue;
+            for (double& value : *values) value += layout().columns[*column].shift;
+        }
+    }
+    return true;
+}
+
 bool ConstantVelocity::next(RowBlock& block) {
     if (!reader_->next(block)) return false;
     for (JointRows& rows : block.joints) rows.velocity_deg_s.assign(block.size(), speed_.value());
@@ -127,6 +142,7 @@ std::vector<Candidate> candidates(const std::optional<MotionColumn>& column, con
     if (column->unit_is_stated)
         found.push_back(
             {{read.unit, read.factor, known == units.end() ? Family::degrees : known->family, 0.0}, false});
+    if (!read.scale.empty()) return found;  // whoever states what 1 is does not mean another unit
     for (MotionUnit unit : units) {
         if (column->unit_is_stated && unit.name == read.unit) continue;
         if (column->unit_is_stated) unit.cost = header_wrong;

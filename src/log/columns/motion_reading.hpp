@@ -43,6 +43,20 @@ class DerivedVelocity : public LogReader {
     std::exception_ptr failure_;  ///< of the block ahead; for when its turn comes
 };
 
+/// Passes on the rows of another reader, with the shifts of its columns added.
+class ShiftedColumns : public LogReader {
+  public:
+    explicit ShiftedColumns(std::unique_ptr<LogReader> reader) : reader_(std::move(reader)) {}
+
+    [[nodiscard]] const Layout& layout() const override { return reader_->layout(); }
+    [[nodiscard]] std::string_view head() const override { return reader_->head(); }
+    [[nodiscard]] const LogReader& base() const override { return reader_->base(); }
+    bool next(RowBlock& block) override;
+
+  private:
+    std::unique_ptr<LogReader> reader_;
+};
+
 /// Passes on the rows of another reader, with one velocity for all joints.
 class ConstantVelocity : public LogReader {
   public:

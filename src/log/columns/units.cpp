@@ -7,10 +7,13 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
+#include <set>
 #include <utility>
 
 #include "core/text/lower_case.hpp"
 #include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/number.hpp"
 
 namespace ripplenotch {
 
@@ -102,9 +105,16 @@ constexpr std::array spellings = {
 
 // Units of torque that this tool does not read, at the end of a name without brackets; a column of them is
 // not in Nm.
-constexpr std::array<std::string_view, 18> unread_units = {
-    "lbf_in", "in_lbf", "lb_in", "in_lb",   "lbf_ft", "ft_lbf",   "lb_ft",    "ft_lb", "ozf_in",
-    "in_ozf", "oz_in",  "in_oz", "percent", "pct",    "percents", "permille", "volts", "kgf_cm"};
+constexpr std::array<std::string_view, 14> unread_units = {"lbf_in", "in_lbf", "lb_in", "in_lb",  "lbf_ft",
+                                                           "ft_lbf", "lb_ft",  "ft_lb", "ozf_in", "in_ozf",
+                                                           "oz_in",  "in_oz",  "volts", "kgf_cm"};
+
+// Numbers as a drive or a converter has them. What they are in a physical unit is set in the device.
+constexpr std::array<std::string_view, 25> device_units = {
+    "count", "counts",    "cnt",        "cnts",        "cts",     "inc",      "incr",
+    "incs",  "increment", "increments", "inkremente",  "inkr",    "pulse",    "pulses",
+    "ticks", "lsb",       "permille",   "per_mille",   "permill", "promille", "percent",
+    "pct",   "percents",  "%",          "\xe2\x80\xb0"};
 
 std::string lower_without_blanks(std::string_view text) {
     std::string lower = lower_case(text);
@@ -185,6 +195,8 @@ NameAndUnit split_unit(std::string_view column_name) {
     for (std::size_t at = 1; at < whole.size(); ++at) {
         if (whole[at] != '_' && whole[at] != ' ') continue;
         const std::string_view rest = whole.substr(at + 1);
+        if (is_device_unit(rest))  // "_counts_s" before "_s"
+            return {std::string(without_padding(whole.substr(0, at))), std::string(rest), true};
         if (rest == "nm" || rest == "mnm" || usual_unit(rest, Role::other)) {
             return {std::string(without_padding(whole.substr(0, at))), std::string(rest), false};
         }
@@ -251,15 +263,15 @@ void say_torque_constant(Layout& layout, const ColumnFacts& facts, const ReadOpt
     }
 }
 
-void require_used_unit(const Layout& layout, const std::string& key) {
+void require_used(const Layout& layout, std::string_view option, const std::string& key) {
     for (const Role role : {Role::time, Role::velocity, Role::torque, Role::position}) {
         if (key == role_name(role)) return;
     }
     for (const Column& column : layout.columns) {
         if (column.name == key) return;
     }
-    raise<UsageError>("--unit: '{}' is neither a role (time, velocity, torque, position) nor a column of {}",
-                      key, layout.source);
+    raise<UsageError>("{}: '{}' is neither a role (time, velocity, torque, position) nor a column of {}",
+                      option, key, layout.source);
 }
 
 }  // namespace
@@ -271,6 +283,93 @@ std::optional<std::string> asked_unit(const ReadOptions& options, const std::str
     return std::nullopt;
 }
 
+const ColumnScale* asked_scale(const ReadOptions& options, const std::string& name, Role role) {
+    for (const std::string& key : {name, std::string(role_name(role))})
+        if (const auto found = options.scales.find(key); found != options.scales.end()) return &found->second;
+    return nullptr;
+}
+
+ColumnScale parse_scale(std::string_view text, std::string_view label) {
+    ColumnScale scale;
+    scale.text = text;
+    const auto complain = [&](std::string_view why) {
+        raise<UsageError>(
+            "{}: '{}': {}; write FACTOR and UNIT, then /DIVISOR, then +OFFSET, as in 0.04Nm, "
+            "360deg/524288 or 2Nm+10Nm",
+            label, text, why);
+    };
+    // The longest beginning that is a number; what follows it is left.
+    const auto take_number = [](std::string_view& rest) -> std::optional<double> {
+        for (std::size_t size = rest.find_first_not_of("0123456789.eE+-") == std::string_view::npos
+                                    ? rest.size()
+                                    : rest.find_first_not_of("0123456789.eE+-");
+             size > 0; --size) {
+            if (const auto number = parse_number(rest.substr(0, size))) {
+                rest.remove_prefix(size);
+                return number;
+            }
+        }
+        return std::nullopt;
+    };
+    std::string_view rest = text;
+    const auto factor = take_number(rest);
+    if (!factor || *factor == 0.0) complain("it does not begin with a number that is not 0");
+    scale.factor = *factor;
+    // Units have letters behind their '/', a divisor has digits.
+    std::size_t end = 0;
+    while (end < rest.size() && rest[end] != '+' && rest[end] != '-' &&
+           !(rest[end] == '/' && end + 1 < rest.size() &&
+             std::isdigit(static_cast<unsigned char>(rest[end + 1])) != 0))
+        ++end;
+    scale.unit = without_padding(rest.substr(0, end));
+    rest.remove_prefix(end);
+    if (scale.unit.empty()) complain("no unit follows the number");
+    if (rest.starts_with('/')) {
+        rest.remove_prefix(1);
+        const auto divisor = take_number(rest);
+        if (!divisor || *divisor == 0.0) complain("no number follows the '/'");
+        scale.factor /= *divisor;
+    }
+    if (rest.empty()) return scale;
+    const auto offset = take_number(rest);
+    if (!offset || !(rest.empty() || without_padding(rest) == scale.unit))
+        complain("what follows is no offset in the same unit");
+    scale.offset = *offset;
+    return scale;
+}
+
+bool is_device_unit(std::string_view written) {
+    std::string unit = lower_without_blanks(without_padding(written));
+    for (const std::string_view rate : {"/s", "_s", "/sec", "_per_s"})
+        if (unit.ends_with(rate)) unit.resize(unit.size() - rate.size());
+    return std::find(device_units.begin(), device_units.end(), unit) != device_units.end();
+}
+
+bool counts_only(const std::vector<double>& values) {
+    constexpr std::size_t fewest = 64, most_steps = 4096;  // by hand
+    std::set<double> different, steps;
+    std::optional<double> before;
+    for (const double value : values) {
+        if (!std::isfinite(value)) continue;
+        if (value != std::floor(value)) return false;
+        if (different.size() < fewest) different.insert(value);
+        if (before && value != *before && steps.size() < most_steps) steps.insert(value - *before);
+        before = value;
+    }
+    const bool rounded =
+        std::any_of(steps.begin(), steps.end(), [&](double step) { return steps.count(step + 1.0) > 0; });
+    return different.size() >= fewest && rounded;
+}
+
+std::string scale_example(Role role) {
+    constexpr std::array examples = {
+        std::pair{Role::velocity, "velocity=360deg/s/524288"}, std::pair{Role::torque, "torque=0.04Nm"},
+        std::pair{Role::position, "position=360deg/524288"}, std::pair{Role::time, "time=1us"}};
+    for (const auto& [known, example] : examples)
+        if (known == role) return fmt::format("--scale {}", example);
+    return "";
+}
+
 std::string unit_list(Role role) {
     std::string list = fmt::format("{}", fmt::join(unit_names(dimension_of(role)), ", "));
     return role == Role::torque ? list + ", A, mA" : list;
@@ -278,7 +377,8 @@ std::string unit_list(Role role) {
 
 void state_units(Layout& layout, const ColumnFacts& facts, const ReadOptions& options) {
     say_assumed_units(layout, facts);
-    for (const auto& [key, unit] : options.units) require_used_unit(layout, key);
+    for (const auto& [key, unit] : options.units) require_used(layout, "--unit", key);
+    for (const auto& [key, scale] : options.scales) require_used(layout, "--scale", key);
     say_torque_constant(layout, facts, options);
 }
 

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "log/columns/decide_layout.hpp"
 #include "ripplenotch/core/quantity.hpp"
@@ -41,11 +42,22 @@ struct NameAndUnit {
 [[nodiscard]] std::optional<std::string> asked_unit(const ReadOptions& options, const std::string& name,
                                                     Role role);
 
+/// What --scale says of the column, by its name or by its role; null where it says nothing.
+[[nodiscard]] const ColumnScale* asked_scale(const ReadOptions& options, const std::string& name, Role role);
+
+/// Counts, per mille and other numbers of a device, which are a quantity only with a scale.
+[[nodiscard]] bool is_device_unit(std::string_view written);
+/// Many different whole numbers and none with decimals: a physical quantity has decimals. Steps that differ
+/// by one come from rounding; a made-up ramp has none. Not-a-numbers are left out.
+[[nodiscard]] bool counts_only(const std::vector<double>& values);
+/// How one of them is stated: "--scale position=360deg/524288".
+[[nodiscard]] std::string scale_example(Role role);
+
 /// Units that a column of this role may have, as messages list them.
 [[nodiscard]] std::string unit_list(Role role);
 
 /// Adds warnings: units that were assumed, currents without a torque constant, a torque constant without
-/// currents. Throws UsageError for a --unit that names neither a role nor a column.
+/// currents. Throws UsageError for a --unit or --scale that names neither a role nor a column.
 void state_units(Layout& layout, const ColumnFacts& facts, const ReadOptions& options);
 
 /// Marks a layout whose joints lack a velocity that their position can give, with a warning.

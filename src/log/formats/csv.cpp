@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "log/formats.hpp"
-#include "log/rows_in_range.hpp"
 #include "log/table_writer.hpp"
 #include "log/text/csv_reader.hpp"
 #include "log/text/csv_writer.hpp"
 #include "log/text/long_table.hpp"
+#include "log/text/scope_channels.hpp"
 #include "log/text/text_dialect.hpp"
 #include "ripplenotch/core/number.hpp"
 
@@ -65,7 +65,17 @@ std::unique_ptr<LogReader> open_text(std::unique_ptr<ByteSource> source, std::st
         source = widened(std::move(source), std::move(first_bytes), options);
         first_bytes.clear();
     }
+    if (may_be_scope_export(first_bytes))
+        return open_scope_export(std::move(source), std::move(first_bytes), options);
     return open_with<CsvReader>(std::move(source), std::move(first_bytes), options);
+}
+
+// Channels that were joined by time have no rows in the file that could be written again.
+std::unique_ptr<LogWriter> rewrite(std::unique_ptr<ByteSink> sink, const LogReader& reader,
+                                   const WriteOptions& options) {
+    const bool rows = dynamic_cast<const CsvReader*>(&reader.base()) != nullptr;
+    return rows ? rewrite_with<CsvWriter, CsvReader>(std::move(sink), reader, options)
+                : convert_with<CsvTableWriter>(std::move(sink), reader, options);
 }
 
 }  // namespace
@@ -77,7 +87,7 @@ const LogFormat formats::csv{
     .binary = false,
     .sniff = nullptr,  // any text may be a text log
     .open = open_text,
-    .rewrite = rewrite_with<CsvWriter, CsvReader>,
+    .rewrite = rewrite,
     .convert = convert_with<CsvTableWriter>,
     .write_columns = write_columns_with<CsvTableWriter>,
 };

@@ -32,13 +32,13 @@ std::size_t line_ends(std::string_view bytes) {
         std::count_if(bytes.begin(), bytes.end(), [](char c) { return c == '\n' || c == '\r'; }));
 }
 
+}  // namespace
+
 std::string dialect_options(const TextDialect& dialect) {
     const std::string name = delimiter_name(dialect.rules.delimiter);
     return fmt::format("--delimiter {} --decimal {}{}", name == ";" ? "';'" : name,
                        dialect.rules.decimal_mark, dialect.has_header ? "" : " --no-header");
 }
-
-}  // namespace
 
 CsvReader::CsvReader(std::unique_ptr<ByteSource> source, std::string first_bytes, const ReadOptions& options)
     : source_(std::move(source)), options_(options) {
@@ -57,11 +57,16 @@ CsvReader::CsvReader(std::unique_ptr<ByteSource> source, std::string first_bytes
         layout_.warnings.insert(layout_.warnings.end(), made->warnings().begin(), made->warnings().end());
     }
     if (dialect_.head_lines > 0) {
-        layout_.inferences.push_back({fmt::format("the first {} lines", dialect_.head_lines),
-                                      "a head, passed on and not read",
-                                      "they are no rows, and the names do not stand in the first of them",
-                                      fmt::format("--skip-lines {}", dialect_.head_lines),
-                                      {}});
+        const bool scope = !dialect_.scales.empty();
+        layout_.inferences.push_back(
+            {fmt::format("the first {} lines", dialect_.head_lines),
+             scope ? "the head of a TwinCAT Scope export, with its names and units"
+                   : "a head, passed on and not read",
+             scope ? "'Name' stands over numbers that run forward, which are times, and "
+                     "over each channel"
+                   : "they are no rows, and the names do not stand in the first of them",
+             fmt::format("--skip-lines {}", dialect_.head_lines),
+             {}});
     }
     head_ = first_bytes.substr(0, dialect_.data_offset);
     ahead_ = std::move(first_bytes);
@@ -81,8 +86,9 @@ ColumnFacts CsvReader::facts_of(std::string& opening) {
     facts.clock_texts = dialect_.clock_texts;
     facts.stamp_forms = dialect_.stamp_forms;
     facts.sums_steps = true;
-    facts.clock_of = dialect_.clock_of;
+    facts.scales = dialect_.scales;
     facts.row_step_s = dialect_.row_step_s;
+    facts.row_step_key = dialect_.row_step_key;
     facts.dialect_options = dialect_options(dialect_);
     facts.motion_sample = [this, &opening](const MotionPlaces& places, std::size_t bytes) {
         if (!source_ended_ && opening.size() < bytes) source_ended_ = read_up_to(*source_, opening, bytes);

@@ -14,6 +14,9 @@
 
 namespace ripplenotch {
 
+/// "--delimiter ';' --decimal ,", as people type it.
+[[nodiscard]] std::string dialect_options(const TextDialect& dialect);
+
 class CsvReader : public LogReader {
   public:
     CsvReader(std::unique_ptr<ByteSource> source, std::string first_bytes, const ReadOptions& options);

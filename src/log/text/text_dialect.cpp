@@ -11,6 +11,7 @@
 #include "log/clock/stamp.hpp"
 #include "log/columns/infer_motion.hpp"
 #include "log/rows_in_range.hpp"
+#include "log/text/scope_header.hpp"
 #include "log/text/text_header.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
@@ -119,6 +120,22 @@ void look_at_sample(std::string_view bytes, std::span<const TextLine> rows, Text
     }
 }
 
+// Only the rows are left in `content`.
+void take_scope_header(const ScopeHeader& scope, std::vector<TextLine>& content, ReadOptions& known,
+                       TextDialect& dialect) {
+    if (!known.delimiter) known.delimiter = scope.delimiter;
+    dialect.has_header = true;
+    dialect.names = scope.names;
+    dialect.units = scope.units;
+    dialect.clock_of = scope.clock_of;
+    dialect.scales = scope.scales;
+    dialect.row_step_s = scope.row_step_s;
+    dialect.row_step_key = "SampleTime[ms]";
+    dialect.header_end = content[scope.names_line].end;
+    dialect.head_lines = content[scope.first_row].number - 1;
+    content.erase(content.begin(), content.begin() + static_cast<std::ptrdiff_t>(scope.first_row));
+}
+
 }  // namespace
 
 std::string delimiter_name(char delimiter) {
@@ -147,23 +164,22 @@ TextDialect sniff_text(std::string_view bytes, bool whole, const ByteSource& sou
     dialect.line_end = lines.line_end;
     ReadOptions known = options;
     if (!known.delimiter) known.delimiter = lines.delimiter;
+    std::optional<ScopeHeader> scope;
+    if (options.header.value_or(true)) scope = scope_header(bytes, lines.content, source.name());
+    if (scope) take_scope_header(*scope, lines.content, known, dialect);
     const GuessedRules rules = rules_of(bytes, lines.content, source, known);
     dialect.rules = rules.rules;
     dialect.columns = rules.columns;
-    const Preamble preamble = find_preamble(bytes, lines.content, dialect.rules, dialect.columns);
-    dialect.row_step_s = preamble.row_step_s;
-    std::size_t row = preamble.first_row;
-    if (preamble.lines > 0) dialect.head_lines = lines.content[preamble.lines].number - 1;
-    if (preamble.names.empty()) {
+    std::size_t row = 0;
+    if (scope) {
+        dialect.columns = dialect.names.size();
+    } else {
+        const Preamble preamble = find_preamble(bytes, lines.content, dialect.rules, dialect.columns);
+        dialect.row_step_s = preamble.row_step_s;
+        if (preamble.lines > 0) dialect.head_lines = lines.content[preamble.lines].number - 1;
         lines.content.erase(lines.content.begin(),
                             lines.content.begin() + static_cast<std::ptrdiff_t>(preamble.lines));
         row = read_header(bytes, lines, source.name(), options, dialect);
-    } else {
-        dialect.has_header = true;
-        dialect.names = preamble.names;
-        dialect.units = preamble.units;
-        dialect.clock_of = preamble.clock_of;
-        dialect.header_end = lines.content[preamble.names_line].end;
     }
     if (row >= lines.content.size()) refuse_header_only(lines.content.front(), source.name());
     dialect.data_offset = lines.content[row].begin;

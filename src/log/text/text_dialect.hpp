@@ -25,15 +25,17 @@ struct TextDialect {
     bool has_header = false;
     bool header_in_comment = false;  ///< "# time velocity torque", as numpy.savetxt writes it
     bool quoted_names = false;
-    std::vector<std::string> names;    ///< empty without header
-    std::vector<std::string> units;    ///< from a unit row, else empty
-    std::size_t columns = 0;           ///< cells in a row
-    std::size_t header_end = 0;        ///< offset just past the header line's content; 0 without header
-    std::size_t unit_row_end = 0;      ///< the same for the unit row; 0 without
-    std::size_t data_offset = 0;       ///< of the first row's first byte
-    std::size_t data_line = 1;         ///< its line number, from 1
-    std::optional<double> row_step_s;  ///< as the head of the file says it
-    std::size_t head_lines = 0;        ///< above the names, or above the first row, that are neither
+    std::vector<std::string> names;        ///< empty without header
+    std::vector<std::string> units;        ///< from a unit row, else empty
+    std::size_t columns = 0;               ///< cells in a row
+    std::size_t header_end = 0;            ///< offset just past the header line's content; 0 without header
+    std::size_t unit_row_end = 0;          ///< the same for the unit row; 0 without
+    std::size_t data_offset = 0;           ///< of the first row's first byte
+    std::size_t data_line = 1;             ///< its line number, from 1
+    std::optional<double> row_step_s;      ///< as the head of the file says it
+    std::string row_step_key = "Delta_X";  ///< under this word
+    std::vector<HeadScale> scales;         ///< by column, of a head that says some; else empty
+    std::size_t head_lines = 0;            ///< above the names, or above the first row, that are neither
     /// Numbers of the first rows by column, not-a-number where a cell is none; evidence for choosing columns.
     std::vector<std::vector<double>> sample;
     std::vector<bool> clock_texts;       ///< by column: dates or times of day; seconds in the sample

@@ -38,26 +38,6 @@ FirstLine kind_of(std::string_view line, const CellSplit& split, char decimal_ma
     return numbers == 0 ? FirstLine::names : FirstLine::mixed;
 }
 
-// Bytes that are no UTF-8 are Latin-1: a degree sign, a micro sign, an umlaut.
-std::string as_utf8(const std::string& text) {
-    std::string converted;
-    for (std::size_t i = 0; i < text.size(); ++i) {
-        const auto byte = static_cast<unsigned char>(text[i]);
-        const std::size_t more = byte < 0xC2 ? 0 : byte < 0xE0 ? 1 : byte < 0xF0 ? 2 : byte < 0xF5 ? 3 : 0;
-        bool whole = byte < 0x80 || more > 0;
-        for (std::size_t k = 1; whole && k <= more; ++k)
-            whole = i + k < text.size() && (static_cast<unsigned char>(text[i + k]) & 0xC0) == 0x80;
-        if (whole) {
-            converted += text.substr(i, more + 1);
-            i += more;
-        } else {
-            converted += static_cast<char>(0xC0 | (byte >> 6));
-            converted += static_cast<char>(0x80 | (byte & 0x3F));
-        }
-    }
-    return converted;
-}
-
 // A row under the header in which every cell is a unit, a dash or nothing, and at least one is a unit.
 bool is_unit_row(std::string_view line, const CellSplit& split) {
     bool any = false;
@@ -183,6 +163,25 @@ std::size_t read_names(std::string_view bytes, const TextLines& lines, const std
 
 }  // namespace
 
+std::string as_utf8(const std::string& text) {
+    std::string converted;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const auto byte = static_cast<unsigned char>(text[i]);
+        const std::size_t more = byte < 0xC2 ? 0 : byte < 0xE0 ? 1 : byte < 0xF0 ? 2 : byte < 0xF5 ? 3 : 0;
+        bool whole = byte < 0x80 || more > 0;
+        for (std::size_t k = 1; whole && k <= more; ++k)
+            whole = i + k < text.size() && (static_cast<unsigned char>(text[i + k]) & 0xC0) == 0x80;
+        if (whole) {
+            converted += text.substr(i, more + 1);
+            i += more;
+        } else {
+            converted += static_cast<char>(0xC0 | (byte >> 6));
+            converted += static_cast<char>(0x80 | (byte & 0x3F));
+        }
+    }
+    return converted;
+}
+
 bool has_letters(std::string_view text) {
     return std::any_of(text.begin(), text.end(),
                        [](unsigned char c) { return std::isalpha(c) != 0 || c >= 0x80; });
@@ -270,37 +269,6 @@ class Lines {
     std::size_t columns_;
 };
 
-/// "Name A Name B" over pairs of time and value, "Name A B" where two channels share their times.
-bool speaks_of_channels(const std::vector<std::string>& cells, std::string_view key, std::size_t columns) {
-    return columns > 1 && cells.size() >= columns && cells[0] == key && cells[1] != key;
-}
-
-// TwinCAT Scope: a line of "Name", channel, "Name", channel, ...; "Name" stands over a column of times, which
-// channels of one rate may share. Times are milliseconds since the start, or FILETIME.
-void read_channels(const Lines& lines, std::size_t columns, Preamble& found) {
-    for (std::size_t line = 0; line < found.first_row; ++line) {
-        const std::vector<std::string> cells = lines.cells(line);
-        if (speaks_of_channels(cells, "Name", columns)) {
-            const auto first = parse_number(lines.cells(found.first_row).front());
-            found.names.assign(columns, "");
-            found.clock_of.assign(columns, 0);
-            for (std::size_t c = 1; c < columns; ++c) {
-                const bool times = cells[c] == "Name";
-                found.clock_of[c] = times ? c : found.clock_of[c - 1];
-                if (!times) found.names[c] = cells[c];
-            }
-            found.names[0] = first && *first > 1e16 ? "time [100ns]" : "time [ms]";
-            found.names_line = line;
-        }
-        if (!found.names.empty() && speaks_of_channels(cells, "Unit", columns)) {
-            found.units.assign(columns, "");
-            for (std::size_t c = 1; c < columns; ++c) {
-                if (found.clock_of[c] != c && usual_unit(cells[c], Role::other)) found.units[c] = cells[c];
-            }
-        }
-    }
-}
-
 // LabVIEW: "Delta_X" and a step for each channel, in seconds where "X_Dimension" is Time. Files with
 // X_Columns "No" have no other clock.
 std::optional<double> read_step(const Lines& lines, std::size_t first_row, char decimal_mark) {
@@ -331,10 +299,8 @@ Preamble find_preamble(std::string_view bytes, const std::vector<TextLine>& cont
     found.first_row = lines.first_row();
     const bool names_then_rows = lines.may_be_names(0) && found.first_row <= 2;
     if (found.first_row == 0 || found.first_row == content.size() || names_then_rows) return {};
-    read_channels(lines, columns, found);
     found.row_step_s = read_step(lines, found.first_row, rules.decimal_mark);
     found.lines = found.first_row;
-    if (!found.names.empty()) return found;
     const std::size_t above = found.first_row - 1;
     if (above > 0 && lines.is_units(above) && lines.may_be_names(above - 1))
         found.lines = above - 1;
@@ -375,7 +341,9 @@ std::string options_line(const Layout& layout, const ColumnFacts& facts, const R
         if (!column) continue;
         const Column& c = layout.columns[*column];
         columns.push_back(fmt::format("{}={}", role_name(c.role), handle(facts, *column)));
-        units.push_back("--unit " + quoted(fmt::format("{}={}", role_name(c.role), c.unit)));
+        units.push_back(c.scale.empty()
+                            ? "--unit " + quoted(fmt::format("{}={}", role_name(c.role), c.unit))
+                            : "--scale " + quoted(fmt::format("{}={}", role_name(c.role), c.scale)));
     }
     std::vector<std::string> sides;
     for (const auto& column : {layout.chosen.velocity, layout.chosen.position}) {

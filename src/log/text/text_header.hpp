@@ -17,6 +17,9 @@ namespace ripplenotch {
 /// True when the text holds a letter, of whatever alphabet.
 [[nodiscard]] bool has_letters(std::string_view text);
 
+/// Bytes that are no UTF-8 are Latin-1: a degree sign, a micro sign, an umlaut.
+[[nodiscard]] std::string as_utf8(const std::string& text);
+
 /// Fills in the names, units and their places in `dialect`, whose rules and columns are known. Returns how
 /// many lines of content the header takes: 0 to 2. Throws DataError for a line of half names and half
 /// numbers, and for names that are not as many as the columns.
@@ -24,15 +27,12 @@ namespace ripplenotch {
                                       const std::string& source, const ReadOptions& options,
                                       TextDialect& dialect);
 
-// What some programs write above a table: the heads of LabVIEW measurement files and TwinCAT Scope exports,
-// and any other lines that are no row of it.
+// What some programs write above a table: the head of a LabVIEW measurement file, and any other lines that
+// are no row of it.
 
 struct Preamble {
     std::size_t lines = 0;  ///< of content, before the names or, without names, the first row
-    std::size_t names_line = 0, first_row = 0;
-    /// From a head that says them channel by channel; empty where a line over the rows holds them.
-    std::vector<std::string> names, units;
-    std::vector<std::size_t> clock_of;  ///< by column: where its times stand, if each has its own; else empty
+    std::size_t first_row = 0;
     /// Seconds from row to row where the head says them (LabVIEW's Delta_X), alike for all channels.
     std::optional<double> row_step_s;
 };

@@ -68,6 +68,7 @@ ReadOptions with_role(ReadOptions reading, const std::string& role, const std::s
     std::erase_if(reading.columns, [&](const std::string& entry) { return entry.starts_with(role + "="); });
     reading.columns.push_back(role + "=" + column);
     reading.units.erase(role);
+    reading.scales.erase(role);
     return reading;
 }
 
@@ -203,9 +204,12 @@ ReadOptions SimulationSource::reading_of(ReadOptions reading) const {
     own.takes_motor_units = true;
     if (position_) own.columns.push_back("position=" + *position_);
     if (velocity_) own.columns.push_back("velocity=" + *velocity_);
-    for (const std::string& column : {term_.column, position_.value_or(""), velocity_.value_or("")})
+    for (const std::string& column : {term_.column, position_.value_or(""), velocity_.value_or("")}) {
         if (const auto unit = reading.units.find(column); unit != reading.units.end())
             own.units.insert(*unit);
+        if (const auto scale = reading.scales.find(column); scale != reading.scales.end())
+            own.scales.insert(*scale);
+    }
     return own;
 }
 
@@ -235,6 +239,7 @@ SimulatedMotion SimulationSource::read_motion(const ReadOptions& reading, const 
 
 GivenTerm SimulationSource::from(ReadOptions reading, const std::string& path, Log& log) const {
     reading = reading_of(std::move(reading));
+    if (file_) reading.needs_velocity = false;  // its torque and its times are all that is compared
     const Log simulated = read_log(path, reading);
     refuse_useless(simulated.trace.torque_nm, file_ ? nullptr : &log, term_.column, path);
     std::vector<double> time_s = simulated.trace.time_s;

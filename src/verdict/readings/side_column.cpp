@@ -40,6 +40,7 @@ ReadOptions read_as_torque(std::string& column, const std::string& joint, ReadOp
     std::erase_if(read.columns, [](const std::string& entry) { return entry.starts_with("torque="); });
     read.columns.push_back("torque=" + column);
     read.units["torque"] = "Nm";  // its numbers as they are
+    read.scales.erase("torque");
     if (joint.empty())
         read.joint.reset();
     else

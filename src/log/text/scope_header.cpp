@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: MIT
+#include "log/text/scope_header.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "log/columns/units.hpp"
+#include "log/text/text_header.hpp"
+#include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/quantity.hpp"
+
+namespace ripplenotch {
+namespace {
+
+constexpr std::string_view name_key = "Name";
+constexpr std::size_t most_lines = 60;  // the longest heads have 17 lines for channels and 4 for the project
+constexpr double ticks_since_1601 = 1e16;  // no recording has so many milliseconds
+
+// The lines of a head, less "Name".
+constexpr std::array<std::string_view, 18> keys = {
+    "SymbolComment", "Data-Type",        "SampleTime[ms]", "VariableSize", "SymbolBased",
+    "IndexGroup",    "IndexOffset",      "SymbolName",     "NetID",        "NetId",
+    "Port",          "Offset",           "ScaleFactor",    "BitMask",      "Unit",
+    "Comment",       "Unit ScaleFactor", "Unit Offset"};
+
+std::optional<double> number_of(std::string_view cell) {
+    const auto number = parse_number(cell, '.');
+    return number ? number : parse_number(cell, ',');
+}
+
+class Head {
+  public:
+    Head(std::string_view bytes, const std::vector<TextLine>& content, char delimiter)
+        : bytes_(bytes), content_(content), delimiter_(delimiter) {}
+
+    [[nodiscard]] std::vector<std::string> cells(std::size_t line) const {
+        const std::string_view text = content_[line].of(bytes_);
+        CellSplit split;
+        split_cells(text, delimiter_, split);
+        std::vector<std::string> cells;
+        for (const Cell& cell : split.cells) cells.push_back(as_utf8(cell_text(text, cell)));
+        return cells;
+    }
+
+    [[nodiscard]] bool is_names(std::size_t line) const {
+        const std::string_view text = content_[line].of(bytes_);
+        return text.size() > name_key.size() + 1 && text.starts_with(name_key) &&
+               text[name_key.size()] == delimiter_;
+    }
+
+    [[nodiscard]] bool is_row(std::size_t line) const {
+        const std::vector<std::string> row = cells(line);
+        return !row.empty() && number_of(row.front()).has_value();
+    }
+
+    [[nodiscard]] bool is_key(std::size_t line) const {
+        const std::vector<std::string> found = cells(line);
+        return !found.empty() && std::find(keys.begin(), keys.end(), found.front()) != keys.end();
+    }
+
+    /// What the head says under `key` of each column, as cells; empty where there is no such line.
+    [[nodiscard]] std::vector<std::string> under(std::string_view key, std::size_t from,
+                                                 std::size_t end) const {
+        for (std::size_t line = from; line < end; ++line) {
+            std::vector<std::string> found = cells(line);
+            if (!found.empty() && found.front() == key) return found;
+        }
+        return {};
+    }
+
+  private:
+    std::string_view bytes_;
+    const std::vector<TextLine>& content_;
+    char delimiter_;
+};
+
+// "Nm (Torque)", "mNm (Torque)", "° (Angle)": the unit, then what it measures.
+std::string bare_unit(const std::string& text) {
+    const std::size_t bracket = text.rfind('(');
+    std::string unit = bracket == std::string::npos || !text.ends_with(')') ? text : text.substr(0, bracket);
+    while (!unit.empty() && unit.back() == ' ') unit.pop_back();
+    return unit == "None" || unit == "-" ? "" : unit;
+}
+
+// A unit's own size says nothing that its name does not say: 0.001 of mNm.
+bool is_size_of(double factor, const std::string& unit) {
+    for (const Role role : {Role::velocity, Role::torque, Role::position}) {
+        const auto usual = usual_unit(unit, role);
+        const auto size = usual ? role_factor(role, *usual, 1.0) : std::nullopt;
+        if (!size) continue;
+        const double in_si = role == Role::torque ? *size : *size / degrees_per_radian;
+        for (const double known : {in_si, 1.0 / in_si})
+            if (std::abs(factor / known - 1.0) < 1e-3) return true;
+    }
+    return false;
+}
+
+struct ScaleKey {
+    std::string_view key;
+    bool factor, of_unit;
+};
+constexpr std::array scale_keys = {ScaleKey{"ScaleFactor", true, false}, ScaleKey{"Offset", false, false},
+                                   ScaleKey{"Unit ScaleFactor", true, true},
+                                   ScaleKey{"Unit Offset", false, true}};
+
+void read_scales(const Head& head, std::size_t shift, ScopeHeader& found) {
+    found.scales.assign(found.names.size(), {});
+    for (const ScaleKey& key : scale_keys) {
+        const std::vector<std::string> cells = head.under(key.key, found.names_line + 1, found.first_row);
+        for (std::size_t c = 0; c < found.names.size() && c + shift < cells.size(); ++c) {
+            const auto number = number_of(cells[c + shift]);
+            if (!number || *number == (key.factor ? 1.0 : 0.0)) continue;
+            if (key.factor && key.of_unit && is_size_of(*number, found.units[c])) continue;
+            HeadScale& scale = found.scales[c];
+            scale.words += (scale.words.empty() ? "" : ", ") + std::string(key.key) + " " + shortest(*number);
+            (key.factor ? scale.factor *= * number : scale.offset += *number);
+        }
+    }
+}
+
+std::optional<double> common_step(const Head& head, const ScopeHeader& found, const std::string& source) {
+    const std::vector<std::string> cells =
+        head.under("SampleTime[ms]", found.names_line + 1, found.first_row);
+    std::optional<double> step_ms;
+    for (std::size_t c = 1; c < cells.size(); ++c) {
+        const auto number = number_of(cells[c]);
+        if (!number || !(*number > 0.0)) continue;
+        if (step_ms.value_or(*number) != *number)
+            raise<DataError>(
+                "{}: read channels of {} and {} ms without times, expected a column of times; export again "
+                "with "
+                "Timelines: All, or channels of one sample time",
+                source, shortest(*step_ms), shortest(*number));
+        step_ms = number;
+    }
+    return step_ms ? std::optional<double>(1e-3 * *step_ms) : std::nullopt;
+}
+
+// "Name A Name B": times beside each channel. "Name A B": times that A and B share.
+void read_channels(const std::vector<std::string>& names, const std::vector<std::string>& units,
+                   double first_time, ScopeHeader& found) {
+    found.clock_of.assign(names.size(), 0);
+    found.names.assign(names.size(), "");
+    found.units.assign(names.size(), "");
+    for (std::size_t c = 1; c < names.size(); ++c) {
+        const bool times = names[c] == name_key;
+        found.clock_of[c] = times ? c : found.clock_of[c - 1];
+        if (times) continue;
+        found.names[c] = names[c];
+        if (c < units.size()) found.units[c] = bare_unit(units[c]);
+    }
+    found.names[0] = first_time > ticks_since_1601 ? "time [100ns]" : "time [ms]";
+}
+
+}  // namespace
+
+std::optional<ScopeHeader> scope_header(std::string_view bytes, const std::vector<TextLine>& content,
+                                        const std::string& source) {
+    const std::string_view first = content.front().of(bytes);
+    constexpr std::string_view separators = "\t;,: ";
+    if (!first.starts_with(name_key) || first.size() <= name_key.size() + 1 ||
+        separators.find(first[name_key.size()]) == std::string_view::npos)
+        return std::nullopt;
+    ScopeHeader found;
+    found.delimiter = first[name_key.size()];
+    const Head head(bytes, content, found.delimiter);
+    const std::size_t end = std::min(content.size(), most_lines);
+    for (found.first_row = 1; found.first_row < end && !head.is_row(found.first_row); ++found.first_row)
+        if (head.is_names(found.first_row)) found.names_line = found.first_row;
+    if (found.first_row >= end) return std::nullopt;
+    // Lines of something else: a head that begins with "Name" by chance.
+    for (std::size_t line = found.names_line + 1; line < found.first_row; ++line)
+        if (!head.is_key(line)) return std::nullopt;
+    std::vector<std::string> names = head.cells(found.names_line);
+    const std::vector<std::string> row = head.cells(found.first_row);
+    std::vector<std::string> units = head.under("Unit", found.names_line + 1, found.first_row);
+    const bool twice = std::count(names.begin(), names.end(), name_key) > 1;
+    const bool says_more = found.first_row > found.names_line + 1;
+    // A delimiter at the end of the rows alone, or of the head alone.
+    if (names.size() + 1 == row.size() && row.back().empty()) names.emplace_back();
+    if (names.size() == row.size() + 1 && names.back().empty()) names.pop_back();
+    if (says_more && !twice && names.size() == row.size() + 1) {
+        found.names.assign(names.begin() + 1, names.end());
+        if (!units.empty()) units.erase(units.begin());
+        for (std::string& unit : units) unit = bare_unit(unit);
+        units.resize(found.names.size());
+        found.units = units;
+        found.row_step_s = common_step(head, found, source);
+        read_scales(head, 1, found);
+        return found;
+    }
+    if (names.size() != row.size()) {
+        if (!says_more && found.names_line == 0 && !twice) return std::nullopt;
+        raise<DataError>(
+            "{}:{}: read a row of {} cells under {} of a TwinCAT Scope export, expected as many; {}", source,
+            content[found.first_row].number, row.size(), names.size(),
+            found.delimiter == ','
+                ? "a comma that separates cells cannot mark decimals too: export again with another separator"
+                : "mend the head, or export again");
+    }
+    // "Name" alone over names may be a column of names; over times it runs forward.
+    const auto first_time = number_of(row.front());
+    if (!says_more && found.names_line == 0 && !twice) {
+        const std::vector<std::string> next =
+            found.first_row + 1 < content.size() ? head.cells(found.first_row + 1) : row;
+        const auto second_time = number_of(next.front());
+        if (!second_time || !(*second_time > *first_time)) return std::nullopt;
+    }
+    read_channels(names, units, *first_time, found);
+    read_scales(head, 0, found);
+    return found;
+}
+
+}  // namespace ripplenotch
