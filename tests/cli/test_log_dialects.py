@@ -480,6 +480,25 @@ class OtherShapes(Case):
         self.assertEqual((done.returncode, "say -o" in done.stderr), (2, True), done.stderr)
         self.assertEqual((self.folder / "log.csv").read_bytes(), tidy())
 
+    def test_electrical_speed_asks_for_the_pairs_of_poles(self):
+        poles = 7
+        rows = "".join(f"{r.t:.4f};{r.velocity * RATIO / 6 * poles:.4f};{r.torque:.4f}\n" for r in ROWS)
+        (self.folder / "log.csv").write_text("time_s;erpm;torque_nm\n" + rows)
+        words = ["identify", "log.csv", "--gear-ratio", str(RATIO), "--json", "-q"]
+        done = self.run_tool(*words)
+        self.assertEqual((done.returncode, "--scale velocity=1rpm/7 for 7 pole pairs" in done.stderr), (3, True), done.stderr)
+        done = self.run_tool(*words, "--scale", f"velocity=1rpm/{poles}")
+        self.assertAlmostEqual(json.loads(done.stdout)["gear_ratio"]["value"], RATIO, delta=0.5)
+
+    def test_symbols_with_a_ratio_name_the_other_reading_wherever_they_are_read(self):
+        rows = "".join(f"{r.t:.4f},{r.velocity:.6f},{r.torque:.4f},{r.position:.6f}\n" for r in ROWS)
+        (self.folder / "log.csv").write_text("t,v,tau,q\n" + rows)
+        done = self.run_tool("filter", "log.csv", "--gear-ratio", str(RATIO), "--method", "lowpass,cutoff=20Hz", "-o", "out.csv")
+        self.assertIn("warning: no unit is stated for what is read: took 'v'", done.stderr)
+        done = self.run_tool("identify", "log.csv", "--gear-ratio", str(RATIO))
+        self.assertTrue(done.stdout.startswith("Cannot tell: if "), done.stdout)
+        self.assertIn("--unit velocity=deg/s --side joint", done.stdout)
+
     def test_files_of_one_signal_each_are_one_log_of_identify(self):
         for name, of in (("velocity", lambda r: r.velocity), ("torque", lambda r: r.torque)):
             (self.folder / f"run_{name}.csv").write_text("".join(f"{of(r):.6f}\n" for r in ROWS))

@@ -337,6 +337,10 @@ class Decision {
         column.role = role;
         column.joint = joint;
         std::string written = names_[c].unit;
+        const Convention* const known =
+            facts_.names.empty() ? nullptr : convention_of(facts_.meanings()[c], role, facts_.meanings());
+        const bool device = known != nullptr && is_device_unit(known->unit);
+        if (written.empty() && device) written = known->unit;
         stated_[c] = !written.empty();
         if (const auto asked = asked_unit(options_, column.name, role)) {
             const auto usual = usual_unit(*asked, role);
@@ -362,18 +366,17 @@ class Decision {
             stated_[c] = true;
             column.scale = scale->text;
         } else if (!asked_unit(options_, column.name, role) && is_chosen(c)) {
-            ask_for_scale(c, role, written);
+            ask_for_scale(c, role, written, known);
         }
         if (is_device_unit(written)) written.clear(), stated_[c] = false;
         if (written.empty()) {
-            const Convention* const known =
-                facts_.names.empty() ? nullptr : convention_of(facts_.meanings()[c], role, facts_.meanings());
-            column.unit_assumed = known == nullptr;
-            written = known != nullptr ? std::string(known->unit)
+            const bool by_convention = known != nullptr && !device;
+            column.unit_assumed = !by_convention;
+            written = by_convention ? std::string(known->unit)
                       : role == Role::torque && names_[c].current
                           ? "A"
                           : std::string(base_unit(dimension_of(role)));
-            stated_[c] = known != nullptr && role == Role::time;
+            stated_[c] = by_convention && role == Role::time;
         }
         const auto usual = usual_unit(written, role);
         const auto factor =
@@ -395,7 +398,7 @@ class Decision {
     }
 
     // Notes what a column lacks to be a quantity.
-    void ask_for_scale(std::size_t c, Role role, const std::string& written) {
+    void ask_for_scale(std::size_t c, Role role, const std::string& written, const Convention* known) {
         const std::string label = column_label(facts_.names, c);
         if (!facts_.scales.empty() && !facts_.scales[c].words.empty()) {
             const HeadScale& head = facts_.scales[c];
@@ -408,11 +411,9 @@ class Decision {
                              head.offset == 0.0 ? "" : fmt::format("{:+}{}", head.offset, unit),
                              role_name(role), unit)});
         } else if (is_device_unit(written)) {
-            unscaled_.push_back({fmt::format("{} in {}", label, written), scale_example(role)});
+            unscaled_.push_back({fmt::format("{} in {}", label, written), scale_example(role, written)});
         } else if (written.empty() && role != Role::time && c < facts_.sample.size() &&
-                   counts_only(facts_.sample[c]) &&
-                   (facts_.names.empty() ||
-                    convention_of(facts_.meanings()[c], role, facts_.meanings()) == nullptr)) {
+                   counts_only(facts_.sample[c]) && known == nullptr) {
             unscaled_.push_back(
                 {fmt::format("{} in whole numbers throughout, as counts are, and no unit", label),
                  fmt::format("{} (or --unit {}={})", scale_example(role), role_name(role),

@@ -321,13 +321,7 @@ class Inference {
     // A speed alone, without a name that says so, is no reason to refuse a log: a motor's stays possible
     // then.
     std::vector<MotionReading>::const_iterator likeliest(const std::vector<MotionReading>& readings) const {
-        bool named = options_.takes_motor_units;
-        for (const auto* column : {&subject_->velocity, &subject_->position}) {
-            named = named ||
-                    (*column &&
-                     ((*column)->named_motor || (*column)->stated_side.has_value() ||
-                      ((*column)->convention != nullptr && (*column)->convention->side == Shaft::motor)));
-        }
+        const bool named = options_.takes_motor_units || side_is_said();
         return std::find_if(readings.begin(), readings.end(), [named](const MotionReading& one) {
             const bool motor = one.velocity.side == Shaft::motor || one.position.side == Shaft::motor;
             return named || !motor || one.ratio;
@@ -492,6 +486,14 @@ class Inference {
         return nullptr;
     }
 
+    /// By --side, or by a name that is a motor's.
+    bool side_is_said() const {
+        const auto says = [](const std::optional<MotionColumn>& column) {
+            return column && (names_motor(*column) || column->stated_side.has_value());
+        };
+        return says(subject_->velocity) || says(subject_->position);
+    }
+
     std::string side_words() const {
         if (best_.velocity.side == best_.position.side) return "motor";
         return best_.velocity.side == Shaft::motor ? "velocity=motor" : "position=motor";
@@ -507,10 +509,12 @@ class Inference {
         if (layout_.motor_units)
             return "named as the motor's, or too fast for a joint, and no ratio is known";
         if (best_.velocity.side == Shaft::motor || best_.position.side == Shaft::motor) {
-            return evidence_.scale
+            return evidence_.scale && best_.velocity.side != best_.position.side
                        ? fmt::format("position and velocity differ by {:.5g}, which is a gear ratio",
                                      *best_.ratio)
-                       : fmt::format("named as the motor's; divided by the ratio {:.5g}", *best_.ratio);
+                   : side_is_said()
+                       ? fmt::format("named as the motor's; divided by the ratio {:.5g}", *best_.ratio)
+                       : fmt::format("too fast for a joint; divided by the ratio {:.5g}", *best_.ratio);
         }
         if (const Convention* convention = by_convention()) return std::string(convention->source);
         if (evidence_.wrap) return fmt::format("the position starts again at {:.5g}", *evidence_.wrap);

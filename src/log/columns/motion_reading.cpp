@@ -93,6 +93,10 @@ bool ConstantVelocity::next(RowBlock& block) {
     return true;
 }
 
+bool names_motor(const MotionColumn& column) {
+    return column.named_motor || (column.convention != nullptr && column.convention->side == Shaft::motor);
+}
+
 namespace {
 
 constexpr double within_family = 0.5;                         // by hand
@@ -160,10 +164,6 @@ Family family_of(const ReadColumn& column) {
                                                         : Family::turns;
 }
 
-bool names_motor(const MotionColumn& column) {
-    return column.named_motor || (column.convention != nullptr && column.convention->side == Shaft::motor);
-}
-
 bool allowed(const std::optional<MotionColumn>& column, Shaft side) {
     if (!column) return true;
     return !column->stated_side || *column->stated_side == side;
@@ -226,7 +226,11 @@ class Scoring {
         const auto& speed =
             question_.columns.velocity ? question_.columns.velocity : question_.columns.position;
         const bool one_side = reading.velocity.side == reading.position.side;
-        if (speed->unit_is_stated || speed->convention != nullptr || !one_side) return motor_side_unnamed;
+        // A convention of names is one of joints, unless it says motor: for the angle as for the speed.
+        const auto& angle = question_.columns.position;
+        const bool by_convention =
+            speed->convention != nullptr || (angle && angle->convention != nullptr && !angle->unit_is_stated);
+        if (speed->unit_is_stated || by_convention || !one_side) return motor_side_unnamed;
         const double deg_s = question_.evidence.fastest * reading.velocity.unit_factor;
         if (deg_s < slowest_motor_deg_s || deg_s > fastest_motor_deg_s) return motor_out_of_range;
         return motor_without_unit + (family_of(reading.velocity) == Family::degrees ? motor_in_degrees : 0.0);

@@ -99,6 +99,9 @@ struct MotionQuestion {
     std::optional<double> gear_ratio;
 };
 
+/// Whether the column's name says that it is measured before the gear.
+[[nodiscard]] bool names_motor(const MotionColumn& column);
+
 /// All readings that fit the evidence, the likeliest first. `with_scale` false: position and velocity need
 /// not belong together. Those against the header come last.
 [[nodiscard]] std::vector<MotionReading> motion_readings(const MotionQuestion& question, bool with_scale);

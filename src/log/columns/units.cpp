@@ -110,11 +110,12 @@ constexpr std::array<std::string_view, 14> unread_units = {"lbf_in", "in_lbf", "
                                                            "oz_in",  "in_oz",  "volts", "kgf_cm"};
 
 // Numbers as a drive or a converter has them. What they are in a physical unit is set in the device.
-constexpr std::array<std::string_view, 25> device_units = {
-    "count", "counts",    "cnt",        "cnts",        "cts",     "inc",      "incr",
-    "incs",  "increment", "increments", "inkremente",  "inkr",    "pulse",    "pulses",
-    "ticks", "lsb",       "permille",   "per_mille",   "permill", "promille", "percent",
-    "pct",   "percents",  "%",          "\xe2\x80\xb0"};
+constexpr std::string_view electrical_rpm = "erpm";
+constexpr std::array<std::string_view, 26> device_units = {
+    electrical_rpm, "count", "counts",    "cnt",        "cnts",        "cts",     "inc",
+    "incr",         "incs",  "increment", "increments", "inkremente",  "inkr",    "pulse",
+    "pulses",       "ticks", "lsb",       "permille",   "per_mille",   "permill", "promille",
+    "percent",      "pct",   "percents",  "%",          "\xe2\x80\xb0"};
 
 std::string lower_without_blanks(std::string_view text) {
     std::string lower = lower_case(text);
@@ -361,7 +362,9 @@ bool counts_only(const std::vector<double>& values) {
     return different.size() >= fewest && rounded;
 }
 
-std::string scale_example(Role role) {
+std::string scale_example(Role role, std::string_view device_unit) {
+    // Electrical turns: as many to one of the rotor as it has pairs of poles.
+    if (device_unit == electrical_rpm) return "--scale velocity=1rpm/7 for 7 pole pairs";
     constexpr std::array examples = {
         std::pair{Role::velocity, "velocity=360deg/s/524288"}, std::pair{Role::torque, "torque=0.04Nm"},
         std::pair{Role::position, "position=360deg/524288"}, std::pair{Role::time, "time=1us"}};

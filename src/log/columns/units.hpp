@@ -51,7 +51,7 @@ struct NameAndUnit {
 /// by one come from rounding; a made-up ramp has none. Not-a-numbers are left out.
 [[nodiscard]] bool counts_only(const std::vector<double>& values);
 /// How one of them is stated: "--scale position=360deg/524288".
-[[nodiscard]] std::string scale_example(Role role);
+[[nodiscard]] std::string scale_example(Role role, std::string_view device_unit = {});
 
 /// Units that a column of this role may have, as messages list them.
 [[nodiscard]] std::string unit_list(Role role);
