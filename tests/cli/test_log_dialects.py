@@ -490,6 +490,32 @@ class OtherShapes(Case):
         done = self.run_tool(*words, "--scale", f"velocity=1rpm/{poles}")
         self.assertAlmostEqual(json.loads(done.stdout)["gear_ratio"]["value"], RATIO, delta=0.5)
 
+    def test_a_linear_axis_asks_for_its_lead_and_is_then_that_of_its_screw(self):
+        lead_m = 0.005
+        rows = [(r.t, r.position * lead_m / 360, r.velocity * lead_m / 360, r.torque * 2 * math.pi / lead_m) for r in ROWS]
+        of_the_screw = "".join(f"{r.t:.4f},{r.position:.9f},{r.velocity:.9f},{r.torque:.9f}\n" for r in ROWS)
+        (self.folder / "screw.csv").write_text("t_s,position_deg,velocity_deg_s,torque_nm\n" + of_the_screw)
+        words = ["--gear-ratio", str(RATIO), "--json", "-q"]
+        screw = json.loads(self.run_tool("identify", "screw.csv", *words).stdout)
+        for header, per_m in (("t_s,pos_m,vel_m_s,force_N", 1), ("t_s,pos_m,vel_m/s,force_N", 1),
+                              ("t_s,pos_mm,vel_mm_s,force_N", 1000), ("time [s],position [mm],velocity [mm/s],force [N]", 1000)):
+            with self.subTest(header=header):
+                text = "".join(f"{t:.4f},{q * per_m:.12f},{v * per_m:.12f},{f:.9f}\n" for t, q, v, f in rows)
+                (self.folder / "axis.csv").write_text(header + "\n" + text)
+                done = self.run_tool("identify", "axis.csv", *words)
+                self.assertEqual((done.returncode, "say --lead 5mm" in done.stderr), (3, True), done.stderr)
+                done = self.run_tool("identify", "axis.csv", *words, "--lead", "5mm")
+                self.assertEqual(done.returncode, 0, done.stderr)
+                axis = json.loads(done.stdout)
+                self.assertAlmostEqual(axis["gear_ratio"]["value"], screw["gear_ratio"]["value"], delta=1e-4)
+                for one, other in zip(axis["lines"], screw["lines"], strict=True):
+                    self.assertAlmostEqual(one["amplitude_nm"], other["amplitude_nm"], delta=1e-5)
+                self.assertIn("--lead 5mm", self.run_tool("info", "axis.csv", "--lead", "5mm").stdout)
+                done = self.run_tool("filter", "axis.csv", "--lead", "5mm", "--method", "none", "-o", "same.csv", "--force", "-q")
+                self.assertEqual((self.folder / "same.csv").read_text(), (self.folder / "axis.csv").read_text(), done.stderr)
+        (self.folder / "motor.csv").write_text("t_s,q_m,dq_m,tau_m\n" + of_the_screw)
+        self.assertNotIn("lead", self.run_tool("identify", "motor.csv", *words).stderr)
+
     def test_symbols_with_a_ratio_name_the_other_reading_wherever_they_are_read(self):
         rows = "".join(f"{r.t:.4f},{r.velocity:.6f},{r.torque:.4f},{r.position:.6f}\n" for r in ROWS)
         (self.folder / "log.csv").write_text("t,v,tau,q\n" + rows)

@@ -132,8 +132,8 @@ TEST_CASE("units are understood in their usual spellings", "[log]") {
     CHECK(usual_unit("nm", Role::torque) == "Nm");
     CHECK_FALSE(usual_unit("furlong", Role::velocity));
     CHECK_FALSE(usual_unit("", Role::other));
-    CHECK(role_factor(Role::torque, "mA", 2.0) == 2e-3);
-    CHECK_FALSE(role_factor(Role::velocity, "Nm", 1.0));
+    CHECK(role_factor(Role::torque, "mA", {.nm_per_ampere = 2.0, .lead_m = 1.0}) == 2e-3);
+    CHECK_FALSE(role_factor(Role::velocity, "Nm"));
 }
 
 TEST_CASE("a unit of torque that is not read is sure, and comes behind one that is", "[log]") {

@@ -84,16 +84,19 @@ struct SpeedSpan {
 
 /// What a number measures. Each dimension has one unit inside the tool (see units.hpp), named by base_unit().
 enum class Dimension {
-    none,         ///< a plain number
-    time,         ///< s
-    frequency,    ///< Hz; rad/s is read as an angular frequency
-    angle,        ///< deg
-    speed,        ///< deg/s; rpm and Hz are turns of the joint
-    torque,       ///< Nm
-    torque_rate,  ///< Nm/s
-    inertia,      ///< kg m^2
-    decibel,      ///< dB
-    current,      ///< A
+    none,          ///< a plain number
+    time,          ///< s
+    frequency,     ///< Hz; rad/s is read as an angular frequency
+    angle,         ///< deg
+    speed,         ///< deg/s; rpm and Hz are turns of the joint
+    torque,        ///< Nm
+    torque_rate,   ///< Nm/s
+    inertia,       ///< kg m^2
+    decibel,       ///< dB
+    current,       ///< A
+    length,        ///< m
+    linear_speed,  ///< m/s
+    force,         ///< N
 };
 
 [[nodiscard]] std::string_view base_unit(Dimension dimension);

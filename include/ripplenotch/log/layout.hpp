@@ -129,6 +129,7 @@ struct ReadOptions {
     std::optional<char> decimal_mark;
     std::optional<bool> header;
     std::optional<double> nm_per_ampere;  ///< torque constant for current columns (--kt)
+    std::optional<double> lead_m;         ///< travel of a linear axis in one turn of its screw (--lead)
     bool hold_bad_values = false;         ///< replace nan and empty cells by the sample before, and count
     std::size_t skip_lines = 0;           ///< at the top of a text log, passed on and not read
     std::optional<std::string> records;   ///< fields of a raw dump: "f8,f4,f4" (--layout)

@@ -484,6 +484,15 @@ void attach_log_columns(Options& options, ReadOptions& log) {
             log.nm_per_ampere = parse_quantity(text, Dimension::none, "--kt");
         },
         "Nm/A", "torque constant, for logs of motor current");
+    options.parsed(
+        "--lead",
+        [&log](Text text) {
+            log.lead_m = parse_quantity(text, Dimension::length, "--lead");
+            if (!(*log.lead_m > 0.0)) raise<UsageError>("--lead: '{}' is not above 0", text);
+        },
+        "LENGTH",
+        "travel of a linear axis in one turn of its screw, for logs in m, m/s and N: 5mm; results are the "
+        "screw's");
     options.flag("--hold-bad-values", log.hold_bad_values,
                  "replace empty cells and nan by the value before, and count them");
 }

@@ -65,6 +65,17 @@ constexpr std::array units = {
     Unit{Dimension::decibel, "dB", 1.0},
     Unit{Dimension::current, "A", 1.0},
     Unit{Dimension::current, "mA", 1e-3},
+    Unit{Dimension::length, "m", 1.0},
+    Unit{Dimension::length, "cm", 1e-2},
+    Unit{Dimension::length, "mm", 1e-3},
+    Unit{Dimension::length, "um", 1e-6},
+    Unit{Dimension::linear_speed, "m/s", 1.0},
+    Unit{Dimension::linear_speed, "mm/s", 1e-3},
+    Unit{Dimension::linear_speed, "m/min", 1.0 / 60.0},
+    Unit{Dimension::linear_speed, "mm/min", 1e-3 / 60.0},
+    Unit{Dimension::force, "N", 1.0},
+    Unit{Dimension::force, "mN", 1e-3},
+    Unit{Dimension::force, "kN", 1e3},
 };
 
 bool same_unit(std::string_view written, std::string_view known) {

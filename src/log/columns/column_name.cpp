@@ -76,6 +76,8 @@ constexpr std::array<std::string_view, 22> reference_words = {
     "commanded", "commands", "goal",    "setpoint",  "model",   "sim",    "simulated", "feedforward",
     "ff",        "soll",     "planned", "set",       "ctrl",    "control"};
 // Quantities of something else: of the tool, of the mains, or derived from the one that is wanted.
+// Of a linear axis; of an arm it is that of its tool.
+constexpr RoleWord force_word{"force", Role::torque, 0};
 constexpr std::array<std::string_view, 35> foreign_words = {
     "tcp",     "tool",      "pose",     "twist", "cartesian",   "wrench",        "force",
     "linear",  "scaling",   "fraction", "error", "err",         "ext",           "external",
@@ -184,7 +186,7 @@ bool is_clock_name(const std::vector<Word>& left) {
 
 }  // namespace
 
-ColumnName read_column_name(std::string_view name) {
+ColumnName read_column_name(std::string_view name, bool linear_axis) {
     ColumnName column;
     // The main program of a PLC; in lower case it is the mains.
     if (name.starts_with("MAIN.")) name.remove_prefix(std::string_view("MAIN.").size());
@@ -193,7 +195,7 @@ ColumnName read_column_name(std::string_view name) {
     const bool element =
         bracket != std::string_view::npos && is_digits(name.substr(bracket + 1, name.size() - bracket - 2));
     const NamedObject named = drive_object(element ? name.substr(0, bracket) : name);
-    NameAndUnit parts = split_unit(named.name);
+    NameAndUnit parts = split_unit(named.name, linear_axis);
     if (element) parts.name += name.substr(bracket);
     column.unit = parts.unit;
     column.unit_is_sure = parts.bracketed;
@@ -220,6 +222,11 @@ ColumnName read_column_name(std::string_view name) {
         if (word.text == "j" && i > 0 && words[i - 1].text == "tau" && !numbered) continue;
         const auto role = std::find_if(role_words.begin(), role_words.end(),
                                        [&](const RoleWord& known) { return known.word == word.text; });
+        const bool force = linear_axis && (word.text == "force" || word.text == "kraft");
+        if (force) {
+            found = &force_word;
+            continue;
+        }
         if (contains(foreign_words, word.text) || (word.text == "d" && of_current)) foreign = true;
         if (contains(part_words, word.text)) part = true;
         if (word.text == "motor" || word.text == "rotor") column.motor_side = true;
@@ -301,6 +308,25 @@ std::string_view without_number(std::string_view name) {
 
 }  // namespace
 
+namespace {
+
+// A speed in m/s, or a unit in brackets, is that of a linear axis; then so are "pos_m" and "force_N".
+void read_linear_axis(const std::vector<std::string>& names, std::vector<ColumnName>& columns) {
+    const bool linear = std::any_of(columns.begin(), columns.end(), [](const ColumnName& column) {
+        const auto usual = usual_unit(column.unit, column.role);
+        return column.role != Role::torque && usual && is_linear_unit(column.role, *usual);
+    });
+    if (!linear) return;
+    for (std::size_t c = 0; c < names.size(); ++c) {
+        ColumnName read = read_column_name(names[c], true);
+        if (read.unit.empty())
+            std::tie(read.unit, read.unit_is_sure) = std::tie(columns[c].unit, columns[c].unit_is_sure);
+        columns[c] = std::move(read);
+    }
+}
+
+}  // namespace
+
 std::vector<ColumnName> read_column_names(const std::vector<std::string>& names,
                                           const std::vector<std::string>& units) {
     std::vector<ColumnName> columns;
@@ -313,6 +339,7 @@ std::vector<ColumnName> read_column_names(const std::vector<std::string>& names,
         columns[c].unit = units[c];
         columns[c].unit_is_sure = true;
     }
+    read_linear_axis(names, columns);
     const auto has = [&columns](Role role, std::size_t but) {
         for (std::size_t c = 0; c < columns.size(); ++c)
             if (c != but && columns[c].role == role && columns[c].symbol == Role::other &&

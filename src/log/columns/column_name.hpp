@@ -31,7 +31,7 @@ struct ColumnName {
     Role symbol = Role::other;
 };
 
-[[nodiscard]] ColumnName read_column_name(std::string_view name);
+[[nodiscard]] ColumnName read_column_name(std::string_view name, bool linear_axis = false);
 
 /// All names of a log, with what only the other names decide: whether T is a time or a torque.
 /// `units` by column, from a row of them; may be empty.

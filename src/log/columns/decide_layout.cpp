@@ -344,7 +344,7 @@ class Decision {
         stated_[c] = !written.empty();
         if (const auto asked = asked_unit(options_, column.name, role)) {
             const auto usual = usual_unit(*asked, role);
-            if (!usual || !role_factor(role, *usual, 1.0)) {
+            if (!usual || !role_factor(role, *usual)) {
                 raise<UsageError>("--unit: '{}' is no unit of {}; write one of {}", *asked, role_name(role),
                                   unit_list(role));
             }
@@ -357,7 +357,7 @@ class Decision {
             if (asked_unit(options_, column.name, role))
                 raise<UsageError>("--scale and --unit both state the unit of {}; leave one out",
                                   column_label(facts_.names, c));
-            if (!usual || !role_factor(role, *usual, 1.0) || (role == Role::time && scale->offset != 0.0)) {
+            if (!usual || !role_factor(role, *usual) || (role == Role::time && scale->offset != 0.0)) {
                 raise<UsageError>("--scale: '{}' is no {}; write its unit as one of {}{}", scale->text,
                                   role_name(role), unit_list(role),
                                   role == Role::time ? ", without an offset" : "");
@@ -368,6 +368,9 @@ class Decision {
         } else if (!asked_unit(options_, column.name, role) && is_chosen(c)) {
             ask_for_scale(c, role, written, known);
         }
+        if (const auto unit = usual_unit(written, role);
+            unit && is_linear_unit(role, *unit) && is_chosen(c) && !options_.lead_m)
+            linear_.push_back(fmt::format("{} in {}", column_label(facts_.names, c), *unit));
         if (is_device_unit(written)) written.clear(), stated_[c] = false;
         if (written.empty()) {
             const bool by_convention = known != nullptr && !device;
@@ -380,7 +383,9 @@ class Decision {
         }
         const auto usual = usual_unit(written, role);
         const auto factor =
-            usual ? role_factor(role, *usual, options_.nm_per_ampere.value_or(1.0)) : std::nullopt;
+            usual ? role_factor(role, *usual,
+                                {options_.nm_per_ampere.value_or(1.0), options_.lead_m.value_or(1.0)})
+                  : std::nullopt;
         if (factor) {
             column.unit = *usual;
             column.factor = *factor * (scale != nullptr ? scale->factor : 1.0);
@@ -423,6 +428,15 @@ class Decision {
 
     // All at once: each is one option more.
     void refuse_unscaled() {
+        if (!linear_.empty()) {
+            const std::string what = fmt::format(
+                "read {}, of a linear axis, expected the travel of one turn of its screw; say --lead 5mm, "
+                "and "
+                "results are those of the screw, in deg and Nm",
+                fmt::join(linear_, ", "));
+            if (options_.needs_torque) raise<DataError>("{}: {}", source_, what);
+            layout_.warnings.push_back({"linear axis", what, true});
+        }
         if (unscaled_.empty()) return;
         std::vector<std::string> read, options;
         for (const auto& [what, option] : unscaled_) {
@@ -462,6 +476,7 @@ class Decision {
     std::vector<ColumnName> names_;
     std::vector<bool> stated_;  ///< by column: the log or an option says its unit
     std::vector<JointGroup> groups_;
+    std::vector<std::string> linear_;  ///< what is read in m, m/s and N where no lead is stated
     std::vector<std::pair<std::string, std::string>>
         unscaled_;  ///< what was read, and the option that says more
 };

@@ -571,10 +571,14 @@ std::vector<MotionColumns> motions_of(const KnownColumns& known, const std::vect
     const auto column = [&](std::optional<std::size_t> c, Role role) -> std::optional<MotionColumn> {
         if (!c || layout.columns[*c].role != role) return std::nullopt;
         const auto side = options.sides.find(role);
+        std::optional<Shaft> stated_side;
+        if (side != options.sides.end())
+            stated_side = side->second;
+        else if (is_linear_unit(role, layout.columns[*c].unit))
+            stated_side = Shaft::joint;  // the screw's, however fast it turns
         const auto& names = known.facts.meanings();
         return MotionColumn{*c, unit_is_stated[*c], known.names[*c].motor_side,
-                            names.empty() ? nullptr : convention_of(names[*c], role, names),
-                            side == options.sides.end() ? std::nullopt : std::optional<Shaft>(side->second)};
+                            names.empty() ? nullptr : convention_of(names[*c], role, names), stated_side};
     };
     std::vector<MotionColumns> motions;
     const auto add = [&](const std::string& joint, std::optional<std::size_t> velocity,

@@ -7,6 +7,7 @@
 #include <span>
 #include <utility>
 
+#include "log/columns/units.hpp"
 #include "ripplenotch/core/quantity.hpp"
 
 namespace ripplenotch {
@@ -146,7 +147,8 @@ std::vector<Candidate> candidates(const std::optional<MotionColumn>& column, con
     if (column->unit_is_stated)
         found.push_back(
             {{read.unit, read.factor, known == units.end() ? Family::degrees : known->family, 0.0}, false});
-    if (!read.scale.empty()) return found;  // whoever states what 1 is does not mean another unit
+    // Whoever states what 1 is does not mean another unit, nor does a linear axis.
+    if (!read.scale.empty() || is_linear_unit(read.role, read.unit)) return found;
     for (MotionUnit unit : units) {
         if (column->unit_is_stated && unit.name == read.unit) continue;
         if (column->unit_is_stated) unit.cost = header_wrong;

@@ -8,6 +8,7 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <numbers>
 #include <set>
 #include <utility>
 
@@ -133,7 +134,7 @@ constexpr std::array measured_roles = {Role::time, Role::velocity, Role::torque,
 
 bool any_role_knows(std::string_view unit) {
     return std::any_of(measured_roles.begin(), measured_roles.end(),
-                       [&](Role role) { return role_factor(role, unit, 1.0).has_value(); });
+                       [&](Role role) { return role_factor(role, unit).has_value(); });
 }
 
 }  // namespace
@@ -156,9 +157,31 @@ Dimension dimension_of(Role role) {
 
 bool is_current_unit(std::string_view unit) { return unit_factor(Dimension::current, unit).has_value(); }
 
-std::optional<double> role_factor(Role role, std::string_view unit, double nm_per_ampere) {
+namespace {
+
+Dimension linear_dimension_of(Role role) {
+    return role == Role::velocity   ? Dimension::linear_speed
+           : role == Role::torque   ? Dimension::force
+           : role == Role::position ? Dimension::length
+                                    : Dimension::none;
+}
+
+}  // namespace
+
+bool is_linear_unit(Role role, std::string_view unit) {
+    const Dimension dimension = linear_dimension_of(role);
+    return dimension != Dimension::none && unit_factor(dimension, unit).has_value();
+}
+
+std::optional<double> role_factor(Role role, std::string_view unit, const Conversion& conversion) {
     if (role == Role::torque) {
-        if (const auto amperes = unit_factor(Dimension::current, unit)) return *amperes * nm_per_ampere;
+        if (const auto amperes = unit_factor(Dimension::current, unit))
+            return *amperes * conversion.nm_per_ampere;
+    }
+    if (is_linear_unit(role, unit)) {
+        const double si = *unit_factor(linear_dimension_of(role), unit);
+        return role == Role::torque ? si * conversion.lead_m / (2.0 * std::numbers::pi)
+                                    : si * 360.0 / conversion.lead_m;
     }
     return unit_factor(dimension_of(role), unit);
 }
@@ -173,12 +196,12 @@ std::optional<std::string> usual_unit(std::string_view written, Role role) {
         if (lower == spelling.written) return std::string(spelling.usual);
     }
     // What is left depends on case: mNm, Nm, ms, A.
-    if (role == Role::other ? any_role_knows(text) : role_factor(role, text, 1.0).has_value())
+    if (role == Role::other ? any_role_knows(text) : role_factor(role, text).has_value())
         return std::string(text);
     return std::nullopt;
 }
 
-NameAndUnit split_unit(std::string_view column_name) {
+NameAndUnit split_unit(std::string_view column_name, bool linear_axis) {
     const std::string_view whole = without_padding(column_name);
     for (const auto& [open, close] : {std::pair{'[', ']'}, std::pair{'(', ')'}}) {
         const std::size_t from = whole.rfind(open);
@@ -198,7 +221,9 @@ NameAndUnit split_unit(std::string_view column_name) {
         const std::string_view rest = whole.substr(at + 1);
         if (is_device_unit(rest))  // "_counts_s" before "_s"
             return {std::string(without_padding(whole.substr(0, at))), std::string(rest), true};
-        if (rest == "nm" || rest == "mnm" || usual_unit(rest, Role::other)) {
+        const bool another =
+            !linear_axis && (unit_factor(Dimension::length, rest) || unit_factor(Dimension::force, rest));
+        if (rest == "nm" || rest == "mnm" || (!another && usual_unit(rest, Role::other))) {
             return {std::string(without_padding(whole.substr(0, at))), std::string(rest), false};
         }
     }
@@ -254,6 +279,24 @@ void say_torque_constant(Layout& layout, const ColumnFacts& facts, const ReadOpt
                          "amperes; --kt gives the joint's torque constant in Nm/A",
                          column_label(facts.names, *torque)),
              true});
+    }
+    if (options.lead_m) {
+        bool linear = false;
+        for (const JointColumns& joint : layout.all_chosen()) {
+            for (const auto& column : {joint.velocity, joint.torque, joint.position})
+                linear = linear || (column && is_linear_unit(layout.columns[*column].role,
+                                                             layout.columns[*column].unit));
+        }
+        if (linear)
+            layout.inferences.push_back(
+                {"linear axis",
+                 "angles, speeds and torques of its screw",
+                 fmt::format("one turn is {} mm (--lead)", shortest(1e3 * *options.lead_m)),
+                 "",
+                 {}});
+        else
+            layout.warnings.push_back(
+                {"--lead", "--lead has no effect: nothing that is read is in m, m/s or N", true});
     }
     if (!current && options.nm_per_ampere) {
         layout.warnings.push_back(
@@ -375,7 +418,11 @@ std::string scale_example(Role role, std::string_view device_unit) {
 
 std::string unit_list(Role role) {
     std::string list = fmt::format("{}", fmt::join(unit_names(dimension_of(role)), ", "));
-    return role == Role::torque ? list + ", A, mA" : list;
+    if (role == Role::torque) list += ", A, mA";
+    const Dimension linear = linear_dimension_of(role);
+    return linear == Dimension::none
+               ? list
+               : fmt::format("{}; of a linear axis {}", list, fmt::join(unit_names(linear), ", "));
 }
 
 void state_units(Layout& layout, const ColumnFacts& facts, const ReadOptions& options) {

@@ -22,8 +22,19 @@ namespace ripplenotch {
 /// What a role measures: time, speed, torque (or current), angle.
 [[nodiscard]] Dimension dimension_of(Role role);
 
-/// Factor from `unit` to the tool's unit for the role; torque accepts A and mA, with `nm_per_ampere`.
-[[nodiscard]] std::optional<double> role_factor(Role role, std::string_view unit, double nm_per_ampere);
+/// What turns currents and linear units into those of a joint.
+struct Conversion {
+    double nm_per_ampere = 1.0;
+    double lead_m = 1.0;  ///< travel of one turn of the screw
+};
+
+/// Factor from `unit` to the tool's unit for the role. A torque may be a current; a linear axis has positions
+/// in m, speeds in m/s and forces in N, which become those of its screw: 360 deg and 2 pi N m / N a lead.
+[[nodiscard]] std::optional<double> role_factor(Role role, std::string_view unit,
+                                                const Conversion& conversion = {});
+
+/// Whether a position, velocity or torque in `unit` is that of a linear axis.
+[[nodiscard]] bool is_linear_unit(Role role, std::string_view unit);
 
 /// True for A and mA.
 [[nodiscard]] bool is_current_unit(std::string_view unit);
@@ -34,7 +45,8 @@ struct NameAndUnit {
     std::string unit;        ///< "rad/s", as written; empty when none is there
     bool bracketed = false;  ///< in brackets: surely meant as a unit
 };
-[[nodiscard]] NameAndUnit split_unit(std::string_view column_name);
+/// "_m", "_mm" and "_N" are units in names of a linear axis alone: elsewhere an m is the motor's.
+[[nodiscard]] NameAndUnit split_unit(std::string_view column_name, bool linear_axis = false);
 
 // A part of decide_layout: units that --unit states, and what is said of units that nobody stated.
 

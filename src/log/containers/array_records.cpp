@@ -321,7 +321,7 @@ class NanosecondCursor final : public ColumnCursor {
 double ns_per_unit(const std::string& source, const StoredArray& clock) {
     const std::string written = clock.unit.empty() ? split_unit(last_word(clock.path)).unit : clock.unit;
     const auto unit = written.empty() ? std::nullopt : usual_unit(written, Role::time);
-    if (unit) return ns_per_s * role_factor(Role::time, *unit, 1.0).value_or(1.0);
+    if (unit) return ns_per_s * role_factor(Role::time, *unit).value_or(1.0);
     if (clock.type.kind != 'f')
         raise<DataError>(
             "{}: read whole numbers without a unit in {}, expected seconds, or a name or attribute with the "

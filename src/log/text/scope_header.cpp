@@ -88,7 +88,7 @@ std::string bare_unit(const std::string& text) {
 bool is_size_of(double factor, const std::string& unit) {
     for (const Role role : {Role::velocity, Role::torque, Role::position}) {
         const auto usual = usual_unit(unit, role);
-        const auto size = usual ? role_factor(role, *usual, 1.0) : std::nullopt;
+        const auto size = usual ? role_factor(role, *usual) : std::nullopt;
         if (!size) continue;
         const double in_si = role == Role::torque ? *size : *size / degrees_per_radian;
         for (const double known : {in_si, 1.0 / in_si})

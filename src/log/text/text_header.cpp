@@ -358,6 +358,7 @@ std::string options_line(const Layout& layout, const ColumnFacts& facts, const R
     if (options.constant_speed)
         words.push_back("--constant-speed " + shortest(options.constant_speed->value()) + "deg/s");
     if (options.nm_per_ampere) words.push_back("--kt " + shortest(*options.nm_per_ampere));
+    if (options.lead_m) words.push_back("--lead " + shortest(1e3 * *options.lead_m) + "mm");
     if (options.skip_lines > 0) words.push_back(fmt::format("--skip-lines {}", options.skip_lines));
     if (options.hold_bad_values) words.push_back("--hold-bad-values");
     return fmt::format("{}", fmt::join(words, " "));
