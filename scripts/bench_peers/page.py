@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The record of a run as the tables of docs/performance.md."""
+"""The record of a run as the tables of docs/studies/performance.md."""
 
 from .cases import TOOL
 from .measure import Run, median

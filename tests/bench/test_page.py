@@ -50,7 +50,7 @@ class Page(unittest.TestCase):
         self.assertEqual(self.promises["fixed notch, one channel"][2], "not measured")
 
     def test_every_table_has_its_place_in_the_page(self):
-        text = pathlib.Path(os.environ["RIPPLENOTCH_SOURCE"], "docs", "performance.md").read_text()
+        text = pathlib.Path(os.environ["RIPPLENOTCH_SOURCE"], "docs", "studies", "performance.md").read_text()
         for name in page.tables(record()):
             self.assertEqual(text.count(f"<!-- made by scripts/bench-peers: {name} -->"), 1, name)
 

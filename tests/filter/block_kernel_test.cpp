@@ -180,7 +180,7 @@ TEST_CASE("the paper's notch goes in blocks, a notch of 0.5 Hz at 10 kHz does no
     CHECK_FALSE(block_form_serves(design_low_pass({.cutoff = Hertz(2.07), .order = 4}, Hertz(4000.0))));
 }
 
-// The table of docs/methods/fixed.md.
+// The table of docs/studies/methods.md.
 TEST_CASE("the trial's differences are those that the documentation states, and decide the way") {
     const auto low_pass = [](double cutoff_hz, int order) {
         return design_low_pass({.cutoff = Hertz(cutoff_hz), .order = order}, Hertz(1000.0));

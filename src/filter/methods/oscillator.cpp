@@ -25,7 +25,7 @@ namespace ripplenotch {
 namespace {
 
 constexpr double slowest_corrected_turns = 1e-5;  ///< turns of the motor in a sample
-// Measured: docs/methods/oscillator.md.
+// Chosen by measurement: docs/methods/oscillator.md.
 constexpr double usual_memory_turns = 0.5, memory_turns_beside_map = 0.15;
 constexpr double standing_deg_s = 1.0;  ///< a log that begins slower than this begins at standstill
 

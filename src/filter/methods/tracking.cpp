@@ -77,7 +77,7 @@ constexpr std::array keys = {
                 "when not given"},
 };
 
-// Measured: the table of docs/methods/tracking.md.
+// Chosen by measurement: docs/methods/tracking.md.
 constexpr double usual_q = 1.7, usual_max_delay_s = 0.0045;
 
 // n notches of bandwidth B/n side by side have the width of one of bandwidth B. ArduPilot's definition of the
