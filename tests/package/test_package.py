@@ -22,14 +22,14 @@ def needed(tool, package):
     return unittest.skipIf(shutil.which(tool) is None, f"there is no {tool}: apt-get install {package}")
 
 
-def pack(folder):
-    """The packages of the build, in the folder."""
+def pack(folder, **environment):
+    """The packages of the build, in the folder, by their names."""
     source = pathlib.Path(folder, "source")
     shutil.copytree(DEBIAN, source / "debian")
     shutil.copy(SOURCE / "CHANGELOG.md", source)
     (source / "debian" / "debhelper-build-stamp").write_text("ripplenotch\nripplenotch-dev\n")  # debhelper's note of what is built
     done = subprocess.run(["debian/rules", "binary", f"BUILD={BUILD}"], cwd=source, capture_output=True, text=True,
-                          env=dict(os.environ, LC_ALL="C.UTF-8", DPKG_DEB_COMPRESSOR_TYPE="gzip", DPKG_DEB_COMPRESSOR_LEVEL="1"))
+                          env=dict(os.environ, LC_ALL="C.UTF-8", **environment))
     if done.returncode != 0:
         raise AssertionError(done.stdout + done.stderr)
     return {path.name.split("_")[0]: path for path in pathlib.Path(folder).glob("*.deb")}
@@ -51,7 +51,7 @@ class Contents(unittest.TestCase):
     def setUpClass(cls):
         cls.folder = tempfile.TemporaryDirectory()
         cls.addClassCleanup(cls.folder.cleanup)
-        cls.packages = pack(cls.folder.name)
+        cls.packages = pack(cls.folder.name, DPKG_DEB_COMPRESSOR_TYPE="none", DEB_BUILD_OPTIONS="nostrip")
 
     def test_the_program_comes_with_its_pages_and_completions_and_nothing_else(self):
         commands = re.findall(r"^COMMAND\(([a-z]+)_?\)", (SOURCE / "src/cli/commands.def").read_text(), re.M)
@@ -85,8 +85,9 @@ class Contents(unittest.TestCase):
 class Lintian(unittest.TestCase):
     def test_it_has_no_error_and_no_warning(self):
         with tempfile.TemporaryDirectory() as folder:
+            packages = pack(folder, DPKG_DEB_COMPRESSOR_TYPE="gzip", DPKG_DEB_COMPRESSOR_LEVEL="1")
             done = subprocess.run(["lintian", "--allow-root", "--fail-on", "error,warning", "--suppress-tags", NOT_SHIPPED,
-                                   *pack(folder).values()], capture_output=True, text=True)
+                                   *packages.values()], capture_output=True, text=True)
         self.assertEqual((done.returncode, done.stdout), (0, ""), done.stderr)
 
 
@@ -103,6 +104,7 @@ class Agreement(unittest.TestCase):
 
     def test_versions_are_those_of_the_project(self):
         self.assertEqual(re.match(r"ripplenotch \((.+)-\d+\)", (DEBIAN / "changelog").read_text())[1], PROJECT_VERSION)
+        self.assertEqual(re.search(r"^version: (.+)$", (SOURCE / "CITATION.cff").read_text(), re.M)[1], PROJECT_VERSION)
 
 
 if __name__ == "__main__":
