@@ -1,20 +1,14 @@
-# What `cmake --install` and the packages bring: the program with its pages (component runtime), and the library with what
+# What `cmake --install` brings, and scripts/package packs: the program with its pages (component runtime), and the library with what
 # other projects find it by (component development).
 include(CMakePackageConfigHelpers)
 include(reference_files)
 set(config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/ripplenotch)
 
 install(TARGETS ripplenotch_cli RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT runtime)
-install(FILES README.md LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT runtime)
-if(NOT CMAKE_INSTALL_PREFIX STREQUAL "/usr")  # Debian has another name for it; packages.cmake packs it
-    install(FILES CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT runtime)
-endif()
+install(FILES README.md LICENSE CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT runtime)
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT runtime)
 if(RIPPLENOTCH_MAN_PAGES)
     list(TRANSFORM RIPPLENOTCH_MAN_PAGES PREPEND ${RIPPLENOTCH_REFERENCE}/ OUTPUT_VARIABLE man_pages)
-    if(CMAKE_INSTALL_PREFIX STREQUAL "/usr")  # as Debian has them; packages.cmake packs them
-        list(TRANSFORM man_pages APPEND .gz)
-    endif()
     install(FILES ${man_pages} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT runtime)
     install(FILES ${RIPPLENOTCH_REFERENCE}/ripplenotch.bash COMPONENT runtime
             DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME ripplenotch)
@@ -43,6 +37,5 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/ripplenotch-config-versio
 install(FILES ${PROJECT_BINARY_DIR}/ripplenotch-config.cmake ${PROJECT_BINARY_DIR}/ripplenotch-config-version.cmake
         DESTINATION ${config_dir} COMPONENT development)
 string(REPLACE ";" " " pc_containers "${RIPPLENOTCH_CONTAINER_MODULES}")
-configure_file(${CMAKE_CURRENT_LIST_DIR}/package/ripplenotch.pc.in ${PROJECT_BINARY_DIR}/ripplenotch.pc @ONLY)
+configure_file(${CMAKE_CURRENT_LIST_DIR}/ripplenotch.pc.in ${PROJECT_BINARY_DIR}/ripplenotch.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/ripplenotch.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT development)
-include(packages)
