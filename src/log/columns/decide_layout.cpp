@@ -166,6 +166,12 @@ class Decision {
         take_constant_speed();
         state_symbols();
         state_units(layout_, facts_, options_);
+        for (std::size_t c = 0; c < facts_.columns; ++c) {
+            Column& column = layout_.columns[c];
+            if (column.role != Role::other) continue;
+            column.unit = names_[c].unit;
+            column.unused = why_unused(known(), c, groups_, incomplete_);
+        }
         report_repeated_names();
         check_channel_clocks(source_, facts_, layout_);
         layout_.options = options_line(layout_, facts_, options_);
