@@ -232,6 +232,33 @@ class SaidOnce(Case):
                           "count from the first sample"])
 
 
+class Currents(Case):
+    """A motor current without --kt: everything is in A, and says so."""
+
+    def setUp(self):
+        super().setUp()
+        (self.folder / "amps.csv").write_text(wide_log(("j1", "j2")).replace("_torque_nm", "_current_A"))
+
+    def test_reports_and_documents(self):
+        for name in ("compare", "recommend", "spectrum --peaks", "identify", "map", "info"):
+            with self.subTest(name):
+                words = [*asked(name, "amps.csv"), "--joint", "j1", "-q"]
+                report = self.good(*words).stdout.split("\nwarnings\n")[0]
+                self.assertNotRegex(report, r"(?m)(^|[ (])Nm\b")
+                self.assertRegex(report, r"(?m)[ (]A\b")
+                document = json.loads(self.good(*words, "--json").stdout)
+                self.assertEqual(document["recording"]["torque_unit"], "A")
+                self.assertNotIn(" Nm", document.get("verdict", ""))
+                with_constant = self.good(*words, "--kt", "2").stdout
+                self.assertIn("Nm", with_constant)
+                self.assertNotIn("torque_unit", json.loads(self.good(*words, "--kt", "2", "--json").stdout)["recording"])
+
+    def test_the_columns_of_a_table_keep_their_places(self):
+        amps = self.good("spectrum", "amps.csv", "--joint", "j1", "--peaks", "-q").stdout
+        newton_metres = self.good("spectrum", "amps.csv", "--joint", "j1", "--peaks", "-q", "--kt", "1").stdout
+        self.assertEqual([len(line) for line in amps.splitlines()[1:3]], [len(line) for line in newton_metres.splitlines()[1:3]])
+
+
 class Columns(Case):
     def test_every_column_of_a_file_is_listed_with_what_it_was_taken_for(self):
         names = ["time_s", "j1_velocity_deg_s", "j1_torque_nm", "j1_target_torque_nm", "j2_torque_percent", "temperature_degc"]

@@ -721,8 +721,9 @@ JointResult compare_once(const CompareRequest& request, const std::string& comma
     Comparison comparison = request.log.empty() ? compare_on_signals(request, field)
                                                 : compare_on_log(request, field, provenance, course);
     add_costs(comparison, request.costs, field);
-    JointResult result{request.common.json ? comparison_text(comparison, provenance)
-                                           : comparison_view(comparison)};
+    const std::string unit = provenance.recordings.empty() ? "Nm" : provenance.recordings.front().torque_unit;
+    JointResult result{in_torque_unit(
+        request.common.json ? comparison_text(comparison, provenance) : comparison_view(comparison), unit)};
     const auto broken = violations(comparison, request.costs, field);
     if (!broken.empty()) result.code = ExitCode::limit_violated;
     result.afterwards = [request, provenance, broken, field = std::move(field),

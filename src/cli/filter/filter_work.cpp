@@ -164,8 +164,10 @@ bool tell(const FilterRequest& request, const FilterJob& job, JointWork& work,
             "no gear ratio is known, so no ripple was measured; give --gear-ratio or --joint-file");
     }
     const auto broken = filter_violations(request.gates, *work.method, metrics);
+    const std::string& unit = metrics.stream.recording.torque_unit;
+    for (std::string& warning : warnings) warning = in_torque_unit(std::move(warning), unit);
     say_warnings(work.common, warnings);
-    for (const std::string& line : filter_summary(metrics)) say(work.common, line);
+    for (const std::string& line : filter_summary(metrics)) say(work.common, in_torque_unit(line, unit));
     if (work.metrics_sink) {
         work.metrics_sink->write(metrics_to_json(metrics, provenance_of(job, work, command_line)));
         work.metrics_sink->finish();

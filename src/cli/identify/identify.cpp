@@ -227,6 +227,9 @@ Identification identified_joint(const Joint& joint, const IdentifyRequest& reque
     }
     Identification found = identify_readings(joint.logs, request.identify);
     found.joint = joint.name;
+    const std::string& unit = joint.logs.front().recording.torque_unit;
+    found.verdict = in_torque_unit(found.verdict, unit);
+    for (std::string& note : found.notes) note = in_torque_unit(note, unit);
     found.sample_rate = controller_rate(joint);
     return found;
 }
@@ -308,7 +311,9 @@ ExitCode run_identify(IdentifyRequest& request, const std::string& command_line)
     const std::vector<Identification> found = identified_joints(request, common, joints);
     std::string text;
     for (std::size_t i = 0; i < found.size(); ++i)
-        text += (text.empty() ? "" : "\n") + identification_report(found[i], log_names(joints[i]));
+        text +=
+            (text.empty() ? "" : "\n") + in_torque_unit(identification_report(found[i], log_names(joints[i])),
+                                                        joints[i].logs.front().recording.torque_unit);
     const bool json_file = ends_with_json(request.common.output);
     if ((request.common.json || json_file) && names_joint(request.common.output)) {
         for (const Identification& one : found)

@@ -159,8 +159,10 @@ ExitCode run_map_once(const MapRequest& request, const std::string& command_line
     fit.map.temperature_column = request.temperature.value_or("");
     for (const std::string& note : fit.notes) say(request.common, note);
     const std::string heading = request.heads ? fit.map.joint + ": " : "";
+    const std::string& unit = read.logs.front().recording.torque_unit;
     write_result(
-        request.common, [&] { return map_text(fit, provenance); }, heading + map_report(fit, request.logs));
+        request.common, [&] { return in_torque_unit(map_text(fit, provenance), unit); },
+        in_torque_unit(heading + map_report(fit, request.logs), unit));
     draw_plot(request.plot, request.common, provenance, [&] {
         if (fit.map.orders.empty())
             raise<DataError>("--plot: the map is empty, there is nothing to draw: {}", map_verdict(fit));

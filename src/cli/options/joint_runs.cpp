@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <exception>
 #include <filesystem>
 #include <utility>
@@ -58,6 +59,30 @@ void say_left_out(const CommonOptions& common, const std::vector<LeftOutJoint>& 
     for (const auto& [why, names] : by_reason)
         warn(common, fmt::format("{} {} left out: {}", joints_in_words(names),
                                  names.size() == 1 ? "is" : "are", why));
+}
+
+std::string in_torque_unit(std::string text, const std::string& unit) {
+    constexpr std::string_view written = "Nm", verdict = "\"verdict\": ";
+    if (unit == written) return text;
+    const bool is_document = text.starts_with('{');
+    for (std::size_t at = text.find(written); at != std::string::npos; at = text.find(written, at + 1)) {
+        // Of a document the other texts are names of fields and options.
+        const std::size_t line = text.rfind('\n', at) + 1;
+        const bool is_said =
+            !is_document || text.compare(text.find_first_not_of(' ', line), verdict.size(), verdict) == 0;
+        const char before = at > 0 ? text[at - 1] : ' ';
+        const std::string_view after = std::string_view(text).substr(at + written.size());
+        const bool is_unit = std::string_view(" \n(").find(before) != std::string_view::npos &&
+                             !after.starts_with("/A") &&
+                             (after.empty() || std::isalnum(static_cast<unsigned char>(after.front())) == 0);
+        if (!is_said || !is_unit) continue;
+        text.replace(at, written.size(), unit);
+        // Columns of a table keep their places.
+        const std::size_t gap = text.rfind("  ", at);
+        if (!is_document && gap != std::string::npos && gap >= line)
+            text.insert(gap, written.size() - std::min(unit.size(), written.size()), ' ');
+    }
+    return text;
 }
 
 namespace {

@@ -52,6 +52,10 @@ ExitCode run_joints(const JointRuns& runs,
 [[nodiscard]] std::optional<std::string> of_joint(const std::optional<std::string>& text,
                                                   const std::optional<std::string>& joint);
 
+/// A result about a torque in this unit (Recording::torque_unit), in which the library says "Nm": a report
+/// with "A" in its place, where that is the unit, or the verdict of a document.
+[[nodiscard]] std::string in_torque_unit(std::string text, const std::string& unit);
+
 /// "joint j4 is left out: it has no torque", once for each reason.
 void say_left_out(const CommonOptions& common, const std::vector<LeftOutJoint>& joints);
 

@@ -437,8 +437,9 @@ RecommendationReport report_of(const RecommendRequest& request, Provenance& prov
 JointResult recommend_for_joint(const RecommendRequest& request, const std::string& command_line) {
     Provenance provenance{{}, command_line};
     const RecommendationReport report = report_of(request, provenance);
-    JointResult result{request.common.json ? recommendation_text(report, provenance)
-                                           : recommendation_view(report)};
+    JointResult result{in_torque_unit(
+        request.common.json ? recommendation_text(report, provenance) : recommendation_view(report),
+        provenance.recordings.front().torque_unit)};
     if (report.found.finding == RecommendationFinding::out_of_reach)
         result.code = ExitCode::limit_violated;
     else if (request.require_conclusive && !report.conclusive)

@@ -525,7 +525,10 @@ Made whole_result(const SpectrumRequest& request, const std::string& command_lin
 JointResult spectrum_of_joint(const SpectrumRequest& request, const std::string& command_line) {
     auto [made, provenance] =
         request.in_pieces() ? piecewise_result(request, command_line) : whole_result(request, command_line);
-    JointResult result{std::move(made.text)};
+    const bool is_table = request.peaks || request.common.json;  // and not bins by the thousand
+    JointResult result{is_table
+                           ? in_torque_unit(std::move(made.text), provenance.recordings.front().torque_unit)
+                           : std::move(made.text)};
     // A figure in the terminal takes the place of the bins, and not that of the tables.
     if (!request.peaks && request.plot.instead_of(request.common.output)) result.write = [] {};
     result.afterwards = [request, provenance = std::move(provenance), figure = std::move(made.figure)] {

@@ -301,9 +301,9 @@ JointResult track_joint(TrackRequest request, const std::string& command_line, b
         report.by_speed = gather_by_speed(report.tracks, request.speed_step.value_or(DegPerSec(0.0)));
     JointResult result;
     if (request.common.json) {
-        result.text = track_text(report, provenance);
+        result.text = in_torque_unit(track_text(report, provenance), log.recording.torque_unit);
     } else {
-        say(request.common, report.doubt + track_verdict(report));
+        say(request.common, in_torque_unit(report.doubt + track_verdict(report), log.recording.torque_unit));
         if (one_of_several) result.text = csv_of(report);
         result.write = [request, report] {
             if (!request.plot.instead_of(request.common.output)) write_columns(request, report);

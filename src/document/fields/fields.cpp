@@ -59,6 +59,8 @@ void describe(JsonWriter& json, const Recording& recording) {
     const auto timed = [&](const Hertz& rate) { return clock.nominal_rate.value() > 0.0 ? &rate : nullptr; };
     json("source", recording.source);
     json("joint", recording.joint, null_if_empty);
+    // Numbers that are named _nm are in it.
+    if (recording.torque_unit != "Nm") json("torque_unit", recording.torque_unit);
     json("rows", recording.rows());
     json("nominal_rate_hz", timed(clock.nominal_rate), fitted);
     json("mean_rate_hz", timed(clock.mean_rate), fitted);

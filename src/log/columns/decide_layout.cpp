@@ -444,6 +444,7 @@ class Decision {
         if (factor) {
             column.unit = *usual;
             column.factor = *factor;
+            column.current = role == Role::torque && is_current_unit(*usual) && !options_.nm_per_ampere;
             column.unit_assumed = column.unit_assumed && !stated_[c];
         } else if (is_chosen(c)) {
             raise<DataError>(
