@@ -520,11 +520,8 @@ JointDiagnosis diagnosed_joint(const DiagnoseRequest& request, const std::option
 
 std::vector<std::string> joints_of(const DiagnoseRequest& request, GivenSource& given) {
     ReadOptions reading = request.log;
+    std::vector<std::string> joints = joints_asked_for(request.path, reading).names;
     reading.joint.reset();
-    ReadOptions survey = reading;
-    survey.needs_torque = false;
-    survey.takes_motor_units = true;
-    std::vector<std::string> joints = open_log(request.path, survey)->layout().joints;
     if (!request.given.arm) return joints;
     // As each joint alone would read it.
     reading.gear_ratio = request.gear.ratio;
