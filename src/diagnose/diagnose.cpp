@@ -114,7 +114,7 @@ std::vector<Undecidable> undecidable(const ModelBench& bench, const Candidate& m
                                      std::span<const Effect* const> tried,
                                      std::span<const std::string> without) {
     std::vector<const Effect*> others;
-    for (const Effect* effect : examined(without, true)) {
+    for (const Effect* effect : examined(without, true, model.stated.has_gear_ratio())) {
         if (std::find(tried.begin(), tried.end(), effect) == tried.end()) others.push_back(effect);
     }
     std::vector<Undecidable> told;
@@ -254,7 +254,8 @@ class DiagnosisRun {
         // An arm has inertia and gravity of its own.
         if (is_given(options.given, "arm"))
             without_.insert(without_.end(), {"inertia", "gravity", "payload-change"});
-        effects_ = examined(without_, has_position_ || tells_position(whole_.motion, rules_.recording));
+        effects_ = examined(without_, has_position_ || tells_position(whole_.motion, rules_.recording),
+                            model_.has_gear_ratio());
         if (validation == nullptr) return;
         other_ = whole_case(*validation, options.smoothing, rules_.recording);
         take_known_torque(*other_, options.validation_given);
@@ -304,6 +305,7 @@ class DiagnosisRun {
         }
         result_.angle = before.account(whole_, other_ ? &*other_ : nullptr);
         if (!has_position_) result_.undecidable = undecidable(*found.bench, last, effects_, without_);
+        if (!model_.has_gear_ratio()) list_effects_of_motor();
         measure_at_samples(spoiled, whole_, last.stated);
         result_.unexplained.insert(result_.unexplained.begin(), spoiled.begin(), spoiled.end());
         result_.unexplained.insert(result_.unexplained.begin(), aside.begin(), aside.end());
@@ -312,6 +314,25 @@ class DiagnosisRun {
     }
 
   private:
+    void list_effects_of_motor() {
+        for (const Effect* effect : examined(without_, true, true)) {
+            if (needs_gear_ratio(*effect))
+                result_.undecidable.push_back({effect->name, "needs the gear ratio, --gear-ratio N", 0.0});
+        }
+    }
+
+    // What resembles a ripple may be one as long as its place among the orders of the motor is not known.
+    void tie_with_ripple() {
+        if (model_.has_gear_ratio() || is_among(without_, "ripple")) return;
+        for (Finding& finding : result_.rounds) {
+            const auto& alike = finding.term.effect->look_alikes;
+            if (!is_trusted(finding) || std::ranges::find(alike, "ripple", &LookAlike::name) == alike.end())
+                continue;
+            finding.status = FindingStatus::ambiguous;
+            finding.alternatives.insert(finding.alternatives.begin(), {"ripple", 0.0});
+        }
+    }
+
     // Which findings hold, and the residual then.
     [[nodiscard]] Candidate tested(Searched& found, bool other_begins_anywhere) {
         const ModelBench& bench = *found.bench;
@@ -329,6 +350,7 @@ class DiagnosisRun {
         if (fits_offset_ && options_.setup.empty()) promote_offset(found, own, unexplained);
         doubt_for_setup();
         doubt_for_travel(bench.looked_at(), found.last.stated);
+        tie_with_ripple();
         own_ = own;
         result_.refused = found.refused;
         result_.baseline = as_given(bench, found.first).stated;

@@ -58,6 +58,7 @@ std::string rules_text(const DiagnosisRules& rules) {
 
 std::string story(const JointDiagnosis& one, bool explain) {
     return (one.given.account ? arm_text(*one.given.account) : "") + diagnosis_story(one.diagnosis, explain) +
+           (one.diagnosis.model.has_gear_ratio() ? "" : gear_in_words(one.gear) + "\n") +
            (one.mjcf ? mjcf_text(*one.mjcf) : "") + (one.planned ? plan_text(*one.planned) : "");
 }
 

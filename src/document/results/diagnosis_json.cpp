@@ -76,6 +76,7 @@ void describe(auto& archive, Is<Place> auto& place) {
     archive("position_deg", place.position_deg, six);
     archive("hz", place.hz, six);
     archive("order", place.order, six);
+    archive("order_output", place.order_output, six, if_any);
     archive("direction", place.direction, Names{direction_name, Direction::both}, null_if_empty);
 }
 
