@@ -321,15 +321,36 @@ class DiagnosisRun {
         }
     }
 
-    // What resembles a ripple may be one as long as its place among the orders of the motor is not known.
-    void tie_with_ripple() {
-        if (model_.has_gear_ratio() || is_among(without_, "ripple")) return;
+    // The effect of the motor for which the catalogue says that this one may be mistaken, if there is one.
+    [[nodiscard]] const Effect* look_alike_of_motor(const Effect& effect) const {
+        for (const Effect* other : catalogue()) {
+            // What changes a ripple is a rival of nothing where there is none.
+            if (needs_gear_ratio(*other) && other->side != Side::ripple && !is_among(without_, other->name) &&
+                std::ranges::find(effect.look_alikes, other->name, &LookAlike::name) !=
+                    effect.look_alikes.end())
+                return other;
+        }
+        return nullptr;
+    }
+
+    // Without the gear ratio an effect of the motor is no rival, and what resembles one is no finding by
+    // itself. Over a short travel a ripple of few cycles per turn is as smooth as a weight or an offset:
+    // identify takes no ratio below 3, and 3 cycles are in opposition to the one of a weight after a quarter
+    // of a turn.
+    void tie_with_effects_of_motor(const Case& c) {
+        if (model_.has_gear_ratio()) return;
+        constexpr double least_ratio = 3.0, least_turns = 0.5 / (least_ratio - 1.0);
+        const auto [low, high] = std::ranges::minmax(c.motion.position_deg);
+        const bool is_short = (high - low) / 360.0 < least_turns && !is_among(without_, "ripple");
         for (Finding& finding : result_.rounds) {
-            const auto& alike = finding.term.effect->look_alikes;
-            if (!is_trusted(finding) || std::ranges::find(alike, "ripple", &LookAlike::name) == alike.end())
-                continue;
+            if (!is_trusted(finding)) continue;
+            const Effect& effect = *finding.term.effect;
+            const Effect* rival = look_alike_of_motor(effect);
+            if (rival == nullptr && is_short && (needs_position(effect) || effect.name == "offset"))
+                rival = &find_effect("ripple");
+            if (rival == nullptr) continue;
             finding.status = FindingStatus::ambiguous;
-            finding.alternatives.insert(finding.alternatives.begin(), {"ripple", 0.0});
+            finding.alternatives.insert(finding.alternatives.begin(), {rival->name, 0.0});
         }
     }
 
@@ -350,7 +371,7 @@ class DiagnosisRun {
         if (fits_offset_ && options_.setup.empty()) promote_offset(found, own, unexplained);
         doubt_for_setup();
         doubt_for_travel(bench.looked_at(), found.last.stated);
-        tie_with_ripple();
+        tie_with_effects_of_motor(bench.looked_at());
         own_ = own;
         result_.refused = found.refused;
         result_.baseline = as_given(bench, found.first).stated;

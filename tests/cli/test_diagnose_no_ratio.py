@@ -16,7 +16,7 @@ class NoGearRatio(Case):
 
     def log(self, *words, seed=1):
         done = self.run_tool("simulate", "--gear-ratio", "100", "--inertia", "0.4", *words, *self.MOTION, "--sample-rate",
-                             "500Hz", "--noise", "0.05Nm", "--velocity-noise", "0.1deg/s", "--seed", str(seed), "-o", "log.csv")
+                             "500Hz", "--noise", "0.05Nm", "--velocity-noise", "0.1deg/s", "--seed", str(seed), "-o", "log.csv", "--force")
         self.assertEqual(done.returncode, 0, done.stderr)
 
     def test_friction_is_named_and_ripple_is_said_not_to_be_examined(self):

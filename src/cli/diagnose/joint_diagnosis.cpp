@@ -246,6 +246,12 @@ bool speed_changes(const Trace& trace) {
     return fastest > 0.0 && fastest - slowest > enough * fastest;
 }
 
+// Faster than the noise of a speed at rest.
+bool moves(const Trace& trace) {
+    constexpr double clear_deg_s = 0.5;  // by hand, as of the direction that a friction holds
+    return std::ranges::any_of(trace.velocity_deg_s, [](double v) { return std::abs(v) > clear_deg_s; });
+}
+
 struct ModelOfLog {
     Model model;
     std::string source;  ///< of its gear ratio
@@ -265,6 +271,11 @@ ModelOfLog identified_model(const DiagnoseRequest& request, ReadOptions reading)
     if (request.gear.ratio) options.hint = stated = GearRatio(*request.gear.ratio);
     const JointFile joint{request.path, request.path, identify_readings(logs, options)};
     const GearStatement facts = joint.facts(stated);
+    if (!facts.ratio && !moves(logs.front().trace))
+        raise<DataError>(
+            "{}: --model auto: identify tells no gear ratio from it ({}), and at rest a ripple is an offset; "
+            "give --gear-ratio N, or --model FILE",
+            request.path, joint.found.verdict);
     Model model{facts.ratio.value_or(GearRatio()), {}};
     if (speed_changes(logs.front().trace)) model.terms.push_back(parse_term("inertia"));
     if (facts.ratio) {
