@@ -45,6 +45,23 @@ class NoGearRatio(Case):
         self.assertIn("not examined: ripple: needs the gear ratio, --gear-ratio N", done.stdout)
         self.assertIn("gear ratio not known (identify: No ripple", done.stdout)
 
+    def test_motion_that_is_too_fast_for_a_joint_is_asked_about(self):
+        rows = "".join(f"{k * 0.01:.2f},{9000.0 + (k % 7):g},{0.5 + 0.01 * (k % 5):g}\n" for k in range(1000))
+        (self.folder / "motor.csv").write_text("time_s,motor_velocity_deg_s,torque_nm\n" + rows)
+        done = self.run_tool("diagnose", "motor.csv", "--model", "auto")
+        self.assertEqual((done.returncode, done.stdout), (3, ""))
+        self.assertIn("--gear-ratio", done.stderr)
+        self.assertIn("--side joint", done.stderr)
+
+    def test_over_less_than_a_cycle_of_a_ripple_nothing_is_named_for_it(self):
+        done = self.run_tool("simulate", "--gear-ratio", "6", "--inertia", "0.4", "--ripple", "2:0.2Nm", "--motion",
+                             "rest,duration=0.5s", "--motion", "poly6,to=15deg,duration=1s", "--motion", "rest,duration=0.5s",
+                             "--motion", "poly6,to=-10deg,duration=1.5s", "--motion", "rest,duration=0.5s", "--sample-rate",
+                             "500Hz", "--noise", "0.05Nm", "--velocity-noise", "0.1deg/s", "--seed", "122", "-o", "log.csv")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        found = json.loads(self.run_tool("diagnose", "log.csv", "--model", "auto", "--json").stdout)
+        self.assertEqual(found["named"], [])
+
     def test_a_ripple_gets_no_other_name(self):
         for seed, words in enumerate((["--ripple", "2:0.2Nm"], ["--ripple", "2:0.2Nm", *self.FRICTION])):
             self.log(*words, seed=30 + seed)

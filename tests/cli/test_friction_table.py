@@ -3,6 +3,7 @@
 
 import json
 import math
+import os
 import random
 
 from commands import Case
@@ -82,6 +83,25 @@ class FrictionTable(Case):
         values = self.parameters(found)
         self.assertAlmostEqual(values["coulomb-friction", "torque_nm"]["value"], 0.6, delta=1e-4)
         self.assertAlmostEqual(values["viscous-friction", "coefficient_nm_per_deg_s"]["value"], 0.01, delta=1e-5)
+
+    def test_intervals_hold_the_truth_as_often_as_they_say(self):
+        # RIPPLENOTCH_TABLES=500 RIPPLENOTCH_FIRST_TABLE=9000 is the study of docs/studies/friction-table.md.
+        tables, first = int(os.environ.get("RIPPLENOTCH_TABLES", "60")), int(os.environ.get("RIPPLENOTCH_FIRST_TABLE", "1"))
+        truth = {("coulomb-friction", "torque_nm"): 0.6, ("viscous-friction", "coefficient_nm_per_deg_s"): 0.01,
+                 ("stribeck-friction", "torque_nm"): 0.4, ("stribeck-friction", "stribeck_speed_deg_s"): 8.0,
+                 ("asymmetric-friction", "difference_nm"): 0.1}
+        hits = dict.fromkeys(truth, 0)
+        for seed in range(first, first + tables):
+            values = self.parameters(self.found(table(both_ways(SPEEDS), random.Random(seed), 0.02, difference=0.1, stribeck=0.4)))
+            for key, value in truth.items():
+                low, high = values[key]["ci95"]
+                hits[key] += low <= value <= high
+        if tables > 60:
+            print({f"{effect} {name}": f"{100 * hits[effect, name] / tables:.1f} %" for effect, name in hits})
+        # Five standard deviations of chance below 95 %.
+        least = 0.95 * tables - 5.0 * math.sqrt(0.95 * 0.05 * tables)
+        for key, count in hits.items():
+            self.assertGreater(count, least, key)
 
     def test_bad_tables_get_one_message(self):
         head = "velocity_deg_s,torque_nm\n"

@@ -276,6 +276,13 @@ ModelOfLog identified_model(const DiagnoseRequest& request, ReadOptions reading)
             "{}: --model auto: identify tells no gear ratio from it ({}), and at rest a ripple is an offset; "
             "give --gear-ratio N, or --model FILE",
             request.path, joint.found.verdict);
+    if (!facts.ratio && logs.front().layout.motor_units)
+        raise<DataError>(
+            "{}: --model auto: the motion seems to be measured before the gear (named so, or too fast for a "
+            "joint), and no ratio is known to bring it to the joint; say --gear-ratio N, or --side joint if "
+            "it "
+            "is the joint's",
+            request.path);
     Model model{facts.ratio.value_or(GearRatio()), {}};
     if (speed_changes(logs.front().trace)) model.terms.push_back(parse_term("inertia"));
     if (facts.ratio) {
