@@ -35,6 +35,7 @@ struct DiagnoseRequest {
     bool list_rules = false, explain = false;
     Seconds smoothing = default_smoothing;
     bool require_conclusive = false;
+    bool friction_table = false;  ///< the log is said to be one
 
     [[nodiscard]] bool all_joints() const { return asks_for_several(path, log); }
 };
