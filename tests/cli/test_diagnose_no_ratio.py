@@ -62,6 +62,20 @@ class NoGearRatio(Case):
         found = json.loads(self.run_tool("diagnose", "log.csv", "--model", "auto", "--json").stdout)
         self.assertEqual(found["named"], [])
 
+    def test_a_step_from_collinear_slopes_is_refused_not_taken(self):
+        # The search for `lag` once took a step that was no number, and its residual then was none.
+        done = self.run_tool("simulate", "--gear-ratio", "10", "--inertia", "0.784", "--ripple", "1:0.688Nm:349deg", "--effect",
+                             "coulomb-friction,torque_nm=0.257,width_deg_s=0.2", "--effect",
+                             "viscous-friction,coefficient_nm_per_deg_s=0.0139", "--effect",
+                             "gravity,amplitude_nm=9.195,phase_deg=285", "--motion", "poly6,to=13.2deg,duration=3.25s", "--motion",
+                             "rest,duration=0.4s", "--motion", "poly6,to=-27.4deg,duration=2.51s", "--motion", "rest,duration=0.4s",
+                             "--sample-rate", "500Hz", "--noise", "0.01Nm", "--velocity-noise", "0.1deg/s", "--seed", "72014",
+                             "-o", "log.csv")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        text = self.run_tool("diagnose", "log.csv", "--model", "auto").stdout
+        self.assertNotIn("nan", text)
+        self.assertNotIn("Nothing is missing", text)
+
     def test_a_ripple_gets_no_other_name(self):
         for seed, words in enumerate((["--ripple", "2:0.2Nm"], ["--ripple", "2:0.2Nm", *self.FRICTION])):
             self.log(*words, seed=30 + seed)

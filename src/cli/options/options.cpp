@@ -221,6 +221,22 @@ std::string Options::command_line() const {
     return line;
 }
 
+std::vector<std::string> Options::given(const std::string& first, const std::string& last) const {
+    const std::vector<CLI::Option*> all = implementation_.command->get_options();
+    const auto at = [&](const std::string& name) {
+        return std::find(all.begin(), all.end(), implementation_.command->get_option(name));
+    };
+    std::vector<std::string> words;
+    for (auto option = at(first); option <= at(last); ++option) {
+        const bool is_flag = (*option)->get_items_expected_max() == 0;
+        for (const std::string& value : (*option)->results()) {
+            words.push_back((*option)->get_name());
+            if (!is_flag) words.push_back(value);
+        }
+    }
+    return words;
+}
+
 std::string Options::log_words(const std::optional<std::string>& from, const std::optional<std::string>& to,
                                const std::optional<std::string>& joint) const {
     std::vector<CLI::Option*> all = implementation_.command->get_options();

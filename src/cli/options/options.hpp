@@ -94,6 +94,8 @@ class Options {
     [[nodiscard]] std::string log_words(const std::optional<std::string>& from = {},
                                         const std::optional<std::string>& to = {},
                                         const std::optional<std::string>& joint = {}) const;
+    /// The options from `first` to `last`, in the order of their declaration, as words as they were given.
+    [[nodiscard]] std::vector<std::string> given(const std::string& first, const std::string& last) const;
 
   private:
     void names_file(std::string_view names, std::string_view type_name);

@@ -475,7 +475,8 @@ class Decision {
             const std::string what = fmt::format(
                 "read {}, of a linear axis, expected the travel of one turn of its screw; say --lead 5mm, "
                 "and "
-                "results are those of the screw, in deg and Nm",
+                "results are those of the screw, in deg and Nm; "
+                "if the header is wrong, --unit says another unit",
                 fmt::join(linear_, ", "));
             if (options_.needs_torque) raise<DataError>("{}: {}", source_, what);
             layout_.warnings.push_back({"linear axis", what, true});
