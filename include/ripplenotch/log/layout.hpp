@@ -122,7 +122,7 @@ struct ReadOptions {
     bool every_joint = false;           ///< read all of them that have a velocity and a torque, at once
     bool torque_of_each = true;         ///< with every_joint: false reads joints without a torque, too
     std::vector<std::string> columns;   ///< "time,velocity,torque" by place, or "torque=tau_J" by name
-    std::map<std::string, std::string> units;  ///< role or column name -> unit
+    std::map<std::string, std::string> units;   ///< role or column name -> unit
     std::map<std::string, ColumnScale> scales;  ///< role or column name -> what its numbers are in a unit
     std::optional<Hertz> sample_rate;           ///< for logs without time; overrides the log's own time
     std::optional<DegPerSec> constant_speed;    ///< of a log that holds no motion (--constant-speed)

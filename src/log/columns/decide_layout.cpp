@@ -520,7 +520,7 @@ class Decision {
     std::vector<bool> stated_;                     ///< by column: the log or an option says its unit
     std::vector<JointGroup> groups_, incomplete_;  ///< those that may be read, and those that lack something
     std::exception_ptr refusal_;                   ///< the first of the caller
-    std::vector<std::string> linear_;  ///< what is read in m, m/s and N where no lead is stated
+    std::vector<std::string> linear_;              ///< what is read in m, m/s and N where no lead is stated
     std::vector<std::pair<std::string, std::string>>
         unscaled_;  ///< what was read, and the option that says more
 };
