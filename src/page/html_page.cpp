@@ -22,7 +22,8 @@ const std::string_view page_style = R"css(
   figure img { filter: invert(.92) hue-rotate(180deg); }
 }
 body { font: 16px/1.45 system-ui, sans-serif; color: var(--ink); background: var(--paper); margin: 0 auto;
-  max-width: 62rem; padding: 1rem; overflow-wrap: anywhere; }
+  max-width: 92rem; padding: 1rem; overflow-wrap: anywhere; }
+.summary, p, figcaption, pre, dl { max-width: 62rem; }
 h1 { font-size: 1.5rem; margin: .2rem 0 1rem; }
 h2 { font-size: 1.15rem; margin: 0 0 .4rem; }
 section { border-top: 1px solid var(--rule); margin-top: 2.2rem; padding-top: 1rem; }
@@ -31,6 +32,10 @@ a { color: var(--link); text-decoration: none; }
 a:hover { text-decoration: underline; }
 .summary article { background: var(--box); border-radius: .5rem; padding: .8rem 1rem; margin: 0 0 .8rem; }
 .summary h2 { font-size: 1rem; }
+.good { border-left: .4rem solid #2e7d32; } .doubtful { border-left: .4rem solid #b26a00; }
+.bad { border-left: .4rem solid #c62828; }
+.state { border: 1px solid var(--soft); border-radius: .3rem; color: var(--soft); font-size: .8rem;
+  font-weight: 400; padding: 0 .4rem; }
 .summary p { font-weight: 600; margin: .2rem 0 .6rem; }
 .summary .facts { margin: 0; }
 nav h2 { margin-top: 1.4rem; }
@@ -199,13 +204,27 @@ class Writer {
         put("<div class=\"summary\">\n");
         for (std::size_t i = 0; i < page.sections.size(); ++i) {
             const PageSection& one = page.sections[i];
-            if (one.asked.empty()) continue;
-            put("<article>\n<h2><a href=\"#result-{}\">{}</a></h2>\n", i + 1, shown(one.asked));
-            if (!one.verdict.empty()) put("<p>{}</p>\n", shown(one.verdict));
+            if (!one.in_summary) continue;
+            put("<article{}>\n<h2><a href=\"#result-{}\">{}</a></h2>\n", state_class(one.state), i + 1,
+                shown(one.title));
+            if (!one.verdict.empty()) put("<p>{}{}</p>\n", state_badge(one.state), shown(one.verdict));
             facts(one.key);
             put("</article>\n");
         }
         put("</div>\n");
+    }
+
+    static std::string_view state_class(PageState state) {
+        return state == PageState::good       ? " class=\"good\""
+               : state == PageState::doubtful ? " class=\"doubtful\""
+               : state == PageState::bad      ? " class=\"bad\""
+                                              : "";
+    }
+    static std::string_view state_badge(PageState state) {
+        return state == PageState::good       ? "<span class=\"state\">decided</span> "
+               : state == PageState::doubtful ? "<span class=\"state\">not decided</span> "
+               : state == PageState::bad      ? "<span class=\"state\">amplifies an order</span> "
+                                              : "";
     }
 
     void contents(const Page& page) {

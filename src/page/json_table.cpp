@@ -117,8 +117,10 @@ std::string value_text(const Json& json) {
     if (json.is_null()) return "-";
     if (json.is_string()) return json.get<std::string>();
     if (json.is_number_float()) {
+        // Four significant digits where no error says how many; whole numbers as they are.
         const double value = json.get<double>() + 0.0;
-        return std::abs(value) < 1.0 ? fmt::format("{:.4g}", value) : fmt::format("{:.6g}", value);
+        const bool whole = value == std::floor(value) || !(std::abs(value) < 1e4);
+        return whole ? fmt::format("{:.6g}", value) : fmt::format("{:.4g}", value);
     }
     if (json.is_array() && !json.empty() && std::all_of(json.begin(), json.end(), is_span))
         return spans_text(json);

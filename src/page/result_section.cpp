@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "document/fields/fields.hpp"
@@ -103,10 +105,45 @@ PageTable course_table(const Json& courses) {
     return table;
 }
 
-constexpr std::size_t most_letters = 26, most_switches = 10, fewest_for_figure = 20, bars = 20;
+constexpr std::size_t most_switches = 10, fewest_for_figure = 20, bars = 20;
 
-std::string label_of(std::size_t i) {
-    return i < most_letters ? std::string(1, static_cast<char>('A' + i)) : fmt::format("M{}", i + 1);
+using Keys = std::vector<std::pair<std::string, std::string>>;
+
+// "tracking,q=1,orders=1:2" as a name and its keys.
+std::pair<std::string, Keys> parted(const std::string& spec) {
+    std::pair<std::string, Keys> parts;
+    std::size_t from = 0;
+    while (from <= spec.size()) {
+        const std::size_t end = std::min(spec.find(',', from), spec.size());
+        const std::string piece = spec.substr(from, end - from);
+        const std::size_t equals = piece.find('=');
+        if (from == 0)
+            parts.first = piece;
+        else
+            parts.second.emplace_back(piece.substr(0, equals),
+                                      equals == std::string::npos ? "" : piece.substr(equals + 1));
+        from = end + 1;
+    }
+    return parts;
+}
+
+// The methods without what all that have a key share: the gear ratio, the orders. Two that would be one name
+// keep theirs.
+std::vector<std::string> short_names(const std::vector<std::string>& specs) {
+    std::vector<std::pair<std::string, Keys>> all;
+    std::map<std::string, std::set<std::string>> values;
+    for (const std::string& spec : specs) {
+        all.push_back(parted(spec));
+        for (const auto& [key, value] : all.back().second) values[key].insert(value);
+    }
+    std::vector<std::string> names;
+    for (const auto& [name, keys] : all) {
+        names.push_back(name);
+        for (const auto& [key, value] : keys)
+            if ((key != "gear-ratio" && key != "orders") || values[key].size() > 1)
+                names.back() += fmt::format(", {} {}", key, value);
+    }
+    return std::set<std::string>(names.begin(), names.end()).size() == names.size() ? names : specs;
 }
 
 // A number, or a dash; attenuation without bound is null in a document.
@@ -120,7 +157,7 @@ std::vector<std::pair<std::string, std::string>> method_cells(const Json& method
     std::vector<std::pair<std::string, std::string>> cells;
     if (const auto meets = method.find("meets"); meets != method.end() && meets->is_boolean())
         cells.emplace_back("fits", meets->get<bool>() ? "yes" : "no");
-    cells.emplace_back("late at most, ms", cell(method, "longest_delay_ms"));
+    cells.emplace_back("maximum delay, ms", cell(method, "longest_delay_ms"));
     if (const auto settle = method.find("settle_ms"); settle != method.end() && settle->is_object())
         cells.emplace_back("settles to 0.5 %, ms", cell(*settle, "0.5"));
     cells.emplace_back("overshoot, %", cell(method, "overshoot_percent"));
@@ -131,7 +168,7 @@ std::vector<std::pair<std::string, std::string>> method_cells(const Json& method
         for (const Json& line : *lines)
             cells.emplace_back(fmt::format("attenuation of order {}, dB", cell(line, "order")),
                                cell(line, "db"));
-    cells.emplace_back("ripple left, Nm rms", cell(method, "ripple_rms_nm"));
+    cells.emplace_back("remaining ripple, Nm rms", cell(method, "ripple_rms_nm"));
     cells.emplace_back("residual, Nm rms", cell(method, "residual_rms_nm"));
     cells.emplace_back("switches", cell(method, "switches"));
     cells.emplace_back("largest jump, Nm", cell(method, "largest_jump_nm"));
@@ -140,12 +177,12 @@ std::vector<std::pair<std::string, std::string>> method_cells(const Json& method
     return cells;
 }
 
-// The meaning of a label, and why a method is not recommended.
-std::string legend_of(const Json& method, const std::string& spec) {
-    std::string words = spec;
+// Why a method is not recommended.
+std::string shortfalls_of(const Json& method) {
+    std::string all;
     if (const auto reasons = method.find("shortfalls"); reasons != method.end() && reasons->is_array())
-        for (const Json& reason : *reasons) words += "; " + value_text(reason);
-    return words;
+        for (const Json& reason : *reasons) all += (all.empty() ? "" : "; ") + value_text(reason);
+    return all;
 }
 
 void drop_empty_columns(PageTable& table) {
@@ -168,13 +205,17 @@ double jump_of(const Json& one) {
 PageTable comparison_table(const Json& methods) {
     PageTable table{"The methods", {"method"}, {}};
     std::vector<std::vector<std::pair<std::string, std::string>>> all;
-    std::size_t labels = 0;
+    std::vector<std::string> names;
     for (const Json& method : methods) {
         const auto found = method.find("method");
-        const std::string spec = found != method.end() ? value_text(*found) : "-";
-        const std::string label = spec == "none" ? spec : label_of(labels++);
-        if (spec != "none") table.legend.push_back({label, legend_of(method, spec)});
-        table.rows.push_back({label});
+        names.push_back(found != method.end() ? value_text(*found) : "-");
+    }
+    names = short_names(names);
+    for (const Json& method : methods) {
+        const std::string& name = names[all.size()];
+        if (const std::string reasons = shortfalls_of(method); !reasons.empty())
+            table.legend.push_back({name, reasons});
+        table.rows.push_back({name});
         all.push_back(method_cells(method));
         for (const auto& [column, value] : all.back())
             if (std::find(table.header.begin(), table.header.end(), column) == table.header.end())
@@ -375,14 +416,15 @@ void of_metrics(const Json& json, Numbers& numbers) {
         numbers.add_text("delay at 0 Hz", from_to(*delay), "ms");
 }
 
-// The figures of the first method other than the control, which the table calls A.
+// The figures of the first method other than the control.
 void of_comparison(const Json& json, Numbers& numbers) {
     for (const Json& method : list_at(json, "methods")) {
         if (!method.is_object() || method.value("method", Json("none")) == "none") continue;
         Numbers own(method);
-        own.add("A settles to 0.5 %", "/settle_ms/0.5", "ms");
-        own.add("A delays a ramp by", "/ramp_delay_ms", "ms");
-        own.add("A leaves of the ripple, rms", "/ripple_rms_nm", "Nm");
+        const std::string name = parted(value_text(method.value("method", Json("")))).first;
+        own.add((name + ": settling time (0.5 %)").c_str(), "/settle_ms/0.5", "ms");
+        own.add((name + ": delay of a ramp").c_str(), "/ramp_delay_ms", "ms");
+        own.add((name + ": remaining ripple (rms)").c_str(), "/ripple_rms_nm", "Nm");
         for (const PageFact& fact : own.taken()) numbers.add_text(fact.name, fact.value, "");
         return;
     }
@@ -413,9 +455,9 @@ void of_recommendation(const Json& json, Numbers& numbers) {
         if (const auto off = extremes(list_at(method, "attenuation_db"), "/db"))
             numbers.add_text("least attenuation", fmt::format("{:.1f}", off->first), "dB");
         if (const auto late = number_under(method, "/longest_delay_ms"))
-            numbers.add_text("late at most", fmt::format("{:.1f}", *late), "ms");
+            numbers.add_text("maximum delay", fmt::format("{:.1f}", *late), "ms");
         if (const auto left = number_under(method, "/ripple_rms_nm"))
-            numbers.add_text("ripple left, rms", coarse_text(*left), "Nm");
+            numbers.add_text("remaining ripple (rms)", coarse_text(*left), "Nm");
         return;
     }
 }
@@ -435,23 +477,22 @@ void of_any(const Json& json, Numbers& numbers) {
 }
 
 struct Kind {
-    const char *name, *question;
+    const char *name, *heading;
     void (*numbers)(const Json&, Numbers&);
 };
-constexpr std::array<Kind, 13> kinds = {
-    {{"info", "What is in the log?", of_any},
-     {"joint", "Which ripple is in the log, and which gear ratio?", of_joint},
-     {"spectrum", "Which frequencies are in the torque?", of_any},
-     {"track", "How does the ripple change along the log?", of_any},
-     {"map", "What is the ripple at each angle and speed?", of_map},
-     {"recommendation", "Which method does this log ask for?", of_recommendation},
-     {"trend", "Which joint changed, when, and what in it?", of_trend},
-     {"table", "Which notches at which speed, and at what delay?", of_table},
-     {"metrics", "What did the filter take off?", of_metrics},
-     {"comparison", "What do the methods take off, and what do they cost?", of_comparison},
-     {"diagnosis", "Which effect is missing from the model?", of_diagnosis},
-     {"simulation", "What was simulated?", of_any},
-     {"export", "What was exported, and what did rounding do to it?", of_any}}};
+constexpr std::array<Kind, 13> kinds = {{{"info", "The log", of_any},
+                                         {"joint", "Ripple lines and gear ratio", of_joint},
+                                         {"spectrum", "Spectrum of the torque", of_any},
+                                         {"track", "Orders over time", of_any},
+                                         {"map", "Ripple map", of_map},
+                                         {"recommendation", "Recommended method", of_recommendation},
+                                         {"trend", "Changes of joints", of_trend},
+                                         {"table", "Notch filters by speed", of_table},
+                                         {"metrics", "Effect of the filter", of_metrics},
+                                         {"comparison", "Comparison of methods", of_comparison},
+                                         {"diagnosis", "Missing effects", of_diagnosis},
+                                         {"simulation", "Simulation", of_any},
+                                         {"export", "Export, and its rounding errors", of_any}}};
 
 const Kind* kind_named(const std::string& name) {
     const auto* found =
@@ -461,9 +502,27 @@ const Kind* kind_named(const std::string& name) {
 
 }  // namespace
 
-std::string question_of(const std::string& kind) {
+std::string heading_of(const std::string& kind) {
     const Kind* known = kind_named(kind);
-    return known != nullptr ? known->question : kind;
+    return known != nullptr ? known->heading : kind;
+}
+
+PageState state_of(const Json& result) {
+    // An order that a filter amplifies is worse than any doubt.
+    const auto amplifies = [](const Json& method) {
+        const auto all = extremes(list_at(method, "attenuation_db"), "/db");
+        return all && all->first < 0.0;
+    };
+    const auto take = result.find("take");
+    for (const Json& method : list_at(result, "methods"))
+        if (take != result.end() && method.is_object() && method.value("method", Json()) == *take &&
+            amplifies(method))
+            return PageState::bad;
+    for (const Json& order : list_at(result, "orders"))
+        if (const auto db = number_under(order, "/attenuation_db"); db && *db < 0.0) return PageState::bad;
+    const auto conclusive = result.find("conclusive");
+    if (conclusive == result.end() || !conclusive->is_boolean()) return PageState::none;
+    return conclusive->get<bool>() ? PageState::good : PageState::doubtful;
 }
 
 std::string sentence_of(const std::string& kind, const Json& result) {
@@ -632,7 +691,7 @@ PageSection section_of_result(const std::string& text, const std::string& source
     const auto [kind, json] = parse_any_document(text, source);
     PageSection section;
     if (kind == "figure") section = section_of_figure(figure_from_json(text, source));
-    if (kind != "figure") section.title = fmt::format("{}: {}", kind, source);
+    if (kind != "figure") section.title = fmt::format("{}: {}", heading_of(kind), source);
     section.command = text_at(json, "command");
     for (const Json& input : json.value("inputs", Json::array()))
         section.inputs.push_back({text_at(input, "name"), text_at(input, "sha256")});
@@ -643,7 +702,8 @@ PageSection section_of_result(const std::string& text, const std::string& source
     std::optional<Diagnosis> diagnosis;
     if (kind == "diagnosis") diagnosis = read_diagnosis(text, source);
     if (section.verdict.empty()) section.verdict = sentence_of(kind, json);
-    section.asked = question_of(kind);
+    section.in_summary = true;
+    section.state = state_of(json);
     section.key = key_numbers(kind, json);
     add_fields(section, kind, json, diagnosis);
     if (kind == "joint") {

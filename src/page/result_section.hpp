@@ -32,7 +32,7 @@ namespace ripplenotch {
 // The top of a page for a result: the question, an answer in a sentence, and its numbers.
 
 /// The user's question behind this kind of result; the kind itself where none is known.
-[[nodiscard]] std::string question_of(const std::string& kind);
+[[nodiscard]] std::string heading_of(const std::string& kind);
 
 /// The answer for a kind that has no verdict of its own, made from its numbers; empty where there are none.
 [[nodiscard]] std::string sentence_of(const std::string& kind, const Json& result);

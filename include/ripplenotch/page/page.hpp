@@ -31,6 +31,9 @@ struct PageTable {
     std::vector<PageLink> links = {};            ///< by row, then by column
 };
 
+/// Good: the data decide. Doubtful: they do not. Bad: a filter amplifies an order.
+enum class PageState { none, good, doubtful, bad };
+
 /// One result.
 struct PageSection {
     std::string title;            ///< what it is and from which file
@@ -41,7 +44,8 @@ struct PageSection {
     std::string command;             ///< the command that makes it again
     std::vector<PageFact> inputs;    ///< name and SHA-256
     std::string json;                ///< the result itself, one object
-    std::string asked = {};          ///< the question that the result answers; empty: a figure alone
+    bool in_summary = false;         ///< a result; false: a figure alone
+    PageState state = PageState::none;
     std::vector<PageFact> key = {};  ///< at most three numbers that answer it
 };
 

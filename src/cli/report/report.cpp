@@ -23,8 +23,8 @@ struct ReportRequest {
     ReadOptions reading;
     GearOptions gear;
     std::vector<std::string> results;
-    std::string output = "-", title = "ripplenotch report";
-    std::optional<std::string> plotly;
+    std::string output = "-";
+    std::optional<std::string> title, plotly;
     bool no_plotly = false, force = false, no_sync = false, quiet = false;
 };
 
@@ -66,9 +66,10 @@ ExitCode run_report(const ReportRequest& request, const Options& options) {
     if (request.results.size() > 1 && std::any_of(request.results.begin(), request.results.end(), is_log))
         raise<UsageError>("a report is one of a log, or one of results; read {}",
                           fmt::join(request.results, ", "));
-    Page page{request.title, {}};
+    Page page{request.title.value_or("ripplenotch report"), {}};
     for (const std::string& path : request.results) {
         if (is_log(path)) {
+            if (!request.title) page.title = fmt::format("ripplenotch report: {}", path);
             page.sections = sections_of_log({path, options.given("--format", "--hold-bad-values"),
                                              options.given("--gear-ratio", "--joint-file"),
                                              options.given("--gear-ratio", "--gear-ratio"), request.quiet});
