@@ -29,7 +29,7 @@ def detail(name, caption, markdown):
 
 def cells(line):
     """Of a line of a table."""
-    return [cell.strip().strip("*`") for cell in line.strip().strip("|").split("|")]
+    return [cell.strip().replace("`", "").replace("**", "") for cell in line.strip().strip("|").split("|")]
 
 
 def column(head, values):
