@@ -112,7 +112,7 @@ def analysis(record):
         one = median([Run(**r) for r in case["runs"]]) if case["runs"] else None
         figures = [figure(one.wall_s), figure(one.cpu_s), figure(one.peak_mib)] if one else [", ".join(case["failed"].values()), "-", "-"]
         lines.append([f"`{name.split(', ')[0]}`, {name.split(', ')[1]}", f"{case['rows']:,}", *figures])
-    return table(["command", "rows", "wall, s", "CPU, s", "peak, MiB"], lines)
+    return page_tables.detail("performance-analysis", "Medians of each command", table(["command", "rows", "wall, s", "CPU, s", "peak, MiB"], lines))
 
 
 def growth(record):
@@ -123,7 +123,8 @@ def growth(record):
         lines.append([f"{case['rows']:,}", str(case["joints"]), f"{case['mb']:.0f}",
                       *([figure(one.wall_s), figure(one.cpu_s), figure(one.peak_mib)] if one else ["-"] * 3), each,
                       figure(copy.cpu_s) if copy else "-"])
-    return table(["rows", "joints", "MB", "wall, s", "CPU, s", "peak, MiB", "CPU, ns per row and joint", "CPU of `cp`, s"], lines)
+    head = ["rows", "joints", "MB", "wall, s", "CPU, s", "peak, MiB", "CPU, ns per row and joint", "CPU of `cp`, s"]
+    return page_tables.detail("performance-growth", "Medians of each length", table(head, lines))
 
 
 def raw(record):

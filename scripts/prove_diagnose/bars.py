@@ -6,6 +6,8 @@ import math
 import statistics
 from typing import Callable
 
+import page_tables
+
 HIDDEN = ("single", "pair", "triple")
 OUTSIDE = ("outside", "outside+single")
 
@@ -123,6 +125,16 @@ def recorded_bars():
 
 
 HEAD = ["criterion", "required", "measured", "95 % interval", "met"]
+
+
+def markdown(head, body):
+    return "\n".join("| " + " | ".join(line) + " |" for line in [head, ["---"] * len(head), *body])
+
+
+def shown(name, found):
+    """For the page, without the intervals; everything in a file."""
+    short = [[*line[:2], line[2] + (" (**not met**)" if "no" in line[4] else "")] for line in found]
+    return markdown(HEAD[:3], short) + "\n\n" + page_tables.detail(name, "With 95 % intervals", markdown(HEAD, found))
 
 
 def lines(rows, told):

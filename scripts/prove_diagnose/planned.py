@@ -146,7 +146,7 @@ def by_motion(lines):
 def blocks(about, rows):
     rows = sorted((row for row in rows if "error" not in row), key=lambda row: row["case"])
     undecided = [row for row in rows if row["undecided"]]
-    bar_table = table.markdown(bars.HEAD, [
+    bar_table = bars.shown("diagnose-plans-criteria", [
         bars.line("undecided, and decided after one planned motion", "at least 95 %", [bool(row.get("decided")) for row in undecided], 0.95),
         bars.line("the same: names exactly right then", "-", [bool(row.get("exact")) for row in undecided], 0.95),
         bars.line("the same: no false name", "-", [not row.get("false") for row in undecided], 0.95),

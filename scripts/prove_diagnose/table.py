@@ -47,8 +47,7 @@ HEAD = ["hidden", "logs", "exactly right", "not contradicted", "false name", "ga
         "interval covers", "time"]
 
 
-def markdown(head, lines):
-    return "\n".join("| " + " | ".join(line) + " |" for line in [head, ["---"] * len(head), *lines])
+markdown = bars.markdown
 
 
 def joined(*parts):
@@ -219,9 +218,9 @@ def of_nulls(abouts, rows, failed):
     """Nothing hidden in noise of ten kinds: bars, table, what went wrong."""
     named = [row for row in rows if "false" in row]
     lines = nulls.lines(named)
-    return joined(about(abouts, rows), markdown(bars.HEAD, nulls.bar_lines(named)),
-                  markdown([nulls.HEAD[k] for k in nulls.SHORT], [[line[k] for k in nulls.SHORT] for line in lines]),
+    return joined(about(abouts, rows), markdown([nulls.HEAD[k] for k in nulls.SHORT], [[line[k] for k in nulls.SHORT] for line in lines]),
                   page_tables.detail("diagnose-noise", "All columns", markdown(nulls.HEAD, lines)),
+                  page_tables.detail("diagnose-noise-criteria", "Criteria, and whether they are met", markdown(bars.HEAD, nulls.bar_lines(named))),
                   listed("diagnose-noise-wrong", "Cases with a false name", [failure(row) for row in rows if failed(row)]))
 
 
@@ -231,7 +230,7 @@ def of_physics(abouts, rows, failed):
         return row["exact"] and row["gap"]["closed"] >= 0.95
 
     named = [row for row in rows if "named" in row]
-    asked = markdown(bars.HEAD, [
+    asked = bars.shown("diagnose-physics-torsion-criteria", [
         bars.line("resonance or ripple by speed named, nothing false", "17 of 18", [row["exact"] for row in named], 17 / 18),
         bars.line("the same, and at least 95 % of the gap closed on the validation log", "17 of 18", map(closed, named), 17 / 18)])
     wrong = [f"{failure(row)}; {100 * row['gap']['closed']:.1f} % closed" for row in named if not closed(row)]

@@ -92,7 +92,7 @@ def noise(rows):
     names = ("false line", "false tone", "tone as unknown", "gravity", "nothing", "cannot tell", "failed")
     asked = measured("lines of an order in at most 1 % of logs", sum(row["outcome"] == "false line" for row in rows), len(rows))
     return asked + shown("identify-noise", "By travel, ratio, sample rate, motion, noise and position", ["logs without ripple", "logs", *("undecided" if name == "cannot tell" else name for name in names)],
-                         outcomes(rows, names, ("travel", "ratio", "sample rate", "motion", "noise", "position")), ("travel",), ("failed",))
+                         outcomes(rows, names, ("travel", "ratio", "sample rate", "motion", "noise", "position")), (), ("failed",))
 
 
 def median(values):
@@ -116,11 +116,11 @@ def injection(rows):
     left = {}
     for row in rows:
         left[row["outcome"]] = left.get(row["outcome"], 0) + 1
-    what = ", ".join(f"{count} {name}" for name, count in sorted(left.items()))
+    what = ", ".join(f"{count} {'undecided' if name == 'cannot tell' else name}" for name, count in sorted(left.items()))
     asked = measured("a sinusoid of 2X found in at least 99 %", sum(row["found_2x"] for row in tried), len(tried))
     heads = ["logs that answer \"no line above X\"", "logs", "2X found", "2X: \"no line\"", "2X: \"no line\" above less than 2X", "X found",
              "X / largest standard error", "10 % and 90 % quantile", "X / standard error of the order"]
-    return asked + shown("identify-injection", "By travel, cycles per sweep, sample rate, motion, noise, position and angle", heads, body, ("cycles per sweep",),
+    return asked + shown("identify-injection", "By travel, cycles per sweep, sample rate, motion, noise, position and angle", heads, body, (),
                          (heads[3], heads[4], heads[7])) + f"\nOutcomes of {len(rows)} logs: {what}.\n"
 
 
@@ -140,7 +140,7 @@ def ratio(rows):
         measured("intervals of right ratios hold the truth in 90 to 98 %", sum(row["covers"] for row in given), len(given))
     heads = ["logs with ripple", "logs", "right", "wrong multiple", "wrong", "ratio of the other comb", "undecided", "\"no line\"", "failed", "right: interval covers",
              "all: interval covers either comb"]
-    return asked + shown("identify-ratio", "By ripple, lines, travel, ratio, sample rate, motion and position", heads, body, ("visible lines", "multiples"),
+    return asked + shown("identify-ratio", "By ripple, lines, travel, ratio, sample rate, motion and position", heads, body, ("visible lines",),
                          ("failed", heads[-1])) + "\n" + lines(rows)
 
 

@@ -120,4 +120,4 @@ def table(options):
     heads = ["log", "windows", "right", "wrong multiple", "wrong", "undecided", "interval covers data sheet", "\"no line\"", "exceeded", "false lines", "failed"]
     if not options.page:
         print("".join(f"* {note}\n" for note in notes))
-    return tables.shown("identify-windows", "Each log", heads, [[f"all: {cells[0][5:]}", *cells[1:]] if cells[0].startswith("all, ") else cells for cells in body])
+    return tables.shown("identify-windows", "Each log", heads, [[f"all: {cells[0][5:]}", *cells[1:]] if cells[0].startswith("all, ") else cells for cells in body], (), ("failed",))

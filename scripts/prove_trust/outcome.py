@@ -45,9 +45,10 @@ def added_up(path, part, rows):
 
 
 def summary(part, rows):
-    """The last line of the table, and all of it in a file."""
+    """The sums of the table, and all of it in a file."""
     lines = table(rows).split("\n")
-    return "\n".join([*lines[:2], lines[-1]]) + "\n\n" + page_tables.detail(f"trust-{part}", f"All lines of {part}", "\n".join(lines[:-1]))
+    _, runs, seconds, _, failed = page_tables.cells(lines[-1])
+    return f"{runs} runs in {seconds} s; findings: {failed}. {page_tables.detail(f'trust-{part}', 'All lines', chr(10).join(lines[:-1]))}"
 
 
 def show(page, part, rows):

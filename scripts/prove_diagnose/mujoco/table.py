@@ -14,7 +14,7 @@ def blocks(about, rows):
     rows = sorted((row for row in rows if "failed" not in row), key=lambda row: row["case"])
     hidden = [row for row in rows if row["hidden"]]
     nulls = [row for row in rows if not row["hidden"]]
-    head = table.markdown(bars.HEAD, [
+    head = bars.shown("diagnose-arms-mujoco-criteria", [
         bars.line("one or two effects hidden: names exactly right", "at least 95 %", [row["exact"] for row in hidden], 0.95),
         bars.line("the same: no false name", "each", [not row["false"] for row in hidden], 1.0),
         bars.line("nothing hidden: no name", "each", [not row["named"] for row in nulls], 1.0)])

@@ -79,5 +79,5 @@ def blocks(abouts, rows):
     options = f", options {' '.join(first['options'])}" if first.get("options") else ""
     said = (f"{len(rows)} logs, numbers {numbers_told(rows)}, `diagnose` of commit `{first.get('commit', 'unknown')}`"
             f"{options}.")
-    head = table.markdown(bars.HEAD, bar_lines(rows))
+    head = bars.shown("diagnose-arms-semi-criteria", bar_lines(rows))
     return {"semi": table.joined(said, head, by_kind(rows), wrong(rows))}
