@@ -32,6 +32,19 @@ def cells(line):
     return [cell.strip().replace("`", "").replace("**", "") for cell in line.strip().strip("|").split("|")]
 
 
+def units_in_head(markdown):
+    """The table with a unit that all cells of a column have in its head."""
+    head, rule, *body = [[cell.strip() for cell in line.strip().strip("|").split("|")] for line in markdown.strip().split("\n")]
+    for k in range(1, len(head)):
+        filled = [line[k] for line in body if line[k] not in ("", "-")]
+        unit = filled[0].rpartition(" ")[2] if filled else ""
+        if unit in ("%", "s", "ms", "dB", "Nm") and all(re.fullmatch(rf"[-.,\d ]+ {unit}", cell) for cell in filled):
+            head[k] = f"{head[k]}, {unit}"
+            for line in body:
+                line[k] = line[k].removesuffix(f" {unit}")
+    return "\n".join("| " + " | ".join(line) + " |" for line in [head, rule, *body])
+
+
 def column(head, values):
     """The columns of a CSV for one of a table: each its name, then its values."""
     name = re.sub(r"[^a-z0-9]+", "_", head.lower().replace("%", "percent")).strip("_") or "item"

@@ -156,5 +156,6 @@ def analysis_alone(record):
 
 
 def tables(record):
-    return {"machine": machine(record), "promises": table(["quantity", "required", "measured", "met"], promises(record)),
+    shown = [[what, required, value if met == "yes" else f"{value} ({met})"] for what, required, value, met in promises(record)]
+    return {"machine": machine(record), "promises": table(["quantity", "required", "measured"], shown),
             "processes": processes(record), "kernels": kernels(record), "analysis": analysis(record), "growth": growth(record), "raw": raw(record)}

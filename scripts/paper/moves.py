@@ -84,7 +84,7 @@ def contenders(best_q):
 
 def best_q(tool, data, logs, truth):
     """Table 1 with one Q after another, on the move: the Q of the least error."""
-    rows, numbers = [], []
+    numbers = []
     for q in (0.25, 0.35, 0.5, 0.7, 1.0, 1.4, 2.0, 2.8, 4.0):
         text = tool.text("design", "--gear-ratio", "100", "--orders", "1,2", "--sample-rate", "1kHz", "--speed",
                          "18:180:18", "--q", f"{q:g}", "--format", "csv")
@@ -94,15 +94,11 @@ def best_q(tool, data, logs, truth):
         left = sum(error(filtered(tool, "switching,table=tried.json,transition=parallel", logs[90, seed][0]), truth) for seed in SEEDS) / 5.0
         delays = table["dc_delay_ms"]
         least = min(table["worst_attenuation_1_db"] + table["worst_attenuation_2_db"])
-        rows.append([f"{q:g}", fixed(left, 3), f"{delays[-1]:.1f} to {delays[0]:.1f}", fixed(least, 1)])
         numbers.append((left, q, delays[-1], delays[0], least))
     winner = min(numbers)[1]
-    shown = ("0.25", "0.7", f"{winner:g}", "4")
     tool.text("design", "--gear-ratio", "100", "--orders", "1,2", "--sample-rate", "1kHz", "--speed", "18:180:18", "--q",
               f"{winner:g}", "-o", "best.json", "--force")
-    rows = [[f"**{cell}**" if row[0] == f"{winner:g}" else cell for cell in row] for row in rows if row[0] in shown]
-    head = ["Q", "error, Nm rms", "delay of the bands, ms", "least attenuation in any band, dB"]
-    return winner, markdown(head, rows), \
+    return winner, \
         [[f"{q:g}", fixed(left, 4), *(fixed(value, 1) for value in more)] for left, q, *more in numbers]
 
 
@@ -124,7 +120,7 @@ def measure(tool, method_of, logs, truth):
 def move_table(tool, data):
     """The 2 s move: every method's error against the true torque, and figure 11."""
     logs, truth = simulate_moves(tool, data)
-    winner, q_table, q_numbers = best_q(tool, data, logs, truth)
+    winner, q_numbers = best_q(tool, data, logs, truth)
     rows, numbers = [], []
     methods = contenders(winner)
     with ThreadPoolExecutor(2) as pool:
@@ -140,7 +136,7 @@ def move_table(tool, data):
          "error_phases_0_velocity_nm", "delay_ms"], numbers),
         "move_q.csv": csv_text(["q", "error_nm", "least_delay_ms", "greatest_delay_ms", "least_attenuation_db"], q_numbers)}
     files.update(figure_11(tool, logs, truth))
-    return files, {"move": markdown(head, rows), "move-q": q_table}
+    return files, {"move": markdown(head, rows)}
 
 
 def figure_11(tool, logs, truth):
@@ -176,12 +172,7 @@ def cold_phases(tool, data):
     numbers = [[str(p1), str(p2), *(fixed(v, 4) for v in values)] for (p1, p2), values in zip(PHASE_PAIRS, results)]
     names = ["phase_1_deg", "phase_2_deg", "at_rest_nm", "cold_nm", "cold_rest_nm", "cold_after_400_ms_nm",
              "cold_rest_after_400_ms_nm"]
-    columns_of = list(zip(*results))
-    rows = [[title, fixed(min(c), 3), fixed(rms(c), 3), fixed(max(c), 3), fixed(max(late), 3)]
-            for title, c, late in (("cold", columns_of[1], columns_of[3]),
-                                   ("cold, `rest=0Nm`", columns_of[2], columns_of[4]))]
-    head = ["start", "least, Nm rms", "rms over the phases", "most", "most, after 0.4 s"]
-    return {"cold_phases.csv": csv_text(names, numbers)}, {"cold-phases": markdown(head, rows)}
+    return {"cold_phases.csv": csv_text(names, numbers)}, {}
 
 
 def reversal(tool, data):
@@ -197,16 +188,12 @@ def reversal(tool, data):
     methods += [f"tracking,{GEAR},q=1,{low}" for low in ("min=1Hz,fade=0Hz,low=park", "min=1Hz,fade=1Hz",
                                                          "min=2Hz,fade=2Hz")]
     methods += [f"tracking,{GEAR}", OSCILLATOR, f"subtract,{GEAR}"]
-    rows, numbers = [], []
+    numbers = []
     for method in methods:
         out = filtered(tool, method, "reversal.csv")
         window, steady = error(out[8000:12000], truth[8000:12000]), error(out[16000:], truth[16000:])
-        if ",q=" not in method:
-            rows.append([f"`{method}`", fixed(window, 3), fixed(steady, 3)])
         numbers.append([method, fixed(window, 4), fixed(steady, 4)])
-    head = ["method", "8 to 12 s, through zero, Nm rms", "16 to 20 s, at 40 deg/s, Nm rms"]
-    return ({"reversal.csv": csv_text(["method", "reversal_nm", "at_40_deg_s_nm"], numbers)},
-            {"reversal": markdown(head, rows)})
+    return {"reversal.csv": csv_text(["method", "reversal_nm", "at_40_deg_s_nm"], numbers)}, {}
 
 
 def transitions(tool, data):

@@ -133,7 +133,7 @@ def markdown(head, body):
 
 def shown(name, found):
     """For the page, without the intervals; everything in a file."""
-    short = [[*line[:2], line[2] + (" (**not met**)" if "no" in line[4] else "")] for line in found]
+    short = [[*line[:2], line[2].replace(" = ", ", ") + (" (**not met**)" if "no" in line[4] else "")] for line in found]
     return markdown(HEAD[:3], short) + "\n\n" + page_tables.detail(name, "With 95 % intervals", markdown(HEAD, found))
 
 

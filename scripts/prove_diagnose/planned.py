@@ -146,7 +146,7 @@ def by_motion(lines):
 def blocks(about, rows):
     rows = sorted((row for row in rows if "error" not in row), key=lambda row: row["case"])
     undecided = [row for row in rows if row["undecided"]]
-    bar_table = bars.shown("diagnose-plans-criteria", [
+    criteria = table.markdown(bars.HEAD, [
         bars.line("undecided, and decided after one planned motion", "at least 95 %", [bool(row.get("decided")) for row in undecided], 0.95),
         bars.line("the same: names exactly right then", "-", [bool(row.get("exact")) for row in undecided], 0.95),
         bars.line("the same: no false name", "-", [not row.get("false") for row in undecided], 0.95),
@@ -163,5 +163,5 @@ def blocks(about, rows):
     body = table.joined(by_motion(lines), page_tables.detail("diagnose-plans", "Each motion and hidden effect", table.markdown(head, lines)))
     wrong = [f"{row['case']}: {'named ' + (', '.join(row['named']) or 'nothing') if 'named' in row else 'no plan'}"
              f"{', undecided: ' + ', '.join(row['still']) if row.get('still') else ''}" for row in undecided if not row.get("exact")]
-    return {"plan": table.joined(about, bar_table, body, table.listed("diagnose-plans-wrong", "Not exactly right after it", wrong,
+    return {"plan": table.joined(about, body, page_tables.detail("diagnose-plans-criteria", "Criteria, all met where no case is listed", criteria), table.listed("diagnose-plans-wrong", "Not exactly right after it", wrong,
                                                                      "All are exactly right after it."))}

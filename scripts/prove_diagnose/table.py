@@ -167,16 +167,16 @@ def about(abouts, rows):
     """One sentence: when, on what and with what the scores were measured."""
     if not abouts:
         return "Measured with an unknown program."
-    first, last = abouts[0], max(row.get("finished", abouts[0]["begun"]) for row in rows)
+    first = abouts[0]
     options = f", options {' '.join(first['options'])}" if first["options"] else ""
     numbers = sorted({int(row["case"].rpartition("-")[2]) for row in rows
                       if row["study"] == "single" or "+" not in row["label"]}) or [0]
-    day, _, begun = first["begun"].partition("T")
-    return (f"Measured on {day} from {begun} to {last.partition('T')[2]} with `diagnose` of commit `{first['commit']}`{options}, "
-            f"{first['machine']}, load {first['load']:g}: {len(rows)} logs, numbers from {numbers[0]} on. Times are processor time of one core.")
+    day = first["begun"].partition("T")[0]
+    return (f"Measured on {day} with `diagnose` of commit `{first['commit']}`{options} ({first['machine']}): {len(rows)} logs, numbers from "
+            f"{numbers[0]} on.")
 
 
-SUMMED = ("logs", "exactly right", "not contradicted", "false name")
+SUMMED = ("exactly right", "not contradicted", "false name")
 
 
 def summed(study, text):
@@ -197,7 +197,8 @@ def studies(rows):
     lines, links, parts = [], [], []
     for study, group in groups([r for r in rows if "named" in r], lambda r: r["study"].split(" ")[0]):
         text = FORMS[study](group)
-        lines.append(summed(study, text))
+        if any(cell != "-" for cell in (line := summed(study, text))[1:]):
+            lines.append(line)
         links.append(page_tables.detail(f"diagnose-catalogue-{study.replace('+', '-')}", study, text))
     if links:
         parts += [markdown(["study", *SUMMED], lines), "Tables of the studies: " + ",\n".join(links) + "."]
@@ -209,7 +210,7 @@ def studies(rows):
 def of_recorders(abouts, rows, failed):
     """The same logs as other recorders write them: table, criteria, what went wrong."""
     answered = [r for r in rows if "named" in r]
-    return joined(about(abouts, rows), recorded(answered),
+    return joined(about(abouts, rows), page_tables.units_in_head(recorded(answered)),
                   page_tables.detail("diagnose-recordings-criteria", "Criteria, and whether they are met", markdown(bars.HEAD, bars.recorded_lines(answered))),
                   listed("diagnose-recordings-wrong", "Cases with a wrong result", [failure(row) for row in rows if failed(row)]))
 
@@ -218,7 +219,7 @@ def of_nulls(abouts, rows, failed):
     """Nothing hidden in noise of ten kinds: bars, table, what went wrong."""
     named = [row for row in rows if "false" in row]
     lines = nulls.lines(named)
-    return joined(about(abouts, rows), markdown([nulls.HEAD[k] for k in nulls.SHORT], [[line[k] for k in nulls.SHORT] for line in lines]),
+    return joined(about(abouts, rows), markdown([nulls.HEAD[k] for k in nulls.SHORT], [[line[k] for k in nulls.SHORT] for line in lines if line[4] != "none"]),
                   page_tables.detail("diagnose-noise", "All columns", markdown(nulls.HEAD, lines)),
                   page_tables.detail("diagnose-noise-criteria", "Criteria, and whether they are met", markdown(bars.HEAD, nulls.bar_lines(named))),
                   listed("diagnose-noise-wrong", "Cases with a false name", [failure(row) for row in rows if failed(row)]))

@@ -70,10 +70,14 @@ def markdown(heads, body):
 
 
 def shown(name, caption, heads, body, classes=(), left_out=()):
-    """For the page: the line of all logs and those of `classes`, without the columns `left_out`; everything in a file."""
+    """For the page: the line of all logs and those of `classes`, without the columns `left_out`; everything in a file.
+    A line alone is a sentence."""
     kept = [k for k, head in enumerate(heads) if head not in left_out]
     lines = [[line[k] for k in kept] for line in body if line[0].partition(": ")[0] in ("all", *classes)]
-    return f"{markdown([heads[k] for k in kept], lines)}\n{page_tables.detail(name, caption, markdown(heads, body))}\n"
+    short = page_tables.units_in_head(markdown([heads[k] for k in kept], lines)) + "\n"
+    if len(lines) == 1:
+        short = f"{lines[0][1]} {heads[0]}: {', '.join(f'{heads[k]} {cell}' for k, cell in list(zip(kept, lines[0]))[2:])}.\n"
+    return f"{short}\n{page_tables.detail(name, caption, markdown(heads, body))}\n"
 
 
 def outcomes(rows, names, classes):
@@ -156,7 +160,7 @@ def lines(rows):
     counted = [row for row in rows if row.get("false_lines") is not None]
     some = sum(row["false_lines"] > 0 for row in counted)
     heads = ["true lines", "lines", "found", "found, of 10 standard errors and 4 cycles", "amplitude / truth, median", "within 10 %"]
-    return shown("identify-lines", "By strength, cycles per sweep and motion", heads, body, ("strength",), heads[3:]) + \
+    return shown("identify-lines", "By strength, cycles per sweep and motion", heads, body, (), heads[4:]) + \
         f"\nLines at no true order: in {share(some, len(counted))} of {len(counted)} logs.\n"
 
 
