@@ -197,8 +197,8 @@ def studies(rows):
     lines, links, parts = [], [], []
     for study, group in groups([r for r in rows if "named" in r], lambda r: r["study"].split(" ")[0]):
         text = FORMS[study](group)
-        if any(cell != "-" for cell in (line := summed(study, text))[1:]):
-            lines.append(line)
+        line = summed(study, text)
+        lines += [line] if set(line[1:]) != {"-"} else []
         links.append(page_tables.detail(f"diagnose-catalogue-{study.replace('+', '-')}", study, text))
     if links:
         parts += [markdown(["study", *SUMMED], lines), "Tables of the studies: " + ",\n".join(links) + "."]
@@ -250,7 +250,7 @@ def blocks(abouts, rows, failed):
         found = {"about": about(abouts, others),
                  "bars": markdown(bars.HEAD, bars.lines([r for r in others if "named" in r], reach.ENOUGH)),
                  "studies": studies(others),
-                 "reliability": markdown(reliability.HEAD, reliability.lines(others)),
+                 "reliability": markdown(reliability.HEAD, [line for line in reliability.lines(others) if line[2] != "0"]),
                  "wrong": listed("diagnose-catalogue-wrong", "Cases with a wrong result", wrong)}
     for study, form in APART.items():
         if own := [row for row in rows if row["study"] == study]:
