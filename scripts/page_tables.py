@@ -11,7 +11,7 @@ DETAIL = re.compile(r"<!-- csv ([-\w]+): (.*?) -->\n(.*?)\n<!-- end csv -->", re
 NUMBER = r"(-?\d[\d,]*(?:\.\d+)?(?:e[-+]?\d+)?|-)"
 # Cells with several numbers or a unit: the pattern, and what its columns are named after the head of the table.
 CELLS = [(re.compile(form.replace("#", NUMBER)), names) for form, names in (
-    (r"#", [""]), (r"#/#", ["", "_of"]), (r"# of #", ["", "_of"]), (r"# % of #", ["_percent", "_of"]), (r"# % \(#/#\)", ["_percent", "", "_of"]),
+    (r"#", [""]), (r"#/#", ["", "_of"]), (r"# of #", ["", "_of"]), (r"#(?: %)? of #", ["_percent", "_of"]), (r"# % \(#/#\)", ["_percent", "", "_of"]),
     (r"#/# = # %", ["", "_of", "_percent"]), (r"# to #", ["_from", "_to"]), (r"# to # %", ["_from_percent", "_to_percent"]), (r"# → #", ["_before", "_after"]),
     (r"# dB \(# Nm\)", ["_db", "_remaining_nm"]), (r"# ms \(# to #\)", ["_ms", "_from_ms", "_to_ms"]),
     *((rf"# {unit}", ["_" + unit.lower().replace("%", "percent")]) for unit in ("%", "s", "ms", "dB", "Nm")))]

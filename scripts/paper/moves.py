@@ -13,7 +13,9 @@ GEAR = "gear-ratio=100,orders=1:2"
 TABLE = "switching,table=table1.json"
 TRANSITIONS = ("parallel", "crossfade", "keep", "keep-state-variable", "reset")
 OSCILLATOR = f"oscillator,{GEAR}"
-VARIANTS = ("hysteresis 1 deg/s", "crossfade", "keep", "reset", "gain scheduled", "minus-ripple", "no fading", "180 deg/s", "13 Hz, 1st order", "its best Q, 1.4, parallel")  # in the CSV alone
+# In the CSV alone.
+VARIANTS = ("hysteresis 1 deg/s", "crossfade", "keep", "reset", "gain scheduled", "minus-ripple", "no fading", "180 deg/s",
+            "13 Hz, 1st order", "its best Q, 1.4, parallel")
 
 
 def warm(phase):

@@ -197,7 +197,7 @@ def blocks(about, rows):
     head = ["in the joint", "range", "logs", "resonance and delay distinguished", "exactly right", "any false name", "explained", "time"]
     wrong = [
         f"{row['case']} ({row['joint']['mode_hz']:.1f} Hz, damping {row['joint']['damping']:.2f}, {1e3 * row['joint']['delay_s']:.1f} ms): "
-        f"named {', '.join(row['named']) or 'nothing'}{', offered ' + ', '.join(row['offered']) if row.get('offered') else ''}; "
+        f"named {', '.join(row['named']) or 'nothing'}{', undecided ' + ', '.join(row['offered']) if row.get('offered') else ''}; "
         f"{row.get('verdict', row.get('error'))}" for row in rows if not row["exact"]]
     return {"chirp": table.joined(about, asked, page_tables.detail("diagnose-physics-chirp", "All columns", table.markdown(head, [line(kind, of) for kind, of in groups.items()])),
                                   table.listed("diagnose-physics-chirp-wrong", "Cases that are not exactly right", wrong))}

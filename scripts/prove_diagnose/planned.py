@@ -163,5 +163,7 @@ def blocks(about, rows):
     body = table.joined(by_motion(lines), page_tables.detail("diagnose-plans", "Each motion and hidden effect", table.markdown(head, lines)))
     wrong = [f"{row['case']}: {'named ' + (', '.join(row['named']) or 'nothing') if 'named' in row else 'no plan'}"
              f"{', undecided: ' + ', '.join(row['still']) if row.get('still') else ''}" for row in undecided if not row.get("exact")]
-    return {"plan": table.joined(about, body, page_tables.detail("diagnose-plans-criteria", "Criteria, all met where no case is listed", criteria), table.listed("diagnose-plans-wrong", "Not exactly right after it", wrong,
+    return {"plan": table.joined(about, body,
+                                 page_tables.detail("diagnose-plans-criteria", "Criteria, all met where no case is listed", criteria),
+                                 table.listed("diagnose-plans-wrong", "Not exactly right after it", wrong,
                                                                      "All are exactly right after it."))}
