@@ -114,7 +114,7 @@ std::vector<Undecidable> undecidable(const ModelBench& bench, const Candidate& m
                                      std::span<const Effect* const> tried,
                                      std::span<const std::string> without) {
     std::vector<const Effect*> others;
-    for (const Effect* effect : examined(without, true)) {
+    for (const Effect* effect : examined(without, true, model.stated.has_gear_ratio())) {
         if (std::find(tried.begin(), tried.end(), effect) == tried.end()) others.push_back(effect);
     }
     std::vector<Undecidable> told;
@@ -254,7 +254,8 @@ class DiagnosisRun {
         // An arm has inertia and gravity of its own.
         if (is_given(options.given, "arm"))
             without_.insert(without_.end(), {"inertia", "gravity", "payload-change"});
-        effects_ = examined(without_, has_position_ || tells_position(whole_.motion, rules_.recording));
+        effects_ = examined(without_, has_position_ || tells_position(whole_.motion, rules_.recording),
+                            model_.has_gear_ratio());
         if (validation == nullptr) return;
         other_ = whole_case(*validation, options.smoothing, rules_.recording);
         take_known_torque(*other_, options.validation_given);
@@ -304,6 +305,7 @@ class DiagnosisRun {
         }
         result_.angle = before.account(whole_, other_ ? &*other_ : nullptr);
         if (!has_position_) result_.undecidable = undecidable(*found.bench, last, effects_, without_);
+        if (!model_.has_gear_ratio()) list_effects_of_motor();
         measure_at_samples(spoiled, whole_, last.stated);
         result_.unexplained.insert(result_.unexplained.begin(), spoiled.begin(), spoiled.end());
         result_.unexplained.insert(result_.unexplained.begin(), aside.begin(), aside.end());
@@ -312,6 +314,46 @@ class DiagnosisRun {
     }
 
   private:
+    void list_effects_of_motor() {
+        for (const Effect* effect : examined(without_, true, true)) {
+            if (needs_gear_ratio(*effect))
+                result_.undecidable.push_back({effect->name, "needs the gear ratio, --gear-ratio N", 0.0});
+        }
+    }
+
+    // The effect of the motor for which the catalogue says that this one may be mistaken, if there is one.
+    [[nodiscard]] const Effect* look_alike_of_motor(const Effect& effect) const {
+        for (const Effect* other : catalogue()) {
+            // What changes a ripple is a rival of nothing where there is none.
+            if (needs_gear_ratio(*other) && other->side != Side::ripple && !is_among(without_, other->name) &&
+                std::ranges::find(effect.look_alikes, other->name, &LookAlike::name) !=
+                    effect.look_alikes.end())
+                return other;
+        }
+        return nullptr;
+    }
+
+    // Without the gear ratio an effect of the motor is no rival, and what resembles one is no finding by
+    // itself. Over a short travel a ripple of few cycles per turn is as smooth as a weight or an offset:
+    // identify takes no ratio below 3, and 3 cycles are in opposition to the one of a weight after a quarter
+    // of a turn.
+    void tie_with_effects_of_motor(const Case& c) {
+        if (model_.has_gear_ratio()) return;
+        constexpr double least_ratio = 3.0, least_turns = 0.5 / (least_ratio - 1.0);
+        const auto [low, high] = std::ranges::minmax(c.motion.position_deg);
+        const bool is_short = (high - low) / 360.0 < least_turns && !is_among(without_, "ripple");
+        for (Finding& finding : result_.rounds) {
+            if (!is_trusted(finding)) continue;
+            const Effect& effect = *finding.term.effect;
+            const Effect* rival = look_alike_of_motor(effect);
+            if (rival == nullptr && is_short && (needs_position(effect) || effect.name == "offset"))
+                rival = &find_effect("ripple");
+            if (rival == nullptr) continue;
+            finding.status = FindingStatus::ambiguous;
+            finding.alternatives.insert(finding.alternatives.begin(), {rival->name, 0.0});
+        }
+    }
+
     // Which findings hold, and the residual then.
     [[nodiscard]] Candidate tested(Searched& found, bool other_begins_anywhere) {
         const ModelBench& bench = *found.bench;
@@ -329,6 +371,7 @@ class DiagnosisRun {
         if (fits_offset_ && options_.setup.empty()) promote_offset(found, own, unexplained);
         doubt_for_setup();
         doubt_for_travel(bench.looked_at(), found.last.stated);
+        tie_with_effects_of_motor(bench.looked_at());
         own_ = own;
         result_.refused = found.refused;
         result_.baseline = as_given(bench, found.first).stated;

@@ -15,8 +15,10 @@ namespace ripplenotch {
 [[nodiscard]] bool is_among(std::span<const std::string> names, std::string_view name);
 
 /// Effects that a fit can find; those of the converter are found in the log itself (find_faults).
-/// `of_position`: whether effects that need the joint's position take part.
-[[nodiscard]] std::vector<const Effect*> examined(std::span<const std::string> without, bool of_position);
+/// `of_position`: whether effects that need the joint's position take part; `of_motor`: whether those that
+/// need the gear ratio do.
+[[nodiscard]] std::vector<const Effect*> examined(std::span<const std::string> without, bool of_position,
+                                                  bool of_motor);
 
 /// Faults whose effect is not among those tried have no name: the samples that they invalidate are
 /// unexplained. They are removed from `faults`.

@@ -477,10 +477,11 @@ std::optional<Log> read_log_if_short(const Spool& log, const ReadOptions& option
     return std::move(logs.front());
 }
 
-std::vector<std::string> joint_names(const Spool& log, ReadOptions options) {
-    options.joint.reset();
+AskedJoints asked_joints(const Spool& log, ReadOptions options) {
     options.needs_torque = false;
-    return open_log(log.open(), options)->layout().joints;
+    options.constant_speed.reset();  // of the motor it needs a gear ratio, which the names do not
+    const auto reader = open_log(log.open(), options);
+    return {reader->layout().asked, reader->layout().left_out};
 }
 
 Log read_log_in_part(const std::string& path, const ReadOptions& options, std::size_t most_rows) {
@@ -490,15 +491,18 @@ Log read_log_in_part(const std::string& path, const ReadOptions& options, std::s
 std::vector<Log> read_joints_in_part(const std::string& path, const ReadOptions& options,
                                      std::size_t most_rows) {
     const auto spool = std::make_shared<const Spool>(path);
+    const AskedJoints joints = asked_joints(*spool, options);
     std::vector<Log> logs;
-    ReadOptions one = options;
-    for (const std::string& joint : joint_names(*spool, options)) {
-        one.joint = joint.empty() ? std::nullopt : std::optional<std::string>(joint);
-        logs.push_back(in_part(spool, one, most_rows));
+    if (joints.names.size() < 2 && (joints.left_out.empty() || !options.joint)) {
+        logs.push_back(in_part(spool, options, most_rows));
+        return logs;
     }
-    if (!logs.empty()) return logs;
-    one.joint.reset();
-    logs.push_back(in_part(spool, one, most_rows));
+    ReadOptions one = options;
+    for (const std::string& joint : joints.names) {
+        one.joint = joint;
+        logs.push_back(in_part(spool, one, most_rows));
+        logs.back().layout.left_out = joints.left_out;
+    }
     return logs;
 }
 

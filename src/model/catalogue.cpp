@@ -106,6 +106,13 @@ const Effect& find_effect(std::string_view name) {
                       did_you_mean(name, known));
 }
 
+bool needs_gear_ratio(const Effect& effect) {
+    return effect.ripple_order || (effect.side == Side::ripple && !effect.whole) ||
+           std::ranges::any_of(effect.parameters, [](const Parameter& parameter) {
+               return parameter.hint == Hint::gear_ratios;
+           });
+}
+
 std::optional<std::size_t> find_parameter(const Effect& effect, std::string_view name) {
     const auto found = std::find_if(effect.parameters.begin(), effect.parameters.end(),
                                     [&](const Parameter& parameter) { return parameter.name == name; });

@@ -665,15 +665,23 @@ PageSection section_of_result(const std::string& text, const std::string& source
 
 std::vector<PageSection> sections_of_result(const std::string& text, const std::string& source) {
     const auto [kind, whole] = parse_any_document(text, source);
-    if (kind != "diagnoses") return {section_of_result(text, source)};
+    // Lists of what a command gives of each joint of a log, and what each entry is.
+    static constexpr std::array<std::pair<std::string_view, std::string_view>, 5> lists = {
+        {{"diagnoses", "diagnosis"},
+         {"spectra", "spectrum"},
+         {"tracks", "track"},
+         {"comparisons", "comparison"},
+         {"recommendations", "recommendation"}}};
+    const auto list =
+        std::find_if(lists.begin(), lists.end(), [&](const auto& known) { return known.first == kind; });
+    if (list == lists.end()) return {section_of_result(text, source)};
     const auto joints = whole.find("joints");
     if (joints == whole.end() || !joints->is_array())
-        raise<DataError>(
-            "{}: joints: expected a list of diagnoses, as 'diagnose --joint all --json' prints it", source);
+        raise<DataError>("{}: joints: expected a list, each entry the {} of a joint", source, list->second);
     std::vector<PageSection> sections;
     for (const Json& joint : *joints) {
-        // Each is what diagnose prints of one joint, under a head of its own.
-        Json one{{"schema", "ripplenotch/diagnosis/1"}};
+        // Each is what the command prints of one joint, under a head of its own.
+        Json one{{"schema", fmt::format("ripplenotch/{}/1", list->second)}};
         for (const char* name : {"tool", "version", "command", "inputs"})
             if (whole.contains(name)) one[name] = whole[name];
         if (joint.is_object())

@@ -213,8 +213,7 @@ Surveyed survey_joint(const std::shared_ptr<const Spool>& spool, const ReadOptio
 std::vector<Surveyed> survey_joints(const std::string& path, const ReadOptions& options,
                                     std::size_t most_rows) {
     const auto spool = std::make_shared<const Spool>(path);
-    std::vector<std::string> joints = {options.joint.value_or("")};
-    if (!options.joint || *options.joint == "all") joints = joint_names(*spool, options);
+    std::vector<std::string> joints = asked_joints(*spool, options).names;
     if (joints.empty()) joints.emplace_back();
     std::vector<Surveyed> all;
     ReadOptions one = options;

@@ -256,7 +256,6 @@ class Refusals(unittest.TestCase):
         self.refused([*SIGNALS, *methods("lowpass,cutoff=-1Hz")], "cutoff")
         self.refused(["--step", "0Nm", "--sample-rate", "1kHz", *methods(NOTCHES)], "no step")
         self.refused(["--ramp", "0Nm/s", "--sample-rate", "1kHz", *methods(NOTCHES)], "no ramp")
-        self.refused([LOG, "--joint", "all", *methods(NOTCHES)], "--joint all")
 
     def test_files_that_cannot_be_used(self):
         self.refused(["no-such.csv", *methods(NOTCHES)], "no-such.csv", code=4)

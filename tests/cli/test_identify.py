@@ -187,7 +187,7 @@ class Doubts(Case):
         done = run("identify", str(path), "--require-conclusive", "-q")
         self.assertEqual(done.returncode, 5, done.stdout)
         self.assertTrue(done.stdout.startswith("Cannot tell: if it is deg/s and deg, as assumed, "), done.stdout)
-        self.assertIn("Ripple at 12 (0.4 Nm), 18 (0.3 Nm) cycles per turn of the motor", done.stdout)
+        self.assertIn("Ripple at 12 (0.4 A), 18 (0.3 A) cycles per turn of the motor", done.stdout)
         self.assertIn("--unit velocity=rad/s --side motor settles it", done.stdout)
         found = identified(str(path))
         self.assertEqual([doubt["reason"] for doubt in found["doubts"]], ["unit"])

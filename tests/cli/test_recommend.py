@@ -219,8 +219,8 @@ class Honest(Recommended):
         self.assertIn("it is left out", done.stderr)
         self.assertEqual(self.run_tool(*words).returncode, 2)
 
-    def test_standard_input_and_all_joints_are_refused(self):
-        for words, said in ((("-",), "name a file"), (("log.csv", "--joint", "all"), "name it"), (("log.csv", "--train", "95"), "10 to 90")):
+    def test_standard_input_is_refused(self):
+        for words, said in ((("-",), "name a file"), (("log.csv", "--train", "95"), "10 to 90")):
             done = self.run_tool("recommend", *words, *GEAR)
             self.assertEqual(done.returncode, 2)
             self.assertIn(said, done.stderr)

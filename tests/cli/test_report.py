@@ -135,6 +135,24 @@ class Pages(SharedCase):
             self.assertIn(part, text)
         self.assertNotIn("http", text.replace("http-equiv", ""))
 
+    def test_a_log_becomes_a_page_of_all_that_is_asked_of_it(self):
+        good("simulate", "--gear-ratio", "100", "--ripple", "1:0.8Nm", "--ripple", "2:0.5Nm", "--motion",
+             "ramp,from-speed=20deg/s,to-speed=65deg/s,duration=6s", "--sample-rate", "500Hz", "--noise", "0.05Nm", "--seed", "3",
+             "-o", "moving.csv", cwd=self.folder)
+        page = self.page("moving.csv")
+        titles = re.findall(r'<h2 id="result-\d+">([^<:]*)', page)
+        for kind in ("recommendation", "joint", "comparison", "info"):
+            self.assertIn(kind, titles)
+        self.assertEqual(titles[0], "recommendation")
+        self.assertEqual(self.page("moving.csv"), page)  # no temporary names in it
+        self.assertNotIn("ripplenotch-report", page)
+        done = run("report", "data/paper_move_2s.csv", "--unit", "velocity=furlong", cwd=self.folder)
+        self.assertEqual((done.returncode, done.stdout), (2, ""), done.stderr)
+        done = run("report", "data/paper_move_2s.csv", "joint.json", cwd=self.folder)
+        self.assertEqual((done.returncode, "a report is one of a log, or one of results" in done.stderr), (2, True))
+        done = run("data/paper_move_2s.csv", cwd=self.folder)
+        self.assertEqual((done.returncode, "ripplenotch report data/paper_move_2s.csv" in done.stderr), (2, True), done.stderr)
+
     def test_what_is_no_result_is_named(self):
         for name, text in (("log.csv", "a,b\n1,2\n"), ("x.json", "{}"), ("y.json", '{"schema": "ripplenotch/joint/1"}')):
             (self.folder / name).write_text(text)

@@ -10,7 +10,7 @@
 namespace ripplenotch {
 
 struct GearAccount {
-    GearRatio ratio;
+    GearRatio ratio;            ///< 0: not known
     std::vector<Order> orders;  ///< lowest first, each once; empty where other lines alone are asked for
     std::vector<double> amplitude_nm;  ///< one per order where all are known, else empty
     std::vector<double> phase_deg;     ///< the same; of cos(order * motor angle + phase)

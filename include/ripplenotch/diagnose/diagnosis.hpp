@@ -61,6 +61,7 @@ struct Place {
     std::vector<Span> time_s, speed_deg_s, position_deg;
     std::vector<double> hz, order;  ///< order: cycles per motor revolution
     Direction direction = Direction::at_rest_too;
+    std::vector<double> order_output = {};  ///< cycles per output revolution, where no gear ratio is known
 };
 
 /// The evidence for a finding.
@@ -132,7 +133,7 @@ struct ResidualRegion {
     double part = 0.0;    ///< share of the squared residual of the whole log
 };
 
-/// An effect that this log does not let be examined.
+/// An effect that is not examined: this log does not let it be, or the gear ratio is not known.
 struct Undecidable {
     std::string_view effect;
     std::string reason;

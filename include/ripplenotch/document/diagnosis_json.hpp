@@ -10,6 +10,7 @@
 #include "ripplenotch/arm/arm_setup.hpp"
 #include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/diagnose/diagnosis.hpp"
+#include "ripplenotch/diagnose/friction_table.hpp"
 #include "ripplenotch/diagnose/plan.hpp"
 #include "ripplenotch/document/provenance.hpp"
 #include "ripplenotch/export/joint_mjcf.hpp"
@@ -41,10 +42,13 @@ struct DiagnosedJoint {
 [[nodiscard]] std::string write_diagnoses(std::span<const DiagnosedJoint> joints,
                                           const Provenance& provenance);
 
-/// Reads it back; `source` is its name in messages. What the document does not hold is not known then: values
-/// of Diagnosis::baseline and of refused candidates are empty, Evidence::raw_gain is nan, FittedValue has no
-/// standard error, and a finding's values have the place that it would have if every round were in the model.
-/// Throws DataError that names `source`, the field, what it holds and what was expected.
+/// Schema ripplenotch/friction-table/1.
+[[nodiscard]] std::string write_friction(const FrictionDiagnosis& found, const Provenance& provenance);
+
+/// Reads a diagnosis back; `source` is its name in messages. What the document does not hold is not known
+/// then: values of Diagnosis::baseline and of refused candidates are empty, Evidence::raw_gain is nan,
+/// FittedValue has no standard error, and a finding's values have the place that it would have if every round
+/// were in the model. Throws DataError that names `source`, the field, what it holds and what was expected.
 [[nodiscard]] Diagnosis read_diagnosis(std::string_view text, const std::string& source);
 
 }  // namespace ripplenotch

@@ -92,6 +92,8 @@ struct Column {
     std::string scale;          ///< as --scale states it; else empty
     bool unit_assumed = false;  ///< nothing settled the unit: it is in Layout::assumptions
     std::string joint;          ///< "" when the file holds one unnamed joint
+    std::string unused = {};    ///< of role other: why it was taken for nothing
+    bool current = false;       ///< of a torque: a motor current, of which 1 A is taken as 1 Nm
     Shaft side = Shaft::joint;  ///< of a velocity or position, as measured; the factor divides by the ratio
     std::optional<double> motor_ratio;  ///< of a motion measured before the gear: what the factor divides by
 };
@@ -115,12 +117,12 @@ struct Assumption {
 
 /// What the caller asks of a reader; everything left out is found out from the file.
 struct ReadOptions {
-    std::optional<std::string> format;         ///< name in the format registry: "csv", "npy"
-    std::optional<std::string> joint;          ///< one joint's name
-    bool every_joint = false;                  ///< read all joints that have a velocity and a torque, at once
-    bool torque_of_each = true;                ///< with every_joint: false reads joints without a torque, too
-    std::vector<std::string> columns;          ///< "time,velocity,torque" by place, or "torque=tau_J" by name
-    std::map<std::string, std::string> units;  ///< role or column name -> unit
+    std::optional<std::string> format;  ///< name in the format registry: "csv", "npy"
+    std::optional<std::string> joint;   ///< "j1", "j1,j3-j5", "all" (--joint); all when left out
+    bool every_joint = false;           ///< read all of them that have a velocity and a torque, at once
+    bool torque_of_each = true;         ///< with every_joint: false reads joints without a torque, too
+    std::vector<std::string> columns;   ///< "time,velocity,torque" by place, or "torque=tau_J" by name
+    std::map<std::string, std::string> units;   ///< role or column name -> unit
     std::map<std::string, ColumnScale> scales;  ///< role or column name -> what its numbers are in a unit
     std::optional<Hertz> sample_rate;           ///< for logs without time; overrides the log's own time
     std::optional<DegPerSec> constant_speed;    ///< of a log that holds no motion (--constant-speed)
@@ -140,6 +142,8 @@ struct ReadOptions {
     std::optional<double> gear_ratio;  ///< for what is measured before the gear
     /// Where the joints' gears differ: of a joint by its name. Asked for the joints that are read only.
     std::function<std::optional<double>(const std::string& joint)> gear_ratio_of;
+    /// With every_joint: throws Error where the caller has no use for a joint, which is left out then.
+    std::function<void(const std::string& joint)> check_joint;
     bool takes_motor_units = false;  ///< motion before a gear of unknown ratio is not refused
     bool needs_torque = true;        ///< false for info
     bool needs_velocity = true;      ///< false: a log without motion has a velocity of nan
@@ -162,6 +166,11 @@ struct JointColumns {
     std::optional<std::size_t> time, velocity, torque, position;
 };
 
+/// A joint that was asked for and is not read.
+struct LeftOutJoint {
+    std::string joint, why;  ///< "it has no torque"
+};
+
 /// How dates and times are written where their fields alone do not say it.
 struct StampForm {
     bool day_first = true;      ///< 3/4/2025 is in April
@@ -177,6 +186,8 @@ struct Layout {
     std::vector<Column> columns;
     std::vector<ContentEntry> contents;        ///< of a container: all numeric things in it
     std::vector<std::string> joints;           ///< all joints in the file, in file order
+    std::vector<std::string> asked;            ///< those of them that options ask for
+    std::vector<LeftOutJoint> left_out;        ///< asked for, but without what is needed
     JointColumns chosen;                       ///< the joint that is read; the first of them
     std::vector<JointColumns> others;          ///< that are read with it, when every joint is
     std::optional<std::size_t> time_fraction;  ///< beside chosen.time: nanoseconds to be added to its seconds

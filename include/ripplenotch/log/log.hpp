@@ -112,14 +112,18 @@ inline constexpr std::size_t all_rows = std::numeric_limits<std::size_t>::max();
 /// read_log of a log with at most so many rows; nothing of a longer one.
 [[nodiscard]] std::optional<Log> read_log_if_short(const Spool& log, const ReadOptions& options,
                                                    std::size_t most_rows);
-/// Each joint as read_log_in_part gives it.
+/// Each joint that options.joint asks for, as read_log_in_part gives it.
 [[nodiscard]] std::vector<Log> read_joints_in_part(const std::string& path, const ReadOptions& options,
                                                    std::size_t most_rows = most_rows_held);
-/// The names of a log's joints: "" for one that has no name.
-[[nodiscard]] std::vector<std::string> joint_names(const Spool& log, ReadOptions options);
+/// Those joints by their names, "" for one that has no name, and what is left out of them.
+struct AskedJoints {
+    std::vector<std::string> names;
+    std::vector<LeftOutJoint> left_out;
+};
+[[nodiscard]] AskedJoints asked_joints(const Spool& log, ReadOptions options);
 
-/// Reads everything. With options.joint "all" use read_joints_in_part. Throws what open_log throws, and
-/// DataError where options.needs_torque and the clock is of no use (ClockFacts::refusal).
+/// Reads everything. With several joints in options.joint use read_joints_in_part. Throws what open_log
+/// throws, and DataError where options.needs_torque and the clock is of no use (ClockFacts::refusal).
 [[nodiscard]] Log read_log(const std::string& path, const ReadOptions& options);
 [[nodiscard]] Log read_log(std::unique_ptr<ByteSource> source, const ReadOptions& options);
 [[nodiscard]] Log read_log(LogReader& reader, const ReadOptions& options);

@@ -106,7 +106,8 @@ struct LookedAt {
 };
 
 struct Recording {
-    std::string source, joint;  ///< joint: empty for a log of one unnamed joint
+    std::string source, joint;       ///< joint: empty for a log of one unnamed joint
+    std::string torque_unit = "Nm";  ///< "A" where a motor current stands for the torque (Column::current)
     ClockFacts clock;
     HeldSamples held;
     AngleFacts angle;

@@ -163,6 +163,10 @@ struct Effect {
 /// Throws UsageError with the nearest name.
 [[nodiscard]] const Effect& find_effect(std::string_view name);
 
+/// True when the effect's torque follows the angle of the motor, or is that of the gear ratio itself: it
+/// means nothing in a model whose ratio is not known. A resonance acts on the torque as a whole as well.
+[[nodiscard]] bool needs_gear_ratio(const Effect& effect);
+
 /// Place of a parameter in effect.parameters; empty when the effect has none of that name.
 [[nodiscard]] std::optional<std::size_t> find_parameter(const Effect& effect, std::string_view name);
 

@@ -56,7 +56,7 @@ struct Term {
 /// Effects in the order of the document. They act side by side (see Side), not in the order of this list;
 /// within one side they do.
 struct Model {
-    GearRatio gear_ratio;
+    GearRatio gear_ratio;  ///< 0: not known; then no term needs it, see needs_gear_ratio
     std::vector<Term> terms;
     /// A simulation's torque is part of the known torque, and that may hold too much Coulomb, viscous or
     /// quadratic friction: such a term's size is below 0.
@@ -64,6 +64,7 @@ struct Model {
     /// Widest step of a friction at standstill in a fit: a wider one is no step but grows with the speed. 0:
     /// that of the effect.
     double widest_step_deg_s = 0.0;
+    [[nodiscard]] bool has_gear_ratio() const { return gear_ratio.value() > 0.0; }
     bool operator==(const Model&) const = default;
 };
 

@@ -18,6 +18,7 @@
 
 #include "cli/command.hpp"
 #include "cli/design/design_text.hpp"
+#include "cli/options/joint_runs.hpp"
 #include "cli/options/lists.hpp"
 #include "cli/options/options.hpp"
 #include "cli/options/plot_request.hpp"
@@ -666,8 +667,6 @@ bool follows_motion(const Contender& contender) {
 
 Comparison compare_on_log(const CompareRequest& request, Field& field, Provenance& provenance,
                           ComparedCourse& course) {
-    if (request.log_options.joint == "all")
-        raise<UsageError>("--joint all: compare looks at one joint; name it");
     ReadOptions read = read_options(request.log_options, field.gear);
     // What has the same coefficients at every speed is measured without one.
     read.needs_velocity =
@@ -712,9 +711,7 @@ Comparison compare_on_log(const CompareRequest& request, Field& field, Provenanc
     return comparison;
 }
 
-ExitCode run_compare(const CompareRequest& request, const std::string& command_line) {
-    if (request.log.empty() && request.log_options.range.given())
-        raise<UsageError>("--from and --to: there is no LOG to take rows of");
+JointResult compare_once(const CompareRequest& request, const std::string& command_line) {
     Provenance provenance{{}, command_line};
     Field field = load_contenders(methods_at(request.log, request.methods, request.log_options), request.gear,
                                   provenance);
@@ -724,19 +721,42 @@ ExitCode run_compare(const CompareRequest& request, const std::string& command_l
     Comparison comparison = request.log.empty() ? compare_on_signals(request, field)
                                                 : compare_on_log(request, field, provenance, course);
     add_costs(comparison, request.costs, field);
-    const std::string text =
-        request.common.json ? comparison_text(comparison, provenance) : comparison_view(comparison);
-    write_text(request.common.output, text, request.common.overwrite());
-    draw_plot(request.plot, request.common, provenance, [&] {
-        if (!course.empty()) return course.figure(request.log, comparison);
-        std::vector<Contender> shown = field.contenders;
-        if (comparison.match && comparison.match->low_pass)
-            shown.push_back(make_contender(parse_spec(*comparison.match->low_pass)));
-        return comparison_figure(comparison, shown);
-    });
+    const std::string unit = provenance.recordings.empty() ? "Nm" : provenance.recordings.front().torque_unit;
+    JointResult result{in_torque_unit(
+        request.common.json ? comparison_text(comparison, provenance) : comparison_view(comparison), unit)};
     const auto broken = violations(comparison, request.costs, field);
-    say_warnings(request.common, broken);
-    return broken.empty() ? ExitCode::done : ExitCode::limit_violated;
+    if (!broken.empty()) result.code = ExitCode::limit_violated;
+    result.afterwards = [request, provenance, broken, field = std::move(field),
+                         comparison = std::move(comparison), course = std::move(course)] {
+        draw_plot(request.plot, request.common, provenance, [&] {
+            if (!course.empty()) return course.figure(request.log, comparison);
+            std::vector<Contender> shown = field.contenders;
+            if (comparison.match && comparison.match->low_pass)
+                shown.push_back(make_contender(parse_spec(*comparison.match->low_pass)));
+            return comparison_figure(comparison, shown);
+        });
+        say_warnings(request.common, broken);
+    };
+    return result;
+}
+
+ExitCode run_compare(const CompareRequest& request, const std::string& command_line) {
+    if (request.log.empty() && request.log_options.range.given())
+        raise<UsageError>("--from and --to: there is no LOG to take rows of");
+    // A signal is no joint's, and is compared on as a log of one is.
+    static const std::string no_log = "-";
+    const std::string& path = request.log.empty() ? no_log : request.log;
+    return run_joints({path, request.log_options, request.common, &request.plot, "comparisons"},
+                      [&](const std::optional<std::string>& joint, const CommonOptions& common) {
+                          CompareRequest one = request;
+                          one.common = common;
+                          if (joint) one.log_options.joint = joint;
+                          one.plot.path = of_joint(request.plot.path, joint);
+                          one.gear.joint_file = of_joint(request.gear.joint_file, joint);
+                          if (joint)
+                              for (std::string& method : one.methods) method = with_joint(method, *joint);
+                          return compare_once(one, command_line);
+                      });
 }
 
 std::function<ExitCode()> attach_compare(Options& options) {

@@ -11,6 +11,7 @@
 
 #include "cli/command.hpp"
 #include "cli/diagnose/diagnosis_text.hpp"
+#include "cli/diagnose/friction_table.hpp"
 #include "cli/diagnose/joint_diagnosis.hpp"
 #include "cli/options/verdict_options.hpp"
 #include "cli/talk.hpp"
@@ -58,6 +59,7 @@ std::string rules_text(const DiagnosisRules& rules) {
 
 std::string story(const JointDiagnosis& one, bool explain) {
     return (one.given.account ? arm_text(*one.given.account) : "") + diagnosis_story(one.diagnosis, explain) +
+           (one.diagnosis.model.has_gear_ratio() ? "" : gear_in_words(one.gear) + "\n") +
            (one.mjcf ? mjcf_text(*one.mjcf) : "") + (one.planned ? plan_text(*one.planned) : "");
 }
 
@@ -146,6 +148,8 @@ ExitCode run_diagnose(const DiagnoseRequest& request, const std::string& command
         write_text("-", rules_text(rules), ByteSink::Overwrite::no);
         return ExitCode::done;
     }
+    if (const auto table = friction_table_of(request))
+        return run_friction_table(request, *table, command_line);
     check(request);
     GivenSource given(request.given, true);
     return request.all_joints() ? run_all(request, given, command_line)
@@ -162,6 +166,10 @@ std::function<ExitCode()> attach_diagnose(Options& options) {
     attach_given(options, request->given);
     attach_gear(options, request->gear,
                 {.ratio = "motor turns per joint turn, in place of --model", .orders = "", .joint_file = ""});
+    options.flag(
+        "--friction-table", request->friction_table,
+        "LOG is a table of constant speeds and the torque that each took, without time: its Coulomb, "
+        "viscous and Stribeck friction; needs no --model");
     options.text("--validate", request->validate, "OTHER",
                  "another log, on which the improved model is checked");
     options.texts("--without", request->without, "NAME",

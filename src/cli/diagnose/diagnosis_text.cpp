@@ -98,6 +98,8 @@ std::string where_text(const Place& place) {
         parts.push_back("at positions of " + spans_text(place.position_deg, "deg"));
     for (const double hz : place.hz) parts.push_back(fmt::format("at {} Hz", short_number(hz)));
     for (const double order : place.order) parts.push_back(fmt::format("at order {}", short_number(order)));
+    for (const double order : place.order_output)
+        parts.push_back(fmt::format("at {} cycles per turn of the joint", short_number(order)));
     if (place.direction == Direction::both) parts.emplace_back("while it moves");
     if (place.direction == Direction::positive || place.direction == Direction::negative)
         parts.push_back(fmt::format("in {} direction", direction_name(place.direction)));
@@ -167,10 +169,12 @@ std::string answer(const Diagnosis& diagnosis) {
     }
     for (const Tie& tie : diagnosis.ambiguous) add(joined(tie.effects, " or "));
     const DiagnosisGap& gap = diagnosis.gap;
-    const std::string head = !names.empty()                  ? "Missing: " + names
-                             : !diagnosis.setup.empty()      ? "No effect can be confirmed with this set-up"
-                             : diagnosis.unexplained.empty() ? "Nothing is missing"
-                                                             : "Unexplained";
+    const std::string head = !names.empty()                   ? "Missing: " + names
+                             : !diagnosis.setup.empty()       ? "No effect can be confirmed with this set-up"
+                             : !diagnosis.unexplained.empty() ? "Unexplained"
+                             : diagnosis.model.has_gear_ratio()
+                                 ? "Nothing is missing"
+                                 : "Nothing is missing of what was examined, which ripple is not";
     return fmt::format("{}; residual {} to {} Nm rms, noise {} Nm rms.\n", head, short_number(gap.before_nm),
                        short_number(gap.after_nm), short_number(gap.noise_floor_nm));
 }
@@ -256,9 +260,12 @@ std::string regions_text(const std::vector<ResidualRegion>& residual_regions, st
 std::string closing(const Diagnosis& diagnosis) {
     switch (diagnosis.verdict) {
         case DiagnosisVerdict::matches:
-            return "the model explains this log: nothing is missing";
+            return diagnosis.model.has_gear_ratio()
+                       ? "the model explains this log: nothing is missing"
+                       : "nothing is missing of what was examined: without the gear ratio ripple was not";
         case DiagnosisVerdict::explained:
-            return "explained";
+            return diagnosis.model.has_gear_ratio() ? "explained"
+                                                    : "explained, without the effects of the motor's angle";
         case DiagnosisVerdict::partly_explained:
             return diagnosis.unexplained.empty() && !diagnosis.accepted.empty()
                        ? "partly explained: this log does not confirm what you accepted"

@@ -246,10 +246,22 @@ bool speed_changes(const Trace& trace) {
     return fastest > 0.0 && fastest - slowest > enough * fastest;
 }
 
+// Faster than the noise of a speed at rest.
+bool moves(const Trace& trace) {
+    constexpr double clear_deg_s = 0.5;  // by hand, as of the direction that a friction holds
+    return std::ranges::any_of(trace.velocity_deg_s, [](double v) { return std::abs(v) > clear_deg_s; });
+}
+
+struct ModelOfLog {
+    Model model;
+    std::string source;  ///< of its gear ratio
+};
+
 // Gear ratio and ripple orders as identify finds them in the log of the request (--gear-ratio goes before
-// what it finds), and an inertia where the speed changes. All values are left out, to be fitted. Throws
-// DataError, with identify's own verdict, where the log tells no gear ratio.
-Model identified_model(const DiagnoseRequest& request, ReadOptions reading) {
+// what it finds), and an inertia where the speed changes. All values are left out, to be fitted. Where the
+// log tells no gear ratio, the model has none: lines that turn with the joint are then a part of it by their
+// cycles per turn of the joint, whatever they are lines of, so that they get no name.
+ModelOfLog identified_model(const DiagnoseRequest& request, ReadOptions reading) {
     reading.gear_ratio = request.gear.ratio;
     reading.takes_motor_units = true;
     std::vector<Log> logs;
@@ -259,24 +271,44 @@ Model identified_model(const DiagnoseRequest& request, ReadOptions reading) {
     if (request.gear.ratio) options.hint = stated = GearRatio(*request.gear.ratio);
     const JointFile joint{request.path, request.path, identify_readings(logs, options)};
     const GearStatement facts = joint.facts(stated);
-    if (!facts.ratio)
+    if (!facts.ratio && !moves(logs.front().trace))
         raise<DataError>(
-            "{}: --model auto: identify tells no gear ratio from it ({}); give --gear-ratio N, or --model "
-            "FILE",
+            "{}: --model auto: identify tells no gear ratio from it ({}), and at rest a ripple is an offset; "
+            "give --gear-ratio N, or --model FILE",
             request.path, joint.found.verdict);
-    Model model{*facts.ratio, {}};
+    if (!facts.ratio && logs.front().layout.motor_units)
+        raise<DataError>(
+            "{}: --model auto: the motion seems to be measured before the gear (named so, or too fast for a "
+            "joint), and no ratio is known to bring it to the joint; say --gear-ratio N, or --side joint if "
+            "it "
+            "is the joint's",
+            request.path);
+    Model model{facts.ratio.value_or(GearRatio()), {}};
     if (speed_changes(logs.front().trace)) model.terms.push_back(parse_term("inertia"));
-    for (const Order order : facts.orders)
-        model.terms.push_back(parse_term(fmt::format("ripple,order={}", shortest(order.value()))));
-    return model;
+    if (facts.ratio) {
+        for (const Order order : facts.orders)
+            model.terms.push_back(parse_term(fmt::format("ripple,order={}", shortest(order.value()))));
+        return {std::move(model), "identify"};
+    }
+    // Below it a line is of no gear, and may be the joint's own: gravity has order 1.
+    constexpr double least_order = 3.0;
+    for (const Line& line : joint.found.lines) {
+        if (line.kind != LineKind::order || line.order_output.value_or(0.0) < least_order) continue;
+        model.terms.push_back(
+            parse_term(fmt::format("output-ripple,order={}", shortest(*line.order_output))));
+    }
+    return {std::move(model), "identify: " + joint.found.verdict};
 }
 
 // "gear ratio 100, inertia, ripple of orders 1 and 2".
 std::string model_in_words(const Model& model) {
-    std::string text = fmt::format("gear ratio {:.6g}", model.gear_ratio.value());
+    std::string text = model.has_gear_ratio() ? fmt::format("gear ratio {:.6g}", model.gear_ratio.value())
+                                              : "gear ratio not known";
     std::vector<std::string> orders;
     for (const Term& term : model.terms) {
-        if (term.effect->name == "ripple") {
+        if (term.effect->name == "output-ripple") {
+            text += fmt::format(", {:.6g} cycles per turn of the joint", *term.values.front());
+        } else if (term.effect->name == "ripple") {
             orders.push_back(shortest(term.values.front().value_or(0.0)));
         } else {
             text += fmt::format(", {}", term.effect->name);
@@ -348,14 +380,17 @@ constexpr std::size_t most_rows_diagnosed = std::size_t{1} << 17, most_rows_with
 
 std::string model_source(const std::string& model) { return model == "-" ? "standard input" : model; }
 
+// `source`: who gave its gear ratio.
 ModelWithGiven model_of(const DiagnoseRequest& request, const std::string& path, const ReadOptions& reading,
-                        Provenance& provenance) {
+                        Provenance& provenance, std::string& source) {
     if (path == model_from_log) {
-        ModelWithGiven model{identified_model(request, reading)};
+        ModelOfLog made = identified_model(request, reading);
         say(request.common, fmt::format("the model is made of the log: {}; its values are fitted",
-                                        model_in_words(model.model)));
-        return model;
+                                        model_in_words(made.model)));
+        source = std::move(made.source);
+        return {std::move(made.model)};
     }
+    source = path.empty() ? "--gear-ratio" : model_source(path);
     if (path.empty()) return {{GearRatio(*request.gear.ratio), {}}};
     ModelWithGiven model = read_model_with_given(read_all(path), model_source(path));
     if (path != "-") provenance.inputs.push_back(input_record(path));
@@ -485,7 +520,9 @@ void advise_arm(JointDiagnosis& one) {
 
 }  // namespace
 
+// Whether a ripple is missing is not known without the gear ratio.
 bool JointDiagnosis::is_conclusive() const {
+    if (!diagnosis.model.has_gear_ratio()) return false;
     return diagnosis.verdict == DiagnosisVerdict::matches || diagnosis.verdict == DiagnosisVerdict::explained;
 }
 
@@ -496,13 +533,12 @@ JointDiagnosis diagnosed_joint(const DiagnoseRequest& request, const std::option
     ReadOptions reading = request.log;
     if (joint) reading.joint = *joint;
     const std::string path = joint ? with_joint(request.model, *joint) : request.model;
-    ModelWithGiven model = model_of(request, path, reading, one.provenance);
+    std::string ratio_source;
+    ModelWithGiven model = model_of(request, path, reading, one.provenance, ratio_source);
     take_joint_of(model, reading.joint);
-    one.gear = gear_of(model.model, path.empty()             ? "--gear-ratio"
-                                    : path == model_from_log ? "identify"
-                                                             : model_source(path));
+    one.gear = gear_of(model.model, std::move(ratio_source));
     say(request.common, gear_in_words(one.gear));
-    reading.gear_ratio = one.gear.ratio.value();
+    reading = read_options(reading, one.gear);
     const std::size_t most = most_rows(request.given, model);
     if (most == all_rows) require_memory(request, reading);
     one.log = read(request, most, reading, request.path, one.provenance);
@@ -520,11 +556,8 @@ JointDiagnosis diagnosed_joint(const DiagnoseRequest& request, const std::option
 
 std::vector<std::string> joints_of(const DiagnoseRequest& request, GivenSource& given) {
     ReadOptions reading = request.log;
+    std::vector<std::string> joints = joints_asked_for(request.path, reading).names;
     reading.joint.reset();
-    ReadOptions survey = reading;
-    survey.needs_torque = false;
-    survey.takes_motor_units = true;
-    std::vector<std::string> joints = open_log(request.path, survey)->layout().joints;
     if (!request.given.arm) return joints;
     // As each joint alone would read it.
     reading.gear_ratio = request.gear.ratio;

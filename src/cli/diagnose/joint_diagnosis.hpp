@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "cli/options/joint_runs.hpp"
 #include "cli/options/plot_request.hpp"
 #include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/diagnose/diagnosis.hpp"
@@ -34,8 +35,9 @@ struct DiagnoseRequest {
     bool list_rules = false, explain = false;
     Seconds smoothing = default_smoothing;
     bool require_conclusive = false;
+    bool friction_table = false;  ///< the log is said to be one
 
-    [[nodiscard]] bool all_joints() const { return log.joint == "all"; }
+    [[nodiscard]] bool all_joints() const { return asks_for_several(path, log); }
 };
 
 /// Throws UsageError, before anything is read.

@@ -125,13 +125,6 @@ FeatureLine line_of(const Log& log, const ManifestEntry& entry, const FeatureWor
     return line;
 }
 
-std::vector<Log> read_logs(const std::string& path, const ReadOptions& read) {
-    if (read.joint == "all") return read_joints_in_part(path, read, most_rows_looked_at);
-    std::vector<Log> logs;
-    logs.push_back(read_log_in_part(path, read, most_rows_looked_at));
-    return logs;
-}
-
 // One line a joint of the log, in the log's order. Errors of the log are lines with an error; only what is
 // no matter of one log is thrown.
 std::vector<FeatureLine> feature_lines(const ManifestEntry& entry, const FeatureWork& work) {
@@ -141,7 +134,7 @@ std::vector<FeatureLine> feature_lines(const ManifestEntry& entry, const Feature
     head.robot = entry.robot.value_or("");
     std::vector<FeatureLine> lines;
     try {
-        std::vector<Log> logs = read_logs(entry.log, work.read);
+        std::vector<Log> logs = read_joints_in_part(entry.log, work.read, most_rows_looked_at);
         if (entry.log != "-") head.sha256 = sha256_as_read(entry.log);
         for (const Log& log : logs) {
             FeatureLine line = head;
@@ -305,7 +298,6 @@ FeatureWork work_of(const FeatureRequest& request) {
     if (!work.gear && !request.gear.orders.empty()) raise_no_gear("--orders");
     work.read = read_options(request.log, work.gear);
     work.read.takes_motor_units = true;
-    if (!work.read.joint) work.read.joint = "all";
     if (request.date_from_name) work.pattern.emplace(*request.date_from_name);
     work.date_from_file = request.date_from_file;
     if (request.temperature) {

@@ -14,6 +14,7 @@
 
 #include "cli/command.hpp"
 #include "cli/filter/filter_work.hpp"
+#include "cli/options/joint_runs.hpp"
 #include "cli/options/lists.hpp"
 #include "cli/options/verdict_options.hpp"
 #include "ripplenotch/core/files.hpp"
@@ -179,8 +180,9 @@ FilterJob job_of(const FilterRequest& request, const std::filesystem::path& log)
     if (request.out_directory)
         job.output = (std::filesystem::path(*request.out_directory) / log.filename()).string();
     if (metrics_in_folder(request)) {
-        job.metrics = (std::filesystem::path(*request.metrics) / log.stem()).string() +
-                      (request.every_joint() ? ".{joint}" : "") + ".metrics.json";
+        job.metrics =
+            (std::filesystem::path(*request.metrics) / log.stem()).string() + std::string(metrics_ending);
+        job.metrics_in_folder = true;
     }
     return job;
 }
@@ -218,13 +220,13 @@ std::vector<FilterJob> jobs_of(const FilterRequest& request) {
     return jobs;
 }
 
-void check_every_joint(const FilterRequest& request) {
+void check_several(const FilterRequest& request) {
     if (request.common.json)
         raise<UsageError>(
             "--json prints the metrics of one joint; for all of them use --metrics 'NAME-{}.json'",
             joint_mark);
     if (request.plot.wanted()) raise<UsageError>("--plot draws one joint; say which with --joint");
-    if (request.metrics && !request.out_directory && !names_joint(*request.metrics)) {
+    if (request.metrics && !metrics_in_folder(request) && !names_joint(*request.metrics)) {
         raise<UsageError>("--metrics {}: each joint has metrics of its own; put {} into the name",
                           *request.metrics, joint_mark);
     }
@@ -235,7 +237,6 @@ void check_filter(const FilterRequest& request) {
         raise<UsageError>(
             "--method is missing, for example --method lowpass,cutoff=13rad/s or --table table.json");
     }
-    if (request.every_joint()) check_every_joint(request);
     if (request.metrics && !metrics_in_folder(request))
         check_output_name(*request.metrics, "a record of metrics", ".json .txt", "--metrics");
     if (!(request.gap_steps > 1.0))
@@ -288,6 +289,8 @@ bool run_job(const FilterRequest& request, const FilterJob& job, JointMethods& m
         raise<UsageError>(
             "--in-place: {} has one value a row, and would have a column for each signal; say -o",
             layout.source);
+    if (!layout.others.empty()) check_several(request);
+    say_left_out(request.common, layout.left_out);
     say_layout(request.common, layout);
     std::vector<JointWork> works = start_works(request, job, stream, methods, spool);
     std::unique_ptr<LogWriter> writer;
@@ -312,14 +315,14 @@ bool run_job(const FilterRequest& request, const FilterJob& job, JointMethods& m
                         followed.back().get()});
     }
     std::vector<StreamReport> reports = stream.run(runs, writer.get(), threads_of(request));
-    for (const auto& rows : followed) {
-        if (rows) say_warnings(request.common, rows->notes());
-    }
+    for (std::size_t j = 0; j < works.size(); ++j)
+        if (followed[j]) say_warnings(works[j].common, followed[j]->notes());
     bool within = true;
     for (std::size_t j = 0; j < works.size(); ++j) {
         works[j].metrics.stream = std::move(reports[j]);
         if (!tell(request, job, works[j], command_line)) within = false;
     }
+    if (const auto& messages = works.front().common.messages) messages->say_all(works.size());
     if (watched != nullptr) {
         const FilterMetrics& metrics = works.front().metrics;
         draw_plot(request.plot, request.common, provenance_of(job, works.front(), command_line),

@@ -6,6 +6,7 @@
 #include <complex>
 
 #include "cli/filter/filter.hpp"
+#include "cli/options/joint_runs.hpp"
 #include "cli/options/verdict_options.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/document/comparison_json.hpp"
@@ -25,9 +26,11 @@ bool measures(const FilterRequest& request, const FilterJob& job) {
     return must_measure(request, job) || !request.common.quiet;
 }
 
-/// Sentences about one joint among several say which.
-std::string about(const JointWork& work, const std::string& sentence) {
-    return work.metrics.joint.empty() ? sentence : fmt::format("joint {}: {}", work.metrics.joint, sentence);
+std::string metrics_name(const FilterJob& job, bool one_of_several) {
+    const std::string of_log = *job.metrics;
+    if (!job.metrics_in_folder || !one_of_several) return of_log;
+    return of_log.substr(0, of_log.size() - metrics_ending.size()) + "." + std::string(joint_mark) +
+           std::string(metrics_ending);
 }
 
 /// The complex gains of the method's filter for the lines of its gear, by speed.
@@ -50,8 +53,12 @@ bool predictable(const Contender& method) {
 
 /// All but the filter, which may have to learn from the log first.
 JointWork start_work(const FilterRequest& request, const FilterJob& job, const LogStream& stream,
-                     const std::string& joint, JointMethods& methods) {
+                     const std::string& joint, JointMethods& methods,
+                     const std::shared_ptr<JointMessages>& messages) {
     JointWork work;
+    work.common = request.common;
+    work.common.joint = joint;
+    work.common.messages = messages;
     work.method = methods.of(joint);
     const Contender& method = *work.method;
     const auto& gear = method.gear;
@@ -66,7 +73,7 @@ JointWork start_work(const FilterRequest& request, const FilterJob& job, const L
     metrics.method = method.text;
     metrics.sample_rate = stream.design_rate();
     metrics.gear = gear;
-    if (gear) say(request.common, about(work, gear_in_words(*gear)));
+    if (gear) say(work.common, gear_in_words(*gear));
     if (measures(request, job) && gear) {
         work.meter.emplace(gear->ratio, gear->orders, stream.design_rate(), 2,
                            predictable(method) ? gains_of(method, stream.design_rate()) : LineGains{});
@@ -75,7 +82,7 @@ JointWork start_work(const FilterRequest& request, const FilterJob& job, const L
         metrics.crossover = request.crossover;
         metrics.delays = delay_ledger(method, stream.design_rate(), {request.crossover, true});
     }
-    if (job.metrics) work.metrics_path = with_joint(*job.metrics, joint);
+    if (job.metrics) work.metrics_path = with_joint(metrics_name(job, messages != nullptr), joint);
     if (request.common.json) work.metrics_path.emplace(1, '-');
     return work;
 }
@@ -94,7 +101,7 @@ void learn(const FilterRequest& request, const JointMethods& methods, const Spoo
     for (std::size_t j = 0; j < works.size(); ++j) {
         works[j].filter = learners[j]->learned();
         for (const std::string& note : learners[j]->notes())
-            say(request.common, fmt::format("{}: {}", works[j].metrics.source, about(works[j], note)));
+            say(works[j].common, fmt::format("{}: {}", works[j].metrics.source, note));
     }
 }
 
@@ -114,7 +121,7 @@ void start_filter(const FilterRequest& request, JointWork& work) {
     if (!work.filter) work.filter = work.method->start(work.metrics.sample_rate);
     if (request.exact) return;
     if (const std::string way = work.filter->hurry(); !way.empty())
-        say(request.common, fmt::format("{}: {}", work.metrics.source, about(work, way)));
+        say(work.common, fmt::format("{}: {}", work.metrics.source, way));
 }
 
 }  // namespace
@@ -131,8 +138,8 @@ ReadOptions FilterRequest::read_options(const JointMethods& methods) const {
     };
     if (!options.gear_ratio) options.gear_ratio = how.gear.ratio;
     options.needs_velocity = methods.follows_motion();
-    options.every_joint = every_joint();
-    if (options.every_joint) options.joint.reset();
+    options.every_joint = options.joint.has_value();
+    options.check_joint = [&methods](const std::string& joint) { static_cast<void>(methods.of(joint)); };
     return options;
 }
 
@@ -157,18 +164,15 @@ bool tell(const FilterRequest& request, const FilterJob& job, JointWork& work,
             "no gear ratio is known, so no ripple was measured; give --gear-ratio or --joint-file");
     }
     const auto broken = filter_violations(request.gates, *work.method, metrics);
-    for (std::string& warning : warnings) warning = request.every_joint() ? about(work, warning) : warning;
-    say_warnings(request.common, warnings);
-    for (const std::string& line : filter_summary(metrics))
-        say(request.common, request.every_joint() ? about(work, line) : line);
+    const std::string& unit = metrics.stream.recording.torque_unit;
+    for (std::string& warning : warnings) warning = in_torque_unit(std::move(warning), unit);
+    say_warnings(work.common, warnings);
+    for (const std::string& line : filter_summary(metrics)) say(work.common, in_torque_unit(line, unit));
     if (work.metrics_sink) {
         work.metrics_sink->write(metrics_to_json(metrics, provenance_of(job, work, command_line)));
         work.metrics_sink->finish();
     }
-    for (const std::string& one : broken) {
-        const std::string sentence = request.every_joint() ? about(work, one) : one;
-        warn(request.common, sentence);
-    }
+    say_warnings(work.common, broken);
     return broken.empty() && !(request.require_improvement && !harm_done(metrics).empty());
 }
 
@@ -176,8 +180,10 @@ std::vector<JointWork> start_works(const FilterRequest& request, const FilterJob
                                    const LogStream& stream, JointMethods& methods,
                                    const std::optional<Spool>& spool) {
     std::vector<JointWork> works;
-    for (const JointColumns& joint : stream.reader().layout().all_chosen())
-        works.push_back(start_work(request, job, stream, joint.joint, methods));
+    const auto joints = stream.reader().layout().all_chosen();
+    const auto messages = joints.size() > 1 ? std::make_shared<JointMessages>() : nullptr;
+    for (const JointColumns& joint : joints)
+        works.push_back(start_work(request, job, stream, joint.joint, methods, messages));
     if (spool) learn(request, methods, *spool, works);
     for (JointWork& work : works) {
         start_filter(request, work);

@@ -31,19 +31,22 @@ struct FilterRequest {
     int threads = 0;
     bool append = false, exact = false, in_place = false, require_improvement = false;
 
-    [[nodiscard]] bool every_joint() const { return log.joint == "all"; }
     /// Beside the gear of the methods, where they have one in common.
     [[nodiscard]] ReadOptions read_options(const JointMethods& methods) const;
 };
+
+inline constexpr std::string_view metrics_ending = ".metrics.json";  ///< in a folder, behind the log's name
 
 /// Where one log comes from and what is made of it.
 struct FilterJob {
     std::string log, output;
     std::optional<std::string> metrics;
+    bool metrics_in_folder = false;  ///< named after the log, and after the joint where there are several
 };
 
 /// One joint of a log on its way through its filter.
 struct JointWork {
+    CommonOptions common;  ///< that what is said of the joint goes with
     std::shared_ptr<const Contender> method;
     std::unique_ptr<CausalFilter> filter;
     std::optional<RippleMeter> meter;

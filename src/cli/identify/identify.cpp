@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <exception>
 #include <limits>
 #include <memory>
 #include <string>
@@ -13,6 +14,7 @@
 #include <vector>
 
 #include "cli/command.hpp"
+#include "cli/options/joint_runs.hpp"
 #include "cli/options/plot_request.hpp"
 #include "cli/options/verdict_options.hpp"
 #include "cli/talk.hpp"
@@ -144,13 +146,21 @@ struct Joint {
     std::vector<Log> logs;
 };
 
-std::vector<Joint> read_all_joints(const IdentifyRequest& request, Provenance& provenance) {
+/// The options with which a joint is spoken of, where it is one of several.
+CommonOptions about(const CommonOptions& common, const std::string& joint) {
+    CommonOptions of_joint = common;
+    of_joint.joint = joint;
+    return of_joint;
+}
+
+std::vector<Joint> read_all_joints(const IdentifyRequest& request, CommonOptions& common,
+                                   Provenance& provenance) {
     std::vector<Joint> joints;
     ReadOptions read = request.log;
     take_joint_of(request.residual, read.joint);
     read.gear_ratio = request.gear.ratio;
     read.takes_motor_units = true;
-    const bool each = read.joint && *read.joint == "all";
+    bool each = false;  // joint by its name; else all logs are of the one joint, whatever they call it
     // A simulated torque stands row by row against all of its log.
     const std::size_t most_rows = request.residual.any()
                                       ? std::numeric_limits<std::size_t>::max()
@@ -160,7 +170,7 @@ std::vector<Joint> read_all_joints(const IdentifyRequest& request, Provenance& p
         raise<UsageError>("--constant-speed: read {} speeds for {} logs; state one for all, or one for each",
                           speeds.size(), request.logs.size());
     const bool as_one = std::exchange(read.join, read.join == "rows" ? std::nullopt : read.join) == "rows";
-    if (as_one && (each || request.residual.any()))
+    if (as_one && (asks_for_several(request.logs.front(), read) || request.residual.any()))
         raise<UsageError>(
             "--join rows: takes one joint and its logged torque; name it with --joint, and leave "
             "out the simulation");
@@ -170,19 +180,25 @@ std::vector<Joint> read_all_joints(const IdentifyRequest& request, Provenance& p
         std::vector<Log> logs;
         if (as_one) {
             if (i == 0) logs.push_back(read_files_as_one(request.logs, read));
-        } else if (each) {
-            logs = read_joints_in_part(path, read, most_rows);
         } else {
-            logs.push_back(read_log_in_part(path, read, most_rows));
+            logs = read_joints_in_part(path, read, most_rows);
         }
+        if (i == 0 && logs.size() > 1) {
+            each = true;
+            common.messages = std::make_shared<JointMessages>();
+        }
+        if (!each && logs.size() > 1)
+            raise<DataError>("{}: read {} joints, and {} has one; say which with --joint", path, logs.size(),
+                             request.logs.front());
+        if (!logs.empty()) say_left_out(request.common, logs.front().layout.left_out);
         provenance.inputs.push_back(
             {path, path == "-" ? "" : sha256_as_read(path),
              logs.empty() ? std::nullopt : std::optional(logs.front().recording.rows())});
         for (Log& log : logs) {
-            say_layout(request.common, log.layout);
-            take_residual(request.residual, read, request.logs.size(), {path, log}, request.common,
-                          provenance);
-            say_warnings(request.common, log.recording.warnings);
+            const CommonOptions of_joint = about(common, log.trace.joint);
+            say_layout(of_joint, log.layout);
+            take_residual(request.residual, read, request.logs.size(), {path, log}, of_joint, provenance);
+            say_warnings(of_joint, log.recording.warnings);
             provenance.recordings.push_back({log.recording});
             const std::string name = each ? log.trace.joint : logs.front().trace.joint;
             auto joint = std::find_if(joints.begin(), joints.end(),
@@ -211,20 +227,23 @@ Identification identified_joint(const Joint& joint, const IdentifyRequest& reque
     }
     Identification found = identify_readings(joint.logs, request.identify);
     found.joint = joint.name;
+    const std::string& unit = joint.logs.front().recording.torque_unit;
+    found.verdict = in_torque_unit(found.verdict, unit);
+    for (std::string& note : found.notes) note = in_torque_unit(note, unit);
     found.sample_rate = controller_rate(joint);
     return found;
 }
 
 // What was believed and turned out otherwise is told, and not left to the notes.
-void say_other_ratio(const IdentifyRequest& request, const Identification& found) {
+void say_other_ratio(const IdentifyRequest& request, const CommonOptions& common,
+                     const Identification& found) {
     constexpr double rounding = 0.001;
     const GearRatioFit& fit = found.gear_ratio;
     if (!request.gear.ratio || !fit.value) return;
     const double doubt = std::max(fit.ci95_high - *fit.value, rounding * *request.gear.ratio);
     if (std::abs(*fit.value - *request.gear.ratio) <= doubt) return;
-    warn(request.common, fmt::format("{}--gear-ratio {}: the lines say {:.6g} (95 %: {:.6g} to {:.6g})",
-                                     found.joint.empty() ? "" : "joint " + found.joint + ": ",
-                                     shortest(*request.gear.ratio), *fit.value, fit.ci95_low, fit.ci95_high));
+    warn(common, fmt::format("--gear-ratio {}: the lines say {:.6g} (95 %: {:.6g} to {:.6g})",
+                             shortest(*request.gear.ratio), *fit.value, fit.ci95_low, fit.ci95_high));
 }
 
 void check_identify(IdentifyRequest& request) {
@@ -249,25 +268,52 @@ std::string logs_in_words(const std::vector<std::string>& logs) {
     return logs.size() == 1 ? logs.front() : fmt::format("{} and {} more", logs.front(), logs.size() - 1);
 }
 
+// A joint whose logs do not do is left out, and its logs with it; of one joint that is an error.
+std::vector<Identification> identified_joints(const IdentifyRequest& request, const CommonOptions& common,
+                                              std::vector<Joint>& joints) {
+    std::vector<Identification> found;
+    std::vector<LeftOutJoint> left_out;
+    std::vector<Joint> kept;
+    std::exception_ptr first_error;
+    const std::size_t all = joints.size();
+    // How long one joint takes cannot be told beforehand.
+    Progress::current().begin("looking for lines", "joints", all > 1 ? all : 0);
+    for (Joint& joint : joints) {
+        try {
+            found.push_back(identified_joint(joint, request));
+            say_other_ratio(request, about(common, joint.name), found.back());
+            kept.push_back(std::move(joint));
+        } catch (const DataError& error) {
+            if (!first_error) first_error = std::current_exception();
+            left_out.push_back({joint.name, error.what()});
+        }
+        if (all > 1) Progress::current().add(1);
+    }
+    if (common.messages) common.messages->say_all(all);
+    if (found.empty() && first_error) std::rethrow_exception(first_error);
+    say_left_out(request.common, left_out);
+    joints = std::move(kept);
+    return found;
+}
+
 ExitCode run_identify(IdentifyRequest& request, const std::string& command_line) {
     check_identify(request);
     hash_where_told(request.common, request.plot);
     Provenance provenance{{}, command_line};
-    std::vector<Identification> found;
-    const std::vector<Joint> joints = read_all_joints(request, provenance);
-    // How long one joint takes cannot be told beforehand.
-    Progress::current().begin("looking for lines", "joints", joints.size() > 1 ? joints.size() : 0);
-    for (const Joint& joint : joints) {
-        found.push_back(identified_joint(joint, request));
-        say_other_ratio(request, found.back());
-        if (joints.size() > 1) Progress::current().add(1);
-    }
-
-    if (request.plot.wanted() && found.size() > 1)
-        raise<UsageError>("--plot draws one joint, and --joint all found {}; name one", found.size());
+    CommonOptions common = request.common;
+    std::vector<Joint> joints = read_all_joints(request, common, provenance);
+    if (joints.size() > 1 && request.plot.path && !names_joint(*request.plot.path))
+        raise<UsageError>(
+            "--plot {}: a picture shows one joint, and the log has {}; say which with --joint, or put {} "
+            "into "
+            "the name",
+            *request.plot.path, joints.size(), joint_mark);
+    const std::vector<Identification> found = identified_joints(request, common, joints);
     std::string text;
     for (std::size_t i = 0; i < found.size(); ++i)
-        text += (text.empty() ? "" : "\n") + identification_report(found[i], log_names(joints[i]));
+        text +=
+            (text.empty() ? "" : "\n") + in_torque_unit(identification_report(found[i], log_names(joints[i])),
+                                                        joints[i].logs.front().recording.torque_unit);
     const bool json_file = ends_with_json(request.common.output);
     if ((request.common.json || json_file) && names_joint(request.common.output)) {
         for (const Identification& one : found)
@@ -281,8 +327,12 @@ ExitCode run_identify(IdentifyRequest& request, const std::string& command_line)
         };
         write_result(request.common, json, text);
     }
-    draw_plot(request.plot, request.common, provenance,
-              [&] { return identification_figure(logs_in_words(request.logs), found.front()); });
+    for (const Identification& one : found) {
+        PlotRequest plot = request.plot;
+        if (plot.path && names_joint(*plot.path)) plot.path = with_joint(*plot.path, one.joint);
+        draw_plot(plot, request.common, provenance,
+                  [&] { return identification_figure(logs_in_words(request.logs), one); });
+    }
     const bool conclusive =
         std::all_of(found.begin(), found.end(), [](const Identification& one) { return one.conclusive; });
     return conclusive || !request.require_conclusive ? ExitCode::done : ExitCode::inconclusive;

@@ -45,7 +45,8 @@ std::string first_sentence(const LogInfo& log) {
         const JointInfo& joint = log.joints.front();
         if (!joint.joint.empty()) text += fmt::format(", joint {}", joint.joint);
         if (joint.speed_deg_s) text += fmt::format(", speed {} deg/s", range_text(joint.speed_deg_s));
-        if (joint.torque_nm) text += fmt::format(", torque {} Nm", range_text(joint.torque_nm));
+        if (joint.torque_nm)
+            text += fmt::format(", torque {} {}", range_text(joint.torque_nm), joint.recording.torque_unit);
         if (!joint.speed_deg_s && !joint.torque_nm && !joint.position_deg) {
             text += ", no column known as velocity, torque or position";
         } else if (!joint.torque_nm) {
@@ -85,8 +86,12 @@ std::string clock_factor_text(const std::optional<double>& factor) {
 }
 
 std::string joints_in_log(const LogInfo& log) {
-    std::vector<std::vector<std::string>> rows = {
-        {"joint", "speed deg/s", "torque Nm", "turns", "steady", "held", "position/velocity"}};
+    const bool currents = std::any_of(log.joints.begin(), log.joints.end(), [](const JointInfo& joint) {
+        return joint.recording.torque_unit != "Nm";
+    });
+    std::vector<std::vector<std::string>> rows = {{"joint", "speed deg/s",
+                                                   currents ? "torque A" : "torque Nm", "turns", "steady",
+                                                   "held", "position/velocity"}};
     for (const JointInfo& joint : log.joints) {
         const auto steady = std::count_if(joint.stretches.begin(), joint.stretches.end(),
                                           [](const SteadyStretch& s) { return !s.rest; });
@@ -98,21 +103,22 @@ std::string joints_in_log(const LogInfo& log) {
     return text_table(rows, "lrrrrrr");
 }
 
-std::string columns_table(const LogInfo& log) {
+// With `all`, what is not used is listed too, with the reason.
+std::string columns_table(const LogInfo& log, bool all) {
     const auto& columns = log.layout.columns;
     std::vector<std::vector<std::string>> rows = {{"column", "name", "is", "unit", "joint"}};
     std::size_t others = 0;
     for (std::size_t c = 0; c < columns.size(); ++c) {
         const Column& column = columns[c];
-        if (column.role == Role::other && columns.size() > all_columns_up_to) {
+        const bool used = column.role != Role::other;
+        if (!used && !all && columns.size() > all_columns_up_to) {
             ++others;
             continue;
         }
-        rows.push_back(
-            {std::to_string(c + 1), column.name.empty() ? "(no name)" : column.name,
-             std::string(role_name(column.role)),
-             column.role == Role::other ? "" : column.unit + (column.unit_assumed ? " (assumed)" : ""),
-             column.joint});
+        rows.push_back({std::to_string(c + 1), column.name.empty() ? "(no name)" : column.name,
+                        all && !used ? "not used: " + column.unused : std::string(role_name(column.role)),
+                        used || all ? column.unit + (column.unit_assumed ? " (assumed)" : "") : "",
+                        column.joint});
     }
     std::string text = text_table(rows, "rllll");
     if (others > 0) text += fmt::format("and {} other columns\n", others);
@@ -136,7 +142,7 @@ std::string contents_table(const LogInfo& log) {
 }
 
 // One screen about a log, a sentence first. Wide files list only the columns that mean something.
-std::string info_to_text(const LogInfo& log) {
+std::string info_to_text(const LogInfo& log, bool all_columns) {
     std::string text = first_sentence(log);
     text += fmt::format("\nclock     {}\n", clock_text(log));
     if (log.layout.outside) {
@@ -149,7 +155,7 @@ std::string info_to_text(const LogInfo& log) {
     if (log.bad_values_held > 0)
         text += fmt::format("held      {} bad values replaced by the value before\n", log.bad_values_held);
     text += '\n' + joints_in_log(log);
-    text += '\n' + columns_table(log);
+    text += '\n' + columns_table(log, all_columns);
     if (!log.layout.contents.empty()) text += contents_table(log);
     text += "\ngood for\n";
     for (const Use& use : log.uses) {
@@ -188,7 +194,8 @@ ExitCode run_info(const InfoRequest& request, const std::string& command_line) {
     if (request.common.json) {
         text = info_to_json(logs, provenance);
     } else {
-        text = joined(logs, "\n", info_to_text);
+        text =
+            joined(logs, "\n", [&](const LogInfo& log) { return info_to_text(log, request.common.verbose); });
         if (const auto missing = formats_not_built(); !missing.empty())
             text += fmt::format("\nnot in this build: {}\n", fmt::join(missing, ", "));
     }

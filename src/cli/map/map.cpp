@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "cli/command.hpp"
+#include "cli/options/joint_runs.hpp"
 #include "cli/options/plot_request.hpp"
 #include "cli/options/verdict_options.hpp"
 #include "cli/talk.hpp"
@@ -158,8 +159,10 @@ ExitCode run_map_once(const MapRequest& request, const std::string& command_line
     fit.map.temperature_column = request.temperature.value_or("");
     for (const std::string& note : fit.notes) say(request.common, note);
     const std::string heading = request.heads ? fit.map.joint + ": " : "";
+    const std::string& unit = read.logs.front().recording.torque_unit;
     write_result(
-        request.common, [&] { return map_text(fit, provenance); }, heading + map_report(fit, request.logs));
+        request.common, [&] { return in_torque_unit(map_text(fit, provenance), unit); },
+        in_torque_unit(heading + map_report(fit, request.logs), unit));
     draw_plot(request.plot, request.common, provenance, [&] {
         if (fit.map.orders.empty())
             raise<DataError>("--plot: the map is empty, there is nothing to draw: {}", map_verdict(fit));
@@ -196,15 +199,16 @@ ExitCode run_or_complain(const MapRequest& request, const std::string& command_l
 // Each joint of the first log by itself, with files of its own. The exit code is that of the first joint that
 // failed; where none did, what the maps come to.
 ExitCode run_each(const MapRequest& request, const std::string& command_line) {
-    constexpr std::size_t for_names = 4096;  // rows
     check_each(request);
-    ReadOptions options = request.log;
-    options.takes_motor_units = true;
     ExitCode maps = ExitCode::done;
     std::optional<ExitCode> failed;
-    for (const Log& log : read_joints_in_part(request.logs.front(), options, for_names)) {
+    const AskedJoints joints = joints_asked_for(request.logs.front(), request.log);
+    say_left_out(request.common, joints.left_out);
+    const auto messages = std::make_shared<JointMessages>();
+    for (const std::string& joint : joints.names) {
         MapRequest one = request;
-        const std::string& joint = log.trace.joint;
+        one.common.joint = joint;
+        one.common.messages = messages;
         one.log.joint = joint;
         one.heads = true;
         one.common.output = with_joint(request.common.output, joint);
@@ -216,11 +220,13 @@ ExitCode run_each(const MapRequest& request, const std::string& command_line) {
         else if (!failed)
             failed = code;
     }
+    messages->say_all(joints.names.size());
     return failed.value_or(maps);
 }
 
 ExitCode run_map(const MapRequest& request, const std::string& command_line) {
-    return request.log.joint == "all" ? run_each(request, command_line) : run_map_once(request, command_line);
+    return asks_for_several(request.logs.front(), request.log) ? run_each(request, command_line)
+                                                               : run_map_once(request, command_line);
 }
 
 std::function<ExitCode()> attach_map(Options& options) {

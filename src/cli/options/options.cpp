@@ -221,8 +221,24 @@ std::string Options::command_line() const {
     return line;
 }
 
-std::string Options::log_words(const std::optional<std::string>& from,
-                               const std::optional<std::string>& to) const {
+std::vector<std::string> Options::given(const std::string& first, const std::string& last) const {
+    const std::vector<CLI::Option*> all = implementation_.command->get_options();
+    const auto at = [&](const std::string& name) {
+        return std::find(all.begin(), all.end(), implementation_.command->get_option(name));
+    };
+    std::vector<std::string> words;
+    for (auto option = at(first); option <= at(last); ++option) {
+        const bool is_flag = (*option)->get_items_expected_max() == 0;
+        for (const std::string& value : (*option)->results()) {
+            words.push_back((*option)->get_name());
+            if (!is_flag) words.push_back(value);
+        }
+    }
+    return words;
+}
+
+std::string Options::log_words(const std::optional<std::string>& from, const std::optional<std::string>& to,
+                               const std::optional<std::string>& joint) const {
     std::vector<CLI::Option*> all = implementation_.command->get_options();
     const auto at = [&](const char* name) {
         return std::find(all.begin(), all.end(), implementation_.command->get_option(name));
@@ -239,6 +255,7 @@ std::string Options::log_words(const std::optional<std::string>& from,
         std::vector<std::string> values = option->results();
         if (name == "--from" && from) values = {*from};
         if (name == "--to" && to) values = {*to};
+        if (name == "--joint" && joint) values = {*joint};
         for (std::string& value : values) {
             if (name == "--sample-rate")
                 value = shortest(parse_quantity(value, Dimension::frequency, name)) + "Hz";
@@ -285,8 +302,41 @@ void attach_common(Options& options, CommonOptions& common, const OutputNames& n
     attach_manner(options, common);
 }
 
+std::string joints_in_words(std::span<const std::string> joints) {
+    return fmt::format("joint{} {}", joints.size() == 1 ? "" : "s", fmt::join(joints, ", "));
+}
+
+void JointMessages::add(const std::string& joint, bool is_warning, std::string_view sentence) {
+    auto same = std::find_if(messages_.begin(), messages_.end(), [&](const Message& known) {
+        return known.is_warning == is_warning && known.sentence == sentence;
+    });
+    if (same == messages_.end()) same = messages_.insert(same, {is_warning, std::string(sentence), {}});
+    if (std::find(same->joints.begin(), same->joints.end(), joint) == same->joints.end())
+        same->joints.push_back(joint);
+}
+
+void JointMessages::say_all(std::size_t joints) {
+    for (const Message& one : messages_) {
+        const bool of_all = one.joints.size() == joints;
+        talk(fmt::format("{}: {}{}{}", tool_name, one.is_warning ? "warning: " : "",
+                         of_all ? "" : joints_in_words(one.joints) + ": ", one.sentence));
+    }
+    messages_.clear();
+}
+
+namespace {
+
+void say_or_gather(const CommonOptions& common, bool is_warning, std::string_view sentence) {
+    if (common.messages)
+        common.messages->add(common.joint, is_warning, sentence);
+    else
+        talk(fmt::format("{}: {}{}", tool_name, is_warning ? "warning: " : "", sentence));
+}
+
+}  // namespace
+
 void warn(const CommonOptions& common, std::string_view sentence) {
-    if (!common.quiet) talk(fmt::format("{}: warning: {}", tool_name, sentence));
+    if (!common.quiet) say_or_gather(common, true, sentence);
 }
 
 void say_warnings(const CommonOptions& common, std::span<const std::string> warnings) {
@@ -298,7 +348,7 @@ void say_warnings(const CommonOptions& common, std::span<const LogWarning> warni
 }
 
 void say(const CommonOptions& common, std::string_view sentence) {
-    if (common.verbose && !common.quiet) talk(fmt::format("{}: {}", tool_name, sentence));
+    if (common.verbose && !common.quiet) say_or_gather(common, false, sentence);
 }
 
 void write_result(const CommonOptions& common, const std::function<std::string()>& json,
@@ -413,8 +463,9 @@ void attach_log_columns(Options& options, ReadOptions& log) {
     options.parsed(
         "--to", [&log](Text text) { log.range.to = parse_time_point(text, "--to"); }, "TIME",
         "rows after are as if they were not there; the row at TIME counts");
-    options.text("--joint", log.joint, "NAME",
-                 "which joint of a file that holds several; all runs each where possible");
+    options.parsed(
+        "--joint", [&log](Text text) { log.joint = log.joint ? *log.joint + "," + text : text; }, "JOINTS",
+        "which joints of a file that holds several: a name or number, j1,j3-j5, or all; repeatable", true);
     options.parsed(
         "--columns", [&log](Text text) { log.columns = split_outside_brackets(text); }, "LIST",
         "what the columns are: by place 'time,velocity,torque' (- skips one), or by name 'torque=tau_J'");

@@ -90,9 +90,12 @@ class Options {
     /// provenance.
     [[nodiscard]] std::string command_line() const;
     /// The options of attach_log() that are given, each with a blank before it, for command lines that people
-    /// paste; `from` and `to` take the place of --from and --to.
+    /// paste; `from`, `to` and `joint` take the place of --from, --to and --joint.
     [[nodiscard]] std::string log_words(const std::optional<std::string>& from = {},
-                                        const std::optional<std::string>& to = {}) const;
+                                        const std::optional<std::string>& to = {},
+                                        const std::optional<std::string>& joint = {}) const;
+    /// The options from `first` to `last`, in the order of their declaration, as words as they were given.
+    [[nodiscard]] std::vector<std::string> given(const std::string& first, const std::string& last) const;
 
   private:
     void names_file(std::string_view names, std::string_view type_name);
@@ -103,8 +106,30 @@ class Options {
     Implementation& implementation_;
 };
 
+/// What is said while a command goes over the joints of a log, gathered: a sentence is said once, with the
+/// joints that it is about where these are not all.
+class JointMessages {
+  public:
+    void add(const std::string& joint, bool is_warning, std::string_view sentence);
+    /// In the order of their first joints, and no more afterwards. `joints`: how many were gone over.
+    void say_all(std::size_t joints);
+
+  private:
+    struct Message {
+        bool is_warning;
+        std::string sentence;
+        std::vector<std::string> joints;
+    };
+    std::vector<Message> messages_;
+};
+/// "joint j1", "joints j1, j3".
+[[nodiscard]] std::string joints_in_words(std::span<const std::string> joints);
+
 /// What every command has.
 struct CommonOptions {
+    /// Of a command that goes over several joints: the one that is spoken of, and what gathers the messages.
+    std::string joint = {};
+    std::shared_ptr<JointMessages> messages = {};
     std::string output = "-";
     bool json = false, quiet = false, verbose = false, force = false, no_sync = false;
     [[nodiscard]] ByteSink::Overwrite overwrite() const { return {force, !no_sync}; }

@@ -26,7 +26,7 @@ void attach_gear(Options& options, GearOptions& gear, const GearHelp& help) {
 }
 
 ReadOptions read_options(ReadOptions log, const std::optional<GearAccount>& gear) {
-    if (gear) log.gear_ratio = gear->ratio.value();
+    if (gear && gear->ratio.value() > 0.0) log.gear_ratio = gear->ratio.value();
     return log;
 }
 

@@ -13,6 +13,7 @@
 #include <string>
 
 #include "cli/command.hpp"
+#include "cli/options/joint_runs.hpp"
 #include "cli/options/lists.hpp"
 #include "cli/options/options.hpp"
 #include "cli/options/verdict_options.hpp"
@@ -183,8 +184,12 @@ struct RecommendRequest {
     CommonOptions common;
     ReadOptions log_options;
     /// The options that read the log, or the part of it between these times.
-    std::function<std::string(const std::optional<std::string>& from, const std::optional<std::string>& to)>
-        log_words;
+    [[nodiscard]] std::string log_words(const std::optional<std::string>& from,
+                                        const std::optional<std::string>& to) const {
+        return options->log_words(from, to, joint);
+    }
+    const Options* options = nullptr;
+    std::optional<std::string> joint;  ///< one of several
     std::string log;
     std::optional<std::string> target, temperature;
     GearOptions gear;
@@ -205,8 +210,6 @@ void check_recommend(const RecommendRequest& request) {
     if (request.log == "-")
         raise<UsageError>(
             "recommend reads the log three times; standard input can be read once: name a file");
-    if (request.log_options.joint == "all")
-        raise<UsageError>("--joint all: recommend looks at one joint; name it");
     if (!(request.train_percent >= 10.0 && request.train_percent <= 90.0))
         raise<UsageError>("--train {} % is not from 10 to 90", shortest(request.train_percent));
     if (request.limits.max_delay && !(request.limits.max_delay->value() >= 0.0))
@@ -431,15 +434,29 @@ RecommendationReport report_of(const RecommendRequest& request, Provenance& prov
     return report;
 }
 
-ExitCode run_recommend(const RecommendRequest& request, const std::string& command_line) {
-    check_recommend(request);
+JointResult recommend_for_joint(const RecommendRequest& request, const std::string& command_line) {
     Provenance provenance{{}, command_line};
     const RecommendationReport report = report_of(request, provenance);
-    write_text(request.common.output,
-               request.common.json ? recommendation_text(report, provenance) : recommendation_view(report),
-               request.common.overwrite());
-    if (report.found.finding == RecommendationFinding::out_of_reach) return ExitCode::limit_violated;
-    return report.conclusive || !request.require_conclusive ? ExitCode::done : ExitCode::inconclusive;
+    JointResult result{in_torque_unit(
+        request.common.json ? recommendation_text(report, provenance) : recommendation_view(report),
+        provenance.recordings.front().torque_unit)};
+    if (report.found.finding == RecommendationFinding::out_of_reach)
+        result.code = ExitCode::limit_violated;
+    else if (request.require_conclusive && !report.conclusive)
+        result.code = ExitCode::inconclusive;
+    return result;
+}
+
+ExitCode run_recommend(const RecommendRequest& request, const std::string& command_line) {
+    check_recommend(request);
+    return run_joints({request.log, request.log_options, request.common, nullptr, "recommendations"},
+                      [&](const std::optional<std::string>& joint, const CommonOptions& common) {
+                          RecommendRequest one = request;
+                          one.common = common;
+                          if (joint) one.joint = one.log_options.joint = joint;
+                          one.gear.joint_file = of_joint(request.gear.joint_file, joint);
+                          return recommend_for_joint(one, command_line);
+                      });
 }
 
 std::function<ExitCode()> attach_recommend(Options& options) {
@@ -464,7 +481,7 @@ std::function<ExitCode()> attach_recommend(Options& options) {
     options.flag("--require-conclusive", request->require_conclusive,
                  "exit with code 5 when the log does not settle it");
     attach_log(options, request->log_options);
-    request->log_words = [&options](const auto& from, const auto& to) { return options.log_words(from, to); };
+    request->options = &options;
     attach_common(options, request->common, {"a recommendation", ".txt .json", true});
     return [request, &options] { return run_recommend(*request, options.command_line()); };
 }

@@ -2,13 +2,17 @@
 // ripplenotch report: one self-contained HTML page from any mix of results.
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <memory>
 
 #include "cli/command.hpp"
+#include "cli/options/verdict_options.hpp"
+#include "cli/report/log_report.hpp"
 #include "ripplenotch/core/files.hpp"
 #include "ripplenotch/page/page.hpp"
 
@@ -16,6 +20,8 @@ namespace ripplenotch {
 namespace {
 
 struct ReportRequest {
+    ReadOptions reading;
+    GearOptions gear;
     std::vector<std::string> results;
     std::string output = "-", title = "ripplenotch report";
     std::optional<std::string> plotly;
@@ -53,12 +59,21 @@ std::optional<std::string> plotly_js_of(const ReportRequest& request) {
     return text;
 }
 
-ExitCode run_report(const ReportRequest& request) {
+ExitCode run_report(const ReportRequest& request, const Options& options) {
     if (ends_with_json(request.output))
         raise<UsageError>("-o {}: a report is an HTML page; name it .html", request.output);
     check_output_name(request.output, "a report", ".html .htm");
+    if (request.results.size() > 1 && std::any_of(request.results.begin(), request.results.end(), is_log))
+        raise<UsageError>("a report is one of a log, or one of results; read {}",
+                          fmt::join(request.results, ", "));
     Page page{request.title, {}};
     for (const std::string& path : request.results) {
+        if (is_log(path)) {
+            page.sections = sections_of_log({path, options.given("--format", "--hold-bad-values"),
+                                             options.given("--gear-ratio", "--joint-file"),
+                                             options.given("--gear-ratio", "--gear-ratio"), request.quiet});
+            continue;
+        }
         for (PageSection& section : sections_of_result(read_all(path), path == "-" ? "standard input" : path))
             page.sections.push_back(std::move(section));
     }
@@ -69,10 +84,10 @@ ExitCode run_report(const ReportRequest& request) {
 
 std::function<ExitCode()> attach_report(Options& options) {
     const auto request = std::make_shared<ReportRequest>();
-    options.arguments(
-        "RESULT", request->results, true,
-        "JSON that commands wrote: joint.json, table.json, metrics, comparisons, diagnoses, figures "
-        "(--plot FILE.json); - is standard input");
+    options.arguments("RESULT", request->results, true,
+                      "a log, of which info, identify, recommend, compare and filter are run; or JSON that "
+                      "commands wrote: joint.json, table.json, metrics, comparisons, diagnoses, figures "
+                      "(--plot FILE.json); - is standard input");
     options.text("-o,--output", request->output, "FILE", "where the page goes; - is standard output");
     options.writes("-o");
     options.text("--title", request->title, "TEXT", "of the page");
@@ -82,18 +97,22 @@ std::function<ExitCode()> attach_report(Options& options) {
     options.flag("--force", request->force, "overwrite existing files");
     options.flag("--no-sync", request->no_sync, "do not wait until the page is on the disk");
     options.flag("-q,--quiet", request->quiet, "no warnings on standard error");
-    return [request] { return run_report(*request); };
+    attach_gear(options, request->gear);
+    attach_log(options, request->reading);
+    return [request, &options] { return run_report(*request, options); };
 }
 
 }  // namespace
 
 const Command commands::report{
     .name = "report",
-    .summary = "one HTML page from any mix of results",
+    .summary = "one HTML page on a log, or from any mix of results",
     .description =
-        "Puts results into one self-contained page: verdicts first, key numbers, plots to zoom into, tables, "
+        "Of a log: which ripple is in it, which filter it needs, and what that filter does. Of results: puts "
+        "results into one self-contained page: verdicts first, key numbers, plots to zoom into, tables, "
         "and the "
         "command\nthat makes each again. The page loads nothing from anywhere.\n"
+        "Example: ripplenotch report log.csv -o page.html\n"
         "Example: ripplenotch report joint.json table.json torque.json -o page.html",
     .attach = attach_report,
 };

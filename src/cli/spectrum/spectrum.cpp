@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "cli/command.hpp"
+#include "cli/options/joint_runs.hpp"
 #include "cli/options/options.hpp"
 #include "cli/options/plot_request.hpp"
 #include "cli/options/verdict_options.hpp"
@@ -521,6 +522,21 @@ Made whole_result(const SpectrumRequest& request, const std::string& command_lin
             provenance};
 }
 
+JointResult spectrum_of_joint(const SpectrumRequest& request, const std::string& command_line) {
+    auto [made, provenance] =
+        request.in_pieces() ? piecewise_result(request, command_line) : whole_result(request, command_line);
+    const bool is_table = request.peaks || request.common.json;  // and not bins by the thousand
+    JointResult result{is_table
+                           ? in_torque_unit(std::move(made.text), provenance.recordings.front().torque_unit)
+                           : std::move(made.text)};
+    // A figure in the terminal takes the place of the bins, and not that of the tables.
+    if (!request.peaks && request.plot.instead_of(request.common.output)) result.write = [] {};
+    result.afterwards = [request, provenance = std::move(provenance), figure = std::move(made.figure)] {
+        draw_plot(request.plot, request.common, provenance, figure);
+    };
+    return result;
+}
+
 ExitCode run_spectrum(SpectrumRequest& request, const std::string& command_line) {
     if (!(request.false_alarm > 0.0) || request.false_alarm > 0.5) {
         raise<UsageError>("--false-alarm {} is not between 0 and 0.5", shortest(request.false_alarm));
@@ -531,12 +547,17 @@ ExitCode run_spectrum(SpectrumRequest& request, const std::string& command_line)
         (request.stretch || request.segment || request.peaks || request.domain != "frequency"))
         raise<UsageError>("--map goes with neither --domain, --stretch, --segment nor --peaks");
     if (request.peaks) check_output_name(request.common.output, "a table of lines", ".txt .json");
-    const auto [result, provenance] =
-        request.in_pieces() ? piecewise_result(request, command_line) : whole_result(request, command_line);
-    if (request.peaks || !request.plot.instead_of(request.common.output))
-        write_text(request.common.output, result.text, request.common.overwrite());
-    draw_plot(request.plot, request.common, provenance, result.figure);
-    return ExitCode::done;
+    ReadOptions log = request.log;
+    take_joint_of(request.residual, log.joint);
+    return run_joints({request.path, log, request.common, &request.plot, "spectra", !request.peaks},
+                      [&](const std::optional<std::string>& joint, const CommonOptions& common) {
+                          SpectrumRequest one = request;
+                          one.common = common;
+                          if (joint) one.log.joint = joint;
+                          one.plot.path = of_joint(request.plot.path, joint);
+                          one.map.gear.joint_file = of_joint(request.map.gear.joint_file, joint);
+                          return spectrum_of_joint(one, command_line);
+                      });
 }
 
 std::function<ExitCode()> attach_spectrum(Options& options) {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "cli/command.hpp"
+#include "cli/options/joint_runs.hpp"
 #include "cli/options/plot_request.hpp"
 #include "cli/options/verdict_options.hpp"
 #include "cli/talk.hpp"
@@ -19,6 +20,7 @@
 #include "ripplenotch/analysis/vold_kalman.hpp"
 #include "ripplenotch/chart/track_figure.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/visible_text.hpp"
 #include "ripplenotch/document/spectrum_json.hpp"
 #include "ripplenotch/log/log.hpp"
 #include "ripplenotch/verdict/gear_choice.hpp"
@@ -102,7 +104,6 @@ void check_track(const TrackRequest& request) {
         raise<UsageError>("--window and --window-turns exclude each other");
     if (request.speed_step && request.against != "speed")
         raise<UsageError>("--speed-step belongs to --against speed");
-    if (request.log.joint == "all") raise<UsageError>("--joint all: track looks at one joint; name it");
 }
 
 void read_gear(TrackRequest& request, Provenance& provenance) {
@@ -185,8 +186,7 @@ void track_by_vold_kalman(const TrackRequest& request, const Prepared& prepared,
     report.tracks = std::move(found.tracks);
 }
 
-void write_columns(const TrackRequest& request, const TrackReport& report) {
-    const LogFormat& format = output_format(request.common.output, std::nullopt);
+std::vector<NumberColumn> columns_of(const TrackReport& report) {
     std::vector<NumberColumn> columns;
     for (TrackColumn& column : track_columns(report)) {
         if (!column.name.ends_with("time_s")) {
@@ -194,9 +194,29 @@ void write_columns(const TrackRequest& request, const TrackReport& report) {
         }
         columns.push_back({column.name, std::move(column.values)});
     }
+    return columns;
+}
+
+void write_columns(const TrackRequest& request, const TrackReport& report) {
+    const LogFormat& format = output_format(request.common.output, std::nullopt);
+    const std::vector<NumberColumn> columns = columns_of(report);
     ByteSink sink(request.common.output, request.common.overwrite(), format.binary);
     format.write_columns(sink, columns);
     sink.finish();
+}
+
+// The same as text, for the rows of several joints below one another.
+std::string csv_of(const TrackReport& report) {
+    const std::vector<NumberColumn> columns = columns_of(report);
+    std::string text = joined(columns, ",", [](const NumberColumn& column) { return column.name; }) + "\n";
+    for (std::size_t row = 0; row < columns.front().values.size(); ++row) {
+        for (std::size_t c = 0; c < columns.size(); ++c) {
+            if (c > 0) text += ',';
+            append_shortest(text, columns[c].values[row]);
+        }
+        text += '\n';
+    }
+    return text;
 }
 
 Figure figure_of(const TrackRequest& request, const TrackReport& report) {
@@ -265,9 +285,7 @@ TrackReport track_report_of(const TrackRequest& request, const Prepared& prepare
     return report;
 }
 
-ExitCode run_track(TrackRequest& request, const std::string& command_line) {
-    check_track(request);
-    hash_where_told(request.common, request.plot);
+JointResult track_joint(TrackRequest request, const std::string& command_line, bool one_of_several) {
     Provenance provenance{{}, command_line};
     read_gear(request, provenance);
     const Log log = read_log_in_part(request.path, read_options(request.log, request.gear));
@@ -281,14 +299,44 @@ ExitCode run_track(TrackRequest& request, const std::string& command_line) {
         raise<DataError>("{}: no row could be measured: {}", request.path, why_nothing_tracked(report));
     if (request.against == "speed")
         report.by_speed = gather_by_speed(report.tracks, request.speed_step.value_or(DegPerSec(0.0)));
+    JointResult result;
     if (request.common.json) {
-        write_text(request.common.output, track_text(report, provenance), request.common.overwrite());
+        result.text = in_torque_unit(track_text(report, provenance), log.recording.torque_unit);
     } else {
-        say(request.common, report.doubt + track_verdict(report));
-        if (!request.plot.instead_of(request.common.output)) write_columns(request, report);
+        say(request.common, in_torque_unit(report.doubt + track_verdict(report), log.recording.torque_unit));
+        if (one_of_several) result.text = csv_of(report);
+        result.write = [request, report] {
+            if (!request.plot.instead_of(request.common.output)) write_columns(request, report);
+        };
     }
-    draw_plot(request.plot, request.common, provenance, [&] { return figure_of(request, report); });
-    return ExitCode::done;
+    result.afterwards = [request, report = std::move(report), provenance] {
+        draw_plot(request.plot, request.common, provenance, [&] { return figure_of(request, report); });
+    };
+    return result;
+}
+
+// An array has no column for a name.
+void require_text_of_several(const TrackRequest& request) {
+    if (request.common.json || names_joint(request.common.output)) return;
+    if (output_format(request.common.output, std::nullopt).name != "csv")
+        raise<UsageError>("-o {}: an array is of one joint; say which with --joint, or put {} into the name",
+                          request.common.output, joint_mark);
+}
+
+ExitCode run_track(const TrackRequest& request, const std::string& command_line) {
+    check_track(request);
+    hash_where_told(request.common, request.plot);
+    return run_joints({request.path, request.log, request.common, &request.plot, "tracks", true},
+                      [&](const std::optional<std::string>& joint, const CommonOptions& common) {
+                          TrackRequest one = request;
+                          one.common = common;
+                          if (joint) one.log.joint = joint;
+                          one.plot.path = of_joint(request.plot.path, joint);
+                          one.gear_options.joint_file = of_joint(request.gear_options.joint_file, joint);
+                          const bool several = common.messages != nullptr;
+                          if (several) require_text_of_several(request);
+                          return track_joint(std::move(one), command_line, several);
+                      });
 }
 
 std::function<ExitCode()> attach_track(Options& options) {

@@ -102,7 +102,9 @@ class Residual {
                                   {},
                                   rms_nm,
                                   part(rms_nm, bench_.samples())};
-            if (line.by_angle) {
+            if (line.by_angle && !(ratio.value() > 0.0)) {
+                region.where.order_output.push_back(line.frequency * 360.0);
+            } else if (line.by_angle) {
                 region.where.order.push_back(line.frequency * 360.0 / ratio.value());
             } else {
                 region.where.hz.push_back(line.frequency);

@@ -136,7 +136,9 @@ std::set<std::string_view> in_doubt(const Diagnosis& diagnosis) {
     for (const Tie& tie : diagnosis.ambiguous) names.insert(tie.effects.begin(), tie.effects.end());
     for (const Finding& finding : diagnosis.rounds)
         if (is_doubtful(finding)) names.insert(finding.term.effect->name);
-    for (const Undecidable& entry : diagnosis.undecidable) names.insert(entry.effect);
+    for (const Undecidable& entry : diagnosis.undecidable)
+        if (diagnosis.model.has_gear_ratio() || !needs_gear_ratio(find_effect(entry.effect)))
+            names.insert(entry.effect);
     return names;
 }
 
@@ -363,7 +365,11 @@ void name_findings(Diagnosis& diagnosis, const DiagnosisRules& rules) {
         for (const RivalFinding& rival : finding.alternatives) {
             if (rival.margin >= rules.judge.tie_margin) continue;
             tie.effects.emplace_back(rival.effect);
-            if (tie.advice.empty()) tie.advice = what_would_tell(effect, find_effect(rival.effect));
+            const Effect& other = find_effect(rival.effect);
+            if (tie.advice.empty())
+                tie.advice = !diagnosis.model.has_gear_ratio() && needs_gear_ratio(other)
+                                 ? "the gear ratio, --gear-ratio N,"
+                                 : what_would_tell(effect, other);
         }
         if (ties.insert({tie.effects.begin(), tie.effects.end()}).second) diagnosis.ambiguous.push_back(tie);
     }

@@ -59,6 +59,8 @@ void describe(JsonWriter& json, const Recording& recording) {
     const auto timed = [&](const Hertz& rate) { return clock.nominal_rate.value() > 0.0 ? &rate : nullptr; };
     json("source", recording.source);
     json("joint", recording.joint, null_if_empty);
+    // Numbers that are named _nm are in it.
+    if (recording.torque_unit != "Nm") json("torque_unit", recording.torque_unit);
     json("rows", recording.rows());
     json("nominal_rate_hz", timed(clock.nominal_rate), fitted);
     json("mean_rate_hz", timed(clock.mean_rate), fitted);
@@ -142,10 +144,11 @@ Json parse_document(std::string_view text, const std::string& source, std::strin
 }
 
 AnyDocument parse_any_document(std::string_view text, const std::string& source) {
-    constexpr std::array kinds = {"comparison", "diagnoses", "diagnosis", "effects",        "export",
-                                  "figure",     "frontier",  "info",      "joint",          "joints",
-                                  "map",        "metrics",   "model",     "recommendation", "simulation",
-                                  "spectrum",   "table",     "track",     "trend"};
+    constexpr std::array kinds = {
+        "comparison", "comparisons", "diagnoses",      "diagnosis",       "effects",    "export",
+        "figure",     "frontier",    "info",           "joint",           "joints",     "map",
+        "metrics",    "model",       "recommendation", "recommendations", "simulation", "spectra",
+        "spectrum",   "table",       "track",          "tracks",          "trend"};
     constexpr std::string_view wanted_of_any =
         "a result of ripplenotch such as joint.json or what --json prints";
     Json json = read_json(text, source, wanted_of_any);

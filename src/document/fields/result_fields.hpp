@@ -67,13 +67,30 @@ void describe_term(Archive& archive, Is<Term> auto& term, const Model& model) {
     }
 }
 
+/// What stands for the ratio of a model that has none, and no effect that needs one.
+inline constexpr const char* unknown_gear_ratio = "unknown";
+
 /// "gear_ratio" and "effects"; the caller knows whether the model has a simulation.
 template <class Archive>
 void describe(Archive& archive, Is<Model> auto& model) {
-    archive("gear_ratio", model.gear_ratio, above_zero_up_to(largest_gear_ratio.value()));
+    // "unknown" is said and not left out, so that a ratio that was forgotten is still asked for.
+    bool is_known = model.has_gear_ratio();
+    if constexpr (Archive::reading) {
+        const Json* ratio = archive.find("gear_ratio");
+        is_known = ratio == nullptr || *ratio != unknown_gear_ratio;
+    } else if (!is_known) {
+        archive.put("gear_ratio", unknown_gear_ratio);
+    }
+    if (is_known) archive("gear_ratio", model.gear_ratio, above_zero_up_to(largest_gear_ratio.value()));
     archive.each(
         "effects", model.terms, [&](Archive& entry, auto& term) { describe_term(entry, term, model); },
         AtMost{most_effects});
+    if constexpr (Archive::reading) {
+        for (const Term& term : model.terms)
+            if (!is_known && needs_gear_ratio(*term.effect))
+                raise<DataError>("{} is \"{}\", and {} needs it; state the ratio",
+                                 archive.where("gear_ratio"), unknown_gear_ratio, term.effect->name);
+    }
 }
 
 }  // namespace ripplenotch

@@ -76,6 +76,7 @@ void describe(auto& archive, Is<Place> auto& place) {
     archive("position_deg", place.position_deg, six);
     archive("hz", place.hz, six);
     archive("order", place.order, six);
+    archive("order_output", place.order_output, six, if_any);
     archive("direction", place.direction, Names{direction_name, Direction::both}, null_if_empty);
 }
 
@@ -468,6 +469,40 @@ std::string write_diagnosis(const Diagnosis& diagnosis, const GearAccount& gear,
 std::string write_diagnoses(std::span<const DiagnosedJoint> joints, const Provenance& provenance) {
     return to_fitted_text(
         document_of("diagnoses", provenance, [&](JsonWriter& json) { json("joints", joints); }));
+}
+
+void describe(JsonWriter& json, const TriedFriction& one) {
+    json("effect", one.effect);
+    json("found", one.found);
+    json("chance", one.chance, six);
+}
+
+std::string write_friction(const FrictionDiagnosis& found, const Provenance& provenance) {
+    return to_fitted_text(document_of("friction-table", provenance, [&](JsonWriter& json) {
+        json.each("terms", found.model.terms, [&](JsonWriter& entry, const Term& term) {
+            std::vector<FittedValue> values;
+            const auto place = static_cast<std::size_t>(&term - found.model.terms.data());
+            std::ranges::copy_if(found.values, std::back_inserter(values),
+                                 [place](const FittedValue& value) { return value.term == place; });
+            describe_effect(entry, term.effect);
+            describe_parameters(entry, term, values);
+        });
+        json("tried", found.tried);
+        json("ambiguous", found.ambiguous);
+        json("undecidable", found.undecidable);
+        json("residual_nm", found.residual_nm, six);
+        json("noise_nm", found.noise_nm, six);
+        json("rows", found.rows);
+        json("rows_at_rest", found.rows_at_rest);
+        json("rows_positive", found.positive);
+        json("rows_negative", found.negative);
+        json("speed_deg_s", found.speed_deg_s, six);
+        json("stribeck_examined_deg_s", found.stribeck_deg_s, six);
+        json.group("model", [&](JsonWriter& model) {
+            model.derived("schema", [] { return "ripplenotch/model/1"; });
+            describe(model, found.model);
+        });
+    }));
 }
 
 Diagnosis read_diagnosis(std::string_view text, const std::string& source) {

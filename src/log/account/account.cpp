@@ -351,6 +351,8 @@ Recording Account::recording(const Layout& layout, std::size_t joint) const {
     Recording recording;
     recording.source = layout.source;
     recording.joint = layout.all_chosen()[joint].joint;
+    const auto torque = layout.all_chosen()[joint].torque;
+    if (torque && layout.columns[*torque].current) recording.torque_unit = "A";
     recording.clock = clock_.facts();
     recording.held = joints_[joint].held.held();
     recording.angle = joints_[joint].angle.facts();

@@ -519,7 +519,8 @@ std::string mixed_numberings(const KnownColumns& known) {
     return "";
 }
 
-std::vector<JointGroup> group_joints(const KnownColumns& known, bool joint_asked, bool needs_torque) {
+std::vector<JointGroup> group_joints(const KnownColumns& known, bool joint_asked, bool needs_torque,
+                                     std::vector<JointGroup>& incomplete) {
     std::vector<JointGroup> groups = collect_groups(known, false);
     drop_unasked(known, joint_asked, groups);
     const auto complete = [&](const JointGroup& group) {
@@ -547,9 +548,9 @@ std::vector<JointGroup> group_joints(const KnownColumns& known, bool joint_asked
     }
     const bool any_complete = std::any_of(groups.begin(), groups.end(), complete);
     if (any_complete) {
-        groups.erase(
-            std::remove_if(groups.begin(), groups.end(), [&](const JointGroup& g) { return !complete(g); }),
-            groups.end());
+        const auto rest = std::stable_partition(groups.begin(), groups.end(), complete);
+        incomplete.assign(std::make_move_iterator(rest), std::make_move_iterator(groups.end()));
+        groups.erase(rest, groups.end());
     }
     return groups;
 }

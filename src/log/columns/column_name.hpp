@@ -41,6 +41,11 @@ struct ColumnName {
 /// The same for "j3", "joint3", "J3" and "3"; other names in lower case.
 [[nodiscard]] std::string joint_key(std::string_view joint);
 
+/// The joints of `joints`, in their order, that --joint asks for: "all", or names, numbers and ranges with
+/// commas between them, "j1,j3-j5". Throws UsageError, with the joints that there are.
+[[nodiscard]] std::vector<std::string> select_joints(const std::string& source, const std::string& asked,
+                                                     const std::vector<std::string>& joints);
+
 // A part of decide_layout: which columns belong to one joint, and which of them is its velocity, its torque,
 // its position.
 
@@ -63,13 +68,21 @@ struct KnownColumns {
 
 /// The joints of a file, in its order; those with a torque and a motion alone where there are any, or with a
 /// motion where that is enough. Columns that are named after different things are one joint's unless a joint
-/// was asked for by its name.
+/// was asked for by its name. `incomplete` gets the others.
 [[nodiscard]] std::vector<JointGroup> group_joints(const KnownColumns& known, bool joint_asked,
-                                                   bool needs_torque = true);
+                                                   bool needs_torque, std::vector<JointGroup>& incomplete);
 
 /// A sentence where joints are numbered from 0 for one quantity and from 1 for another, so that equal numbers
 /// are not one joint's; empty otherwise, and where --columns says what belongs together.
 [[nodiscard]] std::string mixed_numberings(const KnownColumns& known);
+
+/// Why this column was taken for nothing: one clause. `joints`: those that may be read; `incomplete`: the
+/// others.
+[[nodiscard]] std::string why_unused(const KnownColumns& known, std::size_t column,
+                                     const std::vector<JointGroup>& joints,
+                                     const std::vector<JointGroup>& incomplete);
+/// What a joint that cannot be read lacks: "it has no torque".
+[[nodiscard]] std::string what_is_missing(const JointGroup& joint);
 
 /// The one column for a role, empty when there is none. Throws DataError where several are equally good.
 [[nodiscard]] std::optional<std::size_t> choose_column(const KnownColumns& known, const JointGroup& group,

@@ -117,9 +117,10 @@ class Decision {
         if (layout_.time_fraction) give_role(*layout_.time_fraction, Role::time, "");
         settle_clock(facts_, layout_.chosen.time && stated_[*layout_.chosen.time], layout_);
         compare_numberings();
-        groups_ = group_joints(known(), options_.joint.has_value(),
-                               !options_.every_joint || options_.torque_of_each);
+        groups_ = group_joints(known(), options_.joint && *options_.joint != "all",
+                               !options_.every_joint || options_.torque_of_each, incomplete_);
         for (const JointGroup& group : groups_) layout_.joints.push_back(group.name);
+        take_asked();
         choose_joint();
         refuse_unscaled();
         infer_motion(facts_, options_, motions_of(known(), groups_, stated_, options_, layout_), layout_);
@@ -127,6 +128,12 @@ class Decision {
         take_constant_speed();
         state_symbols();
         state_units(layout_, facts_, options_);
+        for (std::size_t c = 0; c < facts_.columns; ++c) {
+            Column& column = layout_.columns[c];
+            if (column.role != Role::other) continue;
+            column.unit = names_[c].unit;
+            column.unused = why_unused(known(), c, groups_, incomplete_);
+        }
         report_repeated_names();
         layout_.options = options_line(layout_, facts_, options_);
         return std::move(layout_);
@@ -162,40 +169,48 @@ class Decision {
         layout_.warnings.push_back({"numbering of joints", mixed});
     }
 
+    // Joints without a torque or without a motion can be named, and are left out with the reason.
+    void take_asked() {
+        std::vector<std::string> names = layout_.joints;
+        for (const JointGroup& group : incomplete_) names.push_back(group.name);
+        const std::vector<std::string> asked =
+            options_.joint ? select_joints(source_, *options_.joint, names) : names;
+        for (const std::string& joint : asked) {
+            const auto lacking = std::find_if(incomplete_.begin(), incomplete_.end(),
+                                              [&](const JointGroup& group) { return group.name == joint; });
+            if (lacking == incomplete_.end())
+                layout_.asked.push_back(joint);
+            else
+                layout_.left_out.push_back({joint, what_is_missing(*lacking)});
+        }
+        if (layout_.asked.empty() && !layout_.left_out.empty())
+            raise<UsageError>("--joint {}: {}: joint {}: {}; those that have torque and motion are {}",
+                              *options_.joint, source_, layout_.left_out.front().joint,
+                              layout_.left_out.front().why, fmt::join(layout_.joints, ", "));
+    }
+
     void choose_joint() {
         const JointGroup* group = nullptr;
-        if (options_.joint) {
-            for (const JointGroup& candidate : groups_) {
-                if (candidate.key == joint_key(*options_.joint)) group = &candidate;
-            }
-            if (group == nullptr && groups_.size() == 1 && groups_[0].name.empty()) {
-                raise<UsageError>("--joint {}: {} holds one joint without a name; leave --joint out",
-                                  *options_.joint, source_);
-            }
-            if (group == nullptr) {
-                raise<UsageError>("--joint {}: {} has no such joint; it has {}", *options_.joint, source_,
-                                  layout_.joints.empty()
-                                      ? "none with velocity and torque"
-                                      : fmt::format("{}", fmt::join(layout_.joints, ", ")));
-            }
-        } else if (groups_.size() == 1) {
-            group = &groups_.front();
-        } else if (groups_.size() > 1 && forced_.column_of(Role::torque)) {
+        if (layout_.asked.size() == 1) {
+            group = group_named(layout_.asked.front());
+        } else if (groups_.size() > 1 && !options_.joint && forced_.column_of(Role::torque)) {
             const std::string key = joint_key(names_[*forced_.column_of(Role::torque)].joint);
             for (const JointGroup& candidate : groups_) {
                 if (candidate.key == key) group = &candidate;
             }
+            if (group != nullptr) layout_.asked = {group->name};
         }
-        if (options_.every_joint) {
+        // One that is asked for by its name is read as by a reader of one.
+        if (options_.every_joint &&
+            (!options_.joint || layout_.asked.size() != 1 || *options_.joint == "all")) {
             choose_every_joint();
             return;
         }
-        if (group == nullptr && groups_.size() > 1 && options_.needs_torque) {
+        if (group == nullptr && layout_.asked.size() > 1 && options_.needs_torque) {
             raise<DataError>(
-                "{}: read {} joints ({}), expected one; say which with --joint {} (info, identify, map, "
-                "diagnose "
-                "and filter also take --joint all)",
-                source_, groups_.size(), fmt::join(layout_.joints, ", "), layout_.joints.front());
+                "{}: read {} joints ({}), expected one; say which with --joint {}, or --joint all where the "
+                "command takes several",
+                source_, layout_.asked.size(), fmt::join(layout_.asked, ", "), layout_.asked.front());
         }
         if (group != nullptr) layout_.chosen = columns_of(*group);
         for (const JointGroup& each : groups_) give_roles(each, group == &each ? &layout_.chosen : nullptr);
@@ -272,21 +287,48 @@ class Decision {
         return columns;
     }
 
+    const JointGroup* group_named(const std::string& name) const {
+        const auto at = std::find_if(groups_.begin(), groups_.end(),
+                                     [&](const JointGroup& group) { return group.name == name; });
+        return at == groups_.end() ? nullptr : &*at;
+    }
+
+    bool caller_takes(const std::string& joint) {
+        if (!options_.check_joint) return true;
+        try {
+            options_.check_joint(joint);
+            return true;
+        } catch (const MemoryError&) {
+            throw;
+        } catch (const Error& error) {
+            if (!refusal_) refusal_ = std::current_exception();
+            layout_.left_out.push_back({joint, error.what()});
+            return false;
+        }
+    }
+
     // Joints without a velocity or without a torque have nothing to be filtered.
     void choose_every_joint() {
         for (const Role role : motion_roles) {
-            if (!forced_.column_of(role)) continue;
+            if (!forced_.column_of(role) || layout_.asked.size() < 2) continue;
             raise<UsageError>("--joint all: --columns names one joint's {}; leave one of the two out",
                               role_name(role));
         }
         std::vector<const JointGroup*> groups;
-        for (const JointGroup& group : groups_) {
+        for (const std::string& joint : layout_.asked) {
+            const JointGroup& group = *group_named(joint);
             const JointColumns columns = columns_of(group);
-            if (!columns.velocity && !may_go_without(columns)) continue;
-            if (!columns.torque && options_.torque_of_each) continue;
+            const bool moves = columns.velocity || may_go_without(columns);
+            const bool bears = columns.torque || !options_.torque_of_each;
+            if (!moves || !bears) {
+                layout_.left_out.push_back({joint, what_is_missing(group)});
+                continue;
+            }
+            if (!caller_takes(joint)) continue;
             groups.push_back(&group);
             (groups.size() == 1 ? layout_.chosen : layout_.others.emplace_back()) = columns;
         }
+        if (groups.empty() && refusal_) std::rethrow_exception(refusal_);
         for (const JointGroup& group : groups_) {
             const auto place = std::find(groups.begin(), groups.end(), &group) - groups.begin();
             const auto number = static_cast<std::size_t>(place);
@@ -390,6 +432,7 @@ class Decision {
             column.unit = *usual;
             column.factor = *factor * (scale != nullptr ? scale->factor : 1.0);
             column.shift = *factor * (scale != nullptr ? scale->offset : 0.0);
+            column.current = role == Role::torque && is_current_unit(*usual) && !options_.nm_per_ampere;
             column.unit_assumed = column.unit_assumed && !stated_[c];
         } else if (is_chosen(c)) {
             raise<DataError>(
@@ -432,7 +475,8 @@ class Decision {
             const std::string what = fmt::format(
                 "read {}, of a linear axis, expected the travel of one turn of its screw; say --lead 5mm, "
                 "and "
-                "results are those of the screw, in deg and Nm",
+                "results are those of the screw, in deg and Nm; "
+                "if the header is wrong, --unit says another unit",
                 fmt::join(linear_, ", "));
             if (options_.needs_torque) raise<DataError>("{}: {}", source_, what);
             layout_.warnings.push_back({"linear axis", what, true});
@@ -474,9 +518,10 @@ class Decision {
     Forced forced_;
     Layout layout_;
     std::vector<ColumnName> names_;
-    std::vector<bool> stated_;  ///< by column: the log or an option says its unit
-    std::vector<JointGroup> groups_;
-    std::vector<std::string> linear_;  ///< what is read in m, m/s and N where no lead is stated
+    std::vector<bool> stated_;                     ///< by column: the log or an option says its unit
+    std::vector<JointGroup> groups_, incomplete_;  ///< those that may be read, and those that lack something
+    std::exception_ptr refusal_;                   ///< the first of the caller
+    std::vector<std::string> linear_;              ///< what is read in m, m/s and N where no lead is stated
     std::vector<std::pair<std::string, std::string>>
         unscaled_;  ///< what was read, and the option that says more
 };

@@ -249,7 +249,7 @@ bool step_down(const Problem& problem, Search& search, const std::vector<std::si
     const double before = search.place.squares;
     for (; damping <= 1e6; damping *= 10.0) {
         Place next = problem.at(moved(problem, search.place.point, moving, damped_step(factored, damping)));
-        if (next.squares >= before) continue;
+        if (!(next.squares < before)) continue;  // not a number neither: a step from collinear slopes
         search.place = std::move(next);
         damping = std::max(damping / 10.0, 1e-12);
         return true;

@@ -195,6 +195,7 @@ void raise_no_gear(std::string_view who) {
 }
 
 std::string gear_in_words(const GearAccount& gear) {
+    if (!(gear.ratio.value() > 0.0)) return fmt::format("gear ratio not known ({})", gear.source);
     return fmt::format("gear ratio {:.6g}{}{} ({})", gear.ratio.value(),
                        gear.orders.empty() ? "" : ", orders ", joined(gear.orders, ", "), gear.source);
 }

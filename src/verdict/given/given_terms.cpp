@@ -134,7 +134,7 @@ void GivenSource::check_setup(GivenTerms& terms, SimulationSource& simulated, co
                               const ReadOptions& reading, const GivenLog& log) {
     if (simulated.states_delay()) return;
     SetupContext context = simulated.names();
-    context.gear_ratio = stated.model.gear_ratio;
+    if (stated.model.has_gear_ratio()) context.gear_ratio = stated.model.gear_ratio;
     context.joint = log.log.trace.joint;
     SimulatedMotion motion = simulated.read_motion(reading, log.path, log.log);
     context.torque_scale = simulated.term().scale.value_or(1.0);

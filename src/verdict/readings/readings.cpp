@@ -289,8 +289,13 @@ Diagnosis diagnose_readings(const Model& model, const Log& log, const Log* valid
     Diagnosis taken =
         diagnose_in_full(model, log.trace.view(), validation == nullptr ? nullptr : &other, options);
     std::string doubt;
-    for (const OtherReading& reading : open_readings({&log, 1})) {
-        if (reading.changes_side) continue;
+    for (OtherReading reading : open_readings({&log, 1})) {
+        if (reading.changes_side && model.has_gear_ratio()) continue;
+        // The joint's motion is then less than the log's by a ratio that nobody knows.
+        if (reading.changes_side) {
+            reading.velocity_factor /= stand_in_ratio;
+            reading.position_factor /= stand_in_ratio;
+        }
         const Diagnosis then = under(reading);
         if (then.verdict == taken.verdict && then.named == taken.named) continue;
         doubt += fmt::format("; if {}, {}", reading.words, gap_in_words(then));

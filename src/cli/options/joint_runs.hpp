@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Commands that read one joint at a time, on logs that hold several.
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "cli/options/options.hpp"
+#include "cli/options/plot_request.hpp"
+#include "ripplenotch/core/error.hpp"
+#include "ripplenotch/log/log.hpp"
+
+namespace ripplenotch {
+
+/// The joints of the log that `log` asks for (--joint), all where it asks for none; empty for what can be
+/// read once only, a pipe. Throws what open_log throws.
+[[nodiscard]] AskedJoints joints_asked_for(const std::string& path, const ReadOptions& log);
+
+/// Whether --joint says more than one joint: "all", a list or a range. Throws the same.
+[[nodiscard]] bool asks_for_several(const std::string& path, const ReadOptions& log);
+
+/// What a command makes of one joint.
+struct JointResult {
+    std::string text;  ///< what goes to -o: a document with --json, else CSV or a report
+    ExitCode code = ExitCode::done;
+    std::function<void()> write = {};       ///< into a file of its own; write_text() of `text` when left out
+    std::function<void()> afterwards = {};  ///< when all is written: --plot, limits that are broken
+};
+
+/// A command that gives one result a joint.
+struct JointRuns {
+    const std::string& path;
+    const ReadOptions& log;
+    const CommonOptions& common;
+    const PlotRequest* plot = nullptr;
+    std::string_view documents;  ///< kind of the document that lists those of all joints: "spectra"
+    bool csv = false;            ///< text is CSV, which gets a column with the joint, and no report
+};
+
+/// Runs `one` on each joint that is asked for, all where none is, and writes what they give: into a file each
+/// where -o holds {joint}; else one list with --json, one CSV with a column `joint`, or one report below the
+/// other. `one` takes the joint and the options that go with it, or none where the log has one joint: then
+/// its result is written as it is. A joint of which it throws Error is left out with a warning; where none
+/// is left, the error of the first is thrown. The exit code is the lowest that is not ExitCode::done.
+ExitCode run_joints(const JointRuns& runs,
+                    const std::function<JointResult(const std::optional<std::string>& joint,
+                                                    const CommonOptions& common)>& one);
+
+/// --joint-file and the like with the name of the joint in the place of {joint}, where one is given.
+[[nodiscard]] std::optional<std::string> of_joint(const std::optional<std::string>& text,
+                                                  const std::optional<std::string>& joint);
+
+/// A result about a torque in this unit (Recording::torque_unit), in which the library says "Nm": a report
+/// with "A" in its place, where that is the unit, or the verdict of a document.
+[[nodiscard]] std::string in_torque_unit(std::string text, const std::string& unit);
+
+/// "joint j4 is left out: it has no torque", once for each reason.
+void say_left_out(const CommonOptions& common, const std::vector<LeftOutJoint>& joints);
+
+}  // namespace ripplenotch

@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: MIT
+// Parses a command line and runs the command that it names.
+
+#include "cli/run.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <sstream>
+
+#include "cli/command.hpp"
+#include "cli/options/options_implementation.hpp"
+#include "cli/reference/reference.hpp"
+#include "cli/talk.hpp"
+#include "ripplenotch/core/files.hpp"
+#include "ripplenotch/core/progress.hpp"
+#include "ripplenotch/core/spec.hpp"
+
+namespace ripplenotch {
+
+ExitCode complain(ExitCode code, std::string_view command, std::string_view message) {
+    talk(fmt::format("{}{}{}: {}", tool_name, command.empty() ? "" : " ", command, message));
+    return code;
+}
+
+namespace {
+
+std::vector<std::string> command_names() {
+    std::vector<std::string> names;
+    for (const Command* command : all_commands()) names.emplace_back(command->name);
+    return names;
+}
+
+bool is_command(std::string_view word) {
+    const auto commands = all_commands();
+    return std::any_of(commands.begin(), commands.end(),
+                       [&](const Command* command) { return command->name == word; });
+}
+
+// CLI11 answers a mistyped command with "A subcommand is required"; people want to know which one they meant.
+ExitCode complain_unknown_command(const std::string& word) {
+    const auto names = command_names();
+    std::error_code failed;
+    if (std::filesystem::is_regular_file(word, failed))
+        return complain(
+            ExitCode::usage, "",
+            fmt::format("there is no command '{}'; of a log, {} report {} -o page.html shows what is "
+                        "in it and which filter it needs",
+                        word, tool_name, word));
+    return complain(ExitCode::usage, "",
+                    fmt::format("there is no command '{}'{}; commands: {}", word, did_you_mean(word, names),
+                                fmt::join(names, ", ")));
+}
+
+// CLI11 checks that required arguments are there before it looks at unknown options, and would answer a
+// mistyped option with "LOG is required".
+std::optional<std::string> unknown_option(const CLI::App& command, const CommandWords& words) {
+    for (const std::string& word : words) {
+        if (word == "--") break;
+        const std::string name = word.substr(0, word.find('='));
+        if (name.size() < 3 || name.compare(0, 2, "--") != 0) continue;
+        if (command.get_option_no_throw(name) == nullptr) return name;
+    }
+    return std::nullopt;
+}
+
+std::string unknown_option_message(const CLI::App& command, const std::string& name) {
+    std::vector<std::string> known;
+    for (const CLI::Option* option : command.get_options()) {
+        for (const std::string& long_name : option->get_lnames()) known.push_back("--" + long_name);
+    }
+    const std::string of = command.get_parent() == nullptr ? "" : command.get_name() + " ";
+    return fmt::format("there is no option {}{}{}; see {} {}--help", name,
+                       of.empty() ? " before a command" : "", did_you_mean(name, known), tool_name, of);
+}
+
+// The option of one value that came with several, if there is one.
+std::optional<std::string> given_twice(const CLI::App& command) {
+    for (const CLI::Option* option : command.get_options()) {
+        if (option->get_multi_option_policy() == CLI::MultiOptionPolicy::Throw &&
+            option->get_expected_max() == 1 && option->results().size() > 1)
+            return option->get_name();
+    }
+    return std::nullopt;
+}
+
+// What the parsing library refers to until the work is done.
+struct Declared {
+    std::vector<std::unique_ptr<Options::Implementation>> implementations;
+    std::vector<std::unique_ptr<Options>> options;
+    std::function<ExitCode()> work;
+};
+
+// "help identify" and "version", as people type them elsewhere.
+CommandWords in_our_words(CommandWords words) {
+    if (words.empty() || is_command(words.front())) return words;
+    if (words.front() == "version") words.front() = "--version";
+    if (words.front() != "help") return words;
+    words.erase(words.begin());
+    words.insert(words.empty() ? words.end() : words.begin() + 1, "--help");
+    return words;
+}
+
+// "--generate man": what is asked for; it needs the options of all commands.
+std::optional<std::string> kind_to_generate(const CommandWords& words) {
+    constexpr std::string_view option = "--generate";
+    if (words.size() == 2 && words.front() == option) return words.back();
+    if (words.size() == 1 && words.front().starts_with(fmt::format("{}=", option)))
+        return words.front().substr(option.size() + 1);
+    return std::nullopt;
+}
+
+void declare_program(CLI::App& app) {
+    app.set_version_flag("-V,--version", fmt::format("{} {}", tool_name, version()),
+                         "print the version and end");
+    app.set_help_flag("-h,--help", "print this help and end");
+    app.add_option_function<std::string>(
+           "--generate", [](const std::string& /*kind*/) {},
+           fmt::format("print a man page or a shell's completion: {}", generated_kinds))
+        ->type_name("KIND");
+    app.footer("Each command explains itself: ripplenotch COMMAND --help. A LOG of - is standard input.");
+    app.require_subcommand(1);
+}
+
+// The options of all commands, or of those that the words name.
+void declare(CLI::App& app, const CommandWords& words, bool all, std::string& running, Declared& declared) {
+    const bool named_first = !words.empty() && is_command(words.front());
+    for (const Command* command : all_commands()) {
+        // Declaring the options of every command takes longer than filtering ten thousand rows.
+        if (named_first && words.front() != command->name) continue;
+        CLI::App* sub = app.add_subcommand(std::string(command->name), std::string(command->summary));
+        sub->footer(std::string(command->description));
+        if (!all && std::find(words.begin(), words.end(), command->name) == words.end()) continue;
+        declared.implementations.push_back(
+            std::make_unique<Options::Implementation>(Options::Implementation{sub, words}));
+        declared.options.push_back(std::make_unique<Options>(*declared.implementations.back()));
+        sub->callback([&running, &declared, command, work = command->attach(*declared.options.back()),
+                       &parsed = *declared.implementations.back()] {
+            declared.work = work;
+            running = command->name;
+            for (const auto& check : parsed.after_parse) check();
+            parsed.check_files();
+        });
+    }
+}
+
+// A word that is not understood would leave vectors on in silence.
+void check_environment() {
+    const char* const vectors = std::getenv("RIPPLENOTCH_VECTORS");
+    if (vectors != nullptr && *vectors != '\0' && std::string_view(vectors) != "none")
+        raise<UsageError>("RIPPLENOTCH_VECTORS={}: it is none, or not set at all", vectors);
+}
+
+// Throws what goes wrong, in declaring options too: which names clash depends on the version of the library.
+ExitCode parse_and_work(CLI::App& app, CommandWords words, std::string& running, bool within_another) {
+    words = in_our_words(std::move(words));
+    declare_program(app);
+    const auto kind = kind_to_generate(words);
+    const bool named_first = !words.empty() && is_command(words.front());
+    if (named_first) running = words.front();
+    Declared declared;
+    declare(app, words, kind.has_value(), running, declared);
+    if (kind) {
+        write_text("-", generated(reference_of(app), *kind), ByteSink::Overwrite::no);
+        return ExitCode::done;
+    }
+    if (words.empty()) {
+        talk_lines(app.help());
+        return ExitCode::usage;
+    }
+    for (const auto& implementation : declared.implementations) implementation->spell_out(words);
+    if (words.front().empty() || words.front().front() != '-') {
+        if (!named_first) return complain_unknown_command(words.front());
+        const CLI::App& chosen = *app.get_subcommand(running);
+        if (const auto unknown = unknown_option(chosen, words)) {
+            return complain(ExitCode::usage, running, unknown_option_message(chosen, *unknown));
+        }
+    } else if (const auto unknown = unknown_option(app, {words.front()})) {
+        return complain(ExitCode::usage, "", unknown_option_message(app, *unknown));
+    }
+    try {
+        app.parse(CommandWords(words.rbegin(), words.rend()));  // the library wants the last word first
+    } catch (const CLI::ArgumentMismatch&) {
+        const auto twice = named_first ? given_twice(*app.get_subcommand(running)) : std::nullopt;
+        if (!twice) throw;
+        return complain(
+            ExitCode::usage, running,
+            fmt::format("{} is given more than once; see {} {} --help", *twice, tool_name, running));
+    }
+    check_environment();
+    watch_inputs(true);
+    hash_inputs(Hashing::here);
+    if (within_another) return declared.work();
+    const ProgressBar bar(words);  // gone before a complaint is printed
+    return declared.work();
+}
+
+ExitCode run(const CommandWords& words, std::string& running, bool within_another) {
+    try {
+        CLI::App app("Torque ripple of harmonic drives in joint logs: find it, filter it, measure the cost.",
+                     std::string(tool_name));
+        try {
+            return parse_and_work(app, words, running, within_another);
+        } catch (const CLI::Success& request) {  // --help or --version
+            std::ostringstream asked;
+            app.exit(request, asked, asked);
+            write_text("-", asked.str(), ByteSink::Overwrite::no);
+            return ExitCode::done;
+        }
+    } catch (const CLI::ParseError& error) {
+        throw UsageError(fmt::format("{}; see {} {}--help", error.what(), tool_name,
+                                     running.empty() ? "" : running + " "));
+    }
+}
+
+}  // namespace
+
+ExitCode run_command(const CommandWords& words, std::string& running) { return run(words, running, false); }
+
+ExitCode run_within(const CommandWords& words) {
+    std::string running;
+    return run(words, running, true);
+}
+
+}  // namespace ripplenotch

@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: MIT
+"""ripplenotch diagnose of a table of constant speeds and friction torques: values, intervals, refusals."""
+
+import json
+import math
+import os
+import random
+
+from commands import Case
+
+TRUTH = {"coulomb": 0.6, "viscous": 0.01, "stribeck": 0.4, "speed": 8.0}
+SPEEDS = [0.5, 1, 2, 3, 5, 8, 12, 18, 25, 40, 60, 90]
+
+
+def friction(v, difference=0.0, stribeck=0.0):
+    size = TRUTH["coulomb"] + TRUTH["viscous"] * abs(v) + stribeck * math.exp(-(v / TRUTH["speed"]) ** 2)
+    return math.copysign(size, v) + 0.5 * difference
+
+
+def table(speeds, chance, noise=0.01, **hidden):
+    rows = "".join(f"{v:g},{friction(v, **hidden) + chance.gauss(0.0, noise):.5f}\n" for v in speeds)
+    return "velocity_deg_s,torque_nm\n" + rows
+
+
+def both_ways(speeds):
+    return [-v for v in reversed(speeds)] + list(speeds)
+
+
+class FrictionTable(Case):
+    def table(self, text, *words, name="table.csv"):
+        (self.folder / name).write_text(text)
+        return self.run_tool("diagnose", name, *words)
+
+    def found(self, text, *words):
+        done = self.table(text, "--json", *words)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        return json.loads(done.stdout)
+
+    def parameters(self, found):
+        return {(term["effect"], name): value for term in found["terms"] for name, value in term["parameters"].items()}
+
+    def test_coulomb_viscous_stribeck_and_asymmetry_are_fitted_with_intervals_and_written_as_a_model(self):
+        text = table(both_ways(SPEEDS), random.Random(5), difference=0.1, stribeck=TRUTH["stribeck"])
+        found = self.found(text, "-o", "model.json")
+        self.assertEqual(found["schema"], "ripplenotch/friction-table/1")
+        values = self.parameters(found)
+        for key, truth in ((("coulomb-friction", "torque_nm"), 0.6), (("viscous-friction", "coefficient_nm_per_deg_s"), 0.01),
+                           (("stribeck-friction", "torque_nm"), 0.4), (("stribeck-friction", "stribeck_speed_deg_s"), 8.0),
+                           (("asymmetric-friction", "difference_nm"), 0.1)):
+            low, high = values[key]["ci95"]
+            self.assertLess(low, high)
+            self.assertLess(abs(values[key]["value"] - truth), high - low, key)
+        self.assertLess(found["noise_nm"], 0.02)
+        self.assertEqual(found["ambiguous"][0]["effects"], ["asymmetric-friction", "offset"])
+        model = json.loads((self.folder / "model.json").read_text())
+        self.assertEqual(model["gear_ratio"], "unknown")
+        done = self.run_tool("simulate", "--model", "model.json", "--motion", "poly6,to=50deg,duration=2s", "--sample-rate",
+                             "100Hz", "-o", "log.csv")
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+    def test_the_story_has_every_value_its_unit_and_what_was_not_examined(self):
+        done = self.table(table(both_ways(SPEEDS), random.Random(6)))
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertIn("Friction: coulomb-friction, viscous-friction; residual", done.stdout)
+        self.assertRegex(done.stdout, r"torque_nm = 0\.\d+ \[0\.\d+, 0\.\d+\] Nm")
+        self.assertRegex(done.stdout, r"coefficient_nm_per_deg_s = 0\.0\d+ \[0\.0\d+, 0\.0\d+\] Nm/\(deg/s\)")
+        self.assertIn("24 rows from 0.5 to 90 deg/s, 12 in positive and 12 in negative direction", done.stdout)
+        self.assertIn("would be found at Stribeck speeds of", done.stdout)
+        self.assertIn("not examined: load-friction", done.stdout)
+
+    def test_without_slow_rows_or_with_one_direction_that_is_said(self):
+        fast = self.found(table(both_ways([60, 70, 80, 90]), random.Random(7)))
+        self.assertIn("stribeck-friction", [one["effect"] for one in fast["undecidable"]])
+        one_way = self.found(table(SPEEDS, random.Random(8)))
+        names = [one["effect"] for one in one_way["undecidable"]]
+        self.assertIn("asymmetric-friction", names)
+        self.assertIn("offset", names)
+
+    def test_units_of_the_header_count_and_rows_at_rest_do_not(self):
+        rows = "".join(f"{math.radians(v):.8f},{1e3 * friction(v):.4f}\n" for v in both_ways(SPEEDS))
+        found = self.found("velocity_rad_s,torque_mNm\n" + rows + "0,12\n")
+        self.assertEqual(found["rows_at_rest"], 1)
+        values = self.parameters(found)
+        self.assertAlmostEqual(values["coulomb-friction", "torque_nm"]["value"], 0.6, delta=1e-4)
+        self.assertAlmostEqual(values["viscous-friction", "coefficient_nm_per_deg_s"]["value"], 0.01, delta=1e-5)
+
+    def test_intervals_hold_the_truth_as_often_as_they_say(self):
+        # RIPPLENOTCH_TABLES=500 RIPPLENOTCH_FIRST_TABLE=9000 is the study of docs/studies/friction-table.md.
+        tables, first = int(os.environ.get("RIPPLENOTCH_TABLES", "60")), int(os.environ.get("RIPPLENOTCH_FIRST_TABLE", "1"))
+        truth = {("coulomb-friction", "torque_nm"): 0.6, ("viscous-friction", "coefficient_nm_per_deg_s"): 0.01,
+                 ("stribeck-friction", "torque_nm"): 0.4, ("stribeck-friction", "stribeck_speed_deg_s"): 8.0,
+                 ("asymmetric-friction", "difference_nm"): 0.1}
+        hits = dict.fromkeys(truth, 0)
+        for seed in range(first, first + tables):
+            values = self.parameters(self.found(table(both_ways(SPEEDS), random.Random(seed), 0.02, difference=0.1, stribeck=0.4)))
+            for key, value in truth.items():
+                low, high = values[key]["ci95"]
+                hits[key] += low <= value <= high
+        if tables > 60:
+            print({f"{effect} {name}": f"{100 * hits[effect, name] / tables:.1f} %" for effect, name in hits})
+        # Five standard deviations of chance below 95 %.
+        least = 0.95 * tables - 5.0 * math.sqrt(0.95 * 0.05 * tables)
+        for key, count in hits.items():
+            self.assertGreater(count, least, key)
+
+    def test_bad_tables_get_one_message(self):
+        head = "velocity_deg_s,torque_nm\n"
+        for text, words, code, message in (
+                (head + "1,0.6\n2,0.7\n", (), 3, "2 rows that move"),
+                (head + "5,0.6\n5,0.7\n-5,-0.6\n-5,-0.6\n", (), 3, "every row has the speed 5 deg/s"),
+                (head + "1,0.6\n2,broken\n3,0.7\n4,0.8\n", (), 3, "read 'broken'"),
+                (head + "1,-0.6\n2,-0.7\n3,-0.7\n4,-0.8\n", (), 3, "sign"),
+                (table(SPEEDS, random.Random(1)), ("--friction-table", "--validate", "table.csv"), 2, "--validate"),
+                (table(SPEEDS * 20, random.Random(1)), (), 3, "--friction-table"),
+                ("time_s,velocity_deg_s,torque_nm\n0,1,1\n1,2,1\n2,3,1\n3,4,1\n", ("--friction-table",), 3, "time")):
+            done = self.table(text, *words)
+            self.assertEqual((done.returncode, done.stdout), (code, ""), (text, done.stderr))
+            self.assertIn(message, done.stderr)
+            self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
+
+    def test_many_rows_are_a_table_where_that_is_said_and_a_stated_rate_makes_a_log(self):
+        text = table(both_ways(SPEEDS) * 10, random.Random(9))
+        self.assertEqual(self.found(text, "--friction-table")["rows"], 240)
+        log = self.table(text, "--sample-rate", "1kHz")
+        self.assertEqual(log.returncode, 2)
+        self.assertIn("--model is missing", log.stderr)
