@@ -99,7 +99,7 @@ def bars(rows, told):
         Bar("residual of `simulate` on the validation log as stated, within 10 %", "each", HIDDEN,
             lambda r: r["gap"]["as_said"], 1.0),
         Bar("each reported effect lowers the residual", "each", HIDDEN, lambda r: r["lowers"], 1.0),
-        Bar("the model without a confirmed effect has the residual of its share again", "each", HIDDEN, lambda r: r["reopens"], 1.0),
+        Bar("removing a confirmed effect raises the residual by its share", "each", HIDDEN, lambda r: r["reopens"], 1.0),
         Bar("effect excluded from the catalogue: unexplained, at the right position", "each", ("without",),
             lambda r: r["told"] >= told, 1.0),
         Bar("the same: no other name instead", "each", ("without",), lambda r: not r["named"], 1.0),

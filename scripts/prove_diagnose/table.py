@@ -159,7 +159,7 @@ def failure(row):
     if row["lowers"] is False:
         more += ", a reported effect raised the residual"
     if row["reopens"] is False:
-        more += ", residual without a confirmed effect lower than its share"
+        more += ", removing a confirmed effect raised the residual by less than its share"
     return f"{row['case']}: named {', '.join(row['named']) or 'nothing'}{more}; {row['verdict']}"
 
 
