@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """The record of a run as the tables of docs/studies/performance.md."""
 
+import page_tables
+
 from .cases import TOOL
 from .measure import Run, median
 
@@ -67,21 +69,21 @@ def promises(record):
 
     copied = ratio(fixed, "cp", TOOL, "wall_s"), ratio(npy, "cp", TOOL, "wall_s")
     return [
-        at_least("CSV, 6 decimals: CPU of pandas + SciPy over ours", 60, "times", ratio(fixed, TOOL, "pandas + SciPy", "cpu_s")),
-        at_least("CSV, 6 decimals: CPU of Polars without a filter over ours", 3, "times", ratio(fixed, TOOL, "Polars, no filter", "cpu_s")),
-        at_most("CSV, 6 decimals: our wall time over `cp`", 4, "times", copied[0]),
+        at_least("CSV, 6 decimals: CPU time of pandas + SciPy, relative", 60, "times", ratio(fixed, TOOL, "pandas + SciPy", "cpu_s")),
+        at_least("CSV, 6 decimals: CPU time of Polars without a filter, relative", 3, "times", ratio(fixed, TOOL, "Polars, no filter", "cpu_s")),
+        at_most("CSV, 6 decimals: wall time relative to `cp`", 4, "times", copied[0]),
         at_most("CSV, 6 decimals: peak memory", 32, "MiB", peak(fixed)),
-        at_least("CSV, 17 digits: CPU of pandas + SciPy over ours", 25, "times", ratio(full, TOOL, "pandas + SciPy", "cpu_s")),
-        at_least("CSV, 17 digits: CPU of Polars without a filter over ours", 2, "times", ratio(full, TOOL, "Polars, no filter", "cpu_s")),
-        at_most("npy: our wall time over `cp`", 2, "times", copied[1]),
+        at_least("CSV, 17 digits: CPU time of pandas + SciPy, relative", 25, "times", ratio(full, TOOL, "pandas + SciPy", "cpu_s")),
+        at_least("CSV, 17 digits: CPU time of Polars without a filter, relative", 2, "times", ratio(full, TOOL, "Polars, no filter", "cpu_s")),
+        at_most("npy: wall time relative to `cp`", 2, "times", copied[1]),
         at_most("npy: peak memory", 16, "MiB", peak(npy)),
-        at_least("CSV of 100,000 rows, whole process: Octave over ours", 30, "times", ratio(record["short"], TOOL, "Octave", "wall_s")),
+        at_least("CSV of 100,000 rows, whole process: wall time of Octave, relative", 30, "times", ratio(record["short"], TOOL, "Octave", "wall_s")),
         at_least("fixed notch, one channel", 444, "Msamples/s", ours[FIXED]),
-        at_least("fixed notch, one channel: over SciPy's sosfilt", 4, "times", beside(FIXED, "fixed")),
-        at_least("switching bank, one channel, `transition=keep`: over SciPy by segments", 10, "times", beside(SWITCHING, "switching")),
+        at_least("fixed notch, one channel: relative to SciPy's sosfilt", 4, "times", beside(FIXED, "fixed")),
+        at_least("switching bank, one channel, `transition=keep`: relative to SciPy by segments", 10, "times", beside(SWITCHING, "switching")),
         at_least("the same with a hysteresis of 1 deg/s", 10, "times", beside(HYSTERESIS, "hysteresis")),
-        at_least("switching bank, one channel, all nine warm: over SciPy's all nine", 10, "times", beside(WARM, "all nine")),
-        at_least("Welch, segments of 4096: over SciPy", 5, "times", beside(WELCH, "welch")),
+        at_least("switching bank, one channel, all nine warm: relative to SciPy's all nine", 10, "times", beside(WARM, "all nine")),
+        at_least("Welch, segments of 4096: relative to SciPy", 5, "times", beside(WELCH, "welch")),
     ]
 
 
@@ -93,7 +95,7 @@ def processes(record):
         for side, one in medians(case).items():
             lines.append([f"{name}, {rows:,} rows, {case['mb']:.0f} MB", side, figure(one.wall_s), figure(one.cpu_s),
                           figure(one.peak_mib), str(len(case["runs"][side]))])
-    return table(["log", "program", "wall, s", "CPU, s", "peak, MiB", "runs"], lines)
+    return page_tables.detail("performance-processes", "Medians of each program", table(["log", "program", "wall, s", "CPU, s", "peak, MiB", "runs"], lines))
 
 
 def kernels(record):
@@ -101,7 +103,7 @@ def kernels(record):
     for side, found in record["kernels"].items():
         for name, one in found.items():
             lines.append([name if side == "ripplenotch" else SCIPY[name], side, figure(rate(record["kernels"], side, name)), str(len(one["cpu_s"]))])
-    return table(["what", "by", "million a CPU second", "passes"], lines)
+    return page_tables.detail("performance-kernels", "Rate of each kernel", table(["kernel", "library", "million per CPU second", "passes"], lines))
 
 
 def analysis(record):
@@ -110,7 +112,7 @@ def analysis(record):
         one = median([Run(**r) for r in case["runs"]]) if case["runs"] else None
         figures = [figure(one.wall_s), figure(one.cpu_s), figure(one.peak_mib)] if one else [", ".join(case["failed"].values()), "-", "-"]
         lines.append([f"`{name.split(', ')[0]}`, {name.split(', ')[1]}", f"{case['rows']:,}", *figures])
-    return table(["command", "rows", "wall, s", "CPU, s", "peak, MiB"], lines)
+    return page_tables.detail("performance-analysis", "Medians of each command", table(["command", "rows", "wall, s", "CPU, s", "peak, MiB"], lines))
 
 
 def growth(record):
@@ -121,31 +123,27 @@ def growth(record):
         lines.append([f"{case['rows']:,}", str(case["joints"]), f"{case['mb']:.0f}",
                       *([figure(one.wall_s), figure(one.cpu_s), figure(one.peak_mib)] if one else ["-"] * 3), each,
                       figure(copy.cpu_s) if copy else "-"])
-    return table(["rows", "joints", "MB", "wall, s", "CPU, s", "peak, MiB", "CPU, ns a row and joint", "CPU of `cp`, s"], lines)
-
-
-def as_words(runs):
-    return ", ".join(f"{r['wall_s']:.3f}/{r['cpu_s']:.3f}/{r['peak_mib']:.1f}" for r in runs)
+    head = ["rows", "joints", "MB", "wall, s", "CPU, s", "peak, MiB", "CPU, ns per row and joint", "CPU of `cp`, s"]
+    return page_tables.detail("performance-growth", "Medians of each length", table(head, lines))
 
 
 def raw(record):
-    """All runs: wall seconds / CPU seconds / peak MiB, and CPU milliseconds of a pass."""
-    lines = []
-    for key in ("fixed", "full", "npy", "pipes", "short"):
-        for side, runs in record[key]["runs"].items():
-            lines.append(f"{key} · {side}: {as_words(runs)}")
-    for side, found in record["kernels"].items():
-        for name, one in found.items():
-            lines.append(f"{side} · {name}: " + ", ".join(f"{1e3 * s:.2f}" for s in one["cpu_s"]) + " ms")
-    lines += [f"{name}: {as_words(case['runs'])}" for name, case in record["analysis"].items()]
-    lines += [f"{case['rows']} rows, {case['joints']} joints: {as_words(case['runs'])}" for case in record["growth"]]
-    return "```text\n" + "\n".join(lines) + "\n```"
+    """All runs of programs and all passes of kernels, each in a file."""
+    cases = [(key, side, runs) for key in ("fixed", "full", "npy", "pipes", "short") for side, runs in record[key]["runs"].items()]
+    cases += [(name, TOOL, case["runs"]) for name, case in record["analysis"].items()]
+    cases += [(f"{case['rows']} rows, {case['joints']} joints", TOOL, case["runs"]) for case in record["growth"]]
+    runs = [[name, side, str(k), *(f"{run[key]:.{digits}f}" for key, digits in (("wall_s", 3), ("cpu_s", 3), ("peak_mib", 1)))]
+            for name, side, found in cases for k, run in enumerate(found, 1)]
+    passes = [[name, side, str(k), f"{1e3 * seconds:.2f}"] for side, found in record["kernels"].items() for name, one in found.items()
+              for k, seconds in enumerate(one["cpu_s"], 1)]
+    return "\n\n".join([page_tables.detail("performance-runs", "All runs of programs", table(["log", "program", "run", "wall, s", "CPU, s", "peak, MiB"], runs)),
+                        page_tables.detail("performance-passes", "All passes of kernels", table(["kernel", "library", "pass", "CPU, ms"], passes))])
 
 
 def machine(record):
     facts = [f"{record['date']}, ripplenotch {record['version']} ({record['commit']}).", record["machine"],
              "With " + ", ".join(f"{name} {version}" for name, version in record["peers"].items()) + "."]
-    facts += [f"Left out: {name}, for {why}." for name, why in record["missing"].items()]
+    facts += [f"Not measured: {name} ({why})." for name, why in record["missing"].items()]
     apart = record["fixed"].get("differs_nm")
     if apart is not None:
         facts.append(f"The filtered torques of ripplenotch and of pandas + SciPy differ by at most {apart:.1e} Nm at six decimals.")
@@ -158,5 +156,6 @@ def analysis_alone(record):
 
 
 def tables(record):
-    return {"machine": machine(record), "promises": table(["what", "must be", "measured", "met"], promises(record)),
+    shown = [[what, required, value if met == "yes" else f"{value} ({met})"] for what, required, value, met in promises(record)]
+    return {"machine": machine(record), "promises": table(["quantity", "required", "measured"], shown),
             "processes": processes(record), "kernels": kernels(record), "analysis": analysis(record), "growth": growth(record), "raw": raw(record)}

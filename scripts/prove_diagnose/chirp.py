@@ -18,6 +18,8 @@ import zlib
 
 import numpy as np
 
+import page_tables
+
 from . import bars, cases, joint, score, sensor, table, tool
 
 RATIO = 20.0
@@ -190,12 +192,12 @@ def line(kind, rows):
 
 def blocks(about, rows):
     groups = {kind: of for kind in KINDS if (of := [row for row in rows if row["label"] == kind])}
-    asked = table.markdown(bars.HEAD, [bars.line(f"{kind} in the joint: {ASKED[kind]}", "98 of 100", [told_right(row) for row in of], 0.98)
-                                       for kind, of in groups.items()])
-    head = ["in the joint", "drawn", "logs", "the right one of the two", "exactly right", "any false name", "explained", "time"]
-    wrong = "\n".join(
-        f"* {row['case']} ({row['joint']['mode_hz']:.1f} Hz, damping {row['joint']['damping']:.2f}, {1e3 * row['joint']['delay_s']:.1f} ms): "
-        f"named {', '.join(row['named']) or 'nothing'}{', offered ' + ', '.join(row['offered']) if row.get('offered') else ''}; "
-        f"{row.get('verdict', row.get('error'))}" for row in rows if not row["exact"])
-    return {"chirp": f"{about}\n\n{asked}\n\n{table.markdown(head, [line(kind, of) for kind, of in groups.items()])}\n\n"
-                     f"Not exactly right:\n\n{wrong or 'None.'}"}
+    asked = bars.shown("diagnose-physics-chirp-criteria", [
+        bars.line(f"{kind} in the joint: {ASKED[kind]}", "98 of 100", [told_right(row) for row in of], 0.98) for kind, of in groups.items()])
+    head = ["in the joint", "range", "logs", "resonance and delay distinguished", "exactly right", "any false name", "explained", "time"]
+    wrong = [
+        f"{row['case']} ({row['joint']['mode_hz']:.1f} Hz, damping {row['joint']['damping']:.2f}, {1e3 * row['joint']['delay_s']:.1f} ms): "
+        f"named {', '.join(row['named']) or 'nothing'}{', undecided ' + ', '.join(row['offered']) if row.get('offered') else ''}; "
+        f"{row.get('verdict', row.get('error'))}" for row in rows if not row["exact"]]
+    return {"chirp": table.joined(about, asked, page_tables.detail("diagnose-physics-chirp", "All columns", table.markdown(head, [line(kind, of) for kind, of in groups.items()])),
+                                  table.listed("diagnose-physics-chirp-wrong", "Cases that are not exactly right", wrong))}

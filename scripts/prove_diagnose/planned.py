@@ -13,6 +13,8 @@ import tempfile
 
 import numpy as np
 
+import page_tables
+
 from . import bars, cases, joint, motion, score, sensor, strengths, table, tool
 
 LIMITS = "speed=180deg/s,acceleration=600deg/s2,range=-170deg:170deg"
@@ -130,10 +132,21 @@ def share(rows, key):
     return f"{sum(bool(row.get(key)) for row in rows)}/{len(rows)}"
 
 
+def by_motion(lines):
+    """Sums over the hidden effects, of the lines of the table."""
+    found = []
+    for kind in dict.fromkeys(line[0] for line in lines):
+        own = [line for line in lines if line[0] == kind]
+        counts = [str(sum(int(line[k].partition("/")[0]) for line in own)) for k in (3, 5, 6)]
+        longest = max((int(line[7].partition(" ")[0]) for line in own if line[7] != "-"), default=None)
+        found.append([kind, *counts, "-" if longest is None else f"{longest} s"])
+    return table.markdown(["motion", "undecided", "decided after it", "exactly right", "longest plan"], found)
+
+
 def blocks(about, rows):
     rows = sorted((row for row in rows if "error" not in row), key=lambda row: row["case"])
     undecided = [row for row in rows if row["undecided"]]
-    head = table.markdown(bars.HEAD, [
+    criteria = table.markdown(bars.HEAD, [
         bars.line("undecided, and decided after one planned motion", "at least 95 %", [bool(row.get("decided")) for row in undecided], 0.95),
         bars.line("the same: names exactly right then", "-", [bool(row.get("exact")) for row in undecided], 0.95),
         bars.line("the same: no false name", "-", [not row.get("false") for row in undecided], 0.95),
@@ -146,8 +159,11 @@ def blocks(about, rows):
             seconds = [row["duration_s"] for row in group if "duration_s" in row]
             lines.append([kind, label, str(len(of)), str(len(group)), " ".join(sorted({name for row in group for name in row["open"]})),
                           share(group, "decided"), share(group, "exact"), f"{max(seconds):.0f} s" if seconds else "-"])
-    body = table.markdown(["motion", "hidden", "logs", "undecided", "between", "decided after", "exactly right", "longest plan"], lines)
-    wrong = "\n".join(f"* {row['case']}: {'named ' + (', '.join(row['named']) or 'nothing') if 'named' in row else 'no plan'}"
-                      f"{', open: ' + ', '.join(row['still']) if row.get('still') else ''}"
-                      for row in undecided if not row.get("exact"))
-    return {"plan": f"{about}\n\n{head}\n\n{body}\n\nNot exactly right after it:\n\n{wrong or 'None.'}"}
+    head = ["motion", "hidden", "logs", "undecided", "undecided between", "decided after it", "exactly right", "longest plan"]
+    body = table.joined(by_motion(lines), page_tables.detail("diagnose-plans", "Each motion and hidden effect", table.markdown(head, lines)))
+    wrong = [f"{row['case']}: {'named ' + (', '.join(row['named']) or 'nothing') if 'named' in row else 'no plan'}"
+             f"{', undecided: ' + ', '.join(row['still']) if row.get('still') else ''}" for row in undecided if not row.get("exact")]
+    return {"plan": table.joined(about, body,
+                                 page_tables.detail("diagnose-plans-criteria", "Criteria, all met where no case is listed", criteria),
+                                 table.listed("diagnose-plans-wrong", "Not exactly right after it", wrong,
+                                                                     "All are exactly right after it."))}

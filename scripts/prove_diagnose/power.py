@@ -16,6 +16,8 @@ import tempfile
 
 import numpy as np
 
+import page_tables
+
 from . import bars, cases, joint, motion, score, sensor, strengths, table, tool
 
 SIZES = (0.1, 0.2, 0.4, 0.8, 1.5, 3.0)
@@ -142,13 +144,27 @@ def line(text, rows):
     return [text, *cells, mistaken(rows)]
 
 
+def named_from(lines):
+    """{size: effects that are named in every log from that size on}; None for those that are not at the largest."""
+    found = {size: [] for size in (*SIZES, None)}
+    for label, *cells, _ in lines:
+        right = [cell.partition("/")[0] == cell.partition("/")[2] for cell in cells]
+        below = max((k for k, every in enumerate(right) if not every), default=-1)
+        found[(*SIZES, None)[below + 1]].append(label)
+    return {size: labels for size, labels in found.items() if labels}
+
+
 def blocks(about, rows):
     answered = [row for row in rows if "error" not in row]
     lines = [line(label, of) for label in SIZE if (of := [row for row in answered if row["label"] == label])]
+    shown = [[f"{size:g}" if size else "none of them", ", ".join(labels)] for size, labels in named_from(lines).items()]
     whole = line("**all**", answered)
     whole[-1] = f"a false name in {sum(bool(row['false']) for row in answered)} of {len(answered)}"
     chance = [f"{100 * least:.0f} to {100 * most:.0f} %" for least, most in (bars.wilson(*counts(answered, size)) for size in SIZES)]
-    body = table.markdown(["hidden", *[f"{size:g}" for size in SIZES], "mistaken for"], [*lines, whole, ["95 % of chance", *chance, ""]])
+    sizes = [f"{size:g}" for size in SIZES]
+    body = table.joined(table.markdown(["size", "effects named in every log of this size and of all larger ones"], shown),
+                        table.markdown(["hidden", *sizes, "reported instead"], [whole, ["95 % interval", *chance, ""]]),
+                        page_tables.detail("diagnose-sizes", "Each effect", table.markdown(["hidden", *(f"size {size}" for size in sizes), "reported instead"], lines)))
     errors = "".join(f"\n\n* {row['case']}: {row['error']}" for row in rows if "error" in row)
     return {"power": f"{about}\n\n{body}{errors}"}
 

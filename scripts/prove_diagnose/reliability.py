@@ -10,7 +10,7 @@ from . import bars
 
 STUDIES = ("single", "rarer", "pair", "triple", "noise", "poor", "null", "null ar0.5", "null t4", "outside", "outside+single",
            "formula")
-HEAD = ["verdict", "logs", "names", "wrong", "share wrong", "95 % of chance", "stated", "within"]
+HEAD = ["verdict", "logs", "names", "wrong", "share wrong", "95 % interval", "stated", "within"]
 # Only "explained" says that nothing is left beside the names.
 VERDICTS = ("explained", "partly-explained", "unexplained", "matches")
 

@@ -3,6 +3,8 @@
 
 import statistics
 
+import page_tables
+
 from . import bars, nulls, reach, reliability
 
 
@@ -41,12 +43,21 @@ def cells(rows, single):
             median([r["seconds"] for r in rows], "{:.1f} s")]
 
 
-HEAD = ["hidden", "logs", "exactly right", "in the set", "false name", "gap closed", "gap as said", "parameter error",
-        "interval holds", "time"]
+HEAD = ["hidden", "logs", "exactly right", "not contradicted", "false name", "gap closed", "gap as stated", "parameter error",
+        "interval covers", "time"]
 
 
-def markdown(head, lines):
-    return "\n".join("| " + " | ".join(line) + " |" for line in [head, ["---"] * len(head), *lines])
+markdown = bars.markdown
+
+
+def joined(*parts):
+    """Parts of a block, a blank line between them."""
+    return "\n\n".join(parts)
+
+
+def listed(name, caption, texts, none="None."):
+    """Cases as "case: result" in a file of their own; `none` where there is none."""
+    return page_tables.detail(name, f"{caption} ({len(texts)})", "\n".join(f"* {text}" for text in texts)) if texts else none
 
 
 def by_label(rows):
@@ -68,7 +79,7 @@ def null(rows):
 
 
 def outside(rows):
-    head = ["disturbance", "logs", "named as an effect", "says unexplained", "place in time right", "in the set", "time"]
+    head = ["disturbance", "logs", "named as an effect", "reported unexplained", "interval in time right", "not contradicted", "time"]
     lines = [[label, str(len(group)), share(group, lambda r: r["false"]), share(group, lambda r: r["unexplained"]),
               share(group, lambda r: r["place"]), share(group, lambda r: r["in_set"]),
               median([r["seconds"] for r in group], "{:.1f} s")] for label, group in groups(rows, lambda r: r["label"])]
@@ -76,7 +87,7 @@ def outside(rows):
 
 
 def poor(rows):
-    head = ["motion", "hidden", "logs", "exactly right", "in the set", "false name"]
+    head = ["motion", "hidden", "logs", "exactly right", "not contradicted", "false name"]
     return markdown(head, [[motion, label, str(len(group)), share(group, lambda r: r["exact"]),
                             share(group, lambda r: r["in_set"]), share(group, lambda r: r["false"])]
                            for (motion, label), group in groups(rows, lambda r: (r["motion"], r["label"]))])
@@ -88,13 +99,13 @@ def noise(rows):
 
 
 def variant(rows):
-    head = ["the same log", "logs", "exactly right", "in the set", "false name"]
+    head = ["the same log", "logs", "exactly right", "not contradicted", "false name"]
     return markdown(head, [[kind, str(len(group)), share(group, lambda r: r["exact"]), share(group, lambda r: r["in_set"]),
                             share(group, lambda r: r["false"])] for kind, group in groups(rows, lambda r: r["variant"])])
 
 
 def without(rows):
-    head = ["taken out", "logs", "verdict", "share of its energy located", "named in its place"]
+    head = ["excluded", "logs", "verdict", "share of its energy located", "named instead"]
     return markdown(head, [[label, str(len(group)), ", ".join(sorted({r["verdict"] for r in group})),
                             ", ".join(f"{100 * r['told']:.0f} %" for r in group),
                             "; ".join(sorted({", ".join(r["named"]) for r in group if r["named"]})) or "none"]
@@ -102,7 +113,7 @@ def without(rows):
 
 
 def recorded(rows):
-    head = ["the same logs", "logs", "exactly right", "in the set", "logs with a false name", "gap closed", "interval holds",
+    head = ["recorded", "logs", "exactly right", "not contradicted", "logs with a false name", "gap closed", "interval covers",
             "time"]
     lines = []
     for way, group in groups(rows, lambda r: r["recorded"] or "as they are"):
@@ -138,17 +149,17 @@ FORMS = {"single": by_label, "rarer": by_label, "pair": several, "triple": sever
 def failure(row):
     if "error" in row:
         return f"{row['case']}: {row['error']}"
-    more = ", but in the set" if row["in_set"] and not row["exact"] else ""
+    more = ", not contradicted" if row["in_set"] and not row["exact"] else ""
     if row["study"].startswith("outside"):
-        more += f", place {'right' if row['place'] else 'wrong'}"
+        more += f", interval in time {'right' if row['place'] else 'wrong'}"
     elif row["study"] == "without":
         return f"{row['case']}: {100 * row['told']:.0f} % located, named {', '.join(row['named']) or 'nothing'}; {row['verdict']}"
     elif row["gap"]["as_said"] is False:
-        more += f", residual said {row['gap']['said_after_nm']:.4f} Nm and is {row['gap']['after_nm']:.4f} Nm"
+        more += f", residual stated {row['gap']['said_after_nm']:.4f} Nm, measured {row['gap']['after_nm']:.4f} Nm"
     if row["lowers"] is False:
-        more += ", a name raised the residual"
+        more += ", a reported effect raised the residual"
     if row["reopens"] is False:
-        more += ", a name taken out did not open its share again"
+        more += ", removing a confirmed effect raised the residual by less than its share"
     return f"{row['case']}: named {', '.join(row['named']) or 'nothing'}{more}; {row['verdict']}"
 
 
@@ -156,39 +167,62 @@ def about(abouts, rows):
     """One sentence: when, on what and with what the scores were measured."""
     if not abouts:
         return "Measured with an unknown program."
-    first, last = abouts[0], max(row.get("finished", abouts[0]["begun"]) for row in rows)
+    first = abouts[0]
     options = f", options {' '.join(first['options'])}" if first["options"] else ""
     numbers = sorted({int(row["case"].rpartition("-")[2]) for row in rows
                       if row["study"] == "single" or "+" not in row["label"]}) or [0]
-    day, _, begun = first["begun"].partition("T")
-    return (f"Measured on {day} from {begun} to {last.partition('T')[2]} with `diagnose` of commit `{first['commit']}`{options}, "
-            f"on a machine ({first['machine']}) whose load was {first['load']:g} at the start: {len(rows)} logs, numbers from "
-            f"{numbers[0]} on. Times are processor time of one core.")
+    day = first["begun"].partition("T")[0]
+    return (f"Measured on {day} with `diagnose` of commit `{first['commit']}`{options} ({first['machine']}): {len(rows)} logs, numbers from "
+            f"{numbers[0]} on.")
+
+
+SUMMED = ("exactly right", "not contradicted", "false name")
+
+
+def summed(study, text):
+    """The line of a study in the summary: sums over the lines of its table, the line of all left out."""
+    head, _, *body = map(page_tables.cells, text.split("\n"))
+    body = [line for line in body if line[0] != "all"]
+    heads = {"exactly right": "no name", "false name": "named as an effect"}
+    line = [study]
+    for name in SUMMED:
+        of = name if name in head else heads.get(name)
+        found = [line[head.index(of)].split("/") for line in body] if of in head else []
+        line.append("/".join(str(sum(map(int, part))) for part in zip(*found)) or "-")
+    return line
 
 
 def studies(rows):
-    """The table of each study, then that of the yardsticks."""
-    parts = []
+    """One line a study, and the table of each in a file; then that of the yardsticks."""
+    lines, links, parts = [], [], []
     for study, group in groups([r for r in rows if "named" in r], lambda r: r["study"].split(" ")[0]):
-        parts += [f"### {study}", FORMS[study](group)]
+        text = FORMS[study](group)
+        line = summed(study, text)
+        lines += [line] if set(line[1:]) != {"-"} else []
+        links.append(page_tables.detail(f"diagnose-catalogue-{study.replace('+', '-')}", study, text))
+    if links:
+        parts += [markdown(["study", *SUMMED], lines), "Tables of the studies: " + ",\n".join(links) + "."]
     if any("yardsticks" in row for row in rows):
         parts += ["### yardsticks", yardsticks(rows)]
-    return "\n\n".join(parts)
+    return joined(*parts)
 
 
 def of_recorders(abouts, rows, failed):
-    """The same logs as other recorders write them: bars, table, what went wrong."""
-    wrong = "\n".join(f"* {failure(row)}" for row in rows if failed(row)) or "Nothing went wrong."
+    """The same logs as other recorders write them: table, criteria, what went wrong."""
     answered = [r for r in rows if "named" in r]
-    return f"{about(abouts, rows)}\n\n{markdown(bars.HEAD, bars.recorded_lines(answered))}\n\n{recorded(answered)}\n\n{wrong}"
+    return joined(about(abouts, rows), page_tables.units_in_head(recorded(answered)),
+                  page_tables.detail("diagnose-recordings-criteria", "Criteria, and whether they are met", markdown(bars.HEAD, bars.recorded_lines(answered))),
+                  listed("diagnose-recordings-wrong", "Cases with a wrong result", [failure(row) for row in rows if failed(row)]))
 
 
 def of_nulls(abouts, rows, failed):
     """Nothing hidden in noise of ten kinds: bars, table, what went wrong."""
-    wrong = "\n".join(f"* {failure(row)}" for row in rows if failed(row)) or "Nothing went wrong."
     named = [row for row in rows if "false" in row]
-    return (f"{about(abouts, rows)}\n\n{markdown(bars.HEAD, nulls.bar_lines(named))}\n\n{markdown(nulls.HEAD, nulls.lines(named))}"
-            f"\n\n{wrong}")
+    lines = nulls.lines(named)
+    return joined(about(abouts, rows), markdown([nulls.HEAD[k] for k in nulls.SHORT], [[line[k] for k in nulls.SHORT] for line in lines if line[4] != "none"]),
+                  page_tables.detail("diagnose-noise", "All columns", markdown(nulls.HEAD, lines)),
+                  page_tables.detail("diagnose-noise-criteria", "Criteria, and whether they are met", markdown(bars.HEAD, nulls.bar_lines(named))),
+                  listed("diagnose-noise-wrong", "Cases with a false name", [failure(row) for row in rows if failed(row)]))
 
 
 def of_physics(abouts, rows, failed):
@@ -197,12 +231,12 @@ def of_physics(abouts, rows, failed):
         return row["exact"] and row["gap"]["closed"] >= 0.95
 
     named = [row for row in rows if "named" in row]
-    asked = markdown(bars.HEAD, [
+    asked = bars.shown("diagnose-physics-torsion-criteria", [
         bars.line("resonance or ripple by speed named, nothing false", "17 of 18", [row["exact"] for row in named], 17 / 18),
-        bars.line("the same, and at least 95 % of the gap closed on the other log", "17 of 18", map(closed, named), 17 / 18)])
+        bars.line("the same, and at least 95 % of the gap closed on the validation log", "17 of 18", map(closed, named), 17 / 18)])
     wrong = [f"{failure(row)}; {100 * row['gap']['closed']:.1f} % closed" for row in named if not closed(row)]
-    wrong = "\n".join(f"* {line}" for line in wrong) or "Nothing went wrong."
-    return f"{about(abouts, rows)}\n\n{asked}\n\n{by_label(named)}\n\n{wrong}"
+    return joined(about(abouts, rows), asked, page_tables.detail("diagnose-physics-torsion", "Each kind of joint", by_label(named)),
+                  listed("diagnose-physics-torsion-wrong", "Cases below the criteria", wrong))
 
 
 APART = {"recorded": of_recorders, "nulls": of_nulls, "physics": of_physics}
@@ -216,8 +250,8 @@ def blocks(abouts, rows, failed):
         found = {"about": about(abouts, others),
                  "bars": markdown(bars.HEAD, bars.lines([r for r in others if "named" in r], reach.ENOUGH)),
                  "studies": studies(others),
-                 "reliability": markdown(reliability.HEAD, reliability.lines(others)),
-                 "wrong": "\n".join(f"* {line}" for line in wrong) or "Nothing."}
+                 "reliability": markdown(reliability.HEAD, [line for line in reliability.lines(others) if line[2] != "0"]),
+                 "wrong": listed("diagnose-catalogue-wrong", "Cases with a wrong result", wrong)}
     for study, form in APART.items():
         if own := [row for row in rows if row["study"] == study]:
             found[study] = form(abouts, own, failed)

@@ -5,6 +5,8 @@ import bisect
 import math
 import statistics
 
+import page_tables
+
 
 def share(count, total):
     return f"{100.0 * count / total:.1f} %" if total else "-"
@@ -42,7 +44,7 @@ CLASSES = {
     "multiples": lambda row: "identifiable" in row and (0, "n without common divisor, all visible" if row["identifiable"]
                                                         else "n all even, one n, or lines too weak"),
     "visible lines": lambda row: "visible" in row and (row["visible"] > 0, f"{min(2, row['visible'])}{' or more' if row['visible'] > 1 else ''}"),
-    "angle": lambda row: "angle_error_cycles" in row and (0, "known" if row["angle_error_cycles"] < 0.1 else "lost in the noise of the velocity"),
+    "angle": lambda row: "angle_error_cycles" in row and (0, "known" if row["angle_error_cycles"] < 0.1 else "hidden by the noise of the velocity"),
 }
 
 
@@ -67,6 +69,17 @@ def markdown(heads, body):
                      ["| " + " | ".join(row) + " |" for row in body]) + "\n"
 
 
+def shown(name, caption, heads, body, classes=(), left_out=()):
+    """For the page: the line of all logs and those of `classes`, without the columns `left_out`; everything in a file.
+    A line alone is a sentence."""
+    kept = [k for k, head in enumerate(heads) if head not in left_out]
+    lines = [[line[k] for k in kept] for line in body if line[0].partition(": ")[0] in ("all", *classes)]
+    short = page_tables.units_in_head(markdown([heads[k] for k in kept], lines)) + "\n"
+    if len(lines) == 1:
+        short = f"{lines[0][1]} {heads[0]}: {', '.join(f'{heads[k]} {cell}' for k, cell in list(zip(kept, lines[0]))[2:])}.\n"
+    return f"{short}\n{page_tables.detail(name, caption, markdown(heads, body))}\n"
+
+
 def outcomes(rows, names, classes):
     body = []
     for name, of in grouped(rows, classes):
@@ -76,13 +89,14 @@ def outcomes(rows, names, classes):
 
 
 def measured(asked, count, total):
-    return f"Asked: {asked}. Measured: {share(count, total)} ({count} of {total}).\n\n"
+    return f"Required: {asked}. Measured: {share(count, total)} ({count} of {total}).\n\n"
 
 
 def noise(rows):
     names = ("false line", "false tone", "tone as unknown", "gravity", "nothing", "cannot tell", "failed")
     asked = measured("lines of an order in at most 1 % of logs", sum(row["outcome"] == "false line" for row in rows), len(rows))
-    return asked + markdown(["logs without ripple", "logs", *names], outcomes(rows, names, ("travel", "ratio", "sample rate", "motion", "noise", "position")))
+    return asked + shown("identify-noise", "By travel, ratio, sample rate, motion, noise and position", ["logs without ripple", "logs", *("undecided" if name == "cannot tell" else name for name in names)],
+                         outcomes(rows, names, ("travel", "ratio", "sample rate", "motion", "noise", "position")), (), ("failed",))
 
 
 def median(values):
@@ -106,10 +120,12 @@ def injection(rows):
     left = {}
     for row in rows:
         left[row["outcome"]] = left.get(row["outcome"], 0) + 1
-    what = ", ".join(f"{count} {name}" for name, count in sorted(left.items()))
+    what = ", ".join(f"{count} {'undecided' if name == 'cannot tell' else name}" for name, count in sorted(left.items()))
     asked = measured("a sinusoid of 2X found in at least 99 %", sum(row["found_2x"] for row in tried), len(tried))
-    return asked + markdown(["logs that answer \"no line above X\"", "logs", "2X found", "2X: \"no line\"", "... above less than 2X", "X found",
-                              "X / largest standard error", "10 to 90 %", "X / that of the order"], body) + f"\nOf {len(rows)} logs: {what}.\n"
+    heads = ["logs that answer \"no line above X\"", "logs", "2X found", "2X: \"no line\"", "2X: \"no line\" above less than 2X", "X found",
+             "X / largest standard error", "10 % and 90 % quantile", "X / standard error of the order"]
+    return asked + shown("identify-injection", "By travel, cycles per sweep, sample rate, motion, noise, position and angle", heads, body, (),
+                         (heads[3], heads[4], heads[7])) + f"\nOutcomes of {len(rows)} logs: {what}.\n"
 
 
 def ratio(rows):
@@ -126,12 +142,14 @@ def ratio(rows):
     given = [row for row in rows if row.get("match") == "right" and "covers" in row]
     asked = measured("no conclusive ratio that is wrong", wrong, len(rows)) + \
         measured("intervals of right ratios hold the truth in 90 to 98 %", sum(row["covers"] for row in given), len(given))
-    return asked + markdown(["logs with ripple", "logs", "right", "wrong multiple", "wrong", "ratio of the other comb", "cannot tell", "\"no line\"", "failed", "right: interval covers",
-                     "all: covers either comb"], body) + "\n" + lines(rows)
+    heads = ["logs with ripple", "logs", "right", "wrong multiple", "wrong", "ratio of the other comb", "undecided", "\"no line\"", "failed", "right: interval covers",
+             "all: interval covers either comb"]
+    return asked + shown("identify-ratio", "By ripple, lines, travel, ratio, sample rate, motion and position", heads, body, ("visible lines",),
+                         ("failed", heads[-1])) + "\n" + lines(rows)
 
 
 def lines(rows):
-    """Of the same logs: lines that were found, how large they were told, and lines that are none."""
+    """Lines of the same logs: how many are found, the error of their amplitude, and false ones."""
     made = [{**row, **line} for row in rows for line in row.get("lines", []) if not row["folded"]]
     body = []
     for name, of in grouped(made, ("strength", "cycles per sweep", "motion")):
@@ -141,7 +159,8 @@ def lines(rows):
                      median(sizes), share(sum(abs(size - 1) < 0.1 for size in sizes), len(sizes))])
     counted = [row for row in rows if row.get("false_lines") is not None]
     some = sum(row["false_lines"] > 0 for row in counted)
-    return markdown(["true lines", "lines", "found", "found, of 10 standard errors and 4 cycles", "amplitude / truth, median", "within 10 %"], body) + \
+    heads = ["true lines", "lines", "found", "found, of 10 standard errors and 4 cycles", "amplitude / truth, median", "within 10 %"]
+    return shown("identify-lines", "By strength, cycles per sweep and motion", heads, body, (), heads[4:]) + \
         f"\nLines at no true order: in {share(some, len(counted))} of {len(counted)} logs.\n"
 
 

@@ -117,7 +117,7 @@ def table(options):
         sums[log[1]] = [a + b for a, b in zip(sums.get(log[1], [0] * len(numbers)), numbers)]
     body = [[f"{log}, {'whole' if length is None else f'{length:g} s'}", *map(str, n[:5]), f"{n[5]} of {n[6]}", *map(str, n[7:])]
             for (log, length), n in [(("all", length), n) for length, n in sums.items()] + body]
-    heads = ["log", "windows", "right", "wrong multiple", "wrong", "cannot tell", "covers data sheet", "\"no line\"", "exceeded", "false lines", "failed"]
+    heads = ["log", "windows", "right", "wrong multiple", "wrong", "undecided", "interval covers data sheet", "\"no line\"", "exceeded", "false lines", "failed"]
     if not options.page:
         print("".join(f"* {note}\n" for note in notes))
-    return tables.markdown(heads, body)
+    return tables.shown("identify-windows", "Each log", heads, [[f"all: {cells[0][5:]}", *cells[1:]] if cells[0].startswith("all, ") else cells for cells in body], (), ("failed",))

@@ -67,7 +67,7 @@ class Saboteur:
 def step_by_step(saboteur, name, fault, codes, steps, until, **more):
     """The 1st, 2nd, ... call fails, until a run is through without any; `steps` of them where there are more, drawn."""
     row = Row(f"{fault.lower().replace('_at', '').replace('_from', ' for good')}, `{name}`", 0, 0.0,
-              "exit code, one message, outputs whole or as before, nothing left")
+              "exit code, one message, outputs complete or unchanged, no other file")
     start, draw = time.monotonic(), random.Random(1)
     last = 1
     while saboteur.run(name, (0, *codes), **{fault: last}, **more)[0] != 0 and last < 1 << 20:
@@ -92,7 +92,7 @@ def limited_file(size):
 
 def full_disk(saboteur, name, runs, until):
     """Files may not grow beyond a limit, drawn below what the command writes."""
-    row = Row(f"no room for files, `{name}`", 0, 0.0, "exit code 4, one message, nothing left")
+    row = Row(f"disk full, `{name}`", 0, 0.0, "exit code 4, one message, no other file")
     start, draw = time.monotonic(), random.Random(2)
     saboteur.learn(name)
     size = (saboteur.shop.folder / "log.csv").stat().st_size // 2

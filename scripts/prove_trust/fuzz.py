@@ -16,14 +16,14 @@ import time
 from . import corpora, documents, outcome
 
 TARGETS = {
-    "logs": ("readers of text logs and arrays: vectors, plain, careful, pieces", "same rows or same words four ways; sanitizers"),
-    "npz": ("archives of arrays", "same rows or same words at once and in pieces; sanitizers"),
+    "logs": ("readers of text logs and arrays: vectors, plain, careful, pieces", "same rows or same message four ways; sanitizers"),
+    "npz": ("archives of arrays", "same rows or same message at once and in pieces; sanitizers"),
     "mat": ("MAT files of versions 5 to 7", "the same"),
     "hdf5": ("HDF5 files", "the same"),
     "mcap": ("MCAP recordings", "the same"),
     "rosbag2": ("recordings in SQLite", "the same"),
-    "raw": ("dumps told by --layout", "the same"),
-    "packed": ("gzip, zstd, lz4, xz", "same bytes or same words at once and in pieces; sanitizers"),
+    "raw": ("raw dumps, read with --layout", "the same"),
+    "packed": ("gzip, zstd, lz4, xz", "same bytes or same message at once and in pieces; sanitizers"),
     "documents": ("tables, models, joints, figures, diagnoses, pages", "an answer or a page, read again; sanitizers"),
     "arms": ("URDF, MuJoCo, Denavit-Hartenberg, axes", "an answer; sanitizers"),
     "texts": ("quantities, methods, numbers, visible names", "bounds, written and read again; sanitizers"),

@@ -72,7 +72,7 @@ class Killer:
 
 
 def round_of(killer, name, signals, kills, until):
-    row = Row(f"`{name}`", 0, 0.0, "outputs whole or as before, nothing else left, the next run works")
+    row = Row(f"`{name}`", 0, 0.0, "outputs complete or unchanged, no other file, the next run works")
     start = time.monotonic()
     while row.runs < kills and time.monotonic() < until:
         row.findings += killer.kill(name, signals[row.runs % len(signals)])

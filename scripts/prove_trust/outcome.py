@@ -23,14 +23,14 @@ def table(rows):
     for row in rows:
         found = "; ".join(row.findings[:3]) + (f"; and {len(row.findings) - 3} more" if len(row.findings) > 3 else "")
         lines.append(f"| {row.what} | {row.runs:,} | {row.seconds:,.0f} | {row.checked} | {found or 'none'} |")
-    lines.append(f"| together | {sum(row.runs for row in rows):,} | {sum(row.seconds for row in rows):,.0f} | | "
+    lines.append(f"| all | {sum(row.runs for row in rows):,} | {sum(row.seconds for row in rows):,.0f} | | "
                  f"{sum(len(row.findings) for row in rows) or 'none'} |")
     return "\n".join(lines)
 
 
 def added_up(path, part, rows):
-    """Rows with the runs of earlier rounds of a part; the file at `path` keeps them. What a round finds is mended, and the count
-    of that row begins anew."""
+    """Rows with the runs of earlier rounds of a part; the file at `path` keeps them. After a finding and its correction the count
+    of that row starts anew."""
     account = json.loads(path.read_text()) if path.exists() else {}
     known = {row["what"]: Row(**row) for row in account.get(part, [])}
     for row in rows:
@@ -44,12 +44,19 @@ def added_up(path, part, rows):
     return list(known.values())
 
 
+def summary(part, rows):
+    """The sums of the table, and all of it in a file."""
+    lines = table(rows).split("\n")
+    _, runs, seconds, _, failed = page_tables.cells(lines[-1])
+    return f"{runs} runs in {seconds} s; findings: {failed}. {page_tables.detail(f'trust-{part}', 'All lines', chr(10).join(lines[:-1]))}"
+
+
 def show(page, part, rows):
     """page: where the part has its marks, or None to print."""
     for row in rows:
         for finding in row.findings:
             print(f"prove-trust {part}: {row.what}: {finding}", file=sys.stderr)
     if page:
-        page_tables.write(page, "prove-trust", {part: table(rows)})
+        page_tables.write(page, "prove-trust", {part: summary(part, rows)})
     else:
         print(f"{part}\n{table(rows)}\n")

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Commands that work on several threads, watched by the thread sanitizer, on logs long enough for threads to start; and the
-tests of the room `filter`.
+tests of the module `filter`.
 
 The program for it is built by `cmake --workflow --preset tsan`. Where it is missing, helgrind of valgrind watches the one that
 libraries can be preloaded to, of the dev build, through `filter` alone: it does not know what guards a static variable of a
@@ -136,7 +136,7 @@ def judged(what, expected, alone, got):
 
 
 def tests_of_filter(build):
-    row = Row("tests of the room `filter`", 0, 0.0, "no race")
+    row = Row("tests of the module `filter`", 0, 0.0, "no race")
     program = build / "tests/filter/test_filter"
     done = subprocess.run([program], capture_output=True, text=True, errors="replace", cwd=build)
     row.runs = 1

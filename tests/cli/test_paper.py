@@ -81,7 +81,7 @@ class Move(unittest.TestCase):
         for phases in ("90", "0"):
             for angle in ("position", "velocity"):
                 for start in ("oscillator, warm",
-                              "oscillator, warm from what identify finds in runs at 60, 120, 180 deg/s"):
+                              "oscillator, warm from identify at 60, 120, 180 deg/s"):
                     self.assertLessEqual(self.errors[start][f"error_phases_{phases}_{angle}_nm"], 0.05)
         self.assertLessEqual(abs(self.errors["oscillator, warm"]["delay_ms"]), 1.0)
 

@@ -81,6 +81,18 @@ class Record(unittest.TestCase):
         page.write_text("No marks.\n")
         self.assertRaises(SystemExit, page_tables.write, page, "prove-diagnose", {"bars": ""})
 
+    def test_a_table_per_case_becomes_a_file_with_units_in_its_head_and_the_page_a_link(self):
+        page = self.path.with_name("page.md")
+        page.write_text("<!-- made by scripts/prove-diagnose: bars -->\n<!-- end -->\n")
+        table = "| `hidden` | right | gap closed | X | time |\n| --- | --- | --- | --- | --- |\n" \
+            "| **all**, two | 5/6 | 99.5 % | 95.2 % of 1,084 | 0.7 s |\n| none | - | - | - of 0 | - |"
+        page_tables.write(page, "prove-diagnose", {"bars": page_tables.detail("name", "All", table) + "\n" +
+                                                   page_tables.detail("wrong", "Wrong (1)", "* case-1: named a, b; x: y")})
+        self.assertEqual(page.read_text(), "<!-- made by scripts/prove-diagnose: bars -->\n[All](tables/name.csv)\n[Wrong (1)](tables/wrong.csv)\n<!-- end -->\n")
+        self.assertEqual((page.parent / "tables" / "name.csv").read_text(),
+                         "hidden,right,right_of,gap_closed_percent,x_percent,x_of,time_s\n\"all, two\",5,6,99.5,95.2,1084,0.7\nnone,,,,,0,\n")
+        self.assertEqual((page.parent / "tables" / "wrong.csv").read_text(), "case,result\ncase-1,\"named a, b; x: y\"\n")
+
 
 class Bars(unittest.TestCase):
     def line(self, rows, text):

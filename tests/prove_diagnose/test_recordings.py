@@ -164,4 +164,4 @@ class Scores(unittest.TestCase):
         lines = {line[0]: line for line in table.bar_lines(rows)}
         self.assertIn("2/3", lines["names exactly right, each hidden effect at least 0.7 times the residual"][2])
         self.assertIn("2/2", lines["the same, each 1.5 times or more"][2])
-        self.assertIn("3/3", lines["95 % interval holds the truth"][2])
+        self.assertIn("3/3", lines["95 % interval covers the truth"][2])

@@ -1,14 +1,16 @@
 # SPDX-License-Identifier: MIT
 """The tables of the study."""
 
+import page_tables
+
 from .. import bars, table
 from . import cases, catalogue
 
 CONFIGURATIONS = [(form, friction) for form in cases.FORMS for friction in ("friction", "frictionless")
                   if form != "model" or friction == "friction"]
 TITLES = {("model", "friction"): "`--model`", ("simulated", "friction"): "`--simulated`",
-          ("simulated", "frictionless"): "`--simulated`, no friction in it", ("simulated_scale1", "friction"): "`scale=1`",
-          ("simulated_scale1", "frictionless"): "`scale=1`, no friction in it"}
+          ("simulated", "frictionless"): "`--simulated` without friction", ("simulated_scale1", "friction"): "`scale=1`",
+          ("simulated_scale1", "frictionless"): "`scale=1` without friction"}
 KINDS = {"single": "one effect", "pair": "two effects", "null": "nothing hidden", "outside": "no effect of the catalogue"}
 
 
@@ -39,13 +41,13 @@ def asked(rows):
                                high=0.01))
         lines.append(bars.line(f"`{form}`, no effect of the catalogue: a name", "at most 2 %",
                                [bool(r["named"]) for r in of if r["kind"] == "outside"], high=0.02))
-        lines.append(bars.line(f"`{form}`: a gap that grows", "none", [bool(row["grown"]) for row in of], high=0.0))
-        lines.append(bars.line(f"`{form}`: 95 % interval holds the truth", "90 to 98 %", held(of), 0.9, 0.98))
+        lines.append(bars.line(f"`{form}`: the residual grows", "none", [bool(row["grown"]) for row in of], high=0.0))
+        lines.append(bars.line(f"`{form}`: 95 % interval covers the truth", "90 to 98 %", held(of), 0.9, 0.98))
     return table.markdown(bars.HEAD, [line for line in lines if line[2] != "no logs"])
 
 
 def summary(rows):
-    head = ["form", "hidden", "logs", "exactly right", "false name", "gap grew", "interval holds", "no answer", "time per 40,000 samples",
+    head = ["form", "hidden", "logs", "exactly right", "false name", "residual grew", "interval covers", "no answer", "time per 40,000 samples",
             "baseline: exactly right", "baseline: false name"]
     lines = []
     for configuration in CONFIGURATIONS:
@@ -57,11 +59,18 @@ def summary(rows):
                               table.percent([{"h": h} for h in held(of)], lambda r: r["h"]), table.share(of, lambda r: "error" in r),
                               table.median([speed(row) for row in of], "{:.1f} s"), table.percent(of, lambda r: beside(r, "exact")),
                               table.percent(of, lambda r: bool(beside(r, "false")))])
-    return table.markdown(head, lines)
+    return table.joined(short(head, lines), page_tables.detail("diagnose-physics-forms", "All columns", table.markdown(head, lines)))
+
+
+def short(head, lines):
+    """The columns for the page, counts without percentages."""
+    kept = [head.index(name) for name in ("form", "hidden", "exactly right", "false name", "baseline: exactly right", "baseline: false name")]
+    counts = [[line[k].partition("(")[2].rstrip(")") if "(" in line[k] else line[k] for k in kept] for line in lines]
+    return table.markdown([head[k] for k in kept], counts)
 
 
 def by_label(rows):
-    """Exactly right, and logs with a false name, per effect and form; the baseline's exactly right in brackets."""
+    """Exactly right, logs with a false name, and the baseline's exactly right, per effect and form."""
     there = [c for c in CONFIGURATIONS if any((row["form"], row["friction"]) == c for row in rows)]
     labels = ["friction", *catalogue.labels(), *catalogue.PAIRS, "nothing", *cases.OUTSIDE]
     lines = []
@@ -70,11 +79,10 @@ def by_label(rows):
         for configuration in there:
             of = [row for row in rows if row["label"] == label and (row["form"], row["friction"]) == configuration]
             wrong = sum(bool(row["false"]) for row in of)
-            right = f"{table.share(of, lambda r: r['exact'])}{f', {wrong} false' if wrong else ''}"
-            cells.append(f"{right} ({sum(bool(beside(row, 'exact')) for row in of)})" if of else "-")
+            cells += [table.share(of, lambda r: r["exact"]), str(wrong), str(sum(bool(beside(row, "exact")) for row in of))] if of else ["-"] * 3
         if any(cell != "-" for cell in cells):
             lines.append([label, *cells])
-    return table.markdown(["hidden", *(TITLES[c] for c in there)], lines)
+    return table.markdown(["hidden", *(f"{TITLES[c]}: {what}" for c in there for what in ("exactly right", "false name", "baseline exactly right"))], lines)
 
 
 def coverage(rows):
@@ -85,7 +93,7 @@ def coverage(rows):
             of = [p for row in rows if row["form"] == form for p in row["parameters"] if p["parameter"] == name]
             cells.append(table.share(of, lambda p: p["held"]))
         lines.append([name, *cells])
-    return table.markdown(["value", *(f"`{form}`" for form in cases.FORMS)], lines)
+    return table.markdown(["parameter", *(f"`{form}`: interval covers" for form in cases.FORMS)], lines)
 
 
 def failure(row):
@@ -99,8 +107,8 @@ def failure(row):
 
 
 def blocks(about, rows):
-    wrong = "\n".join(f"* {failure(row)}" for row in rows if not row["exact"] or row["grown"]) or "Nothing went wrong."
-    return {"dynamics": "\n\n".join([about, asked(rows), summary(rows),
-                                    "Exactly right, logs with a false name; in brackets the baseline:", by_label(rows),
-                                    "Intervals that hold the value of the physics:", coverage(rows)]),
-            "dynamics-wrong": wrong}
+    return {"dynamics": table.joined(
+        about, summary(rows), page_tables.detail("diagnose-physics-criteria", "Criteria, and whether they are met", asked(rows)),
+        page_tables.detail("diagnose-physics-effects", "Each hidden effect", by_label(rows)),
+        page_tables.detail("diagnose-physics-coverage", "Coverage of the intervals, each parameter", coverage(rows)),
+        table.listed("diagnose-physics-wrong", "Cases with a wrong result", [failure(row) for row in rows if not row["exact"] or row["grown"]]))}
