@@ -34,6 +34,9 @@ namespace ripplenotch {
 /// The user's question behind this kind of result; the kind itself where none is known.
 [[nodiscard]] std::string heading_of(const std::string& kind);
 
+/// Whether the data decide, and whether a filter amplifies an order.
+[[nodiscard]] PageState state_of(const Json& result);
+
 /// The answer for a kind that has no verdict of its own, made from its numbers; empty where there are none.
 [[nodiscard]] std::string sentence_of(const std::string& kind, const Json& result);
 

@@ -130,8 +130,8 @@ class Pages(SharedCase):
         parser.feed(text)
         self.assertEqual(parser.stack, [])
         for part in ("ripplenotch design joint.json --speed 18:180:18", "Ripple at orders 1 and 2", "attenuation, dB",
-                     "gear ratio value", "Which ripple is in the log", "order 1: centre, Hz", "order 1: Q",
-                     "<dt>A</dt><dd>lowpass,cutoff=13Hz</dd>", "Content-Security-Policy", "viewport"):
+                     "gear ratio value", "Ripple lines and gear ratio", "order 1: centre, Hz", "order 1: Q",
+                     "<td class="words">lowpass, cutoff 13Hz</td>", "Content-Security-Policy", "viewport"):
             self.assertIn(part, text)
         self.assertNotIn("http", text.replace("http-equiv", ""))
 
@@ -141,9 +141,9 @@ class Pages(SharedCase):
              "-o", "moving.csv", cwd=self.folder)
         page = self.page("moving.csv")
         titles = re.findall(r'<h2 id="result-\d+">([^<:]*)', page)
-        for kind in ("recommendation", "joint", "comparison", "info"):
+        for kind in ("Recommended method", "Ripple lines and gear ratio", "Comparison of methods", "The log"):
             self.assertIn(kind, titles)
-        self.assertEqual(titles[0], "recommendation")
+        self.assertEqual(titles[0], "Recommended method")
         self.assertEqual(self.page("moving.csv"), page)  # no temporary names in it
         self.assertNotIn("ripplenotch-report", page)
         done = run("report", "data/paper_move_2s.csv", "--unit", "velocity=furlong", cwd=self.folder)

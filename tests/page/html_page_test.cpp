@@ -176,7 +176,7 @@ TEST_CASE("any result becomes verdict, facts and tables with units from its name
         "steps": [{"name": "first", "level_nm": 2.0, "settle_ms": {"0.5": 147.0, "1": 130.0}},
                   {"name": "second", "level_nm": 0.123456, "note": "late"}]})";
     const PageSection section = section_of_result(text, "c.json");
-    CHECK(section.title == "info: c.json");
+    CHECK(section.title == "The log: c.json");
     CHECK(section.verdict == "the clock is right");
     CHECK(section.inputs.size() == 1);
     CHECK(section.figures.empty());

@@ -17,15 +17,15 @@ TEST_CASE("a value has the digits that its interval or its standard error allows
     CHECK(field_text(line, "order_output") == "100.000");
     CHECK(field_text(line, "order_output_stderr") == "0.042");
     const Json coarse = {{"value", 1234.5}, {"stderr", 321.0}, {"ci95", nullptr}};
-    CHECK(field_text(coarse, "value") == "1234.5");  // an interval that there is not says nothing
+    CHECK(field_text(coarse, "value") == "1234");  // an interval that there is not says nothing
 }
 
-TEST_CASE("torques, levels and shares have four digits, other numbers six, or four below one") {
+TEST_CASE("numbers without an error have four digits, whole ones all of theirs") {
     const Json row = {
         {"rms_nm", 0.434973912}, {"speed_deg_s", 109.4951234}, {"score", 0.04798308}, {"rows", 123456789},
         {"db", 12.345678},       {"residual_hz", 1.2345678},   {"time_s", 6.503}};
     CHECK(field_text(row, "rms_nm") == "0.435");
-    CHECK(field_text(row, "speed_deg_s") == "109.495");
+    CHECK(field_text(row, "speed_deg_s") == "109.5");
     CHECK(field_text(row, "score") == "0.04798");
     CHECK(field_text(row, "rows") == "123456789");
     CHECK(field_text(row, "db") == "12.35");

@@ -7,7 +7,7 @@
 using namespace ripplenotch;
 using Catch::Contains;
 
-TEST_CASE("a comparison has short labels and four digits, and each spec once below") {
+TEST_CASE("a comparison has its methods' names and four digits") {
     const Json methods = Json::parse(R"([
         {"method": "none", "settle_ms": {"0.5": 0.0}, "error_rms_nm": null},
         {"method": "switching,table=long/name/of/a/table.json", "settle_ms": {"0.5": 112.34567},
@@ -17,11 +17,10 @@ TEST_CASE("a comparison has short labels and four digits, and each spec once bel
     CHECK(table.header == std::vector<std::string>{"method", "settles to 0.5 %, ms", "ramp delay, ms",
                                                    "attenuation of order 1, dB"});
     CHECK(table.rows[0] == std::vector<std::string>{"none", "0", "-", "-"});
-    CHECK(table.rows[1] == std::vector<std::string>{"A", "112.3", "-", "12.35"});
-    CHECK(table.rows[2] == std::vector<std::string>{"B", "-", "0", "-"});
-    REQUIRE(table.legend.size() == 2);
-    CHECK(table.legend[0].name == "A");
-    CHECK(table.legend[0].value == "switching,table=long/name/of/a/table.json");
+    CHECK(table.rows[1] ==
+          std::vector<std::string>{"switching, table long/name/of/a/table.json", "112.3", "-", "12.35"});
+    CHECK(table.rows[2] == std::vector<std::string>{"oscillator", "-", "0", "-"});
+    CHECK(table.legend.empty());
 }
 
 TEST_CASE("the notch table is the design: centre and Q of each order in each band") {
@@ -56,13 +55,36 @@ TEST_CASE("130 switches are a histogram and the ten largest, and a few are a tab
     CHECK(largest_switches(many).rows.size() == 5);
 }
 
+TEST_CASE("what all methods share is not in their names, and two methods have two names") {
+    const auto names_of = [](const char* methods) {
+        std::vector<std::string> names;
+        for (const auto& row : comparison_table(Json::parse(methods)).rows) names.push_back(row[0]);
+        return names;
+    };
+    CHECK(names_of(R"([{"method": "tracking,q=1,gear-ratio=100,orders=1:2"}, {"method": "none"},
+                       {"method": "tracking,q=2,gear-ratio=100,orders=1:2"}])") ==
+          std::vector<std::string>{"tracking, q 1", "none", "tracking, q 2"});
+    CHECK(names_of(R"([{"method": "tracking,gear-ratio=100"}, {"method": "tracking,gear-ratio=50"}])") ==
+          std::vector<std::string>{"tracking, gear-ratio 100", "tracking, gear-ratio 50"});
+}
+
+TEST_CASE("a verdict is good, doubtful or bad by its data") {
+    CHECK(state_of(Json::parse(R"({"conclusive": true})")) == PageState::good);
+    CHECK(state_of(Json::parse(R"({"conclusive": false})")) == PageState::doubtful);
+    CHECK(state_of(Json::parse("{}")) == PageState::none);
+    CHECK(state_of(Json::parse(R"({"conclusive": true, "take": "a", "methods": [
+        {"method": "a", "attenuation_db": [{"order": 1, "db": 20.0}, {"order": 2, "db": -3.3}]}]})")) ==
+          PageState::bad);
+}
+
 TEST_CASE("a page begins with what was asked, the verdict and three numbers, and folds its ledgers") {
     const std::string text = R"({"schema": "ripplenotch/metrics/1", "command": "ripplenotch x",
         "ripple_peak_to_peak_nm": {"raw": 2.60239, "filtered": 1.181297},
         "delays": [{"band": 1, "dc_delay_ms": 127.277}, {"band": 2, "dc_delay_ms": 19.81}],
         "orders": [{"order": 1.0, "raw_nm": 0.9}]})";
     const PageSection section = section_of_result(text, "m.json");
-    CHECK(section.asked == "What did the filter take off?");
+    CHECK(section.title == "Effect of the filter: m.json");
+    CHECK(section.in_summary);
     CHECK_THAT(section.verdict, Contains("2.6 Nm") && Contains("1.18 Nm"));
     REQUIRE(section.key.size() == 3);
     CHECK(section.key[2].value == "19.81 to 127.3 ms");
@@ -88,5 +110,5 @@ TEST_CASE("a hostile or empty document has no key numbers and throws nothing") {
             CHECK(sentence_of(kind, Json::parse(text)).empty());
         }
     }
-    CHECK(question_of("new-kind") == "new-kind");
+    CHECK(heading_of("new-kind") == "new-kind");
 }
