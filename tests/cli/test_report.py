@@ -131,7 +131,7 @@ class Pages(SharedCase):
         self.assertEqual(parser.stack, [])
         for part in ("ripplenotch design joint.json --speed 18:180:18", "Ripple at orders 1 and 2", "attenuation, dB",
                      "gear ratio value", "Ripple lines and gear ratio", "order 1: centre, Hz", "order 1: Q",
-                     "<td class="words">lowpass, cutoff 13Hz</td>", "Content-Security-Policy", "viewport"):
+                     '<td class="words">lowpass, cutoff 13Hz</td>', "Content-Security-Policy", "viewport"):
             self.assertIn(part, text)
         self.assertNotIn("http", text.replace("http-equiv", ""))
 
