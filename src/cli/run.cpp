@@ -7,6 +7,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <filesystem>
 #include <functional>
@@ -97,9 +98,19 @@ struct Declared {
     std::function<ExitCode()> work;
 };
 
-// "help identify" and "version", as people type them elsewhere.
+// "help identify" and "version", as people type them elsewhere; "features --merge" and "help effects" are
+// commands of their own.
 CommandWords in_our_words(CommandWords words) {
+    const auto merge = std::find(words.begin(), words.end(), "--merge");
+    if (!words.empty() && words.front() == "features" && merge != words.end()) {
+        words.erase(merge);
+        words.front() = "merge";
+    }
     if (words.empty() || is_command(words.front())) return words;
+    if (words.front() == "help" && words.size() > 1 && words[1] == "effects") {
+        words.erase(words.begin());
+        return words;
+    }
     if (words.front() == "version") words.front() = "--version";
     if (words.front() != "help") return words;
     words.erase(words.begin());
@@ -124,18 +135,67 @@ void declare_program(CLI::App& app) {
            "--generate", [](const std::string& /*kind*/) {},
            fmt::format("print a man page or a shell's completion: {}", generated_kinds))
         ->type_name("KIND");
-    app.footer("Each command explains itself: ripplenotch COMMAND --help. A LOG of - is standard input.");
+    app.footer(
+        "Begin with: ripplenotch report LOG -o page.html\nEach command explains itself: ripplenotch COMMAND "
+        "--help, or --help-all. A LOG of - is standard input.");
     app.require_subcommand(1);
 }
 
+constexpr std::string_view whole_help = "--help-all";
+
+// By what they are for, as `--help` lists them; commands.def has them in this order.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 5> command_groups = {
+    {{"track", "Look at a log"},
+     {"export", "Filter it"},
+     {"effects", "Model the joint"},
+     {"trend", "Fleets"},
+     {"report", "Report"}}};
+
+// Each option under what it is for: the command's own first. How a log is read fills half a page, which is
+// shown only where it is asked for.
+void group_options(CLI::App& command, bool whole) {
+    constexpr std::array<std::string_view, 3> gear = {"--gear-ratio", "--orders", "--joint-file"};
+    constexpr std::array<std::string_view, 8> output = {
+        "--output",  "--json",  "--plot",    "--force",
+        "--no-sync", "--quiet", "--verbose", "--require-conclusive"};
+    const auto is_one = [](const auto& names, const std::string& name) {
+        return std::find(names.begin(), names.end(), name) != names.end();
+    };
+    const bool reads = command.get_option_no_throw("--hold-bad-values") != nullptr;
+    bool reading = false, hidden = false;
+    for (CLI::Option* option : command.get_options()) {
+        if (option->get_positional()) continue;
+        const std::string longest = option->get_lnames().empty() ? "" : "--" + option->get_lnames().back();
+        if (reads && (longest == "--input-format" || longest == "--from")) reading = true;
+        if (reading) {
+            option->group(whole ? "How the log is read" : "");
+            hidden = hidden || !whole;
+        } else if (is_one(gear, longest)) {
+            option->group("Gear");
+        } else if (is_one(output, longest)) {
+            option->group("Output");
+        }
+        if (longest == "--hold-bad-values") reading = false;
+    }
+    if (hidden)
+        command.footer(fmt::format(
+            "How the log is read (--format, --joint, --columns, --unit, --scale, --side, --from, --to, ...): "
+            "{} {} {}\n\n{}",
+            tool_name, command.get_name(), whole_help, command.get_footer()));
+}
+
 // The options of all commands, or of those that the words name.
-void declare(CLI::App& app, const CommandWords& words, bool all, std::string& running, Declared& declared) {
+void declare(CLI::App& app, const CommandWords& words, bool all, bool whole, std::string& running,
+             Declared& declared) {
     const bool named_first = !words.empty() && is_command(words.front());
+    const auto* group = command_groups.begin();
     for (const Command* command : all_commands()) {
         // Declaring the options of every command takes longer than filtering ten thousand rows.
         if (named_first && words.front() != command->name) continue;
         CLI::App* sub = app.add_subcommand(std::string(command->name), std::string(command->summary));
         sub->footer(std::string(command->description));
+        sub->group(std::string(group->second));
+        if (group->first == command->name) ++group;
         if (!all && std::find(words.begin(), words.end(), command->name) == words.end()) continue;
         declared.implementations.push_back(
             std::make_unique<Options::Implementation>(Options::Implementation{sub, words}));
@@ -147,6 +207,7 @@ void declare(CLI::App& app, const CommandWords& words, bool all, std::string& ru
             for (const auto& check : parsed.after_parse) check();
             parsed.check_files();
         });
+        group_options(*sub, whole);
     }
 }
 
@@ -160,12 +221,14 @@ void check_environment() {
 // Throws what goes wrong, in declaring options too: which names clash depends on the version of the library.
 ExitCode parse_and_work(CLI::App& app, CommandWords words, std::string& running, bool within_another) {
     words = in_our_words(std::move(words));
+    const bool whole = std::find(words.begin(), words.end(), whole_help) != words.end();
+    std::replace(words.begin(), words.end(), std::string(whole_help), std::string("--help"));
     declare_program(app);
     const auto kind = kind_to_generate(words);
     const bool named_first = !words.empty() && is_command(words.front());
     if (named_first) running = words.front();
     Declared declared;
-    declare(app, words, kind.has_value(), running, declared);
+    declare(app, words, kind.has_value(), whole || kind, running, declared);
     if (kind) {
         write_text("-", generated(reference_of(app), *kind), ByteSink::Overwrite::no);
         return ExitCode::done;

@@ -18,13 +18,13 @@ def printed(kind):
 
 
 def commands():
-    listed = run("--help").stdout.split("Subcommands:")[1].split("\n\n")[0]
+    listed = run("--help").stdout.split("Look at a log:")[1].split("Begin with")[0]
     return re.findall(r"^  (\S+)", listed, re.M)
 
 
 def options_of_help(command):
-    """Names of options, as --help has them: '-o', '--output'."""
-    lines = run(command, "--help").stdout.split("\nOptions:\n")[1].split("\n\n")[0]
+    """Names of options, as --help-all has them: '-o', '--output'."""
+    lines = run(command, "--help-all").stdout.split("\nOptions:\n")[1]
     return {name for line in re.findall(r"^  (-\S+)", lines, re.M) for name in line.split(",")}
 
 
@@ -66,11 +66,24 @@ class Reference(unittest.TestCase):
         told = re.findall(r"^\.TP\n\\fB(\d+)\\fR$", printed("man").split(".SH EXIT STATUS\n")[1], re.M)
         self.assertEqual(told, documented)
 
+    def test_help_is_short_and_help_all_is_whole(self):
+        short, whole = run("identify", "--help").stdout, run("identify", "--help-all").stdout
+        self.assertNotIn("--hold-bad-values", short)
+        self.assertIn("--help-all", short)
+        self.assertIn("How the log is read:", whole)
+        for text in (short, whole):
+            self.assertNotIn("INT in [", text)
+        listed = run("--help").stdout
+        for group in ("Look at a log:", "Filter it:", "Model the joint:", "Fleets:", "Report:"):
+            self.assertIn("\n" + group, listed)
+
     def test_what_people_type_elsewhere(self):
         self.assertEqual(run("help", "identify").stdout, run("identify", "--help").stdout)
         self.assertEqual(run("help").stdout, run("--help").stdout)
         for words in (["-V"], ["version"]):
             self.assertEqual(run(*words).stdout, run("--version").stdout)
+        self.assertEqual(run("help", "effects").stdout, run("effects").stdout)
+        self.assertEqual(run("features", "--merge", "--help").stdout, run("merge", "--help").stdout)
         done = run("help", "nonsense")
         self.assertEqual((done.returncode, done.stdout), (2, ""))
         self.assertIn("there is no command 'nonsense'", done.stderr)

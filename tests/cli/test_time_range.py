@@ -94,7 +94,7 @@ class Law(TwoLogs):
 
     def test_the_help_of_every_command_names_both(self):
         for name, words in LAWS.items():
-            text = self.said("whole", words[0], "--help").decode()
+            text = self.said("whole", words[0], "--help-all").decode()
             for option in ("--from TIME", "--to TIME"):
                 self.assertIn(option, text, name)
 

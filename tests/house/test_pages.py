@@ -47,7 +47,7 @@ HELP_LISTS = {
 
 class HelpLists(unittest.TestCase):
     def help_of(self, command, option):
-        text = run(command, "--help").stdout
+        text = run(command, "--help-all").stdout
         found = re.search(rf"^ +(?:-\w,)?{option}\b.*?(?=^ +-|^[A-Z\n]|\Z)", text, re.M | re.S)
         self.assertIsNotNone(found, f"{command} has no {option}")
         return " ".join(found[0].split())
@@ -62,7 +62,7 @@ class HelpLists(unittest.TestCase):
         for command in listed("commands"):
             page = f"docs/commands/{command}.md"
             text = (SOURCE / page).read_text()
-            for option in re.findall(r"^ +(?:-\w,)?(--[a-z][a-z0-9-]+)", run(command, "--help").stdout, re.M):
+            for option in re.findall(r"^ +(?:-\w,)?(--[a-z][a-z0-9-]+)", run(command, "--help-all").stdout, re.M):
                 places = text if option == "--plot" else text + common
                 self.assertTrue(re.search(rf"{option}(?![\w-])", places), f"{page} has no {option}")
 
@@ -97,7 +97,7 @@ class Pages(unittest.TestCase):
     def test_a_page_of_a_command_names_every_option_of_its_help(self):
         common = (SOURCE / "docs" / "commands" / "README.md").read_text()
         for name in listed("commands"):
-            done = run(name, "--help")
+            done = run(name, "--help-all")
             self.assertEqual((done.returncode, done.stderr), (0, ""), f"{name} cannot declare its options")
             page = (SOURCE / "docs" / "commands" / f"{name}.md").read_text() + common
             for option in sorted(set(re.findall(r"(?<![\w-])--[a-z][a-z-]*", done.stdout))):

@@ -443,7 +443,7 @@ std::function<ExitCode()> attach_export(Options& options) {
     auto request = std::make_shared<ExportRequest>();
     options.argument("TABLE", request->table, false,
                      "table.json from design, or map.json from map; - is standard input");
-    options.text("--to", request->to, "TARGET[,KEY=VALUE...]",
+    options.text("--to,--target", request->to, "TARGET[,KEY=VALUE...]",
                  fmt::format("{}; of a map {}; see docs/export", name_list(export_targets()),
                              name_list(map_targets())));
     options.text("--method", request->method, "SPEC",

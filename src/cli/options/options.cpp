@@ -104,7 +104,7 @@ void Options::parsed_count(std::string_view names, int default_value, int lowest
                            std::string_view help, std::function<void(int)> assign) {
     single(implementation_.command->add_option_function<int>(owned(names), std::move(assign), owned(help)),
            "INTEGER")
-        ->check(CLI::Range(lowest, highest))
+        ->check(CLI::Range(lowest, highest).description(""))
         ->default_str(std::to_string(default_value));
 }
 
@@ -442,7 +442,7 @@ std::string one_of(std::initializer_list<std::string_view> all, const std::strin
 }  // namespace
 
 void attach_log(Options& options, ReadOptions& log) {
-    options.text("--format", log.format, "NAME",
+    options.text("--format,--input-format", log.format, "NAME",
                  fmt::format("format of the log: {} (default: found out from its first bytes)",
                              name_list(log_formats())));
     options.number("--sample-rate", log.sample_rate, Dimension::frequency,
