@@ -151,6 +151,17 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 5> command_g
      {"trend", "Fleets"},
      {"report", "Report"}}};
 
+constexpr std::string_view reading_group = "How the log is read";
+
+// The library hides options by taking their names away, which command lines that are printed need.
+class ShortHelp : public CLI::Formatter {
+  public:
+    std::string make_group(std::string group, bool is_positional,
+                           std::vector<const CLI::Option*> options) const override {
+        return group == reading_group ? "" : CLI::Formatter::make_group(group, is_positional, options);
+    }
+};
+
 // Each option under what it is for: the command's own first. How a log is read fills half a page, which is
 // shown only where it is asked for.
 void group_options(CLI::App& command, bool whole) {
@@ -168,8 +179,8 @@ void group_options(CLI::App& command, bool whole) {
         const std::string longest = option->get_lnames().empty() ? "" : "--" + option->get_lnames().back();
         if (reads && (longest == "--input-format" || longest == "--from")) reading = true;
         if (reading) {
-            option->group(whole ? "How the log is read" : "");
-            hidden = hidden || !whole;
+            option->group(std::string(reading_group));
+            hidden = !whole;
         } else if (is_one(gear, longest)) {
             option->group("Gear");
         } else if (is_one(output, longest)) {
@@ -177,11 +188,12 @@ void group_options(CLI::App& command, bool whole) {
         }
         if (longest == "--hold-bad-values") reading = false;
     }
-    if (hidden)
-        command.footer(fmt::format(
-            "How the log is read (--format, --joint, --columns, --unit, --scale, --side, --from, --to, ...): "
-            "{} {} {}\n\n{}",
-            tool_name, command.get_name(), whole_help, command.get_footer()));
+    if (!hidden) return;
+    command.formatter(std::make_shared<ShortHelp>());
+    command.footer(fmt::format(
+        "How the log is read (--format, --joint, --columns, --unit, --scale, --side, --from, --to, ...): "
+        "{} {} {}\n\n{}",
+        tool_name, command.get_name(), whole_help, command.get_footer()));
 }
 
 // The options of all commands, or of those that the words name.

@@ -41,10 +41,10 @@ struct PageSection {
     std::vector<PageFact> facts;  ///< every single value, shown on demand
     std::vector<Figure> figures;
     std::vector<PageTable> tables;
-    std::string command;             ///< the command that makes it again
-    std::vector<PageFact> inputs;    ///< name and SHA-256
-    std::string json;                ///< the result itself, one object
-    bool in_summary = false;         ///< a result; false: a figure alone
+    std::string command;           ///< the command that makes it again
+    std::vector<PageFact> inputs;  ///< name and SHA-256
+    std::string json;              ///< the result itself, one object
+    bool in_summary = false;       ///< a result; false: a figure alone
     PageState state = PageState::none;
     std::vector<PageFact> key = {};  ///< at most three numbers that answer it
 };
