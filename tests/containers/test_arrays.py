@@ -21,6 +21,16 @@ class Npz(Case):
         numpy.savez(self.folder / "other.npz", notes=numpy.array(["a", "b"]), short=numpy.arange(7), **arrays)
         self.assert_same(self.folder / "other.npz")
 
+    def test_a_short_vector_with_a_name_of_a_signal_is_a_parameter(self):
+        import numpy
+        arrays = {name: numpy.array(values) for name, values in self.columns.items() if name != "torque_nm"}
+        limits = numpy.linspace(1, 40, 48)
+        numpy.savez(self.folder / "limits.npz", torque_limits=limits, tau_nm=limits, speed=limits, time=limits,
+                    position_deg=arrays["position_deg"], velocity_deg_s=arrays["velocity_deg_s"])
+        text = self.run_tool("info", self.folder / "limits.npz", "--sample-rate", "1kHz").stdout.decode()
+        self.assertIn(f"{len(arrays['position_deg'])} rows", text.split("\n")[0])
+        self.assertIn("tau_nm", text)  # listed among what the file holds
+
     def test_matrices_of_either_order(self):
         import numpy
         tau = numpy.array([[value, -value, 0.0] for value in self.columns["torque_nm"]])

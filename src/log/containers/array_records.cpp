@@ -459,11 +459,23 @@ std::string listed(const std::vector<ContentEntry>& contents) {
     return text.empty() ? "nothing numeric" : text + (contents.size() > 8 ? ", ..." : "");
 }
 
+// Vectors this short in a file with signals ten times as long are parameters: limits, gains, a calibration.
+// It is the number of samples below which `diagnose` refuses a log, too.
+constexpr std::size_t fewest_rows_of_signal = 200, times_longer = 10;
+
 // The longest of the groups whose names say most; null where there is none.
 const ArrayGroup* choose_group(const std::vector<ArrayGroup>& groups, PathStyle style) {
     const ArrayGroup* chosen = nullptr;
     int best = -1;
+    const auto is_parameter = [&](const ArrayGroup& group) {
+        return group.rows < fewest_rows_of_signal &&
+               std::any_of(groups.begin(), groups.end(), [&](const ArrayGroup& other) {
+                   return other.rows >= times_longer * group.rows &&
+                          column_names_tell(columns_of(other, style)) > 0;
+               });
+    };
     for (const ArrayGroup& group : groups) {
+        if (is_parameter(group)) continue;
         const int tells = column_names_tell(columns_of(group, style));
         if (tells < best || (tells == best && group.rows == chosen->rows)) continue;
         best = tells;
