@@ -306,29 +306,36 @@ std::string joints_in_words(std::span<const std::string> joints) {
     return fmt::format("joint{} {}", joints.size() == 1 ? "" : "s", fmt::join(joints, ", "));
 }
 
-void JointMessages::add(const std::string& joint, bool is_warning, std::string_view sentence) {
+void JointMessages::add(const std::string& joint, bool is_warning, std::string_view sentence,
+                        std::string_view about) {
     auto same = std::find_if(messages_.begin(), messages_.end(), [&](const Message& known) {
-        return known.is_warning == is_warning && known.sentence == sentence;
+        return known.is_warning == is_warning &&
+               (known.sentence == sentence || (!about.empty() && known.about == about));
     });
-    if (same == messages_.end()) same = messages_.insert(same, {is_warning, std::string(sentence), {}});
+    if (same == messages_.end())
+        same = messages_.insert(same, {is_warning, false, std::string(sentence), std::string(about), {}});
+    same->of_first_joint = same->of_first_joint || same->sentence != sentence;
     if (std::find(same->joints.begin(), same->joints.end(), joint) == same->joints.end())
         same->joints.push_back(joint);
 }
 
 void JointMessages::say_all(std::size_t joints) {
     for (const Message& one : messages_) {
-        const bool of_all = one.joints.size() == joints;
-        talk(fmt::format("{}: {}{}{}", tool_name, one.is_warning ? "warning: " : "",
-                         of_all ? "" : joints_in_words(one.joints) + ": ", one.sentence));
+        const bool of_all = one.joints.size() == joints && !one.of_first_joint;
+        talk(fmt::format(
+            "{}: {}{}{}{}", tool_name, one.is_warning ? "warning: " : "",
+            of_all ? "" : joints_in_words(one.joints) + ": ", one.sentence,
+            one.of_first_joint ? fmt::format(" (so in {}; similar in the others)", one.joints.front()) : ""));
     }
     messages_.clear();
 }
 
 namespace {
 
-void say_or_gather(const CommonOptions& common, bool is_warning, std::string_view sentence) {
+void say_or_gather(const CommonOptions& common, bool is_warning, std::string_view sentence,
+                   std::string_view about = {}) {
     if (common.messages)
-        common.messages->add(common.joint, is_warning, sentence);
+        common.messages->add(common.joint, is_warning, sentence, about);
     else
         talk(fmt::format("{}: {}{}", tool_name, is_warning ? "warning: " : "", sentence));
 }
@@ -344,7 +351,11 @@ void say_warnings(const CommonOptions& common, std::span<const std::string> warn
 }
 
 void say_warnings(const CommonOptions& common, std::span<const LogWarning> warnings) {
-    for (const LogWarning& warning : warnings) warn(common, warning.text);
+    for (const LogWarning& warning : warnings) {
+        if (!common.quiet)
+            say_or_gather(common, true, warning.text,
+                          warning.of_one_joint ? warning.about : std::string_view());
+    }
 }
 
 void say(const CommonOptions& common, std::string_view sentence) {

@@ -110,14 +110,16 @@ class Options {
 /// joints that it is about where these are not all.
 class JointMessages {
   public:
-    void add(const std::string& joint, bool is_warning, std::string_view sentence);
+    /// Sentences `about` the same, with the figures of a joint each, are one with the first joint's figures.
+    void add(const std::string& joint, bool is_warning, std::string_view sentence,
+             std::string_view about = {});
     /// In the order of their first joints, and no more afterwards. `joints`: how many were gone over.
     void say_all(std::size_t joints);
 
   private:
     struct Message {
-        bool is_warning;
-        std::string sentence;
+        bool is_warning, of_first_joint;
+        std::string sentence, about;
         std::vector<std::string> joints;
     };
     std::vector<Message> messages_;
