@@ -438,10 +438,11 @@ struct Kind {
     const char *name, *question;
     void (*numbers)(const Json&, Numbers&);
 };
-constexpr std::array<Kind, 13> kinds = {
+constexpr std::array<Kind, 14> kinds = {
     {{"info", "What is in the log?", of_any},
      {"joint", "Which ripple is in the log, and which gear ratio?", of_joint},
      {"spectrum", "Which frequencies are in the torque?", of_any},
+     {"response", "How does one signal follow the other at each frequency?", of_any},
      {"track", "How does the ripple change along the log?", of_any},
      {"map", "What is the ripple at each angle and speed?", of_map},
      {"recommendation", "Which method does this log ask for?", of_recommendation},
@@ -666,9 +667,10 @@ PageSection section_of_result(const std::string& text, const std::string& source
 std::vector<PageSection> sections_of_result(const std::string& text, const std::string& source) {
     const auto [kind, whole] = parse_any_document(text, source);
     // Lists of what a command gives of each joint of a log, and what each entry is.
-    static constexpr std::array<std::pair<std::string_view, std::string_view>, 5> lists = {
+    static constexpr std::array<std::pair<std::string_view, std::string_view>, 6> lists = {
         {{"diagnoses", "diagnosis"},
          {"spectra", "spectrum"},
+         {"responses", "response"},
          {"tracks", "track"},
          {"comparisons", "comparison"},
          {"recommendations", "recommendation"}}};
