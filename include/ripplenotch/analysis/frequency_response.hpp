@@ -25,8 +25,8 @@ struct SignalPair {
 };
 
 struct ResponseOptions {
-    std::optional<Seconds> segment;   ///< left out: about 32 half-overlapping ones, of 10 s at most
-    std::optional<Hertz> resolution;  ///< instead: 1.5 over the segment
+    std::optional<Seconds> segment = {};   ///< left out: about 32 half-overlapping ones, of 10 s at most
+    std::optional<Hertz> resolution = {};  ///< instead: 1.5 over the segment
     ResponseEstimator estimator = ResponseEstimator::h1;
 };
 

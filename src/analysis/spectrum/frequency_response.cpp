@@ -78,7 +78,12 @@ std::size_t segment_length(const SignalPair& signals, const ResponseOptions& res
         const auto longest = static_cast<std::size_t>(longest_usual_s * signals.sample_rate.value());
         length = std::min(std::max(2 * rows / (usual_segments + 1), fewest_spectrum_samples), longest);
     }
-    require_piece_length(length, options);
+    if (length < fewest_spectrum_samples)
+        raise<DataError>(
+            "a segment of a frequency response needs at least {} samples, {} were given; use a longer "
+            "--segment, "
+            "or a smaller --resolution",
+            fewest_spectrum_samples, length);
     return length;
 }
 
@@ -361,7 +366,8 @@ std::vector<std::string> response_notes(const ResponseReport& report) {
     if (response.hidden > trend_bins + 1)
         notes.push_back(fmt::format(
             "At {} frequencies {} has no power of its own above the leakage of stronger frequencies.",
-            response.hidden, response.estimator == ResponseEstimator::h1 ? report.in : report.out));
+            response.hidden - trend_bins - 1,
+            response.estimator == ResponseEstimator::h1 ? report.in : report.out));
     notes.push_back(
         response.estimator == ResponseEstimator::h1
             ? fmt::format(

@@ -84,7 +84,7 @@ Signal signal_named(const std::string& name, const ResponseLog& read) {
 // Columns by name are numbers as they stand in the log, whatever their unit is.
 std::string gain_unit(const Signal& out, const Signal& in) {
     const auto unit = [](const Signal& signal) {
-        return signal.unit.empty() ? signal.name + " as in the log" : signal.unit;
+        return signal.unit.empty() ? fmt::format("the unit of column {}", signal.name) : signal.unit;
     };
     return out.unit == in.unit ? "" : fmt::format("{} per {}", unit(out), unit(in));
 }
@@ -124,9 +124,9 @@ bool ResponseRequest::names(std::string_view signal) const {
                        signals->ends_with(fmt::format("/{}", signal)));
 }
 
-bool ResponseRequest::needs_motion() const {
+bool ResponseRequest::needs_motion(const GearOptions& gear) const {
     return names("velocity") || names("position") ||
-           (method && JointMethods({*method, std::nullopt, {}}).follows_motion());
+           (method && JointMethods({*method, std::nullopt, gear}).follows_motion());
 }
 
 void attach_response(Options& options, ResponseRequest& request) {

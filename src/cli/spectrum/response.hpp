@@ -22,7 +22,7 @@ struct ResponseRequest {
     /// Whether a signal has this name.
     [[nodiscard]] bool names(std::string_view signal) const;
     /// Whether the joint's motion has to be in the log.
-    [[nodiscard]] bool needs_motion() const;
+    [[nodiscard]] bool needs_motion(const GearOptions& gear) const;
 };
 
 void attach_response(Options& options, ResponseRequest& request);

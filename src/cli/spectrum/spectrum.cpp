@@ -353,7 +353,7 @@ struct SpectrumRequest {
     /// Frequencies of all of the log are the same however the joint moves.
     [[nodiscard]] bool needs_motion() const {
         return stretch || map.map || residual.any() || domain != "frequency" ||
-               (response.signals && response.needs_motion());
+               (response.signals && response.needs_motion(map.gear));
     }
     /// Numbers by the thousand, and no table for people.
     [[nodiscard]] bool is_csv() const {
