@@ -480,9 +480,10 @@ struct Kind {
     const char *name, *heading;
     void (*numbers)(const Json&, Numbers&);
 };
-constexpr std::array<Kind, 13> kinds = {{{"info", "The log", of_any},
+constexpr std::array<Kind, 14> kinds = {{{"info", "The log", of_any},
                                          {"joint", "Ripple lines and gear ratio", of_joint},
                                          {"spectrum", "Spectrum of the torque", of_any},
+                                         {"response", "Frequency response", of_any},
                                          {"track", "Orders over time", of_any},
                                          {"map", "Ripple map", of_map},
                                          {"recommendation", "Recommended method", of_recommendation},
@@ -726,9 +727,10 @@ PageSection section_of_result(const std::string& text, const std::string& source
 std::vector<PageSection> sections_of_result(const std::string& text, const std::string& source) {
     const auto [kind, whole] = parse_any_document(text, source);
     // Lists of what a command gives of each joint of a log, and what each entry is.
-    static constexpr std::array<std::pair<std::string_view, std::string_view>, 5> lists = {
+    static constexpr std::array<std::pair<std::string_view, std::string_view>, 6> lists = {
         {{"diagnoses", "diagnosis"},
          {"spectra", "spectrum"},
+         {"responses", "response"},
          {"tracks", "track"},
          {"comparisons", "comparison"},
          {"recommendations", "recommendation"}}};

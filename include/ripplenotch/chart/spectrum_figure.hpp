@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 
+#include "ripplenotch/analysis/frequency_response.hpp"
 #include "ripplenotch/analysis/identification.hpp"
 #include "ripplenotch/analysis/motion_lines.hpp"
 #include "ripplenotch/analysis/order_map.hpp"
@@ -35,6 +36,9 @@ inline constexpr std::size_t most_spectrum_panels = 8;
 /// Amplitude against output order, order lines named.
 [[nodiscard]] Figure order_spectrum_figure(const std::string& source, const Stack& stack,
                                            const MotionLines& lines);
+
+/// Bode diagram with 95 % bands: gain and phase where they are determined, and the coherence with its limit.
+[[nodiscard]] Figure response_figure(const std::string& source, const ResponseReport& report);
 
 /// Campbell diagram or order map: speed along x. With a gear the lines of its orders are drawn;
 /// `axis_per_motor_turn`: the map's own orders are per motor turn, not per output turn.

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "ripplenotch/analysis/frequency_response.hpp"
 #include "ripplenotch/analysis/motion_lines.hpp"
 #include "ripplenotch/analysis/order_map.hpp"
 #include "ripplenotch/analysis/spectrum.hpp"
@@ -28,6 +29,10 @@ namespace ripplenotch {
 
 /// Schema ripplenotch/track/1; the columns are arrays, null where a line was not measured.
 [[nodiscard]] std::string track_text(const TrackReport& report, const Provenance& provenance);
+
+/// Schema ripplenotch/response/1: `rows` by third of an octave, and all bins as arrays, null where the
+/// response is not determined.
+[[nodiscard]] std::string response_text(const ResponseReport& report, const Provenance& provenance);
 
 /// A frequency spectrum and the samples that it is of.
 struct StretchSpectrum {

@@ -14,12 +14,19 @@
 
 namespace ripplenotch {
 
+double leakage(double bins) {
+    const double d = std::abs(bins);
+    return d < 2.0 ? 1.0 : 1.0 / (std::numbers::pi * d * (d * d - 1.0));
+}
+
+double independent_pieces(std::size_t pieces) {
+    return std::max(1.0, static_cast<double>(pieces) / (pieces > 1 ? 1.0556 : 1.0));
+}
+
 namespace {
 
 constexpr double hann_error_factor =
-    1.5307;                           // standard error of a Hann-windowed frequency over the Cramer-Rao bound
-constexpr double skirt_margin = 2.0;  // a side lobe may be this much higher than the window's own
-constexpr std::size_t trend_bins = 3;  // main lobe at zero of the residual of the straight line
+    1.5307;  // standard error of a Hann-windowed frequency over the Cramer-Rao bound
 
 /// Offset in bins of a Hann peak from the logs of three powers around it; within 0.02 bin, to be refined by
 /// Newton's method.
@@ -28,12 +35,6 @@ double log_parabola(double left, double middle, double right) {
     const double a = portable::log(left), b = portable::log(middle), c = portable::log(right);
     const double bend = a - 2.0 * b + c;
     return bend < 0.0 ? std::clamp(0.5 * (a - c) / bend, -0.5, 0.5) : 0.0;
-}
-
-/// Largest amplitude that a line of amplitude 1 shows `bins` away through a Hann window, side lobes included.
-double leakage(double bins) {
-    const double d = std::abs(bins);
-    return d < 2.0 ? 1.0 : 1.0 / (std::numbers::pi * d * (d * d - 1.0));
 }
 
 /// Drops peaks that are only the skirt of a stronger one, and those 100 dB below the strongest, where
@@ -70,8 +71,7 @@ std::size_t Welch::add(std::span<const double> time_s, std::span<const double> t
 }
 
 PowerSpectrum Welch::tested() const {
-    // Half-overlapping Hann pieces: neighbours share a sixth of their power in correlation, (1 + 2/36)^-1.
-    const double averages = std::max(1.0, static_cast<double>(pieces_) / (pieces_ > 1 ? 1.0556 : 1.0));
+    const double averages = independent_pieces(pieces_);
     // A single spectrum of red noise has maxima near its low end that few neighbouring cells do not explain.
     constexpr double unsearched_cells = 5.0;
     const std::size_t first = std::min(trend_bins, power_.size());

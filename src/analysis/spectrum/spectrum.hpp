@@ -15,6 +15,18 @@
 
 namespace ripplenotch {
 
+/// Bins of the main lobe at zero of what the removal of a straight line leaves.
+inline constexpr std::size_t trend_bins = 3;
+
+/// Largest amplitude that a line of amplitude 1 shows `bins` away through a Hann window, side lobes included.
+[[nodiscard]] double leakage(double bins);
+
+inline constexpr double skirt_margin = 2.0;  ///< a side lobe may be this much higher than the window's own
+
+/// Independent averages that half-overlapping Hann pieces are worth: neighbours share a sixth of their
+/// amplitude and so 1/36 of their power in correlation, (1 + 2/36)^-1.
+[[nodiscard]] double independent_pieces(std::size_t pieces);
+
 // The mean spectrum of pieces that go by one after another: once for the power, and once more for the lines
 // found in it.
 

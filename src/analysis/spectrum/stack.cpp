@@ -184,14 +184,18 @@ bool PieceMaker::even_at(Hertz rate) const {
     return (worst_s_ + drift) * (1.0 + 1e-9) <= even_share * std::min(step, step_s_);
 }
 
+std::span<const std::complex<double>> PieceMaker::sums() {
+    if (piece_.even) return transform_.run();
+    uneven_sums_ = nonuniform_fourier(piece_.time_s, piece_.value, rate_ / static_cast<double>(length_),
+                                      length_ / 2 + 1);
+    return uneven_sums_;
+}
+
 void PieceMaker::add_power(double scale, std::span<double> power) {
-    std::vector<std::complex<double>> uneven;
-    if (!piece_.even)
-        uneven = nonuniform_fourier(piece_.time_s, piece_.value, rate_ / static_cast<double>(length_),
-                                    length_ / 2 + 1);
-    const auto sums = piece_.even ? transform_.run() : std::span<const std::complex<double>>(uneven);
-    for (std::size_t k = 0; k < sums.size(); ++k)
-        power[k] += scale * (sums[k].real() * sums[k].real() + sums[k].imag() * sums[k].imag());
+    const auto of_piece = sums();
+    for (std::size_t k = 0; k < of_piece.size(); ++k)
+        power[k] +=
+            scale * (of_piece[k].real() * of_piece[k].real() + of_piece[k].imag() * of_piece[k].imag());
 }
 
 namespace {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <complex>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -65,8 +66,9 @@ class PieceMaker {
     /// The next piece does not follow the one before.
     void begin_again() { late_.reset(); }
 
-    /// Adds to power[k] the squared magnitude of the last piece's sum at k * rate / length, times `scale`;
-    /// 0 Hz to half the rate.
+    /// The last piece's sums at k * rate / length, 0 Hz to half the rate; valid until the next piece.
+    [[nodiscard]] std::span<const std::complex<double>> sums();
+    /// Adds to power[k] their squared magnitudes, times `scale`.
     void add_power(double scale, std::span<double> power);
 
     /// Whether all pieces were even, and surely would have been if the rate had been this one.
@@ -87,6 +89,7 @@ class PieceMaker {
     std::vector<double> even_time_s_, even_window_;
     double even_sum_ = 0.0, even_square_sum_ = 0.0;
     std::vector<double> time_s_, value_;
+    std::vector<std::complex<double>> uneven_sums_;
     std::optional<EvenPart> late_;  // the last piece's second half, if that piece was even
     std::vector<EvenPart> ahead_;   // those of the next pieces, last one first
     double worst_s_ = 0.0;          // largest distance from its place of any sample

@@ -20,6 +20,7 @@
 #include "cli/options/options.hpp"
 #include "cli/options/plot_request.hpp"
 #include "cli/options/verdict_options.hpp"
+#include "cli/spectrum/response.hpp"
 #include "cli/talk.hpp"
 #include "ripplenotch/analysis/order_map.hpp"
 #include "ripplenotch/analysis/spectrum.hpp"
@@ -270,26 +271,25 @@ std::string in_words(const SpeedMap& map, std::string_view unit, std::optional<d
 void attach_speed_map(Options& options, SpeedMapRequest& request) {
     options.text("--map", request.map, "campbell|order",
                  "over speed: frequency against speed, or order against speed");
-    attach_gear(options, request.gear,
-                {.ratio = "--map order: count orders per motor turn instead of per output turn",
-                 .orders = "--map: orders whose lines are drawn, in cycles per motor turn (default: 1,2)",
-                 .joint_file = "--map: joint.json with gear ratio and orders"});
-    options.number("--resolution", request.resolution, Dimension::none, "of the map, in Hz or orders");
+    attach_gear(
+        options, request.gear,
+        {.ratio = "--map order: count orders per motor turn instead of per output turn; --method needs it",
+         .orders = "--map: orders whose lines are drawn, in cycles per motor turn (default: 1,2)",
+         .joint_file = "--map: joint.json with gear ratio and orders"});
+    options.number("--resolution", request.resolution, Dimension::none,
+                   "of the map, in Hz or orders; of --response in Hz");
     options.number("--highest", request.highest, Dimension::none, "frequency or order where the map ends");
     options.number("--speed-step", request.speed_step, Dimension::speed, "width of a row of the map");
 }
 
 // Throws UsageError when options of the map are given without --map, or make no sense.
-void check_speed_map(const SpeedMapRequest& request) {
-    if (!request.map) {
-        if (request.gear.any() || request.resolution || request.highest || request.speed_step) {
-            raise<UsageError>(
-                "--joint-file, --gear-ratio, --orders, --resolution, --highest and --speed-step belong to "
-                "--map");
-        }
-        return;
+void check_speed_map(const SpeedMapRequest& request, bool of_response) {
+    const bool shared = request.gear.any() || request.resolution;
+    if (!request.map && ((shared && !of_response) || request.highest || request.speed_step)) {
+        raise<UsageError>(
+            "--joint-file, --gear-ratio, --orders, --resolution, --highest and --speed-step belong to --map");
     }
-    if (*request.map != map_names[0] && *request.map != map_names[1])
+    if (request.map && *request.map != map_names[0] && *request.map != map_names[1])
         raise<UsageError>("--map: '{}' is none of campbell, order", *request.map);
     const auto positive = [](std::string_view option, std::optional<double> value) {
         if (value && !(*value > 0.0)) raise<UsageError>("{} {} is not above 0", option, shortest(*value));
@@ -346,15 +346,22 @@ struct SpectrumRequest {
     SteadyRule steady;
     SpeedMapRequest map;
     ResidualOptions residual;
+    ResponseRequest response;
     PlotRequest plot;
     bool peaks = false;
 
     /// Frequencies of all of the log are the same however the joint moves.
     [[nodiscard]] bool needs_motion() const {
-        return stretch || map.map || residual.any() || domain != "frequency";
+        return stretch || map.map || residual.any() || domain != "frequency" ||
+               (response.signals && response.needs_motion(map.gear));
+    }
+    /// Numbers by the thousand, and no table for people.
+    [[nodiscard]] bool is_csv() const {
+        if (response.signals) return !common.json && common.output.ends_with(".csv");
+        return !peaks && !common.json;
     }
     /// Half-overlapping pieces of all of the log, which need no more of it at a time.
-    [[nodiscard]] bool in_pieces() const { return segment && !needs_motion(); }
+    [[nodiscard]] bool in_pieces() const { return segment && !needs_motion() && !response.signals; }
 };
 
 /// The parts of the log that are asked for: all of it, every steady stretch, or one of them by number.
@@ -463,6 +470,19 @@ Result map_result(const SpectrumRequest& request, const MapLines& lines, const T
             }};
 }
 
+Result response_result(const SpectrumRequest& request, const ResponseLog& read,
+                       const Provenance& provenance) {
+    ResponseReport report = response_report(request.response, request.map.gear, read);
+    std::string text = request.common.json ? response_text(report, provenance)
+                       : request.is_csv()  ? response_csv(report)
+                                           : response_table(report);
+    if (request.is_csv()) say(request.common, response_verdict(report));
+    return {std::move(text),
+            [report = std::move(report), source = joint_in_words(request.path, read.log.trace.joint)] {
+                return response_figure(source, report);
+            }};
+}
+
 using Made = std::pair<Result, Provenance>;
 
 /// The log goes by and is not held.
@@ -503,6 +523,7 @@ Made whole_result(const SpectrumRequest& request, const std::string& command_lin
     ReadOptions reading = read_options(request.log, lines.gear);
     take_joint_of(request.residual, reading.joint);
     reading.needs_velocity = request.needs_motion();
+    reading.needs_torque = !request.response.signals || request.response.names("torque");
     require_memory_for_spectrum(request, reading);
     Log log = read_log(request.path, reading);
     say_layout(request.common, log.layout);
@@ -510,6 +531,8 @@ Made whole_result(const SpectrumRequest& request, const std::string& command_lin
     say_warnings(request.common, log.recording.warnings);
     provenance.inputs.insert(provenance.inputs.begin(), input_record(request.path));
     provenance.recordings.push_back({log.recording});
+    if (request.response.signals)
+        return {response_result(request, {request.path, reading, log}, provenance), provenance};
     const bool by_order = request.domain == "order" || request.map.map == "order";
     const std::string doubt =
         by_order ? reading_doubt({&log, 1}, [](const OtherReading&) { return true; }) : "";
@@ -525,23 +548,40 @@ Made whole_result(const SpectrumRequest& request, const std::string& command_lin
 JointResult spectrum_of_joint(const SpectrumRequest& request, const std::string& command_line) {
     auto [made, provenance] =
         request.in_pieces() ? piecewise_result(request, command_line) : whole_result(request, command_line);
-    const bool is_table = request.peaks || request.common.json;  // and not bins by the thousand
-    JointResult result{is_table
+    JointResult result{!request.is_csv()
                            ? in_torque_unit(std::move(made.text), provenance.recordings.front().torque_unit)
                            : std::move(made.text)};
     // A figure in the terminal takes the place of the bins, and not that of the tables.
-    if (!request.peaks && request.plot.instead_of(request.common.output)) result.write = [] {};
+    if (request.is_csv() && request.plot.instead_of(request.common.output)) result.write = [] {};
     result.afterwards = [request, provenance = std::move(provenance), figure = std::move(made.figure)] {
         draw_plot(request.plot, request.common, provenance, figure);
     };
     return result;
 }
 
+void check_response(SpectrumRequest& request) {
+    if (!request.response.signals) {
+        if (request.response.method || request.response.estimator != "h1")
+            raise<UsageError>("--method and --estimator belong to --response");
+        return;
+    }
+    if (request.map.map || request.stretch || request.peaks || request.domain != "frequency")
+        raise<UsageError>("--response goes with neither --domain, --stretch, --map nor --peaks");
+    if (request.segment && request.map.resolution)
+        raise<UsageError>(
+            "--segment and --resolution state the same, 1.5 over one is the other: leave one out");
+    request.response.segment = request.segment;
+    if (request.map.resolution) request.response.resolution = Hertz(*request.map.resolution);
+    if (request.map.gear.any() && !request.response.method)
+        raise<UsageError>("--gear-ratio, --orders and --joint-file belong to --method and to --map");
+}
+
 ExitCode run_spectrum(SpectrumRequest& request, const std::string& command_line) {
     if (!(request.false_alarm > 0.0) || request.false_alarm > 0.5) {
         raise<UsageError>("--false-alarm {} is not between 0 and 0.5", shortest(request.false_alarm));
     }
-    check_speed_map(request.map);
+    check_speed_map(request.map, request.response.signals.has_value());
+    check_response(request);
     hash_where_told(request.common, request.plot);
     if (request.map.map &&
         (request.stretch || request.segment || request.peaks || request.domain != "frequency"))
@@ -549,7 +589,8 @@ ExitCode run_spectrum(SpectrumRequest& request, const std::string& command_line)
     if (request.peaks) check_output_name(request.common.output, "a table of lines", ".txt .json");
     ReadOptions log = request.log;
     take_joint_of(request.residual, log.joint);
-    return run_joints({request.path, log, request.common, &request.plot, "spectra", !request.peaks},
+    const std::string_view documents = request.response.signals ? "responses" : "spectra";
+    return run_joints({request.path, log, request.common, &request.plot, documents, request.is_csv()},
                       [&](const std::optional<std::string>& joint, const CommonOptions& common) {
                           SpectrumRequest one = request;
                           one.common = common;
@@ -578,6 +619,7 @@ std::function<ExitCode()> attach_spectrum(Options& options) {
                    "... or within this speed, whichever is wider; none by default");
     options.number("--steady-for", request->steady.at_least, Dimension::time, "for at least this long", true);
     attach_speed_map(options, request->map);
+    attach_response(options, request->response);
     attach_residual(options, request->residual);
     attach_plot(options, request->plot, request->common);
     attach_log(options, request->log);
