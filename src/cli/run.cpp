@@ -203,8 +203,8 @@ ExitCode parse_and_work(CLI::App& app, CommandWords words, std::string& running,
 
 /// What the parsing library refuses, in our words.
 UsageError refusal(const CLI::ParseError& error, const std::string& running) {
-    return UsageError(fmt::format("{}; see {} {}--help", error.what(), tool_name,
-                                  running.empty() ? "" : running + " "));
+    return UsageError(
+        fmt::format("{}; see {} {}--help", error.what(), tool_name, running.empty() ? "" : running + " "));
 }
 
 ExitCode run(const CommandWords& words, std::string& running, bool within_another) {
