@@ -111,7 +111,7 @@ py::object log_of(Log&& log) {
     fields["torque_nm"] = array_of(std::move(log.trace.torque_nm));
     fields["position_deg"] =
         log.trace.position_deg.empty() ? py::object(py::none()) : array_of(std::move(log.trace.position_deg));
-    return std::move(fields);
+    return fields;
 }
 
 py::tuple read_words(const std::string& path, const CommandWords& words) {
