@@ -70,6 +70,7 @@ if(NOT RIPPLENOTCH_FMT_LINKS)
     return()
 endif()
 add_library(ripplenotch_fmt_archive STATIC ${CMAKE_CURRENT_LIST_DIR}/fmt_definitions.cpp)
+ripplenotch_part_of_module(ripplenotch_fmt_archive)
 target_include_directories(ripplenotch_fmt_archive SYSTEM
     PUBLIC $<TARGET_PROPERTY:fmt::fmt,INTERFACE_INCLUDE_DIRECTORIES>)
 target_compile_definitions(ripplenotch_fmt_archive

@@ -276,6 +276,12 @@ ExitCode parse_and_work(CLI::App& app, CommandWords words, std::string& running,
     return declared.work();
 }
 
+/// What the parsing library refuses, in our words.
+UsageError refusal(const CLI::ParseError& error, const std::string& running) {
+    return UsageError(
+        fmt::format("{}; see {} {}--help", error.what(), tool_name, running.empty() ? "" : running + " "));
+}
+
 ExitCode run(const CommandWords& words, std::string& running, bool within_another) {
     try {
         CLI::App app("Torque ripple of harmonic drives in joint logs: find it, filter it, measure the cost.",
@@ -289,8 +295,7 @@ ExitCode run(const CommandWords& words, std::string& running, bool within_anothe
             return ExitCode::done;
         }
     } catch (const CLI::ParseError& error) {
-        throw UsageError(fmt::format("{}; see {} {}--help", error.what(), tool_name,
-                                     running.empty() ? "" : running + " "));
+        throw refusal(error, running);
     }
 }
 
@@ -301,6 +306,25 @@ ExitCode run_command(const CommandWords& words, std::string& running) { return r
 ExitCode run_within(const CommandWords& words) {
     std::string running;
     return run(words, running, true);
+}
+
+void parse_options(const std::string& of_command, CommandWords words,
+                   const std::function<void(Options&)>& declare) {
+    CLI::App app;
+    CLI::App& command = *app.add_subcommand(of_command);
+    Options::Implementation implementation{&command, words};
+    Options options(implementation);
+    declare(options);
+    implementation.spell_out(words);
+    if (const auto unknown = unknown_option(command, words))
+        raise<UsageError>("{}", unknown_option_message(command, *unknown));
+    words.insert(words.begin(), of_command);
+    try {
+        app.parse(CommandWords(words.rbegin(), words.rend()));
+    } catch (const CLI::ParseError& error) {
+        throw refusal(error, of_command);
+    }
+    for (const auto& check : implementation.after_parse) check();
 }
 
 }  // namespace ripplenotch

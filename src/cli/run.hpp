@@ -2,6 +2,7 @@
 #pragma once
 // Command lines as words without the program's name, for main() and for commands that run others.
 
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,7 +20,14 @@ ExitCode complain(ExitCode code, std::string_view command, std::string_view mess
 /// name goes to `running` as soon as it is known. Throws Error.
 ExitCode run_command(const CommandWords& words, std::string& running);
 
-/// The same as part of another command: without a progress bar of its own.
+/// The same as part of another command or program: without a progress bar of its own.
 ExitCode run_within(const CommandWords& words);
+
+class Options;
+
+/// Reads words that are nothing but the options which `declare` declares; refusals name the command, whose
+/// help explains them. Throws UsageError.
+void parse_options(const std::string& of_command, CommandWords words,
+                   const std::function<void(Options&)>& declare);
 
 }  // namespace ripplenotch

@@ -169,7 +169,13 @@ class NoBrokenPipe {
     sigset_t pipe_{}, before_{};
 };
 
+std::string* captured = nullptr;  ///< capture_talk
+
 void put(std::string_view bytes) {
+    if (captured != nullptr) {
+        *captured += bytes;
+        return;
+    }
     Progress::current().step_aside();
     NoBrokenPipe guard;
     while (!bytes.empty()) {
@@ -202,6 +208,8 @@ std::string visible_lines(std::string_view lines) {
 }
 
 }  // namespace
+
+void capture_talk(std::string* text) noexcept { captured = text; }
 
 void talk(std::string_view line) { put(visible_text(line) + "\n"); }
 

@@ -38,6 +38,10 @@ class ProgressBar {
     std::unique_ptr<Painter> painter_;
 };
 
+/// From now on what would go to standard error is added to `text`, for a program that the tool runs in; with
+/// null it goes to standard error again.
+void capture_talk(std::string* text) noexcept;
+
 /// One line on standard error, made visible. Where nobody takes it (closed, full, gone), it is lost.
 void talk(std::string_view line);
 

@@ -31,6 +31,7 @@ SEES = {
     "verdict": {"core", "log", "analysis", "design", "filter", "evaluate", "model", "diagnose", "arm", "document"},
     "cli": {"core", "log", "analysis", "survey", "design", "filter", "evaluate", "model", "export", "diagnose", "figure", "chart",
             "document", "page", "verdict", "arm", "fleet"},
+    "python": {"core", "log", "cli"},
 }
 
 # Third-party header -> the files that may include it.
@@ -49,6 +50,7 @@ DOORS = {
     r"lzma\.h": {"src/log/unpack/unpackers.cpp"},
     r"hdf5\.h": {"src/log/containers/hdf5.cpp"},
     r"sqlite3": {"src/log/messages/rosbag2_messages.cpp"},
+    r"pybind11": {"src/python/module.cpp"},
     r"Eigen/Sparse": {"src/analysis/track/vold_kalman.cpp"},
     r"Eigen/(?!Sparse)": {"src/core/matrices/linear_algebra.hpp"},
 }

@@ -277,6 +277,8 @@ void TemporaryFile::take_place(const std::string& path, bool overwrite, bool syn
 
 namespace {
 
+std::string* captured = nullptr;  ///< capture_output
+
 constexpr std::size_t page_group = std::size_t{1} << 16;
 constexpr std::uint64_t least_reserved = std::uint64_t{4}
                                          << 20;  // what is written in a few pieces needs none
@@ -325,6 +327,7 @@ ByteSink::ByteSink(const std::string& path, Overwrite overwrite, bool binary)
     : path_(path), overwrite_(overwrite) {
     if (path == "-") {
         descriptor_ = STDOUT_FILENO;
+        if (captured != nullptr) return;
         if (binary && ::isatty(STDOUT_FILENO) == 1) {
             raise<UsageError>("binary output would go to the terminal; name a file with -o, or pipe it on");
         }
@@ -352,7 +355,13 @@ ByteSink::~ByteSink() {
     if (descriptor_ >= 0 && descriptor_ != STDOUT_FILENO && !file_) ::close(descriptor_);
 }
 
+void capture_output(std::string* text) noexcept { captured = text; }
+
 void ByteSink::write(std::string_view bytes) {
+    if (captured != nullptr && descriptor_ == STDOUT_FILENO) {
+        *captured += bytes;
+        return;
+    }
     static const bool to_terminal = ::isatty(STDOUT_FILENO) == 1;
     if (to_terminal && descriptor_ == STDOUT_FILENO) Progress::current().step_aside();
     if (!file_)  // somebody may be waiting for it

@@ -76,6 +76,11 @@ class TemporaryFile {
 /// Where temporary files go: TMPDIR, else the system's. Throws FileError.
 [[nodiscard]] std::string temporary_folder();
 
+// Internal: the tool within another program, whose standard output is not ours.
+
+/// From now on what goes to "-" is added to `text`; with null it goes to standard output again.
+void capture_output(std::string* text) noexcept;
+
 // Internal: room in pipes.
 
 /// A pipe holds 64 KiB: who writes and who reads it take turns every few microseconds. No more than the
