@@ -420,6 +420,18 @@ void of_recommendation(const Json& json, Numbers& numbers) {
     }
 }
 
+// The widest range, and what the estimate is made of.
+void of_response(const Json& json, Numbers& numbers) {
+    std::optional<std::pair<double, double>> widest;
+    for (const Json& range : list_at(json, "ranges")) {
+        const auto from = number_under(range, "/from_hz"), to = number_under(range, "/to_hz");
+        if (from && to && (!widest || *to - *from > widest->second - widest->first)) widest = {*from, *to};
+    }
+    if (widest) numbers.add_text("known", from_to(*widest), "Hz");
+    numbers.add("resolution", "/resolution_hz", "Hz");
+    numbers.add("segments", "/segments", "");
+}
+
 void of_trend(const Json& json, Numbers& numbers) {
     numbers.add_text("alerts", std::to_string(list_at(json, "alerts").size()), "");
     numbers.add_text("joints", std::to_string(list_at(json, "joints").size()), "");
@@ -442,7 +454,7 @@ constexpr std::array<Kind, 14> kinds = {
     {{"info", "What is in the log?", of_any},
      {"joint", "Which ripple is in the log, and which gear ratio?", of_joint},
      {"spectrum", "Which frequencies are in the torque?", of_any},
-     {"response", "How does one signal follow the other at each frequency?", of_any},
+     {"response", "How does one signal follow the other at each frequency?", of_response},
      {"track", "How does the ripple change along the log?", of_any},
      {"map", "What is the ripple at each angle and speed?", of_map},
      {"recommendation", "Which method does this log ask for?", of_recommendation},

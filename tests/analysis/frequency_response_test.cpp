@@ -112,7 +112,8 @@ TEST_CASE("noise of the input lowers H1 by the coherence and leaves H2; noise of
     CHECK_THAT(mean_gain(of_out.response(h2)), WithinRel(2.0, 0.02));
 }
 
-TEST_CASE("the coherence of independent signals is below its limit at 95 % of the frequencies, 1/n in the mean") {
+TEST_CASE(
+    "the coherence of independent signals is below its limit at 95 % of the frequencies, 1/n in the mean") {
     const double segment_s = GENERATE(2.0, 0.5, 0.1);
     std::size_t below = 0, bins = 0, logs_determined = 0;
     double total = 0.0, inverse = 0.0;
@@ -150,7 +151,8 @@ TEST_CASE("a delay is the slope of the phase, and phase delay where the phase is
         const double off = std::abs(row.group_delay->delay.value() - 0.007);
         within += off <= row.group_delay->error.value() ? 1 : 0;
         CHECK(off <= 3.0 * row.group_delay->error.value());
-        CHECK_THAT(row.phase_delay->value(), WithinAbs(0.007, 1.5 * response.phase_error_deg[row.bin] / 360.0 / response.hz[row.bin]));
+        CHECK_THAT(row.phase_delay->value(),
+                   WithinAbs(0.007, 1.5 * response.phase_error_deg[row.bin] / 360.0 / response.hz[row.bin]));
     }
     CHECK(within + 2 >= rows.size());
 }
@@ -188,8 +190,8 @@ TEST_CASE("an uneven clock leaves gain and coherence as they are") {
     const Trace trace = tests::make_trace({.seconds = 8.0, .noise_nm = 1.0, .jitter_steps = 0.2, .seed = 2});
     std::vector<double> out = trace.torque_nm;
     for (double& value : out) value *= 3.0;
-    const FrequencyResponse response = frequency_response(
-        {trace.sample_rate, trace.time_s, trace.torque_nm, out}, {.segment = 0.5_s});
+    const FrequencyResponse response =
+        frequency_response({trace.sample_rate, trace.time_s, trace.torque_nm, out}, {.segment = 0.5_s});
     for (std::size_t k = 3; k < 200; ++k) {
         CHECK_THAT(response.gain[k], WithinRel(3.0, 1e-6));
         CHECK_THAT(response.coherence[k], WithinAbs(1.0, 1e-9));
