@@ -462,6 +462,18 @@ void of_recommendation(const Json& json, Numbers& numbers) {
     }
 }
 
+// The widest range, and what the estimate is made of.
+void of_response(const Json& json, Numbers& numbers) {
+    std::optional<std::pair<double, double>> widest;
+    for (const Json& range : list_at(json, "ranges")) {
+        const auto from = number_under(range, "/from_hz"), to = number_under(range, "/to_hz");
+        if (from && to && (!widest || *to - *from > widest->second - widest->first)) widest = {*from, *to};
+    }
+    if (widest) numbers.add_text("known", from_to(*widest), "Hz");
+    numbers.add("resolution", "/resolution_hz", "Hz");
+    numbers.add("segments", "/segments", "");
+}
+
 void of_trend(const Json& json, Numbers& numbers) {
     numbers.add_text("alerts", std::to_string(list_at(json, "alerts").size()), "");
     numbers.add_text("joints", std::to_string(list_at(json, "joints").size()), "");
@@ -483,7 +495,7 @@ struct Kind {
 constexpr std::array<Kind, 14> kinds = {{{"info", "The log", of_any},
                                          {"joint", "Ripple lines and gear ratio", of_joint},
                                          {"spectrum", "Spectrum of the torque", of_any},
-                                         {"response", "Frequency response", of_any},
+                                         {"response", "Frequency response", of_response},
                                          {"track", "Orders over time", of_any},
                                          {"map", "Ripple map", of_map},
                                          {"recommendation", "Recommended method", of_recommendation},

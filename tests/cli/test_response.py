@@ -86,8 +86,8 @@ class Responses(Case):
         result = self.response(log, "other/torque")
         self.assertEqual((result["ranges"], result["determined_bins"]), ([], 0))
         self.assertIn("gain not known", result["verdict"])
-        self.assertEqual({row["determined"] for row in result["rows"]}, {False})
-        self.assertEqual({row["gain_db"] for row in result["rows"]}, {None})
+        self.assertEqual({row["determined"] for row in result["third_octaves"]}, {False})
+        self.assertEqual({row["gain_db"] for row in result["third_octaves"]}, {None})
         below = sum(c <= result["coherence_limit"] for c in result["columns"]["coherence"])
         self.assertAlmostEqual(below / len(result["columns"]["coherence"]), 0.95, delta=0.03)
 
@@ -103,7 +103,7 @@ class Responses(Case):
         self.assertLess(result["ranges"][0]["from_hz"], 3)
         self.assertLess(100, result["ranges"][-1]["to_hz"])
         self.assertLess(result["ranges"][-1]["to_hz"], 350)
-        for row in result["rows"]:
+        for row in result["third_octaves"]:
             if row["determined"]:
                 self.assertLess(row["gain_low_db"], row["gain_db"])
                 self.assertLess(row["gain_db"], row["gain_high_db"])

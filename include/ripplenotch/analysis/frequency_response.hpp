@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // Frequency response from one signal of a log to another, with coherence and 95 % confidence bands: Welch's
-// method, with the pieces of the spectrum. Source: J. S. Bendat, A. G. Piersol, Random Data, 4th ed., ch. 9.
+// method, with the pieces of the spectrum. Source: J. S. Bendat, A. G. Piersol, Random Data, 4th ed., ch. 9;
+// bands: G. M. Jenkins, D. G. Watts, Spectral Analysis and Its Applications, 1968, ch. 10.
 
 #include <complex>
 #include <cstddef>
@@ -97,7 +98,7 @@ struct ResponseRow {
 
 [[nodiscard]] double decibels(double gain);
 
-/// Of the determined bins, those whose circle holds the prediction, and the largest distances from it.
+/// Of the determined bins, those whose circle holds the prediction, and the largest distances of the others.
 struct Agreement {
     std::size_t bins = 0, within = 0;
     double largest_db = 0.0, largest_deg = 0.0;

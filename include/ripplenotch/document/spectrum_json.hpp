@@ -30,7 +30,7 @@ namespace ripplenotch {
 /// Schema ripplenotch/track/1; the columns are arrays, null where a line was not measured.
 [[nodiscard]] std::string track_text(const TrackReport& report, const Provenance& provenance);
 
-/// Schema ripplenotch/response/1: `rows` by third of an octave, and all bins as arrays, null where the
+/// Schema ripplenotch/response/1: `third_octaves`, and all bins as arrays, null where the
 /// response is not determined.
 [[nodiscard]] std::string response_text(const ResponseReport& report, const Provenance& provenance);
 

@@ -299,8 +299,9 @@ Agreement agreement(const FrequencyResponse& response, const PredictedResponse& 
         const double radius = relative_radius(response.coherence[k], response.independent_segments);
         const double size = portable::hypot(ratio.real(), ratio.imag());
         ++found.bins;
-        if (std::norm(ratio - 1.0) <= radius * radius) ++found.within;
-        if (size > 0.0) {
+        if (std::norm(ratio - 1.0) <= radius * radius) {
+            ++found.within;
+        } else if (size > 0.0) {
             found.largest_db = std::max(found.largest_db, std::abs(decibels(size)));
             found.largest_deg =
                 std::max(found.largest_deg, std::abs(portable::arg(ratio)) * degrees_per_radian);
@@ -395,10 +396,13 @@ std::vector<std::string> response_notes(const ResponseReport& report) {
             1e3 * longest_s, 100.0 * share, 100.0 * std::min(loss, 1.0)));
     if (report.predicted) {
         const Agreement found = agreement(response, *report.predicted);
-        notes.push_back(fmt::format(
-            "{} predicts the response within its 95 % region at {} of {} frequencies, and differs by at most "
-            "{:.2g} dB and {:.2g} deg.",
-            report.predicted->method, found.within, found.bins, found.largest_db, found.largest_deg));
+        notes.push_back(
+            fmt::format("{} predicts the response within its 95 % region at {} of {} frequencies{}.",
+                        report.predicted->method, found.within, found.bins,
+                        found.within == found.bins
+                            ? ""
+                            : fmt::format(", and differs by at most {:.2g} dB and {:.2g} deg elsewhere",
+                                          found.largest_db, found.largest_deg)));
     }
     return notes;
 }

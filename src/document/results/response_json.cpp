@@ -7,6 +7,7 @@
 #include "document/fields/result_fields.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
+#include "ripplenotch/core/visible_text.hpp"
 #include "ripplenotch/document/spectrum_json.hpp"
 
 namespace ripplenotch {
@@ -55,7 +56,7 @@ std::string response_text(const ResponseReport& report, const Provenance& proven
     const FrequencyResponse& response = report.response;
     return to_fitted_text(document_of("response", provenance, [&](JsonWriter& json) {
         json("verdict", response_verdict(report));
-        json("notes", response_notes(report));
+        json("notes", joined(response_notes(report), " "));
         json("joint", report.joint);
         json("out", report.out);
         json("in", report.in);
@@ -81,7 +82,7 @@ std::string response_text(const ResponseReport& report, const Provenance& proven
             group("largest_db", found.largest_db, six);
             group("largest_deg", found.largest_deg, six);
         });
-        json.each("rows", third_octaves(response),
+        json.each("third_octaves", third_octaves(response),
                   [&](JsonWriter& row, const ResponseRow& one) { describe_row(row, report, one); });
         json.group("columns", [&](JsonWriter& columns) {
             columns("frequency_hz", response.hz, six);
