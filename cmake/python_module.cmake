@@ -1,6 +1,14 @@
 # Whether the Python module is built (src/python), and what that asks of the targets that are linked into it.
 set(RIPPLENOTCH_PYTHON_FOUND FALSE)
 if(RIPPLENOTCH_PYTHON AND NOT RIPPLENOTCH_ROOMS AND NOT RIPPLENOTCH_SANITIZE)
+    # Unless it is named: the first Python that has NumPy. What is on the path may be a script that looks for it (pyenv).
+    foreach(candidate IN ITEMS python3 /usr/bin/python3)
+        if(NOT Python_EXECUTABLE)
+            execute_process(COMMAND ${candidate} -c "import numpy, sys; print(sys.executable)" OUTPUT_VARIABLE executable
+                            OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+            set(Python_EXECUTABLE "${executable}" CACHE FILEPATH "The Python that the module is for" FORCE)
+        endif()
+    endforeach()
     find_package(Python COMPONENTS Interpreter Development.Module)
     set(PYBIND11_FINDPYTHON ON)
     find_package(pybind11 2.10 CONFIG)

@@ -58,7 +58,7 @@ class ModuleCase(Case):
         return {"time_s": log.time_s, "velocity_deg_s": log.velocity_deg_s, "torque_nm": log.torque_nm, "position_deg": log.position_deg}
 
     def as_npy(self, arrays, name="arrays.npy"):
-        table = numpy.empty(len(arrays["torque_nm"]), dtype=[(key, float) for key in arrays])
+        table = numpy.empty(len(arrays["time_s"]), dtype=[(key, float) for key in arrays])
         for key in arrays:
             table[key] = arrays[key]
         numpy.save(self.folder / name, table)
@@ -91,9 +91,9 @@ class Read(ModuleCase):
         with self.assertRaisesRegex(ripplenotch.DataError, "--joint"):
             ripplenotch.read(path)
         names = json.loads(self.result("info", path))["joints"]
-        log = ripplenotch.read(path, joint=names[1]["joint"])
+        first, log = (ripplenotch.read(path, joint=one["joint"]) for one in names)
         self.assertEqual((log.joint, log.joints), (names[1]["joint"], [one["joint"] for one in names]))
-        self.assertNotEqual(log.torque_nm.tolist(), ripplenotch.read(path, joint=1).torque_nm.tolist())
+        self.assertNotEqual(log.torque_nm.tolist(), first.torque_nm.tolist())
 
     def test_motion_of_the_motor_is_divided_by_the_ratio(self):
         joint = ripplenotch.read(MOVE)
@@ -184,13 +184,22 @@ class Messages(ModuleCase):
         self.refused(ripplenotch.DataError, "^arrays.npy: 40 samples, at least 64", ripplenotch.identify, short)
         self.refused(ripplenotch.FileError, "^no.csv: cannot open", ripplenotch.read, "no.csv")
         self.refused(OSError, "^no.csv: cannot open", ripplenotch.filter, "no.csv", "lowpass,cutoff=5Hz")
-        self.refused(ripplenotch.UsageError, r"no option info --joind.*did you mean --joint", ripplenotch.read, MOVE, joind="j1")
-        self.refused(ripplenotch.UsageError, "did you mean --gear-ratio", ripplenotch.identify, MOVE, gear_ration=100)
+        self.refused(ripplenotch.UsageError, r"^there is no option --joind \(did you mean --joint\?\)", ripplenotch.read, MOVE, joind="j1")
+        self.refused(ripplenotch.UsageError, r"^there is no option --gear-ration \(did you mean --gear-ratio\?\)", ripplenotch.identify, MOVE, gear_ration=100)
         self.refused(ValueError, "swiching", ripplenotch.filter, MOVE, "swiching")
         self.refused(ripplenotch.UsageError, "standard input", ripplenotch.identify, "-")
         self.refused(ripplenotch.LimitViolated, "max-delay", ripplenotch.filter, MOVE, "lowpass,cutoff=1Hz,order=1", max_delay="1ms")
-        self.refused(ripplenotch.Inconclusive, "", ripplenotch.identify, DATA / "paper_rest.csv", require_conclusive=True)
         self.refused(ripplenotch.DataError, "result.json", ripplenotch.design, {"verdict": "none"})
+
+    def test_what_is_refused_after_the_work_has_its_result(self):
+        rest = DATA / "paper_rest.csv"
+        with self.assertRaises(ripplenotch.Inconclusive) as caught:
+            ripplenotch.identify(rest, require_conclusive=True)
+        verdict = json.loads(self.result("identify", rest))["verdict"]
+        self.assertEqual((caught.exception.result.verdict, str(caught.exception)), (verdict, verdict))
+        with self.assertRaisesRegex(ripplenotch.LimitViolated, "^band 1 .* delays by") as caught:
+            ripplenotch.design(gear_ratio=100, sample_rate="1kHz", speed=(18, 90, 18), q=0.25, max_delay="20ms")
+        self.assertEqual(len(caught.exception.result.bands), 4)
 
     def test_arrays_are_checked(self):
         arrays = self.arrays()
@@ -208,7 +217,7 @@ class Messages(ModuleCase):
         self.assertTrue(self.warned)
         for one in self.warned:
             self.assertEqual((one.category, one.filename), (ripplenotch.RipplenotchWarning, __file__))
-            self.assertTrue(str(one.message).startswith("arrays.npy: "), one.message)
+        self.assertIn("1 gap in the time", str(self.warned[0].message))
 
     def test_nothing_is_printed(self):
         read, write = os.pipe()

@@ -82,11 +82,21 @@ class FileError(Error, OSError):
 
 
 class LimitViolated(Error):
-    """A limit that the caller set does not hold: max_delay, min_attenuation, require_improvement (exit code 1)."""
+    """A limit that the caller set does not hold: max_delay, min_attenuation, require_improvement (exit code 1).
+
+    result: what the function would have returned; None of `filter`
+    """
+
+    result: Result | None = None
 
 
 class Inconclusive(Error):
-    """The log does not settle the question, with require_conclusive (exit code 5)."""
+    """The log does not settle the question, with require_conclusive (exit code 5).
+
+    result: what the function would have returned
+    """
+
+    result: Result | None = None
 
 
 _ERRORS = {1: LimitViolated, 2: UsageError, 3: DataError, 4: FileError, 5: Inconclusive, 6: MemoryError}
@@ -213,7 +223,7 @@ def read(path: str | os.PathLike[str], joint: str | int | None = None, *, gear_r
     """Reads one joint of a log, of any format that the program reads.
 
     path        a file; not "-"
-    joint       its name or number; needed where the file holds several
+    joint       its name or number (docs/commands/README.md); needed where the file holds several
     gear_ratio  motor turns per joint turn, for motion that was measured before the gear
     options     how the log is read, and which rows of it: columns=, unit=, scale=, side=, sample_rate=, from_=, to=, format=,
                 delimiter=, decimal=, no_header=, kt=, hold_bad_values=, ... (docs/commands/README.md)
@@ -291,8 +301,7 @@ def help(command: str) -> str:
 def _run(command, inputs, options, kind):
     with _Files() as files:
         words = [command, *files.logs(inputs), *files.words(options), "--json"]
-        text = files.call(words).decode()
-    result = kind(text)
+        result = kind(files.call(words, kind).decode())
     if kind is not Result and "joints" in result._fields:
         names = [str(one["joint"]) for one in result["joints"]]
         raise UsageError(f"read {len(names)} joints ({', '.join(names)}), expected one; say which with joint=, or take "
@@ -462,7 +471,8 @@ class _Files:
             given[name] = value
         return self._log_words + _words(given)
 
-    def call(self, words):
+    def call(self, words, kind=None):
+        """What the command prints. `kind`: of the result that an error with a result has."""
         code, message, out, talk = _ripplenotch.run(words)
         if self._folder is not None:
             inside = self._folder.name + os.sep
@@ -470,7 +480,7 @@ class _Files:
             message, talk = message.replace(inside, ""), talk.replace(inside, "")
         said = []
         for line in talk.splitlines():
-            line = line.removeprefix("ripplenotch: ")
+            line = line.removeprefix("ripplenotch: ").removeprefix(f"ripplenotch {words[0]}: ")
             if line.startswith("warning: "):
                 said.append(line.removeprefix("warning: "))
             else:
@@ -478,5 +488,11 @@ class _Files:
         if code == 0:
             for one in said:
                 warnings.warn(one, RipplenotchWarning, stacklevel=_outside())
-        _raise(code, message or "; ".join(said))
+        message = message or "; ".join(said)
+        if code in (1, 5) and kind:
+            error = _ERRORS[code](message)
+            error.result = kind(out.decode())
+            error.args = (message or error.result._fields.get("verdict", ""),)
+            raise error
+        _raise(code, message)
         return out
