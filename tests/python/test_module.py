@@ -206,6 +206,15 @@ class Messages(ModuleCase):
         self.refused(ripplenotch.UsageError, r"torque_nm \(10,\)", ripplenotch.identify, {**arrays, "torque_nm": arrays["torque_nm"][:10]})
         self.refused(ripplenotch.UsageError, "named temperature", ripplenotch.identify, {**arrays, "temperature": arrays["time_s"]})
 
+    def test_logs_that_were_read_differently_are_refused_together(self):
+        log, part = ripplenotch.read(MOVE), ripplenotch.read(MOVE, to="2s")
+        self.refused(ripplenotch.UsageError, "different options", ripplenotch.identify, [log, part])
+        self.refused(ripplenotch.UsageError, "different options", ripplenotch.identify, [part, MOVE])
+        self.refused(ripplenotch.UsageError, "different options", ripplenotch.diagnose, log, validate=part)
+        self.assertEqual(ripplenotch.identify((part, part)).to_json(), self.result("identify", MOVE, MOVE, "--to", "2s"))
+        self.assertEqual(ripplenotch.diagnose(part, validate=part)["gap"], json.loads(
+            self.result("diagnose", MOVE, "--to", "2s", "--model", "auto", "--validate", MOVE))["gap"])
+
     def test_several_joints_are_asked_about(self):
         path = DATA / "dialects" / "named_joints.csv"
         self.refused(ripplenotch.Error, "joint", ripplenotch.filter, path, "lowpass,cutoff=5Hz")

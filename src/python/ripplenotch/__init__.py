@@ -6,8 +6,8 @@
     table = ripplenotch.design(found, speed=(18, 180, 18))
     torque_nm = ripplenotch.filter(log, table=table)
 
-The functions are the commands of the program `ripplenotch`, run in this process: the same numbers, bit for bit, the same messages.
-Options are keywords, with _ for -: `sample_rate="1kHz"` is `--sample-rate 1kHz`; `ripplenotch.help("filter")` lists those of a
+The functions but `read` are the commands of the program `ripplenotch`, run in this process: the same numbers, bit for bit, and the
+same messages. Options are keywords, with _ for -: `sample_rate="1kHz"` is `--sample-rate 1kHz`; `ripplenotch.help("filter")` lists those of a
 command. How a value is written:
 
     True, False          a flag, or none             no_header=True
@@ -55,8 +55,6 @@ __all__ = ["DataError", "Diagnosis", "Error", "FileError", "GearRatio", "Identif
 _COLUMNS = ("time_s", "velocity_deg_s", "torque_nm", "position_deg")
 # Options of several values that stand in the command line once for each.
 _REPEATED = {"accept", "method", "motion", "effect", "rule", "scale", "without"}
-
-
 # Options that name a document of the program, and what the file is called that holds one.
 _DOCUMENTS = {"joint_file": "joint.json", "model": "model.json", "residual": "model.json", "table": "table.json"}
 
@@ -245,7 +243,7 @@ def identify(logs: AnyLog | list[AnyLog], gear_ratio: float | None = None, **opt
     gear_ratio  a ratio to check; it is not believed
     options     order_hint=, false_alarm=, require_conclusive=, simulated=, residual=, and how paths and arrays are read
     """
-    return _run("identify", logs if isinstance(logs, list) else [logs], {"gear_ratio": gear_ratio, **options}, Identification)
+    return _run("identify", list(logs) if isinstance(logs, (list, tuple)) else [logs], {"gear_ratio": gear_ratio, **options}, Identification)
 
 
 def design(identification: Identification | Mapping[str, Any] | str | os.PathLike[str] | None = None, **options: Any) -> Table:
@@ -438,14 +436,15 @@ class _Files:
 
     def logs(self, inputs):
         """The paths of the inputs; what the logs were read with goes before the other options."""
-        words = [one._words for one in inputs if isinstance(one, Log)]
-        if words and (len(words) < len(inputs) or any(one != words[0] for one in words)) and any(words):
-            raise UsageError("the logs were read with different options, expected the same for all; hand them over as arrays: "
-                             "{'time_s': log.time_s, 'velocity_deg_s': log.velocity_deg_s, 'torque_nm': log.torque_nm}")
-        self._log_words = words[0] if words else []
+        for one in inputs:
+            if isinstance(one, Log):
+                self._log_words = one._words
         return [self._path(one) for one in inputs]
 
     def _path(self, value):
+        if (value._words if isinstance(value, Log) else []) != self._log_words:
+            raise UsageError("the logs were read with different options, expected the same for all; hand them over as arrays: "
+                             "{'time_s': log.time_s, 'velocity_deg_s': log.velocity_deg_s, 'torque_nm': log.torque_nm}")
         if isinstance(value, Log):
             if _state(value.path) != value._state:
                 raise FileError(f"{value.path}: the file is another than when it was read; read it again")

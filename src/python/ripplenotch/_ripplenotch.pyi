@@ -1,0 +1,6 @@
+from typing import Any
+
+version: str
+
+def run(words: list[str]) -> tuple[int, str, bytes, str]: ...
+def read(path: str, words: list[str]) -> tuple[int, str, dict[str, Any] | None]: ...
