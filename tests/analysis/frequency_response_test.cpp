@@ -166,9 +166,7 @@ TEST_CASE("a line alone determines the response at its frequency and nowhere els
         out.push_back(0.5 * std::sin(at - 1.0) + 1e-3 * next());
     }
     const FrequencyResponse response = Pair{in, out}.response({.segment = 1.0_s});
-    REQUIRE(response.ranges.size() == 1);
-    CHECK(response.hz[response.ranges[0].first] >= 49.9);
-    CHECK(response.hz[response.ranges[0].end - 1] <= 51.1);
+    CHECK(response.determined_bins() == 1);
     CHECK_THAT(response.gain[50], WithinRel(0.5, 0.01));
     CHECK_THAT(response.phase_deg[50], WithinAbs(-57.3, 0.5));
 }

@@ -12,8 +12,8 @@ from commands import COMMANDS, GEAR, OF_A_LOG, Case, SharedCase, asked
 # Those that take several joints, with what each gives: a document with `joints`, or CSV with a column `joint`.
 LISTS = {
     "compare": "comparisons", "spectrum": "spectra", "spectrum --segment": "spectra", "spectrum --domain order": "spectra",
-    "spectrum --map campbell": "spectra", "spectrum --map order": "spectra", "identify": "joints", "track": "tracks",
-    "recommend": "recommendations", "spectrum --peaks": "spectra",
+    "spectrum --map campbell": "spectra", "spectrum --map order": "spectra", "spectrum --response": "responses",
+    "identify": "joints", "track": "tracks", "recommend": "recommendations", "spectrum --peaks": "spectra",
 }
 CSV = ("spectrum", "spectrum --segment", "spectrum --domain order", "spectrum --map campbell", "track")
 HEAD = ("schema", "tool", "version", "command", "inputs", "recording", "recordings")

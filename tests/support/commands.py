@@ -59,6 +59,7 @@ COMMANDS = {
     "spectrum --domain order": "spectrum {log} --domain order",
     "spectrum --map campbell": "spectrum {log} --map campbell {gear}",
     "spectrum --map order": "spectrum {log} --map order {gear}",
+    "spectrum --response": "spectrum {log} --response torque/velocity",
     "identify": "identify {log}",
     "track": "track {log} {gear}",
     "map": "map {log} {gear}",

@@ -97,6 +97,21 @@ double leaking_power(std::size_t apart) {
     return amplitude * amplitude;
 }
 
+/// A maximum this much higher than both bins outside of its main lobe is a line; by hand: the ratio of two
+/// averages over four segments of noise exceeds it in one of a thousand cases.
+constexpr double line_over_sides = 10.0;
+
+/// What a line shows in its main lobe is the response at its own frequency: the highest bin is nearest to it.
+void hide_main_lobes(std::span<const double> power, std::vector<char>& hidden) {
+    constexpr std::size_t outside = hole_bins + 1;
+    for (std::size_t k = outside; k + outside < power.size(); ++k) {
+        const double sides = std::max(power[k - outside], power[k + outside]);
+        const bool highest = power[k] >= power[k - 1] && power[k] > power[k + 1];
+        if (!highest || power[k] <= line_over_sides * sides) continue;
+        for (std::size_t apart = 1; apart < outside; ++apart) hidden[k - apart] = hidden[k + apart] = 1;
+    }
+}
+
 /// Bins whose power may be the leakage of a stronger bin, or of the straight line that was removed.
 std::vector<char> hidden_bins(std::span<const double> power) {
     const std::size_t bins = power.size();
@@ -111,6 +126,7 @@ std::vector<char> hidden_bins(std::span<const double> power) {
             if (k + apart < bins && power[k + apart] < leaks) hidden[k + apart] = 1;
         }
     }
+    hide_main_lobes(power, hidden);
     return hidden;
 }
 

@@ -42,8 +42,9 @@ bool is_signal(const std::string& name, const Layout& layout) {
 }
 
 // A name may hold a slash, too: "joint_states/effort".
-std::pair<std::string, std::string> split_signals(const std::string& text, const ResponseLog& read) {
+std::pair<std::string, std::string> split_signals(const std::string& asked, const ResponseLog& read) {
     std::vector<std::pair<std::string, std::string>> found;
+    const std::string text = with_joint(asked, read.log.trace.joint);
     for (std::size_t at = text.find('/'); at != std::string::npos; at = text.find('/', at + 1)) {
         std::pair<std::string, std::string> names{text.substr(0, at), text.substr(at + 1)};
         const Layout& layout = read.log.layout;
