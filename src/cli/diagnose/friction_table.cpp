@@ -134,8 +134,7 @@ std::optional<Log> friction_table_of(const DiagnoseRequest& request) {
     if (!is_stated && table.trace.size() >= of_a_log)
         raise<DataError>(
             "{}: {} rows of speed and torque without a time, which may be a log or a table of constant "
-            "speeds; "
-            "say --sample-rate 1kHz for a log, or --friction-table",
+            "speeds; use --sample-rate 1kHz for a log, or --friction-table",
             request.path, table.trace.size());
     if (!is_stated) check_table_options(request);
     refuse_open_readings(table);
