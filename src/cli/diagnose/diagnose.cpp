@@ -183,7 +183,7 @@ std::function<ExitCode()> attach_diagnose(Options& options) {
     options.text("--limits", request->limits, "KEY=VALUE,...",
                  "of --plan: speed=90deg/s,acceleration=300deg/s2,range=-90deg:90deg");
     options.flag("--explain", request->explain,
-                 "in the story, which rules were asked about each finding, with their numbers and limits");
+                 "also print the rules applied to each finding, with their numbers and limits");
     options.texts("--rule", request->rules, "NAME=VALUE",
                   "for studies: a limit that a diagnosis decides by; may be given several times");
     options.flag("--rules", request->list_rules,

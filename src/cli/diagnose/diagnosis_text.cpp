@@ -103,7 +103,7 @@ std::string where_text(const Place& place) {
     if (place.direction == Direction::both) parts.emplace_back("while it moves");
     if (place.direction == Direction::positive || place.direction == Direction::negative)
         parts.push_back(fmt::format("in {} direction", direction_name(place.direction)));
-    return parts.empty() ? "all over the log" : joined(parts, "; ");
+    return parts.empty() ? "throughout the log" : joined(parts, "; ");
 }
 
 // "1.500 +/- 0.010 Nm": the size of a finding with half of its 95 % interval.
@@ -340,7 +340,7 @@ std::string diagnosis_story(const Diagnosis& diagnosis, bool explain) {
                             one.effect, one.rows, one.unused);
     text += fmt::format("gap of the model as given: {} Nm rms\n", short_number(gap.before_nm));
     for (std::size_t i = 0; i < std::min<std::size_t>(diagnosis.disagreement.size(), 3); ++i)
-        text += fmt::format("  disagrees {}\n", region_text(diagnosis.disagreement[i]));
+        text += fmt::format("  residual {}\n", region_text(diagnosis.disagreement[i]));
     text += angle_text(diagnosis);
     for (const Fault& fault : diagnosis.faults)
         text += fmt::format("fault of the log: {}, {}\n", fault.term.effect->name, fault.words);

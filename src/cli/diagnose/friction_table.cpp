@@ -58,8 +58,7 @@ bool has_speed_and_torque_alone(const DiagnoseRequest& request) {
 
 void check_table_options(const DiagnoseRequest& request) {
     const auto refuse = [](bool given, std::string_view option) {
-        if (given)
-            raise<UsageError>("{} has no use with a friction table, which is fitted by itself", option);
+        if (given) raise<UsageError>("{} has no use with a friction table, which is fitted alone", option);
     };
     refuse(!request.model.empty() && request.model != "auto", "--model FILE");
     refuse(request.validate.has_value(), "--validate");

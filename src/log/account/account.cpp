@@ -279,9 +279,10 @@ std::vector<LogWarning> recording_warnings(const Recording& recording, const std
     if (held >= 0.1) {
         warnings.push_back(
             {"held samples",
-             fmt::format("{} rows ({} %) hold the sample before while the joint moves, up to {} in a row{}",
-                         recording.held.count, percent_text(held), recording.held.longest,
-                         update_rate_text(recording)),
+             fmt::format(
+                 "{} rows ({} %) repeat the previous sample while the joint moves, up to {} in a row{}",
+                 recording.held.count, percent_text(held), recording.held.longest,
+                 update_rate_text(recording)),
              true});
     }
     using Verdict = AngleFacts::Verdict;
