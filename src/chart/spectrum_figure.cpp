@@ -156,7 +156,7 @@ Panel frequency_panel(const Identification& found) {
 }
 
 Panel residual_panel(const GearRatioFit& fit) {
-    Panel panel{.title = "What the fit of the gear ratio leaves of the frequency",
+    Panel panel{.title = "Frequency residual of the gear ratio fit",
                 .x = {"joint speed", "deg/s"},
                 .y = {"residual", "Hz"},
                 .height = 0.6};
@@ -243,9 +243,9 @@ Panel spectrum_panel(const ShownSpectrum& shown) {
 }
 
 std::string lines_in_words(std::size_t count) {
-    return count == 0   ? "No line stands out of the noise"
-           : count == 1 ? "One line stands out of the noise"
-                        : fmt::format("{} lines stand out of the noise", count);
+    return count == 0   ? "No line rises above the noise"
+           : count == 1 ? "One line rises above the noise"
+                        : fmt::format("{} lines rise above the noise", count);
 }
 
 /// "; 2 humps do, the strongest from 59 to 61 Hz with 0.6 Nm rms"

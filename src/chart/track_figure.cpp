@@ -128,8 +128,7 @@ void CloseUp::end_stretch() {
 
 std::optional<Panel> CloseUp::panel() const {
     if (ended_ < fewest_stretches || best_.time_s.empty()) return std::nullopt;
-    Panel panel{
-        .title = "Close up, where the filter takes off most", .x = {"time", "s"}, .y = {"torque", "Nm"}};
+    Panel panel{.title = "Detail where the filter removes most", .x = {"time", "s"}, .y = {"torque", "Nm"}};
     panel.x.from = best_.time_s.front();
     panel.x.to = best_.time_s.back();
     panel.curves = {{"before", Ink::orange, CurveStyle::line, best_.time_s, best_.before_nm},
@@ -177,7 +176,7 @@ Figure TorqueCourse::figure(const std::string& source, const std::string& method
     }
     band.x.push_back(last_s_);
     band.y.push_back(band.y.back());
-    Panel in_force{.title = "Band in force (0: none)", .x = time, .y = {"band", ""}, .height = 0.5};
+    Panel in_force{.title = "Active band (0: none)", .x = time, .y = {"band", ""}, .height = 0.5};
     in_force.curves = {thinned(band)};
     Panel jumps{.title = "Jump of the output at each switch", .x = time, .y = {"jump", "Nm"}, .height = 0.5};
     jumps.curves = {thinned(jump)};

@@ -37,7 +37,7 @@ Panel map_panel(const Trend& trend) {
     }
     const std::vector<std::string> months(seen.begin(), seen.end());
     Panel panel;
-    panel.title = months.empty() ? "no joint was looked at"
+    panel.title = months.empty() ? "no joint was examined"
                                  : fmt::format("months from {} on; joint 1 differs most", months.front());
     panel.x = {"month", "", PlotScale::whole};
     panel.y = {"joint", "", PlotScale::whole};

@@ -55,7 +55,7 @@ void end_where_nothing_may_throw() { before = std::set_terminate(say_and_end); }
 void say_out_of_memory(std::string_view command) noexcept {
     std::array<char, 64> wanted{};
     if (const std::size_t size = refused; size > 0)
-        std::snprintf(wanted.data(), wanted.size(), ": %.3g MiB more were not to be had, beside",
+        std::snprintf(wanted.data(), wanted.size(), ": %.3g MiB more are not available, with",
                       static_cast<double>(size) / mebibyte);
     else
         std::snprintf(wanted.data(), wanted.size(), ", with");

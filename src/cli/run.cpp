@@ -49,11 +49,10 @@ ExitCode complain_unknown_command(const std::string& word) {
     const auto names = command_names();
     std::error_code failed;
     if (std::filesystem::is_regular_file(word, failed))
-        return complain(
-            ExitCode::usage, "",
-            fmt::format("there is no command '{}'; of a log, {} report {} -o page.html shows what is "
-                        "in it and which filter it needs",
-                        word, tool_name, word));
+        return complain(ExitCode::usage, "",
+                        fmt::format("there is no command '{}'; for a log, {} report {} -o page.html shows "
+                                    "what is in it and which filter it needs",
+                                    word, tool_name, word));
     return complain(ExitCode::usage, "",
                     fmt::format("there is no command '{}'{}; commands: {}", word, did_you_mean(word, names),
                                 fmt::join(names, ", ")));

@@ -569,9 +569,9 @@ class DiagnosisRun {
         for (auto finding = result_.rounds.rbegin(); finding != result_.rounds.rend(); ++finding) {
             if (is_doubtful(*finding)) continue;
             finding->status = FindingStatus::not_reproduced;
-            finding->reason =
-                fmt::format("with it the improved model leaves more of {} than the model as given",
-                            grows_here ? "the log" : "the validation log");
+            finding->reason = fmt::format(
+                "with it the residual of {} is larger with the improved model than with the model as given",
+                grows_here ? "the log" : "the validation log");
             last = without_term(bench, last, --place);
             return true;
         }

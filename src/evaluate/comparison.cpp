@@ -112,12 +112,13 @@ std::optional<double> least_db(const MethodFigures& figures) {
 std::string ripple(const MethodFigures& a, const MethodFigures& b, const Comparison& comparison) {
     if (comparison.match && comparison.match->low_pass == b.method) return comparison.match->clause;
     if (a.ripple_rms_nm && b.ripple_rms_nm) {
-        return fmt::format("and leaves {:.3g} Nm rms of ripple against {:.3g}", *a.ripple_rms_nm,
+        return fmt::format("and has a remaining ripple of {:.3g} Nm rms against {:.3g}", *a.ripple_rms_nm,
                            *b.ripple_rms_nm);
     }
     const auto mine = least_db(a), theirs = least_db(b);
     if (!mine || !theirs) return "";
-    return fmt::format("and takes {} off its weakest line against {}", decibels(*mine), decibels(*theirs));
+    return fmt::format("and attenuates its weakest line by {} against {}", decibels(*mine),
+                       decibels(*theirs));
 }
 
 std::string alone(const MethodFigures& a, const std::string& name) {
@@ -128,9 +129,9 @@ std::string alone(const MethodFigures& a, const std::string& name) {
     if (const auto delay = a.ramp_delay_ms ? a.ramp_delay_ms : a.dc_delay_ms)
         parts.push_back(fmt::format("lags {} ms", rounded(*delay, 1)));
     if (a.ripple_rms_nm) {
-        parts.push_back(fmt::format("leaves {:.3g} Nm rms of ripple", *a.ripple_rms_nm));
+        parts.push_back(fmt::format("has a remaining ripple of {:.3g} Nm rms", *a.ripple_rms_nm));
     } else if (const auto db = least_db(a)) {
-        parts.push_back(fmt::format("takes {} off its weakest line", decibels(*db)));
+        parts.push_back(fmt::format("attenuates its weakest line by {}", decibels(*db)));
     }
     if (parts.empty()) return fmt::format("{}: nothing was asked for that could be measured.", name);
     return fmt::format("{} {}.", name, fmt::join(parts, ", "));
@@ -148,8 +149,9 @@ std::string nearest(const MethodFigures& a, const std::string& name, const Compa
     }
     if (known < 2 || !a.error_rms_nm) return "";
     if (best == &a)
-        return fmt::format(" Nearest to the truth is {}: {:.3g} Nm rms off.", name, *a.error_rms_nm);
-    return fmt::format(" Nearest to the truth is {}: {:.3g} Nm rms off, {} {:.3g}.",
+        return fmt::format(" Smallest error against the true torque: {}, {:.3g} Nm rms.", name,
+                           *a.error_rms_nm);
+    return fmt::format(" Smallest error against the true torque: {}, {:.3g} Nm rms; {} {:.3g}.",
                        short_name(*best, comparison), *best->error_rms_nm, name, *a.error_rms_nm);
 }
 

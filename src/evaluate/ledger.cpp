@@ -217,11 +217,10 @@ std::vector<std::string> harm_done(const FilterMetrics& metrics) {
     const double taken = std::sqrt(std::max(before * before - after * after, 0.0));
     if (const double moved = levels.distortion_rms_nm[1];
         moved > taken && moved > share_that_counts * before) {
-        found.push_back(
-            fmt::format("its delay moves the torque itself by {:.3g} Nm rms, more than the {:.3g} Nm "
-                        "rms of ripple that it takes out; narrower notches (--q) delay less, and "
-                        "'ripplenotch recommend' tries other methods",
-                        moved, taken));
+        found.push_back(fmt::format(
+            "its delay moves the torque itself by {:.3g} Nm rms, more than the {:.3g} Nm rms of ripple that "
+            "it removes; narrower notches (--q) delay less, and 'ripplenotch recommend' tries other methods",
+            moved, taken));
     }
     const TimedSwitch* const jump = largest_jump(metrics.stream);
     const double ripple = levels.ripple_peak_to_peak_nm[0];
@@ -248,8 +247,8 @@ std::vector<std::string> short_of_prediction(const FilterMetrics& metrics) {
         const double before = level.amplitude_nm[0], after = level.amplitude_nm[1];
         if (!(after > far_from_predicted * *predicted && after > share_that_counts * before)) continue;
         found.push_back(
-            fmt::format("order {:g}: {:.3g} Nm are left where {:.3g} Nm were predicted; the gear ratio "
-                        "may be off, or the speed changes faster than the filter settles",
+            fmt::format("order {:g}: remaining ripple {:.3g} Nm, predicted {:.3g} Nm; the gear ratio may be "
+                        "wrong, or the speed changes faster than the filter settles",
                         level.order, after, *predicted));
     }
     return found;

@@ -131,8 +131,8 @@ LowPassMatch match_at_speed(const std::string& subject, double gain, int order, 
     LowPassMatch match{subject, std::nullopt, "", order, std::nullopt, std::nullopt, std::nullopt};
     if (gain < complete_null_gain) {
         match.clause = fmt::format(
-            "no low-pass equals {}: at {:.6g} deg/s it takes the lines out completely; "
-            "--match-attenuation 22dB finds the low-pass of a stated attenuation",
+            "no low-pass equals {}: at {:.6g} deg/s it removes the lines completely; --match-attenuation "
+            "22dB finds the low-pass of a stated attenuation",
             subject, speed.value());
         return match;
     }
@@ -140,8 +140,8 @@ LowPassMatch match_at_speed(const std::string& subject, double gain, int order, 
     match.cutoff = cutoff_for_gain(gain, order, lines, sample_rate, speed);
     if (!match.cutoff) {
         match.clause = fmt::format(
-            "no low-pass of order {} takes {:.2f} dB off the ripple at {:.6g} deg/s (cut-offs from {:.3g} to "
-            "{:.3g} Hz)",
+            "no low-pass of order {} attenuates the ripple by {:.2f} dB at {:.6g} deg/s (cut-offs from "
+            "{:.3g} to {:.3g} Hz)",
             order, *match.attenuation_db, speed.value(), lowest_cutoff * sample_rate.value(),
             highest_cutoff * sample_rate.value());
         return match;
@@ -159,8 +159,8 @@ LowPassMatch match_on_log(const std::string& subject, double ripple_rms_nm, int 
     match.cutoff = cutoff_for_ripple(ripple_rms_nm, order, log, lines);
     if (!match.cutoff) {
         match.clause = fmt::format(
-            "no low-pass of order {} leaves {:.3g} Nm rms of ripple on this log (cut-offs from {:.3g} to "
-            "{:.3g} Hz)",
+            "no low-pass of order {} has a remaining ripple of {:.3g} Nm rms on this log (cut-offs from "
+            "{:.3g} to {:.3g} Hz)",
             order, ripple_rms_nm, lowest_cutoff * log.trace.sample_rate.value(),
             highest_cutoff * log.trace.sample_rate.value());
         return match;
@@ -173,25 +173,25 @@ LowPassMatch match_on_log(const std::string& subject, double ripple_rms_nm, int 
 
 namespace {
 
-// "16.0 dB off order 1 and 24.3 dB off order 2"
-std::string taken_off(const JudgedMethod& method, const std::vector<RippleEstimate>& orders) {
+// "attenuates order 1 by 16.0 dB and order 2 by 24.3 dB"
+std::string attenuation_text(const JudgedMethod& method, const std::vector<RippleEstimate>& orders) {
     std::vector<std::string> parts;
     for (std::size_t i = 0; i < orders.size(); ++i) {
         if (!orders[i].present() || i >= method.figures.attenuation.size()) continue;
         const OrderAttenuation& entry = method.figures.attenuation[i];
-        if (entry.db) parts.push_back(fmt::format("{:.1f} dB off order {:g}", *entry.db, entry.order));
+        if (entry.db) parts.push_back(fmt::format("order {:g} by {:.1f} dB", entry.order, *entry.db));
     }
-    if (parts.size() < 2) return parts.empty() ? "nothing measured" : parts.front();
+    if (parts.empty()) return "attenuation not measured";
     const std::string last = parts.back();
     parts.pop_back();
-    return fmt::format("{} and {}", fmt::join(parts, ", "), last);
+    return fmt::format("attenuates {}{}{}", fmt::join(parts, ", "), parts.empty() ? "" : " and ", last);
 }
 
-// "no delay at 0 Hz, 0.2 to 9.3 ms late at a gain of 0.98 to 1.21 within 0 to 5 Hz, a step overshoots by 40
-// %"
-std::string late(const JudgedMethod& method, const TorqueBand& band) {
+// "no delay at 0 Hz, 0.2 to 9.3 ms of delay at a gain of 0.98 to 1.21 within 0 to 5 Hz, a step overshoots by
+// 40 %"
+std::string delay_text(const JudgedMethod& method, const TorqueBand& band) {
     const std::string dc_ms = rounded(method.figures.dc_delay_ms.value_or(0.0), 1);
-    std::string text = dc_ms == "0.0" ? "no delay at 0 Hz" : fmt::format("{} ms late at 0 Hz", dc_ms);
+    std::string text = dc_ms == "0.0" ? "no delay at 0 Hz" : fmt::format("{} ms of delay at 0 Hz", dc_ms);
     const double overshoot_percent = method.figures.overshoot_percent.value_or(0.0);
     if (const auto& within = method.response) {
         const std::string least = rounded(1e3 * within->least_delay.value(), 1),
@@ -202,7 +202,7 @@ std::string late(const JudgedMethod& method, const TorqueBand& band) {
                             largest == "1.00" && overshoot_percent < 0.5;
         if (passes) return "without delay";
         text +=
-            fmt::format(", {} ms late at a gain of {} within {:.3g} to {:.3g} Hz",
+            fmt::format(", {} ms of delay at a gain of {} within {:.3g} to {:.3g} Hz",
                         least == longest ? least : least + " to " + longest,
                         gain == largest ? gain : gain + " to " + largest, band.from.value(), band.to.value());
     }
@@ -219,8 +219,8 @@ std::string short_text(const MethodFigures& figures) {
 bool is_control(const MethodFigures& figures) { return part_of(figures) == MethodPart::control; }
 
 std::string one_sentence(const Recommendation& found, const JudgedMethod& method) {
-    return fmt::format("{}, {}, {:.3g} Nm rms of ripple left", taken_off(method, found.orders),
-                       late(method, *found.band), method.figures.ripple_rms_nm.value_or(0.0));
+    return fmt::format("{}, {}, remaining ripple {:.3g} Nm rms", attenuation_text(method, found.orders),
+                       delay_text(method, *found.band), method.figures.ripple_rms_nm.value_or(0.0));
 }
 
 std::string next_to(const Recommendation& found, const JudgedMethod& taken, const JudgedMethod& other) {
@@ -228,7 +228,7 @@ std::string next_to(const Recommendation& found, const JudgedMethod& taken, cons
         return fmt::format(" Nothing else is within the limits; nearest, {}: {}.", short_text(other.figures),
                            fmt::join(other.shortfalls, "; "));
     const std::string figures = one_sentence(found, other);
-    return fmt::format(" Next, {}: {}; its output is off by {:.3g} Nm where that of the first is by {:.3g}.",
+    return fmt::format(" Next, {}: {}; output error {:.3g} Nm rms against {:.3g} Nm rms.",
                        short_text(other.figures), figures, other.error_nm, taken.error_nm);
 }
 
@@ -250,10 +250,10 @@ std::string recommendation_verdict(const Recommendation& found) {
     std::string text =
         is_control(taken->figures)
             ? fmt::format(
-                  "Leave the torque as it is: what a filter takes out here is less than what it "
-                  "distorts ({:.3g} Nm rms of ripple).",
+                  "Leave the torque as it is: a filter would distort more than the ripple that it removes "
+                  "({:.3g} Nm rms).",
                   taken->figures.ripple_rms_nm.value_or(0.0))
-            : fmt::format("Take {}: {}.", short_text(taken->figures), one_sentence(found, *taken));
+            : fmt::format("Use {}: {}.", short_text(taken->figures), one_sentence(found, *taken));
     if (other != nullptr) text += next_to(found, *taken, *other);
     return text;
 }
@@ -298,13 +298,14 @@ void hold_to(JudgedMethod& method, const RecommendationLimits& limits,
         const OrderAttenuation& entry = method.figures.attenuation[i];
         const double limit = *limits.min_attenuation_db, db = entry.db.value_or(0.0);
         if (!orders[i].present() || db >= limit) continue;
-        method.shortfalls.push_back(fmt::format("{:.1f} dB off order {:g}, {:.1f} dB less than {:g} dB", db,
-                                                entry.order, limit - db, limit));
+        method.shortfalls.push_back(
+            fmt::format("attenuates order {:g} by {:.1f} dB, {:.1f} dB less than {:g} dB", entry.order, db,
+                        limit - db, limit));
         method.excess += (limit - db) / std::max(limit, 1.0);
     }
     if (!limits.max_delay || method.delay <= *limits.max_delay) return;
     const double limit_ms = 1e3 * limits.max_delay->value(), delay_ms = 1e3 * method.delay.value();
-    method.shortfalls.push_back(fmt::format("{:.1f} ms late at {:.3g} deg/s, {:.1f} ms more than {:g} ms",
+    method.shortfalls.push_back(fmt::format("{:.1f} ms of delay at {:.3g} deg/s, {:.1f} ms more than {:g} ms",
                                             delay_ms, method.delay_at.value(), delay_ms - limit_ms,
                                             limit_ms));
     method.excess += (delay_ms - limit_ms) / std::max(limit_ms, 1.0);

@@ -194,8 +194,8 @@ void check_range(const Settings& settings, std::string_view parameter, double va
                  double highest, std::string_view remedy) {
     if (settings.text("limits") == "none" || (value >= lowest && value <= highest)) return;
     raise<UsageError>(
-        "{} would be {:.4g}, and the firmware takes {} to {}; {}, or say limits=none for other "
-        "firmware in this style",
+        "{} would be {:.4g}, and the firmware takes {} to {}; {}, or use limits=none for other firmware in "
+        "this style",
         parameter, value, shortest(lowest), shortest(highest), remedy);
 }
 

@@ -153,7 +153,7 @@ std::optional<std::string> run_gnuplot(const std::string& script) {
     if (WIFEXITED(status) && WEXITSTATUS(status) == not_started && printed.empty() && complained.empty())
         return std::nullopt;
     if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
-        raise<FileError>("gnuplot could not draw the figure and said: {}",
+        raise<FileError>("gnuplot could not draw the figure and reported: {}",
                          complained.substr(0, complained.find_last_not_of(" \n") + 1));
     }
     return printed;

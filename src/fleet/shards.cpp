@@ -130,7 +130,7 @@ std::vector<std::size_t> missing_shards(std::span<const ShardRecord> records,
             raise<DataError>("{} and {} both are shard {}; keep one of them", names[before->second], names[i],
                              records[i].shard.number);
         if (records[i].shard.of != of)
-            raise<DataError>("{}: is one of {} shards, and --shards says {}", names[i], records[i].shard.of,
+            raise<DataError>("{}: is one of {} shards, and --shards is {}", names[i], records[i].shard.of,
                              of);
     }
     std::vector<std::size_t> missing;

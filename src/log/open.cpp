@@ -208,8 +208,8 @@ std::unique_ptr<LogReader> open_log(std::unique_ptr<ByteSource> source, const Re
             options.constant_speeds.size(), source->name());
     if (options.join == "rows")
         raise<UsageError>(
-            "--join rows: makes one log of several files, which identify takes; say nearest, hold or "
-            "linear for signals of one file");
+            "--join rows: makes one log of several files, which identify takes; use nearest, hold or linear "
+            "for signals of one file");
     std::string first_bytes = first_bytes_of(*source);
     if (const Packing* const packing = packing_of(first_bytes)) {
         source = unpack(std::move(source), std::move(first_bytes), *packing);

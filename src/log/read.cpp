@@ -164,10 +164,9 @@ std::optional<Log> read_pieces(const std::shared_ptr<const Spool>& log, const Re
     part.recording.looked_at = LookedAt{part.trace.size(), most_pieces};
     part.recording.warnings.push_back(
         {"looked at in part",
-         fmt::format(
-             "{}: of {} rows {} are looked at, in {} pieces, evenly spread; --from and --to take a part of "
-             "the log whole",
-             part.layout.source, facts.rows, part.trace.size(), most_pieces),
+         fmt::format("{}: of {} rows {} are examined, in {} evenly spaced pieces; --from and --to select a "
+                     "part that is read whole",
+                     part.layout.source, facts.rows, part.trace.size(), most_pieces),
          true});
     part.held_bad_values = facts.held_bad_values;
     part.clock_factor = facts.clock_factor;

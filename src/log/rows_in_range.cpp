@@ -53,7 +53,7 @@ RowsInRange::RowsInRange(const ReadOptions& options, const Layout& whole, std::s
         factor_ = whole.columns[*whole.chosen.time].factor;
         axis_.origin_s = whole.time_origin;
     } else {
-        raise<DataError>("{}: {}: no column is the time; say --columns time=NAME, or --sample-rate 1kHz",
+        raise<DataError>("{}: {}: no column is the time; use --columns time=NAME, or --sample-rate 1kHz",
                          name(), asked());
     }
 }
@@ -253,7 +253,7 @@ std::unique_ptr<LogReader> with_clock_of(const Layout& whole, const std::shared_
     const std::string before = clock_words(whole), after = clock_words(inside);
     if (before != after)
         raise<DataError>(
-            "{}: --from and --to: the time is read as {} in the whole log, as {} in the rows inside; say "
+            "{}: --from and --to: the time is read as {} in the whole log, as {} in the rows inside; use "
             "--columns time=NAME and --unit time=UNIT",
             whole.source, before, after);
     if (inside.time_origin != whole.time_origin)

@@ -256,9 +256,9 @@ void add_warnings(LogInfo& info, const std::vector<Surveyed>& joints) {
         std::string text = told.first->text;
         if (joints.size() > 1 && (told.first->of_one_joint || told.joints.size() < joints.size())) {
             const auto others = std::span(told.joints).subspan(1);
-            text = fmt::format("joint {}{}: {}", told.joints.front(),
-                               others.empty() ? "" : fmt::format(" (and {} alike)", fmt::join(others, ", ")),
-                               text);
+            text = fmt::format(
+                "joint {}{}: {}", told.joints.front(),
+                others.empty() ? "" : fmt::format(" (and likewise {})", fmt::join(others, ", ")), text);
         }
         info.warnings.push_back(text);
     }
@@ -345,7 +345,7 @@ void warn_where_nothing_is_known(LogInfo& info) {
         return;
     info.warnings.emplace_back(
         "no column is known as time, velocity, torque or position, so no command can use this log as it is; "
-        "say which is which, by name or number: --columns time=NAME,velocity=NAME,torque=NAME");
+        "state which is which, by name or number: --columns time=NAME,velocity=NAME,torque=NAME");
 }
 
 }  // namespace

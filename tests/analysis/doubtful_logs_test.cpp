@@ -198,7 +198,7 @@ TEST_CASE("a hum that outdoes the ripple is told with its band, at steady speeds
     CHECK(found.hums[0].to_hz > 70.0);
     CHECK(std::sqrt(2.0) * found.hums[0].rms_nm > 0.2);
     CHECK_THAT(found.hums[0].rms_nm, WithinRel(std::sqrt(hum_square), 0.15));
-    CHECK_THAT(found.verdict, Contains("a hum stronger than the ripple: "));
+    CHECK_THAT(found.verdict, Contains("narrow-band noise stronger than the ripple: "));
 }
 
 TEST_CASE("a slow joint is judged by its own speeds: a ramp to 2 deg/s is not steady, 0.4 deg/s is no rest") {

@@ -196,10 +196,10 @@ TEST_CASE("a speed in the wrong unit is the likeliest explanation of its lines, 
     };
     // A speed in rad/s read as deg/s makes every order 57.3 times too large, and so on. A factor of 6 (rpm)
     // puts the lines at n = 6 and 12 of the true ratio: nothing in them tells.
-    for (const Slip& slip :
-         {Slip{degrees_per_radian, "if the speed is in rad/s, not deg/s"},
-          Slip{1.0 / degrees_per_radian, "if the speed is in deg/s, not rad/s"},
-          Slip{60.0, "if the speed is off by 60"}, Slip{360.0, "if the speed is in turns/s, not deg/s"}}) {
+    for (const Slip& slip : {Slip{degrees_per_radian, "if the speed is in rad/s, not deg/s"},
+                             Slip{1.0 / degrees_per_radian, "if the speed is in deg/s, not rad/s"},
+                             Slip{60.0, "if the speed is wrong by a factor of 60"},
+                             Slip{360.0, "if the speed is in turns/s, not deg/s"}}) {
         const std::vector lines{line_at(100.0 * slip.factor, 0.8), line_at(200.0 * slip.factor, 0.5)};
         for (const bool hinted : {false, true}) {
             CAPTURE(slip.reason, hinted);

@@ -160,7 +160,7 @@ TEST_CASE("what a URDF cannot mean is said with its place", "[arm][broken]") {
     CHECK_THROWS_WITH(
         urdf(turns + urdf_joint("b", "revolute", "one", "left") +
              urdf_joint("c", "prismatic", "one", "right")),
-        Contains("more than one end (left, right); say at which link with tip=left, or tip=one, "
+        Contains("more than one end (left, right); state at which link with tip=left, or tip=one, "
                  "before they part"));
     CHECK(
         urdf(turns + urdf_joint("b", "revolute", "one", "left") + urdf_joint("c", "revolute", "one", "right"),
@@ -245,7 +245,7 @@ TEST_CASE("what an MJCF cannot mean is said with its place", "[arm][broken]") {
     CHECK_THROWS_WITH(mjcf("<worldbody><body name=\"a\"><joint/><body name=\"l\"><joint "
                            "name=\"x\"/></body><body name=\"r\"><joint name=\"y\"/>"
                            "</body></body></worldbody>"),
-                      Contains("more than one end (l, r); say at which body"));
+                      Contains("more than one end (l, r); state at which body"));
     CHECK_THROWS_WITH(chain_of_mjcf("r.xml", "<robot/>", {}), Contains("that is --arm urdf"));
 }
 

@@ -221,7 +221,7 @@ TEST_CASE("joints that hardly move are told, and the fit stays whole", "[arm]") 
     CHECK(left(fitted_torque(chain, fit, log, 0), log.joints[0], 0) < 1.1 * noise_nm);
     const auto warnings = arm_warnings(fit, arm_travel(chain, log, {"a", "b", "c", "d", "e", "f"}));
     REQUIRE(warnings.size() == 1);
-    CHECK_THAT(warnings.front(), Contains("of 36 values can be told from this log") &&
+    CHECK_THAT(warnings.front(), Contains("of 36 values can be determined from this log") &&
                                      Contains("'b', 'c', 'd', 'e', 'f' hardly move"));
 }
 

@@ -217,7 +217,7 @@ TEST_CASE("the cases of streaming are what their names say") {
     CHECK_THAT(warnings_of("gaps"), Catch::Contains("2 gaps in the time"));
     CHECK_THAT(warnings_of("mostly repeated times"), Catch::Contains("repeat the time"));
     CHECK(warnings_of("coarse torque at a commanded speed").empty());
-    CHECK_THAT(warnings_of("held, at a commanded speed"), Catch::Contains("hold the sample before"));
+    CHECK_THAT(warnings_of("held, at a commanded speed"), Catch::Contains("repeat the previous sample"));
     CHECK_THAT(warnings_of("wraps at a turn"), Catch::Contains("starts again at 360 deg"));
     CHECK_THAT(warnings_of("wraps at 2 pi"), Catch::Contains("starts again at 6.283 deg"));
     for (const Case& one : cases()) {

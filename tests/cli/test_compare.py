@@ -89,8 +89,8 @@ class Signals(Comparison):
         lines = rest.split("\n")
         self.assertLessEqual(max(len(line) for line in verdict.split("\n")), 100)
         self.assertEqual(" ".join(verdict.split("\n")), f"{NOTCHES} settles 2.8 times faster than {MISLABELLED} (147 against 408 ms to 0.5 %), "
-                                   "lags 38.9 ms less (38.0 against 76.9 ms), and takes more than 200 dB off its weakest "
-                                   "line against 21.7 dB.")
+                                   "lags 38.9 ms less (38.0 against 76.9 ms), and attenuates its weakest line "
+                                   "by more than 200 dB against 21.7 dB.")
         for name in ("none", NOTCHES, MISLABELLED):
             self.assertEqual(sum(line.startswith(name + "  ") for line in lines), 2)  # costs, and what is left
 

@@ -41,7 +41,7 @@ class Table1(Case):
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         rows = [line.split() for line in done.stdout.split("\n") if line.strip()[:1].isdigit()]
         self.assertEqual([(int(r[0]), *r[1].split("-"), r[2], r[3]) for r in rows], TABLE_1)
-        self.assertIn("At 18 deg/s and below the torque passes unfiltered; above 180 deg/s band 9 stays in force.",
+        self.assertIn("At 18 deg/s and below the torque passes unfiltered; above 180 deg/s band 9 stays active.",
                       done.stdout)
 
     def test_csv_has_the_papers_bands_and_centres_under_stable_names(self):
@@ -269,7 +269,7 @@ class Refusals(unittest.TestCase):
         self.refused(with_option(PAPER, "--speed", "18:180:0"), "band width 0 deg/s")
         self.refused(with_option(PAPER, "--speed", "18:180"), "how wide a band is")
         self.refused(with_option(PAPER, "--speed", "18:180:18:5"), "is not FROM:TO:WIDTH")
-        self.refused(PAPER + ["--spacing", "5Hz"], "already says how wide")
+        self.refused(PAPER + ["--spacing", "5Hz"], "already states how wide")
         self.refused(PAPER + ["--bands", "18:36"], "cannot be combined")
 
     def test_whatever_is_missing_is_named_with_its_option(self):
@@ -295,7 +295,7 @@ class Limits(unittest.TestCase):
         self.assertEqual(done.returncode, 1)
         self.assertEqual(done.stdout, design(*PAPER, "--format", "csv").stdout)
         self.assertIn("band 1 (18-36 deg/s) delays by 127.3 ms, more than --max-delay 100ms", done.stderr)
-        self.assertIn("band 1 (18-36 deg/s) takes as little as 18.9 dB off order 1", done.stderr)
+        self.assertIn("band 1 (18-36 deg/s) attenuates order 1 by as little as 18.9 dB", done.stderr)
         self.assertIn("off order 2, less than --min-attenuation 23dB", done.stderr)
         self.assertNotIn("band 2", done.stderr)
 

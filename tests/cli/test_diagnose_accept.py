@@ -61,8 +61,8 @@ class Accept(Case):
 
     def test_what_is_not_in_doubt_is_refused_with_what_is(self):
         self.log("log.csv", THERE_AND_BACK)
-        for words, part in (((*BLIND, "--accept", "gravity"), "no finding of that name; in doubt is load-friction"),
-                            (("--accept", "coulomb-friction"), "it is confirmed, and in the model already; in doubt is nothing"),
+        for words, part in (((*BLIND, "--accept", "gravity"), "no finding of that name; uncertain findings: load-friction"),
+                            (("--accept", "coulomb-friction"), "it is confirmed, and in the model already; uncertain findings: nothing"),
                             (("--accept", "coulomb"), "there is no effect 'coulomb'")):
             done = self.run_tool("diagnose", "log.csv", "--model", "model.json", *words)
             self.assertEqual(done.returncode, 2, done.stderr)

@@ -161,7 +161,7 @@ class Arm(Case):
         done = self.run_tool("diagnose", "log.csv", "--joint", "j1", "--arm", f"dh,file=dh.csv,{DOWN}", "--gear-ratio", "100", "-v")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertRegex(done.stdout, r"^arm: 2 joints of dh.csv matched by \w+ \(-v shows them\); ")
-        self.assertIn("with friction beside it, on fifths of the log left out", done.stdout)
+        self.assertIn("with friction included, 5-fold cross-validated", done.stdout)
         self.assertIn("of the log, and goes", done.stderr)
         self.assertIn("as if with joints=", done.stderr)
 

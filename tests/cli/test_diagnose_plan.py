@@ -56,7 +56,7 @@ class Plan(Case):
 
     def test_nothing_open_nothing_written(self):
         self.logged(["--motion", "poly6,to=90deg,duration=2s", "--motion", "rest,duration=0.5s", "--motion", "poly6,to=-30deg,duration=3s"], "log.csv")
-        self.assertIn("plan: this log leaves nothing open that a motion would decide", self.planned("log.csv").stdout)
+        self.assertIn("plan: no open question of this log would be decided by a motion", self.planned("log.csv").stdout)
         self.assertFalse((self.folder / "plan.csv").exists())
 
     def test_what_is_no_limit_is_refused_before_the_log_is_read(self):
@@ -67,5 +67,5 @@ class Plan(Case):
             self.assertIn(words, done.stderr, limits)
         self.assertIn("--limits is missing", self.run_tool("diagnose", "none.csv", "--model", "model.json", "--plan", "p.csv", code=2).stderr)
         self.assertIn("--plan is missing", self.run_tool("diagnose", "none.csv", "--model", "model.json", "--limits", LIMITS, code=2).stderr)
-        self.assertIn("beside --arm or --simulated", self.planned("none.csv", "--simulated", "column,name=tau", code=2).stderr)
+        self.assertIn("with --arm or --simulated", self.planned("none.csv", "--simulated", "column,name=tau", code=2).stderr)
         self.assertIn("put {joint} into the name", self.planned("none.csv", "--joint", "all", code=2).stderr)

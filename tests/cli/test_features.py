@@ -256,7 +256,7 @@ class Shards(Case):
         self.assertEqual(done.stdout.split(), ["1", "3", "4", "6"])
         merged = run("merge", "shards", cwd=self.folder)
         self.assertEqual(merged.returncode, 3)
-        self.assertIn("of 6 shards 4 are not there: 1, 3 to 4, 6", merged.stderr)
+        self.assertIn("of 6 shards 4 are missing: 1, 3 to 4, 6", merged.stderr)
 
     def test_merge_refuses_a_double_a_mixture_and_changed_lines(self):
         self.small_fleet(4)

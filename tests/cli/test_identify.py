@@ -155,7 +155,7 @@ class Doubts(Case):
         done = run("identify", *logs, "--require-conclusive", "-q")
         self.assertEqual(done.returncode, 5, done.stdout)
         self.assertTrue(done.stdout.startswith("Cannot tell: "), done.stdout)
-        self.assertIn("the position changes 1.475 times as much as velocity and time say", done.stdout)
+        self.assertIn("the position changes 1.475 times as much as velocity and time imply", done.stdout)
         self.assertIn("multiples 2 to 5 of 10.0", done.stdout)
         self.assertEqual(run("identify", *logs, "-q").returncode, 0)
         found = identified(*logs)

@@ -115,7 +115,7 @@ class Improved(SharedCase):
     def test_the_story_tells_the_gap_by_band(self):
         told = self.run_tool("diagnose", "log.csv", "--joint", "j2", "--arm", ARM, "--gear-ratio", "100").stdout
         rows = told[told.index("\nfrequency") + 1:].splitlines()
-        self.assertRegex(rows[0], r"^frequency +torque, Nm rms +beside what is given +and the model$")
+        self.assertRegex(rows[0], r"^frequency +torque, Nm rms +without the known terms +and the model$")
         self.assertEqual([row[:12].strip() for row in rows[1:4]], ["below 1 Hz", "1 to 10 Hz", "above 10 Hz"])
         by_band = self.json_of("diagnose", "log.csv", "--joint", "j2", "--arm", ARM, "--gear-ratio", "100")
         for column, whole in (("after_nm", by_band["gap"]["after_nm"]),):

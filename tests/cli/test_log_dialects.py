@@ -477,7 +477,7 @@ class OtherShapes(Case):
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual((self.folder / "out.csv").read_text().split("\n")[0], "time_ms,velocity_deg_s,torque_nm,position_deg")
         done = self.run_tool("filter", "log.csv", "--method", "none", "--in-place")
-        self.assertEqual((done.returncode, "say -o" in done.stderr), (2, True), done.stderr)
+        self.assertEqual((done.returncode, "use -o" in done.stderr), (2, True), done.stderr)
         self.assertEqual((self.folder / "log.csv").read_bytes(), tidy())
 
     def test_electrical_speed_asks_for_the_pairs_of_poles(self):
@@ -503,7 +503,7 @@ class OtherShapes(Case):
                 text = "".join(f"{t:.4f},{q * per_m:.12f},{v * per_m:.12f},{f:.9f}\n" for t, q, v, f in rows)
                 (self.folder / "axis.csv").write_text(header + "\n" + text)
                 done = self.run_tool("identify", "axis.csv", *words)
-                self.assertEqual((done.returncode, "say --lead 5mm" in done.stderr), (3, True), done.stderr)
+                self.assertEqual((done.returncode, "use --lead 5mm" in done.stderr), (3, True), done.stderr)
                 done = self.run_tool("identify", "axis.csv", *words, "--lead", "5mm")
                 self.assertEqual(done.returncode, 0, done.stderr)
                 axis = json.loads(done.stdout)

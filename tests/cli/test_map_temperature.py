@@ -256,7 +256,7 @@ class Warm(Case):
         self.write((20, 40), grows=0.0)
         done = run("recommend", self.log, *GEAR, *self.COLUMN)
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertIn("a map by temperature: 'drive_degc' foretells nothing of this ripple", done.stdout)
+        self.assertIn("a map by temperature: 'drive_degc' does not predict this ripple", done.stdout)
         refused = run("recommend", self.log, *GEAR, "--temperature", "nix")
         self.assertEqual(refused.returncode, 2)
         self.assertIn("has no column 'nix'", refused.stderr)

@@ -121,7 +121,7 @@ class Limits(Recommended):
     def test_out_of_reach_says_what_fails_and_by_how_much(self):
         told = self.recommended("--min-attenuation", "80dB", "--max-delay", "1ms", code=1)
         self.assertEqual((told["finding"], told["take"]), ("out-of-reach", None))
-        self.assertRegex(told["verdict"], r"Nothing is within the limits\. The nearest is .*dB off order \d, [\d.]+ dB less than 80 dB")
+        self.assertRegex(told["verdict"], r"Nothing is within the limits\. The nearest is .*attenuates order \d by [\d.]+ dB, [\d.]+ dB less than 80 dB")
         self.assertTrue(all(not one["meets"] for one in told["methods"]))
 
     def test_a_target_limits_the_methods_to_what_it_holds(self):
@@ -228,7 +228,7 @@ class Honest(Recommended):
     def test_what_was_assumed_is_listed(self):
         done = self.run_tool("recommend", "log.csv", *GEAR)
         self.assertEqual(done.returncode, 0, done.stderr)
-        for part in ("Take ", "To take it:", "Assumed:", "gear ratio 100, as stated", "Not tried:"):
+        for part in ("Use ", "To use it:", "Assumed:", "gear ratio 100, as stated", "Not tried:"):
             self.assertIn(part, done.stdout)
 
 

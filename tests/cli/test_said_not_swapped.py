@@ -129,7 +129,7 @@ class Attenuations(Told):
         stated = [*self.DESIGN, "--speed", "18:180:18", "--q", 1, "--format", "csv"]
         done = self.run_tool(*stated, "--min-attenuation", "10dB")
         self.assertEqual((done.returncode, done.stdout), (1, self.good(*stated).stdout))
-        self.assertRegex(done.stderr, r"band 1 \(18-36 deg/s\) takes as little as \d\.\d dB off order 1, less than --min-attenuation 10dB")
+        self.assertRegex(done.stderr, r"band 1 \(18-36 deg/s\) attenuates order 1 by as little as \d\.\d dB, less than --min-attenuation 10dB")
 
 
 class Lists(Told):
@@ -215,7 +215,7 @@ class RawLogs(Told):
     def test_a_log_is_not_written_over_itself_even_by_force(self):
         (self.folder / "alias.csv").symlink_to("log.csv")
         for words in (["-o", "log.csv"], ["-o", "./log.csv"], ["-o", "alias.csv"], ["--out-dir", "."]):
-            self.refused(["filter", "log.csv", *LOW, *words, "--force"], "or say --in-place")
+            self.refused(["filter", "log.csv", *LOW, *words, "--force"], "or use --in-place")
             self.assertEqual((self.folder / "log.csv").read_bytes(), self.raw)
 
     def test_in_place_writes_what_another_name_would_get(self):

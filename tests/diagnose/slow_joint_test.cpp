@@ -78,5 +78,5 @@ TEST_CASE("a size that differs slow and fast, forth and back is seen on a slow j
     const Unevenness uneven =
         unevenness(on.bench, joint_with({"coulomb-friction,torque_nm=0.3,width_deg_s=0.002"}), 3);
     CHECK(uneven.part > standard.evenness.most_uneven);
-    CHECK(uneven.where == "slow and fast, forth and back");
+    CHECK(uneven.where == "slow and fast, both directions");
 }

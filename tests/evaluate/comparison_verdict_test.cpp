@@ -67,8 +67,9 @@ TEST_CASE("the verdict says only what was measured") {
     comparison.methods[0].ripple_rms_nm = 0.01;
     comparison.methods[1].ripple_rms_nm = 0.2;
     CHECK(verdict(comparison) ==
-          "a settles 2.0 times faster than b (100 against 200 ms to 0.5 %), and leaves 0.01 Nm rms of ripple "
-          "against 0.2.");
+          "a settles 2.0 times faster than b (100 against 200 ms to 0.5 %), and has a remaining ripple of "
+          "0.01 Nm "
+          "rms against 0.2.");
 }
 
 TEST_CASE("the verdict counts a method's weakest line, and does not put a number on a complete null") {
@@ -76,7 +77,7 @@ TEST_CASE("the verdict counts a method's weakest line, and does not put a number
     comparison.methods[0].attenuation = {{1.0, 25.0, 200.0}, {2.0, 50.0, 200.0}};
     comparison.methods[1].attenuation = {{1.0, 25.0, 21.74}, {2.0, 50.0, 27.7}};
     CHECK_THAT(verdict(comparison),
-               Catch::Contains("and takes more than 200 dB off its weakest line against 21.7 dB."));
+               Catch::Contains("and attenuates its weakest line by more than 200 dB against 21.7 dB."));
     comparison.methods[0].attenuation = {{1.0, 25.0, std::nullopt}};
     CHECK_THAT(verdict(comparison), !Catch::Contains("dB"));
 }
@@ -102,11 +103,13 @@ TEST_CASE("where the truth is known, the verdict names the method that comes nea
     comparison.methods[1].error_rms_nm = 0.7834;
     comparison.methods[2].error_rms_nm = 0.7;
     comparison.methods[3].error_rms_nm = 0.0281;
-    CHECK(verdict(comparison) == before + " Nearest to the truth is c: 0.0281 Nm rms off, a 0.783.");
+    CHECK(verdict(comparison) ==
+          before + " Smallest error against the true torque: c, 0.0281 Nm rms; a 0.783.");
     comparison.methods[0].error_rms_nm = 0.01;  // where filtering harms, the raw torque is the answer
-    CHECK(verdict(comparison) == before + " Nearest to the truth is none: 0.01 Nm rms off, a 0.783.");
+    CHECK(verdict(comparison) ==
+          before + " Smallest error against the true torque: none, 0.01 Nm rms; a 0.783.");
     comparison.methods[1].error_rms_nm = 0.001;
-    CHECK(verdict(comparison) == before + " Nearest to the truth is a: 0.001 Nm rms off.");
+    CHECK(verdict(comparison) == before + " Smallest error against the true torque: a, 0.001 Nm rms.");
     // Of one method there is no nearest.
     comparison = of({figures("none", std::nullopt, 0.0), figures("a", std::nullopt, 20.0)});
     comparison.methods[0].error_rms_nm = 0.9;

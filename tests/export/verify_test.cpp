@@ -106,7 +106,7 @@ TEST_CASE("each limit is violated by its own fault alone") {
     CHECK_THAT(found([](auto& c) { c.shift_percent.reset(); }), Contains("no centre is left"));
     CHECK_THAT(found([](auto& c) { c.depth_db = 49.0; }), Contains("depth 49 dB, limit 50 dB"));
     CHECK_THAT(found([](auto& c) { c.dc_error_db = -0.03; }),
-               Contains("0 Hz off by -0.03 dB, limit 0.02 dB"));
+               Contains("gain error at 0 Hz -0.03 dB, limit 0.02 dB"));
     CHECK_THAT(found([](auto& c) { c.pole_radius = 0.96; }), Contains("pole radius 0.96, limit 0.95"));
 }
 

@@ -36,16 +36,17 @@ TEST_CASE("a counter that begins anew is told as such, with what the log says an
 }
 
 TEST_CASE("a broken row is named by line and column with the remedy", "[log]") {
-    CHECK_THAT(complaint(head + "0,10,2.5\n0.01,abc,3\n0.02,12,4\n"),
-               Contains("log.csv:3:6: read 'abc' in 'velocity_deg_s' (column 2), expected a number; mend or "
-                        "remove the line"));
+    CHECK_THAT(
+        complaint(head + "0,10,2.5\n0.01,abc,3\n0.02,12,4\n"),
+        Contains("log.csv:3:6: read 'abc' in 'velocity_deg_s' (column 2), expected a number; correct or "
+                 "remove the line"));
     CHECK_THAT(complaint(head + "0,10,2.5\n0.01,11,nan\n0.02,12,4\n"),
                Contains("log.csv:3:9: read 'nan' in 'torque_nm' (column 3), expected a finite number"));
     CHECK_THAT(complaint(head + "0,10,2.5\n0.01,11,-inf\n0.02,12,4\n"), Contains("log.csv:3:9: read '-inf'"));
     CHECK_THAT(complaint(head + "0,10,2.5\n0.01,11,1e999\n0.02,12,4\n"),
                Contains("log.csv:3:9: read '1e999'"));
     CHECK_THAT(complaint(head + "0,10,2.5\n0.01,11\n0.02,12,4\n"),
-               Contains("log.csv:3:8: read 2 cells, expected 3; mend"));
+               Contains("log.csv:3:8: read 2 cells, expected 3; correct"));
     CHECK_THAT(complaint(head + "0,10,2.5\n0.01,11,1,2\n0.02,12,4\n"),
                Contains("log.csv:3:12: read 4 cells, expected 3"));
     CHECK_THAT(complaint(head + "0,10,2.5\n0.01,11,1\n0.0"),

@@ -45,7 +45,7 @@ void check_same(const Log& part, const Log& all) {
     CHECK(part.layout.warnings.size() == all.layout.warnings.size());
     CHECK(part.recording.warnings.size() == all.recording.warnings.size() + 1);
     CHECK_THAT(part.recording.warnings.back().text,
-               Contains("of 8000 rows 1600 are looked at, in 16 pieces"));
+               Contains("of 8000 rows 1600 are examined, in 16 evenly spaced pieces"));
 }
 
 }  // namespace

@@ -170,10 +170,10 @@ std::optional<RatioHypothesis> wrong_scale(const RatioHypothesis& best, const Ge
         "the ratio {:.6g} is {:+.2f} % from the hint {:.6g}, more than its error of {:.2f} %: {}", *fit.value,
         100.0 * share, hint.value(), 100.0 * uncertainty,
         another_gear
-            ? fmt::format("either the gear is one of {:.6g}, or {}, or a time column runs off by that much",
+            ? fmt::format("either the gear is one of {:.6g}, or {}, or a time column is wrong by that factor",
                           *listed, what)
-            : fmt::format("the likely cause is that {}, or that a time column runs off by that much; a gear "
-                          "ratio that odd is unlikely",
+            : fmt::format("the likely cause is that {}, or that a time column is wrong by that factor; a "
+                          "gear ratio that odd is unlikely",
                           what)));
     return one;
 }

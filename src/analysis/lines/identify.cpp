@@ -156,14 +156,13 @@ std::string told(double value, double error, std::string_view unit, std::string_
 }
 
 std::string of_velocity(const std::optional<VelocityError>& error) {
-    if (!error)
-        return "what an offset, a filter or a delay of the velocity does to the ratio is not in its interval";
-    std::string text = "the ripple tells what the velocity is off by: " +
+    if (!error) return "the ratio's interval does not include an offset, a filter or a delay of the velocity";
+    std::string text = "velocity error estimated from the ripple: " +
                        told(error->offset.value(), error->offset_error.value(), "deg/s", "low", "high");
     if (error->delay_told)
         text +=
             ", " + told(1e3 * error->delay.value(), 1e3 * error->delay_error.value(), "ms", "early", "late");
-    return text + "; that is taken off, and its error is in the ratio's interval";
+    return text + "; it is corrected, and its uncertainty is included in the ratio's interval";
 }
 
 }  // namespace
@@ -263,7 +262,7 @@ Reported from_motion(const MotionLines& motion, std::size_t source, double rate_
         line.phase_known = true;
     }
     if (found.kind == LineKind::unknown)
-        line.note = "the speed varies too little to tell an order from a tone";
+        line.note = "the speed varies too little to distinguish an order from a tone";
     if (!tone) list_folds(found, motion.highest_spectrum_order, rate_hz, line);
     return reported;
 }

@@ -361,12 +361,12 @@ constexpr std::array unit_mistakes{UnitMistake{degrees_per_radian, "the speed is
                                    UnitMistake{1.0 / 6.0, "the speed is in deg/s, not rpm"},
                                    UnitMistake{rpm_per_rad_s, "the speed is in rad/s, not rpm"},
                                    UnitMistake{1.0 / rpm_per_rad_s, "the speed is in rpm, not rad/s"},
-                                   UnitMistake{60.0, "the speed is off by 60"},
-                                   UnitMistake{1.0 / 60.0, "the speed is off by 60"},
+                                   UnitMistake{60.0, "the speed is wrong by a factor of 60"},
+                                   UnitMistake{1.0 / 60.0, "the speed is wrong by a factor of 60"},
                                    UnitMistake{360.0, "the speed is in turns/s, not deg/s"},
                                    UnitMistake{1.0 / 360.0, "the speed is in deg/s, not turns/s"},
-                                   UnitMistake{1000.0, "the speed is off by 1000"},
-                                   UnitMistake{1e-3, "the speed is off by 1000"}};
+                                   UnitMistake{1000.0, "the speed is wrong by a factor of 1000"},
+                                   UnitMistake{1e-3, "the speed is wrong by a factor of 1000"}};
 constexpr double mistaken = 0.01;  // chosen, not derived: probability of each
 
 /// A ratio as gears have it is no reason to reject the unit.

@@ -94,7 +94,7 @@ std::string hums_too(const Identification& found) {
         words.push_back(
             fmt::format("{:.3g} to {:.3g} Hz ({:.2g} Nm rms)", hum.from_hz, hum.to_hz, hum.rms_nm));
     if (words.empty()) return "";
-    return fmt::format("; {} stronger than {}: {}", words.size() == 1 ? "a hum" : "hums",
+    return fmt::format("; narrow-band noise stronger than {}: {}",
                        found.finding == RippleFinding::nothing || found.finding == RippleFinding::too_little
                            ? "the noise"
                            : "the ripple",

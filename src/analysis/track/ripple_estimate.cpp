@@ -342,7 +342,7 @@ RippleEstimate estimate_of(double value, const OrderSegments& order, std::size_t
     sum /= weight;
     const NoisePower noise = noise_power(order, averages);
     if (!(noise.bins > 0.0)) {
-        found.insufficient = "no order beside it is free to measure the noise at";
+        found.insufficient = "no free order next to it to estimate the noise at";
         return found;
     }
     double scatter = 0.0;

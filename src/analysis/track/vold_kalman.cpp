@@ -139,8 +139,8 @@ class Section {
         const Eigen::VectorXd found = solver.solve(right_);
         if (solver.info() != Eigen::Success || !found.allFinite()) {
             raise<DataError>(
-                "the Vold-Kalman equations of this log have no unique solution: lines that are alike, or "
-                "too few samples; leave lines out or use a wider bandwidth");
+                "the Vold-Kalman equations of this log have no unique solution: lines that coincide, or too "
+                "few samples; leave lines out or use a wider bandwidth");
         }
         return found;
     }

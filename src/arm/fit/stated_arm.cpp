@@ -225,7 +225,7 @@ CheckedLog check_log(const Chain& chain, const ArmLog& log, const ArmFitOptions&
         return std::any_of(joint.velocity_deg_s.begin(), joint.velocity_deg_s.end(),
                            [](double v) { return v != 0.0; });
     });
-    if (!moves) raise<DataError>("arm: no joint moves; the log tells next to nothing of the arm");
+    if (!moves) raise<DataError>("arm: no joint moves; the log contains almost no information about the arm");
     if (checked.use.empty()) checked.use.assign(log.joints.front().size(), true);
     leave_out_long_rests(checked);
     const auto rows = static_cast<std::size_t>(std::count(checked.use.begin(), checked.use.end(), true));

@@ -62,14 +62,13 @@ std::vector<std::string> arm_warnings(const ArmFit& fit, const std::vector<Joint
     const std::string names = fmt::format("{}", fmt::join(still, ", "));
     if (static_cast<double>(fit.values_told) < few_told * static_cast<double>(fit.values_there)) {
         warnings.push_back(fmt::format(
-            "arm: {} of {} values can be told from this log{}; a motion of all joints "
-            "tells more",
+            "arm: {} of {} values can be determined from this log{}; a motion of all joints determines more",
             fit.values_told, fit.values_there,
             still.empty() ? ""
                           : fmt::format(", in which {} hardly move{}", names, still.size() == 1 ? "s" : "")));
     } else if (!still.empty()) {
         warnings.push_back(fmt::format(
-            "arm: {} move{} less than {:g} deg; the inertia of {} cannot be told apart", names,
+            "arm: {} move{} less than {:g} deg; the inertia of {} cannot be identified separately", names,
             still.size() == 1 ? "s" : "", least_travel_deg, still.size() == 1 ? "its link" : "their links"));
     }
     return warnings;

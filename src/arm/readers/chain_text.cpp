@@ -82,7 +82,7 @@ Way moving_ends(const LinkTree& tree) {
         common.erase(mine, common.end());
     }
     const bool before = !common.empty() && last_moving(tree, common.back());
-    raise<UsageError>("arm: {} has more than one end ({}{}); say at which {} with tip={}{}", source,
+    raise<UsageError>("arm: {} has more than one end ({}{}); state at which {} with tip={}{}", source,
                       fmt::join(names, ", "), ends.size() > names.size() ? ", ..." : "", what, names.front(),
                       before ? fmt::format(", or tip={}, before they part", tree.names[common.back()]) : "");
 }

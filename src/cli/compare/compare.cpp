@@ -742,7 +742,7 @@ JointResult compare_once(const CompareRequest& request, const std::string& comma
 
 ExitCode run_compare(const CompareRequest& request, const std::string& command_line) {
     if (request.log.empty() && request.log_options.range.given())
-        raise<UsageError>("--from and --to: there is no LOG to take rows of");
+        raise<UsageError>("--from and --to: there is no LOG to select rows from");
     // A signal is no joint's, and is compared on as a log of one is.
     static const std::string no_log = "-";
     const std::string& path = request.log.empty() ? no_log : request.log;
@@ -775,7 +775,7 @@ std::function<ExitCode()> attach_compare(Options& options) {
                  "the same log without ripple and noise: each method's error against its torque");
     options.flag(
         "--match-lowpass", request->match_low_pass,
-        "find the low-pass that takes out as much ripple as the first other method, and compare it too");
+        "find the low-pass that attenuates the ripple as much as the first other method, and compare it too");
     options.count("--match-order", request->match_order, 1, 20, "order of that low-pass");
     options.number("--match-attenuation", request->match_attenuation_db, Dimension::decibel,
                    "find the low-pass of this ripple attenuation instead");
@@ -792,9 +792,9 @@ const Command commands::compare = {
     .name = "compare",
     .summary = "several methods side by side on a log, a step or a ramp",
     .description =
-        "What each method takes out, and what it costs in delay and settling. The control, none, is always "
-        "shown.\nThe paper's figures: ripplenotch compare --step 10Nm --ramp 20Nm/s --speed 90deg/s "
-        "--sample-rate 1kHz\n--gear-ratio 100 --orders 1,2 --method fixed,centers=25Hz:50Hz,q=0.25 --method "
+        "Attenuation, delay and settling of each method. The control, none, is always shown.\nThe paper's "
+        "figures: ripplenotch compare --step 10Nm --ramp 20Nm/s --speed 90deg/s --sample-rate "
+        "1kHz\n--gear-ratio 100 --orders 1,2 --method fixed,centers=25Hz:50Hz,q=0.25 --method "
         "lowpass,cutoff=13rad/s",
     .attach = attach_compare,
 };

@@ -130,14 +130,13 @@ std::vector<std::pair<DegPerSec, DegPerSec>> bands_of(const DesignRequest& reque
     const SpeedRange range = parse_speed_range(*request.speed, "--speed");
     if (range.width && request.spacing) {
         raise<UsageError>(
-            "--speed {} already says how wide a band is; leave out its third number or --spacing",
+            "--speed {} already states how wide a band is; leave out its third number or --spacing",
             *request.speed);
     }
     if (!range.width && !request.spacing) {
         raise<UsageError>(
-            "--speed {} does not say how wide a band is; write FROM:TO:WIDTH, add --spacing 5Hz, or say what "
-            "the "
-            "table has to hold with --min-attenuation or --max-delay",
+            "--speed {} does not state how wide a band is; write FROM:TO:WIDTH, add --spacing 5Hz, or state "
+            "what the table has to hold with --min-attenuation or --max-delay",
             *request.speed);
     }
     return bands_by_spacing({range.from, range.to},
@@ -298,7 +297,7 @@ std::vector<std::string> violations_of(const DesignRequest& request, const Candi
         }
         if (request.min_ripple_reduction_db && band.held_attenuation_db < *request.min_ripple_reduction_db) {
             sentences.push_back(
-                fmt::format("{} takes as little as {:.1f} dB off the ripple of all orders, less than "
+                fmt::format("{} attenuates the ripple of all orders by as little as {:.1f} dB, less than "
                             "--min-ripple-reduction {}dB",
                             label, band.held_attenuation_db, shortest(*request.min_ripple_reduction_db)));
         }
@@ -306,9 +305,9 @@ std::vector<std::string> violations_of(const DesignRequest& request, const Candi
             const double worst_db = band.worst_attenuation_db[i];
             if (worst_db >= *request.min_attenuation_db) continue;
             sentences.push_back(
-                fmt::format("{} takes as little as {:.1f} dB off order {}, less than "
+                fmt::format("{} attenuates order {} by as little as {:.1f} dB, less than "
                             "--min-attenuation {}dB",
-                            label, worst_db, shortest(band.notches[i].order.value()),
+                            label, shortest(band.notches[i].order.value()), worst_db,
                             shortest(*request.min_attenuation_db)));
         }
     }
@@ -406,8 +405,8 @@ std::function<ExitCode()> attach_design(Options& options) {
     options.number("--min-ripple-reduction", request->min_ripple_reduction_db, Dimension::decibel,
                    "the same for the ripple of all orders together, by their amplitudes");
     options.number("--hysteresis", request->hysteresis, Dimension::speed,
-                   "a band is left only when the speed is this far outside it (default: three times the "
-                   "noise of the speed in JOINT, else 0)");
+                   "hysteresis: the filter leaves a band only when the speed is this far outside it "
+                   "(default: three times the noise of the speed in JOINT, else 0)");
     options.duration("--max-delay", request->max_delay,
                      "choose bands and Q whose DC delay is no longer, e.g. 20ms; where both are stated, exit "
                      "code 1 when a band's is");

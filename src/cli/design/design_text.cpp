@@ -172,7 +172,7 @@ std::string outside_sentence(const CandidateTable& table) {
             text += "the torque passes unfiltered";
             break;
         case OutsideRule::hold:
-            text += "the filter last in force stays";
+            text += "the last active filter stays active";
             break;
         case OutsideRule::fade:
             text += fmt::format("band 1 fades out, down to {} deg/s", plain(0.5 * first.from.value()));
@@ -184,7 +184,7 @@ std::string outside_sentence(const CandidateTable& table) {
             text += "it passes unfiltered.";
             break;
         case OutsideRule::hold:
-            text += fmt::format("band {} stays in force.", last.number);
+            text += fmt::format("band {} stays active.", last.number);
             break;
         case OutsideRule::fade:
             text +=
@@ -250,7 +250,7 @@ std::vector<std::vector<std::string>> title_rows(const TableSpec& spec, const Ex
         units.push_back("dB");
     }
     for (std::size_t i = 0; extra.left && i < spec.orders.size(); ++i) {
-        titles.push_back(fmt::format("left {}", shortest(spec.orders[i].value())));
+        titles.push_back(fmt::format("remaining {}", shortest(spec.orders[i].value())));
         units.push_back("Nm");
     }
     return {titles, units};
@@ -301,11 +301,11 @@ std::string table_to_text(const CandidateTable& table, const DesignNote& note) {
     if (spec.ratio_error >= 5e-5)
         text += fmt::format(", the gear ratio being up to {} % off", percent_text(100.0 * spec.ratio_error));
     if (spec.hysteresis.value() > 0.0)
-        text += fmt::format(", and {} deg/s beyond it, the hysteresis with which it is left",
-                            plain(spec.hysteresis.value()));
+        text +=
+            fmt::format(", and {} deg/s beyond it, the switching hysteresis", plain(spec.hysteresis.value()));
     text += ". ";
-    if (extra.held) text += "Together: of all orders by their amplitudes. ";
-    if (extra.left) text += "Left: what that leaves of each at most. ";
+    if (extra.held) text += "Together: attenuation of all orders, weighted by their amplitudes.  ";
+    if (extra.left) text += "Remaining: largest amplitude of each order after the filter. ";
     text += delay_sentence(table.bands()) + "\n" + outside_sentence(table) + "\n";
     if (!note.reason.empty()) text += fmt::format("Chosen: {}.\n", note.reason);
     if (note.slowest) text += slowest_sentence(*note.max_delay, *note.slowest) + "\n";

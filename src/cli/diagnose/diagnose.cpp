@@ -165,7 +165,7 @@ std::function<ExitCode()> attach_diagnose(Options& options) {
         "finds them in LOG");
     attach_given(options, request->given);
     attach_gear(options, request->gear,
-                {.ratio = "motor turns per joint turn, in place of --model", .orders = "", .joint_file = ""});
+                {.ratio = "motor turns per joint turn, instead of --model", .orders = "", .joint_file = ""});
     options.flag(
         "--friction-table", request->friction_table,
         "LOG is a table of constant speeds and the torque that each took, without time: its Coulomb, "
@@ -175,16 +175,15 @@ std::function<ExitCode()> attach_diagnose(Options& options) {
     options.texts("--without", request->without, "NAME",
                   "an effect that is not tried; may be given several times");
     options.texts("--accept", request->accept, "NAME",
-                  "a finding in doubt that is taken into the model all the same; may be given several times");
-    options.text(
-        "--plan", request->plan, "FILE",
-        "the shortest motion, of 30 s at most, that would decide what the log leaves open: rows of time, "
-        "position and velocity; needs --limits");
+                  "an uncertain finding to include in the model anyway; may be given several times");
+    options.text("--plan", request->plan, "FILE",
+                 "the shortest motion, of 30 s at most, that would decide what the log does not: rows of "
+                 "time, position and velocity; needs --limits");
     options.writes("--plan");
     options.text("--limits", request->limits, "KEY=VALUE,...",
                  "of --plan: speed=90deg/s,acceleration=300deg/s2,range=-90deg:90deg");
     options.flag("--explain", request->explain,
-                 "in the story, which rules were asked about each finding, with their numbers and limits");
+                 "also print the rules applied to each finding, with their numbers and limits");
     options.texts("--rule", request->rules, "NAME=VALUE",
                   "for studies: a limit that a diagnosis decides by; may be given several times");
     options.flag("--rules", request->list_rules,
@@ -205,11 +204,11 @@ const Command commands::diagnose{
     .name = "diagnose",
     .summary = "where model and log disagree, the effect that is missing, and how far the gap shrinks",
     .description =
-        "Fits the model to the log, says where they disagree, tries every effect of the catalogue, names and "
-        "adds\n"
-        "what is missing, and says what no effect explains. -o takes the improved model.json; named .xml or\n"
-        ".mjcf, it is written for MuJoCo, with a list of what has no place there.\n"
-        "Example: ripplenotch diagnose log.csv --model model.json --validate other.csv -o improved.json",
+        "Fits the model to the log, reports where they disagree, tries every effect of the catalogue, names "
+        "and adds\nwhat is missing, and reports what no effect explains. -o writes the improved model.json; "
+        "named .xml or\n.mjcf, it is written for MuJoCo, with a list of what MuJoCo cannot "
+        "represent.\nExample: ripplenotch diagnose log.csv --model model.json --validate other.csv -o "
+        "improved.json",
     .attach = attach_diagnose,
 };
 

@@ -57,7 +57,7 @@ std::string accepted_text(const Diagnosis& diagnosis) {
 std::string band_table(const std::vector<BandGap>& bands) {
     if (bands.empty()) return {};
     std::vector<std::vector<std::string>> rows = {
-        {"frequency", "torque, Nm rms", "beside what is given", "and the model"}};
+        {"frequency", "torque, Nm rms", "without the known terms", "and the model"}};
     for (const BandGap& band : bands) {
         const std::string name = band.from_hz == 0.0 ? fmt::format("below {:g} Hz", band.to_hz)
                                  : band.to_hz == 0.0
@@ -103,7 +103,7 @@ std::string where_text(const Place& place) {
     if (place.direction == Direction::both) parts.emplace_back("while it moves");
     if (place.direction == Direction::positive || place.direction == Direction::negative)
         parts.push_back(fmt::format("in {} direction", direction_name(place.direction)));
-    return parts.empty() ? "all over the log" : joined(parts, "; ");
+    return parts.empty() ? "throughout the log" : joined(parts, "; ");
 }
 
 // "1.500 +/- 0.010 Nm": the size of a finding with half of its 95 % interval.
@@ -252,7 +252,7 @@ std::string regions_text(const std::vector<ResidualRegion>& residual_regions, st
         }
     }
     for (const auto& [kind, rest] : more)
-        text += fmt::format("{} in {} further places by {} ({:.0f} %)\n", verb, rest.first, kind,
+        text += fmt::format("{} in {} further regions by {} ({:.0f} %)\n", verb, rest.first, kind,
                             100.0 * std::min(rest.second, 1.0));
     return text;
 }
@@ -269,11 +269,10 @@ std::string closing(const Diagnosis& diagnosis) {
         case DiagnosisVerdict::partly_explained:
             return diagnosis.unexplained.empty() && !diagnosis.accepted.empty()
                        ? "partly explained: this log does not confirm what you accepted"
-                       : "partly explained: something is left";
+                       : "partly explained: unexplained residual remains";
         case DiagnosisVerdict::unexplained:
-            return diagnosis.setup.empty()
-                       ? "unexplained: no effect of the catalogue accounts for what is left"
-                       : "unexplained: correct the set-up first";
+            return diagnosis.setup.empty() ? "unexplained: no effect of the catalogue explains the residual"
+                                           : "unexplained: correct the set-up first";
         case DiagnosisVerdict::undecided:
             return "cannot tell";
     }
@@ -315,11 +314,11 @@ std::string angle_text(const Diagnosis& diagnosis) {
     constexpr double rounding_deg = 1e-9;
     if (!diagnosis.has_position && diagnosis.angle->walk_deg > rounding_deg)
         text += fmt::format(
-            "the angle is the velocity's integral, moved by {} deg rms as the ripple tells; phases are this "
-            "log's own\n",
+            "the angle is the integrated velocity, corrected by {} deg rms with the phase of the ripple; "
+            "phases are this log's own\n",
             short_number(diagnosis.angle->walk_deg));
     if (const auto& start = diagnosis.angle->validation_start_deg)
-        text += fmt::format("the validation log begins at {} deg of it, as the model tells best\n",
+        text += fmt::format("the validation log begins at {} deg of it, where it fits the model best\n",
                             short_number(*start));
     return text;
 }
@@ -341,7 +340,7 @@ std::string diagnosis_story(const Diagnosis& diagnosis, bool explain) {
                             one.effect, one.rows, one.unused);
     text += fmt::format("gap of the model as given: {} Nm rms\n", short_number(gap.before_nm));
     for (std::size_t i = 0; i < std::min<std::size_t>(diagnosis.disagreement.size(), 3); ++i)
-        text += fmt::format("  disagrees {}\n", region_text(diagnosis.disagreement[i]));
+        text += fmt::format("  residual {}\n", region_text(diagnosis.disagreement[i]));
     text += angle_text(diagnosis);
     for (const Fault& fault : diagnosis.faults)
         text += fmt::format("fault of the log: {}, {}\n", fault.term.effect->name, fault.words);
@@ -360,7 +359,7 @@ std::string diagnosis_story(const Diagnosis& diagnosis, bool explain) {
     text += gap_text(gap);
     if (diagnosis.search_ended)
         text += fmt::format(
-            "the search was ended after {:.0f} evaluations of the model; what is left is unexplained\n",
+            "the search was ended after {:.0f} evaluations of the model; the residual is unexplained\n",
             diagnosis.evaluations);
     return text + band_table(diagnosis.bands) + next_text(diagnosis.next);
 }
@@ -393,12 +392,9 @@ std::string arm_text(const ArmAccount& account) {
             "{:g} s\n",
             account.joints.size(), account.source, account.rule, account.smoothing.value());
     return fmt::format(
-               "arm: {} joints of {} matched {} (-v shows them); {} of {} combinations of its masses told by "
-               "this "
-               "log, {}, motion smoothed over {:g} s{}\n  {:.3g} -> {:.3g} Nm rms with friction beside it, "
-               "on "
-               "fifths "
-               "of the log left out\n",
+               "arm: {} joints of {} matched {} (-v shows them); {} of {} combinations of its masses "
+               "determined by this log, {}, motion smoothed over {:g} s{}\n  {:.3g} -> {:.3g} Nm rms with "
+               "friction included, 5-fold cross-validated\n",
                account.joints.size(), account.source, account.rule, account.values_told, account.values_there,
                account.all_joints_at_once ? "all joints fitted at once" : "this joint fitted alone",
                account.smoothing.value(), account.lengths_are_guessed ? ", lengths of its links guessed" : "",

@@ -58,8 +58,7 @@ bool has_speed_and_torque_alone(const DiagnoseRequest& request) {
 
 void check_table_options(const DiagnoseRequest& request) {
     const auto refuse = [](bool given, std::string_view option) {
-        if (given)
-            raise<UsageError>("{} has no use with a friction table, which is fitted by itself", option);
+        if (given) raise<UsageError>("{} has no use with a friction table, which is fitted alone", option);
     };
     refuse(!request.model.empty() && request.model != "auto", "--model FILE");
     refuse(request.validate.has_value(), "--validate");
@@ -134,8 +133,7 @@ std::optional<Log> friction_table_of(const DiagnoseRequest& request) {
     if (!is_stated && table.trace.size() >= of_a_log)
         raise<DataError>(
             "{}: {} rows of speed and torque without a time, which may be a log or a table of constant "
-            "speeds; "
-            "say --sample-rate 1kHz for a log, or --friction-table",
+            "speeds; use --sample-rate 1kHz for a log, or --friction-table",
             request.path, table.trace.size());
     if (!is_stated) check_table_options(request);
     refuse_open_readings(table);

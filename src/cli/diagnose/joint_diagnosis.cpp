@@ -66,9 +66,10 @@ std::optional<std::string> tree_of(const DiagnoseRequest& request, const JointDi
 
 void add_given(JointMjcf& parts, const JointDiagnosis& one, const std::optional<std::string>& tree) {
     if (one.given.arm && tree)
-        parts.not_held.push_back({"arm", fmt::format("bodies and armature are those of {}; what the log told "
-                                                     "are combinations of masses",
-                                                     *tree)});
+        parts.not_held.push_back(
+            {"arm", fmt::format(
+                        "bodies and armature are those of {}; the log determines only combinations of masses",
+                        *tree)});
     if (one.given.arm && !tree)
         parts.not_held.push_back({"arm", "its bodies are not in this file; --arm mjcf,file=FILE has them"});
     if (one.given.simulated) parts.not_held.push_back({"simulated", "its torque is not in this file"});
@@ -184,8 +185,8 @@ void check_plan(const DiagnoseRequest& request) {
     if (*request.plan == "-") raise<UsageError>("--plan -: the story goes to standard output; give a file");
     if (request.given.any())
         raise<UsageError>(
-            "--plan: beside --arm or --simulated a motion is not planned; the torque of what is given "
-            "is not known along it");
+            "--plan: no motion is planned with --arm or --simulated; the torque of the known terms is not "
+            "known along it");
     if (request.all_joints() && !names_joint(*request.plan))
         raise<UsageError>("--plan {}: each joint has a motion of its own; put {{joint}} into the name",
                           *request.plan);
@@ -207,7 +208,7 @@ PlannedMotion plan_for(const DiagnoseRequest& request, const JointDiagnosis& one
 
 std::string plan_text(const PlannedMotion& planned) {
     if (!planned.plan)
-        return "plan: this log leaves nothing open that a motion would decide; none is written\n";
+        return "plan: no open question of this log would be decided by a motion; none is written\n";
     const MotionPlan& plan = *planned.plan;
     std::string text =
         fmt::format("plan: {} moves for {:g} s{}\n", planned.file, plan.duration().value(),
@@ -273,15 +274,14 @@ ModelOfLog identified_model(const DiagnoseRequest& request, ReadOptions reading)
     const GearStatement facts = joint.facts(stated);
     if (!facts.ratio && !moves(logs.front().trace))
         raise<DataError>(
-            "{}: --model auto: identify tells no gear ratio from it ({}), and at rest a ripple is an offset; "
+            "{}: --model auto: identify finds no gear ratio in it ({}), and at rest a ripple is an offset; "
             "give --gear-ratio N, or --model FILE",
             request.path, joint.found.verdict);
     if (!facts.ratio && logs.front().layout.motor_units)
         raise<DataError>(
             "{}: --model auto: the motion seems to be measured before the gear (named so, or too fast for a "
-            "joint), and no ratio is known to bring it to the joint; say --gear-ratio N, or --side joint if "
-            "it "
-            "is the joint's",
+            "joint), and no ratio is known to bring it to the joint; use --gear-ratio N, or --side joint if "
+            "it is the joint's",
             request.path);
     Model model{facts.ratio.value_or(GearRatio()), {}};
     if (speed_changes(logs.front().trace)) model.terms.push_back(parse_term("inertia"));
@@ -414,9 +414,8 @@ void require_memory(const DiagnoseRequest& request, const ReadOptions& reading) 
     if (!left || bytes <= static_cast<double>(*left)) return;
     constexpr double mebibyte = 1024.0 * 1024.0;
     raise<MemoryError>(
-        "{}: beside a simulation the whole log is held, which takes about {:.3g} MiB for some {:.3g} rows, "
-        "and "
-        "{:.3g} MiB are to be had; take a part of the log with --from and --to",
+        "{}: with a simulation the whole log is held in memory, which needs about {:.3g} MiB for some {:.3g} "
+        "rows, and {:.3g} MiB are available; take a part of the log with --from and --to",
         request.path, bytes / mebibyte, rows, static_cast<double>(*left) / mebibyte);
 }
 

@@ -46,7 +46,8 @@ std::string effect_text(const Effect& effect) {
                                    effect.name, effect.summary, effect.equation, parameters_text(effect),
                                    side_name(effect.side), effect.symptom);
     for (const LookAlike& other : effect.look_alikes)
-        text += fmt::format("  {}, when: {}\n    what tells: {}\n", other.name, other.when, other.told_by);
+        text +=
+            fmt::format("  {}, when: {}\n    to distinguish: {}\n", other.name, other.when, other.told_by);
     return text + fmt::format("source: {}\n", effect.source);
 }
 

@@ -158,7 +158,7 @@ CodeCheck run_beside(const CodeExport& request, const LoadedCode& code) {
 // Writes its code; with verify reads it back and runs it beside the method itself over a million samples.
 // Throws UsageError for a target that takes coefficients only.
 ExitCode export_code(const CodeExport& request, const std::string& command_line) {
-    if (request.common.json) raise<UsageError>("--json: of a method as code nothing is told as JSON yet");
+    if (request.common.json) raise<UsageError>("--json: export of a method as code has no JSON result yet");
     const Spec spec = parse_spec(request.to);
     if (!is_code_target(spec.name)) {
         raise<UsageError>("target {} takes coefficients, and those of {} change while it runs; use c-header",
@@ -173,9 +173,8 @@ ExitCode export_code(const CodeExport& request, const std::string& command_line)
     const ReadBack again = read_back(written, request.common);
     const LoadedCode code = read_method_code(again.bytes, again.source, *design, settings);
     const CodeCheck check = run_beside(request, code);
-    tell_check(fmt::format("{}: {}, read back and run beside the method over {} samples in {}.\n"
-                           "largest output          {:.4g} Nm\n"
-                           "largest difference      {:.1e} Nm\n",
+    tell_check(fmt::format("{}: {}, read back and compared with the method over {} samples in {}.\nlargest "
+                           "output          {:.4g} Nm\nlargest difference      {:.1e} Nm\n",
                            again.source, spec.text(), samples, code.arithmetic, check.largest_nm,
                            check.largest_error_nm),
                request.common);
@@ -194,10 +193,8 @@ struct MapExport {
 std::string check_text(const std::string& file, const std::string& target, const LoadedMap& loaded,
                        const MapCheck& check) {
     return fmt::format(
-        "{}: {}, read back and run at {} states in {}.\n"
-        "ripple of the map       {:.4g} Nm rms\n"
-        "no place in the target  {:.4g} Nm rms\n"
-        "largest error           {:.2g} Nm\n",
+        "{}: {}, read back and run at {} states in {}.\nripple of the map       {:.4g} Nm rms\nnot "
+        "representable       {:.4g} Nm rms\nlargest error           {:.2g} Nm\n",
         file, target, check.states, loaded.arithmetic, check.ripple_nm, check.not_held_nm,
         check.largest_error_nm);
 }
@@ -205,7 +202,7 @@ std::string check_text(const std::string& file, const std::string& target, const
 // Writes the map in the form of the target, reads it back and tells what came through. Throws UsageError,
 // DataError.
 ExitCode export_map(const MapExport& request, const std::string& command_line) {
-    if (request.common.json) raise<UsageError>("--json: of a map's export nothing is told as JSON yet");
+    if (request.common.json) raise<UsageError>("--json: export of a map has no JSON result yet");
     const Spec spec = parse_spec(request.to);
     const MapTarget& target = find_map_target(spec.name);
     check_output_name(request.common.output, target.name, target.endings);
@@ -466,7 +463,7 @@ std::function<ExitCode()> attach_export(Options& options) {
     options.number("--min-depth-db", request->limits.depth_db, Dimension::decibel,
                    "exit code 1 when a notch is less deep at its designed centre");
     options.number("--max-dc-error-db", request->limits.dc_error_db, Dimension::decibel,
-                   "exit code 1 when the gain at 0 Hz is off by more");
+                   "exit code 1 when the gain error at 0 Hz is larger");
     options.number("--max-pole-radius", request->limits.pole_radius, Dimension::none,
                    "exit code 1 when a pole is further out; 1 and beyond is always refused");
     attach_common(options, request->common, {});

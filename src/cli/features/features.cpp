@@ -90,7 +90,7 @@ void take_date(const ManifestEntry& entry, const Log& log, const FeatureWork& wo
     } else if (work.date_from_file && entry.log != "-") {
         line.date = date_of_file(entry.log), line.date_source = "file";
     } else {
-        line.date_source = "the log's clock has no day; --date-from-name or --date-from-file tell it";
+        line.date_source = "the log's clock has no day; --date-from-name or --date-from-file supplies it";
     }
 }
 
@@ -104,7 +104,7 @@ void take_temperature(const ManifestEntry& entry, const FeatureWork& work, Featu
                                                     work.read, most_rows_looked_at);
         line.temperature_source = "column " + *work.temperature_column;
     } else {
-        line.temperature_source = "nobody states it; --temperature names a column or a number";
+        line.temperature_source = "not stated; --temperature names a column or a number";
     }
 }
 
@@ -228,7 +228,7 @@ std::string lines_of_record(const ShardRecord& record, const std::string& record
         record_name.substr(0, record_name.size() - record_ending.size()) + std::string(".ndjson");
     std::string lines = read_all(name);
     if (sha256_of(lines) != record.sha256)
-        raise<DataError>("{}: its bytes are not those that {} tells of; do shard {}/{} again", name,
+        raise<DataError>("{}: its bytes differ from those that {} lists; do shard {}/{} again", name,
                          record_name, record.shard.number, record.shard.of);
     return lines;
 }
@@ -363,8 +363,7 @@ ExitCode print_lines(const FeatureRequest& request, const FeatureWork& work,
     if (request.csv) text = features_csv(all);
     write_all(request.common.output, text, request.common.overwrite());
     if (failed > 0 && (entries.size() > 1 || failed > 1))
-        warn(request.common,
-             fmt::format("{} of the lines have an error in the place of descriptors", failed));
+        warn(request.common, fmt::format("{} of the lines have an error instead of descriptors", failed));
     return failed > 0 ? ExitCode::data : ExitCode::done;
 }
 
@@ -409,7 +408,7 @@ std::function<ExitCode()> attach_features(Options& options) {
     options.text("--date-from-name", request->date_from_name, "PATTERN",
                  "date and robot from a log's name: %Y %m %d %H %M %S, {robot}, *, ?");
     options.flag("--date-from-file", request->date_from_file,
-                 "where neither name nor clock tell the day, take that of the file's last change");
+                 "where neither name nor clock states the day, use that of the file's last change");
     options.text("--temperature", request->temperature, "COLUMN",
                  "the joint's temperature: a column in degrees Celsius, {joint} in it for a joint's name, or "
                  "a number");
@@ -422,17 +421,12 @@ std::function<ExitCode()> attach_features(Options& options) {
 
 const Command commands::features{
     .name = "features",
-    .summary = "what a log tells of each joint in one line: ratio, ripple, friction, lost motion",
+    .summary = "descriptors of each joint of a log in one line: ratio, ripple, friction, lost motion",
     .description =
         "A line for each log and joint with its descriptors and their intervals, for one log or for a fleet "
-        "in "
-        "shards.\n"
-        "What a log does not tell is null, with the reason. A log that cannot be read is a line with its "
-        "error; "
-        "exit code 3\n"
-        "tells that there was one.\n"
-        "Example: ripplenotch features logs/*.csv --gear-ratio 100 --date-from-name '*_%Y-%m-%d.csv' -o "
-        "all.ndjson",
+        "in shards.\nWhat a log does not determine is null, with the reason. A log that cannot be read is a "
+        "line with its error; exit code 3\nreports that there was one.\nExample: ripplenotch features "
+        "logs/*.csv --gear-ratio 100 --date-from-name '*_%Y-%m-%d.csv' -o all.ndjson",
     .attach = attach_features,
 };
 

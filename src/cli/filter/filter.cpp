@@ -204,7 +204,7 @@ void check_jobs(const FilterRequest& request, const std::vector<FilterJob>& jobs
         claims.writes(job.output, own_names ? "the filtered " + job.log + ":" : "-o");
         if (job.metrics) claims.writes(*job.metrics, "--metrics");
     }
-    claims.check(", or say --in-place; filter logs of one name into different folders");
+    claims.check(", or use --in-place; filter logs of one name into different folders");
 }
 
 std::vector<FilterJob> jobs_of(const FilterRequest& request) {
@@ -225,7 +225,7 @@ void check_several(const FilterRequest& request) {
         raise<UsageError>(
             "--json prints the metrics of one joint; for all of them use --metrics 'NAME-{}.json'",
             joint_mark);
-    if (request.plot.wanted()) raise<UsageError>("--plot draws one joint; say which with --joint");
+    if (request.plot.wanted()) raise<UsageError>("--plot draws one joint; select one with --joint");
     if (request.metrics && !metrics_in_folder(request) && !names_joint(*request.metrics)) {
         raise<UsageError>("--metrics {}: each joint has metrics of its own; put {} into the name",
                           *request.metrics, joint_mark);
@@ -287,7 +287,7 @@ bool run_job(const FilterRequest& request, const FilterJob& job, JointMethods& m
     const Layout& layout = stream.reader().layout();
     if (request.in_place && layout.reshaped)
         raise<UsageError>(
-            "--in-place: {} has one value a row, and would have a column for each signal; say -o",
+            "--in-place: {} has one value a row, and would have a column for each signal; use -o",
             layout.source);
     if (!layout.others.empty()) check_several(request);
     say_left_out(request.common, layout.left_out);
@@ -357,7 +357,7 @@ std::function<ExitCode()> attach_filter(Options& options) {
     options.text("--output-format", request->output_format, "NAME",
                  fmt::format("format of the output: {} (default: by the name of -o, else csv)",
                              written_log_formats()));
-    options.flag("--in-place", request->in_place, "the filtered log takes the place of the raw one");
+    options.flag("--in-place", request->in_place, "the filtered log replaces the raw one");
     options.flag("--append", request->append,
                  "add the filtered torque as a column instead of replacing the torque");
     options.flag("--exact", request->exact,
@@ -376,7 +376,7 @@ std::function<ExitCode()> attach_filter(Options& options) {
     attach_gates(options, request->gates);
     options.flag("--require-improvement", request->require_improvement,
                  "exit code 1 when the filter makes the torque worse: an order grows, its delay moves the "
-                 "torque by more than the ripple that it takes out, or a switch makes a jump larger than it");
+                 "torque by more than the ripple that it removes, or a switch makes a jump larger than it");
     options.number("--gap", request->gap_steps, Dimension::none,
                    "a step in time of more than this many median steps starts a new run");
     options.count("--threads", request->threads, 0, most_threads,
@@ -391,7 +391,7 @@ std::function<ExitCode()> attach_filter(Options& options) {
 
 const Command commands::filter = {
     .name = "filter",
-    .summary = "takes the ripple out of logs, streaming",
+    .summary = "removes the ripple from logs, streaming",
     .description =
         "Replaces the torque column by the filtered torque and leaves every other byte of the log as it is.\n"
         "With --from or --to the rows outside are not written.\n"

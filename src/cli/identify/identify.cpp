@@ -188,7 +188,7 @@ std::vector<Joint> read_all_joints(const IdentifyRequest& request, CommonOptions
             common.messages = std::make_shared<JointMessages>();
         }
         if (!each && logs.size() > 1)
-            raise<DataError>("{}: read {} joints, and {} has one; say which with --joint", path, logs.size(),
+            raise<DataError>("{}: read {} joints, and {} has one; select one with --joint", path, logs.size(),
                              request.logs.front());
         if (!logs.empty()) say_left_out(request.common, logs.front().layout.left_out);
         provenance.inputs.push_back(
@@ -242,7 +242,7 @@ void say_other_ratio(const IdentifyRequest& request, const CommonOptions& common
     if (!request.gear.ratio || !fit.value) return;
     const double doubt = std::max(fit.ci95_high - *fit.value, rounding * *request.gear.ratio);
     if (std::abs(*fit.value - *request.gear.ratio) <= doubt) return;
-    warn(common, fmt::format("--gear-ratio {}: the lines say {:.6g} (95 %: {:.6g} to {:.6g})",
+    warn(common, fmt::format("--gear-ratio {}: the lines give {:.6g} (95 %: {:.6g} to {:.6g})",
                              shortest(*request.gear.ratio), *fit.value, fit.ci95_low, fit.ci95_high));
 }
 
@@ -304,9 +304,8 @@ ExitCode run_identify(IdentifyRequest& request, const std::string& command_line)
     std::vector<Joint> joints = read_all_joints(request, common, provenance);
     if (joints.size() > 1 && request.plot.path && !names_joint(*request.plot.path))
         raise<UsageError>(
-            "--plot {}: a picture shows one joint, and the log has {}; say which with --joint, or put {} "
-            "into "
-            "the name",
+            "--plot {}: a picture shows one joint, and the log has {}; select one with --joint, or put {} "
+            "into the name",
             *request.plot.path, joints.size(), joint_mark);
     const std::vector<Identification> found = identified_joints(request, common, joints);
     std::string text;
@@ -342,13 +341,11 @@ std::function<ExitCode()> attach_identify(Options& options) {
     const auto request = std::make_shared<IdentifyRequest>();
     options.arguments("LOG", request->logs, true, "logs of one joint; several are fitted together");
     attach_gear(options, request->gear,
-                {.ratio = "what you believe the ratio is; checked against the lines, not believed",
-                 .orders = "",
-                 .joint_file = ""});
+                {.ratio = "expected gear ratio, checked against the lines", .orders = "", .joint_file = ""});
     options.numbers("--order-hint", request->order_hint, Dimension::none,
-                    "which multiple of the motor's turn you believe the strongest line to be, 1 to 16");
+                    "expected motor order of the strongest line, 1 to 16");
     options.number("--false-alarm", request->identify.false_alarm, Dimension::none,
-                   "chance that a log of mere noise gives any line");
+                   "false-alarm probability for noise only: that any line is reported");
     options.flag("--require-conclusive", request->require_conclusive,
                  "exit with code 5 when the logs do not settle it");
     attach_residual(options, request->residual);
@@ -365,11 +362,9 @@ const Command commands::identify{
     .summary = "ripple lines and the gear ratio, from steady speeds or any motion",
     .description =
         "Reads logs of time, velocity and torque (position helps) and finds the lines in the torque: orders, "
-        "which turn\n"
-        "with the joint, and fixed tones. Fits f = n * ratio * |v| / 360 to the orders. The answer may be "
-        "that there is\n"
-        "no line, or that these logs cannot tell.\n"
-        "Example: ripplenotch identify 60.csv 120.csv 180.csv -o joint.json",
+        "which turn\nwith the joint, and fixed tones. Fits f = n * ratio * |v| / 360 to the orders. The "
+        "answer may be that there is\nno line, or that these logs do not decide it.\nExample: ripplenotch "
+        "identify 60.csv 120.csv 180.csv -o joint.json",
     .attach = attach_identify,
 };
 

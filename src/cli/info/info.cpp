@@ -68,10 +68,10 @@ std::string clock_text(const LogInfo& log) {
     const double nominal = clock.nominal_rate.value(), mean = clock.mean_rate.value();
     std::string text;
     if (std::abs(mean / nominal - 1.0) > rate_worth_a_word)
-        text = fmt::format("{:.6g} Hz by the usual step, ", nominal);
-    text += fmt::format("{:.6g} Hz in the mean; step {} ms in the median, {} to {} ms; jitter {} ms rms; ",
-                        mean, figure(1e3 * clock.usual_step.value()),
-                        figure(1e3 * clock.shortest_step.value()), figure(1e3 * clock.longest_step.value()),
+        text = fmt::format("{:.6g} Hz typical, ", nominal);
+    text += fmt::format("{:.6g} Hz mean; step {} ms median, {} to {} ms; jitter {} ms rms; ", mean,
+                        figure(1e3 * clock.usual_step.value()), figure(1e3 * clock.shortest_step.value()),
+                        figure(1e3 * clock.longest_step.value()),
                         figure(1e3 * rounded_jitter(clock.jitter, clock.usual_step)));
     text += clock.gap_count == 0 ? "no gap" : how_many(clock.gap_count, "gap");
     if (!clock.rate_changes.empty()) {
@@ -151,7 +151,7 @@ std::string info_to_text(const LogInfo& log, bool all_columns) {
                             range_in_words(outside), outside.before, outside.after);
     }
     text += fmt::format("read as   {}{}\n", log.layout.options,
-                        log.joints.size() > 1 ? ", and the other joints alike" : "");
+                        log.joints.size() > 1 ? ", likewise for the other joints" : "");
     if (log.bad_values_held > 0)
         text += fmt::format("held      {} bad values replaced by the value before\n", log.bad_values_held);
     text += '\n' + joints_in_log(log);

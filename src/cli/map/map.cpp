@@ -43,7 +43,7 @@ std::string decibels(double from_nm, double to_nm) {
 }
 
 MapRows scores_of(const MapFit& fit) {
-    MapRows rows = {{"order", "ripple Nm", "left Nm", "dB", "noise allows dB", "predicted %", ""}};
+    MapRows rows = {{"order", "ripple Nm", "remaining Nm", "dB", "noise limit dB", "predicted %", ""}};
     for (const MapOrderScore& score : fit.scores) {
         rows.push_back({shortest(score.order), fmt::format("{:.3f}", score.ripple_nm),
                         fmt::format("{:.3f}", score.left_nm), decibels(score.ripple_nm, score.left_nm),
@@ -87,7 +87,7 @@ MapRows agreement_of(const MapFit& fit, const std::vector<std::string>& logs) {
 std::string map_report(const MapFit& fit, const std::vector<std::string>& logs) {
     std::string text = map_verdict(fit) + "\n";
     if (fit.finding != MapFinding::too_little) {
-        text += fmt::format("\non {} of 2.5 motor turns, {} blocks left out in turn\n",
+        text += fmt::format("\non {} of 2.5 motor turns, cross-validated with {} blocks\n",
                             how_many(fit.windows, "window"), fit.blocks);
         text += text_table(scores_of(fit), "rrrrrrl");
     }
@@ -231,8 +231,7 @@ ExitCode run_map(const MapRequest& request, const std::string& command_line) {
 
 std::function<ExitCode()> attach_map(Options& options) {
     const auto request = std::make_shared<MapRequest>();
-    options.arguments("LOG", request->logs, true,
-                      "logs of one joint; several make one map, and are held together");
+    options.arguments("LOG", request->logs, true, "logs of one joint; several make one map and are compared");
     attach_gear(options, request->gear);
     options.number("--zero", request->zero, Dimension::angle,
                    "joint position at which the wave generator's angle counts as 0");

@@ -27,7 +27,7 @@ ExitCode run_merge(const MergeRequest& request) {
     const std::size_t of = found.records.front().shard.of;
     const std::vector<std::size_t> missing = missing_shards(found.records, found.names, of);
     if (!missing.empty())
-        raise<DataError>("{}: of {} shards {} not there: {}", request.folders.front(), of,
+        raise<DataError>("{}: of {} shards {} missing: {}", request.folders.front(), of,
                          missing.size() == 1 ? "one is" : fmt::format("{} are", missing.size()),
                          numbers_in_words(missing));
     std::vector<std::size_t> order(of);
@@ -47,7 +47,7 @@ ExitCode run_merge(const MergeRequest& request) {
     say(request.common, fmt::format("{} shards, {} logs, {} lines", of, logs, lines));
     if (failed > 0)
         warn(request.common,
-             fmt::format("{} of {} lines have an error in the place of descriptors", failed, lines));
+             fmt::format("{} of {} lines have an error instead of descriptors", failed, lines));
     return ExitCode::done;
 }
 
@@ -61,7 +61,7 @@ std::function<ExitCode()> attach_merge(Options& options) {
     options.flag("--force", common.force, "overwrite existing files");
     options.flag("--no-sync", common.no_sync, "do not wait until written files are on the disk");
     options.flag("-q,--quiet", common.quiet, "no warnings on standard error");
-    options.flag("-v,--verbose", common.verbose, "say on standard error what was decided");
+    options.flag("-v,--verbose", common.verbose, "print the decisions on standard error");
     return [request] { return run_merge(*request); };
 }
 

@@ -101,13 +101,12 @@ void check_several(const JointRuns& runs, const std::vector<std::string>& joints
     const auto is_of_joint = [](const std::string& entry) { return !entry.starts_with("time"); };
     if (std::any_of(columns.begin(), columns.end(), is_of_joint))
         raise<UsageError>(
-            "--columns names columns of one joint, and {} are asked for ({}); say which with --joint",
+            "--columns names columns of one joint, and {} are asked for ({}); select one with --joint",
             joints.size(), fmt::join(joints, ", "));
     if (runs.plot != nullptr && runs.plot->path && !names_joint(*runs.plot->path))
         raise<UsageError>(
-            "--plot {}: a picture shows one joint, and {} are asked for ({}); say which with --joint, or put "
-            "{} "
-            "into the name",
+            "--plot {}: a picture shows one joint, and {} are asked for ({}); select one with --joint, or "
+            "put {} into the name",
             *runs.plot->path, joints.size(), fmt::join(joints, ", "), joint_mark);
 }
 

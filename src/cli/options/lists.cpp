@@ -68,7 +68,7 @@ void FileClaims::check(std::string_view remedy) const {
         const Claim& out = written_[i];
         for (std::size_t j = 0; j < i; ++j) {
             if (!same_file(out.path, written_[j].path)) continue;
-            raise<UsageError>("{} and {} both name {}: one would take the place of the other; name two files",
+            raise<UsageError>("{} and {} both name {}: one would overwrite the other; name two files",
                               written_[j].as, out.as, out.path);
         }
         for (const Claim& in : read_) {

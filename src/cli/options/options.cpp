@@ -175,7 +175,7 @@ void Options::Implementation::check_files() const {
     for (const std::string& name : files)
         for (const std::string& value : command->get_option(name)->results())
             written.contains(name) ? claims.writes(value, name) : claims.reads(value, name);
-    claims.check(command->get_option_no_throw("--in-place") != nullptr ? ", or say --in-place" : "");
+    claims.check(command->get_option_no_throw("--in-place") != nullptr ? ", or use --in-place" : "");
 }
 
 namespace {
@@ -285,7 +285,7 @@ void attach_manner(Options& options, CommonOptions& common) {
     options.flag("--force", common.force, "overwrite existing files");
     options.flag("--no-sync", common.no_sync, "do not wait until written files are on the disk");
     options.flag("-q,--quiet", common.quiet, "no warnings on standard error");
-    options.flag("-v,--verbose", common.verbose, "say on standard error what was decided");
+    options.flag("-v,--verbose", common.verbose, "print the decisions on standard error");
 }
 
 void attach_common(Options& options, CommonOptions& common, const OutputNames& names) {
@@ -469,11 +469,11 @@ void attach_log_columns(Options& options, ReadOptions& log) {
     using Text = const std::string&;
     options.parsed(
         "--from", [&log](Text text) { log.range.from = parse_time_point(text, "--from"); }, "TIME",
-        "rows before are as if they were not there: 2s, 500ms, 1.5min or 1:30 on the log's own time axis; "
-        "12:30:05 where it has times of day");
+        "earlier rows are ignored: 2s, 500ms, 1.5min or 1:30 on the log's own time axis; 12:30:05 where it "
+        "has times of day");
     options.parsed(
         "--to", [&log](Text text) { log.range.to = parse_time_point(text, "--to"); }, "TIME",
-        "rows after are as if they were not there; the row at TIME counts");
+        "later rows are ignored; the row at TIME counts");
     options.parsed(
         "--joint", [&log](Text text) { log.joint = log.joint ? *log.joint + "," + text : text; }, "JOINTS",
         "which joints of a file that holds several: a name or number, j1,j3-j5, or all; repeatable", true);
@@ -616,10 +616,9 @@ std::vector<std::string> attenuation_violations(const Gates& gates, const std::s
                 "{}: order {:g} could not be measured, so --min-attenuation {}dB is not shown to hold",
                 method, entry.order, limit));
         } else if (!(*entry.db >= *gates.min_attenuation_db)) {
-            sentences.push_back(
-                fmt::format("{}: it takes {:.1f} dB off order {:g}, {:.1f} dB less than "
-                            "--min-attenuation {}dB",
-                            method, *entry.db, entry.order, *gates.min_attenuation_db - *entry.db, limit));
+            sentences.push_back(fmt::format(
+                "{}: it attenuates order {:g} by {:.1f} dB, {:.1f} dB less than --min-attenuation {}dB",
+                method, entry.order, *entry.db, *gates.min_attenuation_db - *entry.db, limit));
         }
     }
     return sentences;

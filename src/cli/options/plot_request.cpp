@@ -71,7 +71,7 @@ void check_plot(const PlotRequest& request, const CommonOptions& common) {
     }
     if (!picture_kind(path) && extension_of(path) != ".json") {
         raise<UsageError>(
-            "--plot {}: the name says neither .svg, .png, .pdf nor .json (the figure's data); - is the "
+            "--plot {}: the name ends in neither .svg, .png, .pdf nor .json (the figure's data); - is the "
             "terminal",
             path);
     }

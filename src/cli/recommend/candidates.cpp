@@ -132,7 +132,7 @@ class Maker {
         fit.map.joint = request_.train.trace.joint;
         fit.map.temperature_column = request_.temperature ? request_.temperature->column : "";
         if (request_.temperature && !fit.map.orders.empty() && !fit.map.form.by_temperature)
-            leave_out(fmt::format("a map by temperature: '{}' foretells nothing of this ripple",
+            leave_out(fmt::format("a map by temperature: '{}' does not predict this ripple",
                                   request_.temperature->column));
         return fit;
     }

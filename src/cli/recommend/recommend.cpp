@@ -65,7 +65,7 @@ std::string methods_text(const Recommendation& found) {
     for (const RippleEstimate& one : found.orders)
         rows.front().push_back(fmt::format("order {:g}, dB", one.order));
     for (const char* const title :
-         {"late, ms", "gain", "step, %", "ripple, Nm", "distorts, Nm", "adds, Nm", "off by, Nm", ""})
+         {"delay, ms", "gain", "step, %", "ripple, Nm", "distorts, Nm", "adds, Nm", "error, Nm", ""})
         rows.front().emplace_back(title);
     for (const JudgedMethod& method : found.methods) {
         const std::string& name = method.figures.method;
@@ -101,7 +101,7 @@ std::string bulleted(std::string_view head, const std::vector<std::string>& sent
 std::string recommendation_view(const RecommendationReport& report) {
     const Recommendation& found = report.found;
     std::string text = paragraph(recommendation_verdict(found));
-    text += next_commands("To take it:", report.take);
+    text += next_commands("To use it:", report.take);
     text += next_commands("The other:", report.runner_up);
     if (!found.orders.empty()) text += orders_text(found);
     if (!found.methods.empty()) {
@@ -109,13 +109,10 @@ std::string recommendation_view(const RecommendationReport& report) {
         text +=
             "\n" +
             paragraph(fmt::format(
-                "Trained up to {:.6g} s, judged from there on in {} windows. The torque's band, "
-                "{}: {:.3g} to "
-                "{:.3g} Hz. Off by, rms: the ripple left, what is distorted of the torque without "
-                "ripple within "
-                "its band, and what is added to it outside of that. Gain, within the band, and step: "
-                "at the log's "
-                "median speed; late: at any of its speeds.",
+                "Trained up to {:.6g} s, evaluated from there on in {} windows. The torque's band, {}: "
+                "{:.3g} to {:.3g} Hz. Error, rms: the remaining ripple, the distortion of the torque without "
+                "ripple within its band, and what is added to it outside the band. Gain, within the band, "
+                "and step: at the log's median speed; delay: maximum over its speeds.",
                 report.split_s, found.windows,
                 found.band->stated    ? "as stated"
                 : found.band->at_rest ? "which does not rise above the noise, as far as this log resolves it"
@@ -293,7 +290,7 @@ std::optional<GearOptions> found_gear_options(const Parts& parts, Recommendation
         found.why = verdict;
     } else {
         found.why =
-            fmt::format("no gear is stated, and identify says of {}: {}; give --gear-ratio and --orders",
+            fmt::format("no gear is stated, and identify reports for {}: {}; give --gear-ratio and --orders",
                         nothing ? "the log, whose first part shows none" : "the log's first part", verdict);
     }
     return std::nullopt;
@@ -339,7 +336,7 @@ void name_other_lines(const Parts& parts, const GearAccount& gear, Recommendatio
     if (others.empty()) return;
     found.finding = RecommendationFinding::cannot_tell;
     found.why +=
-        fmt::format("; but identify finds {}: --orders states which to take out", fmt::join(others, ", "));
+        fmt::format("; but identify finds {}: --orders states which to remove", fmt::join(others, ", "));
 }
 
 std::vector<std::string> assumptions(const RecommendRequest& request, const Parts& parts,
@@ -477,7 +474,7 @@ std::function<ExitCode()> attach_recommend(Options& options) {
                  "the joint's temperature, for the map: a column in degrees Celsius, {joint} in it for a "
                  "joint's name");
     options.number("--train", request->train_percent, Dimension::none,
-                   "per cent of the log that methods learn from; they are judged on the rest");
+                   "per cent of the log that methods learn from; they are evaluated on the rest");
     options.flag("--require-conclusive", request->require_conclusive,
                  "exit with code 5 when the log does not settle it");
     attach_log(options, request->log_options);
@@ -490,12 +487,12 @@ std::function<ExitCode()> attach_recommend(Options& options) {
 
 const Command commands::recommend = {
     .name = "recommend",
-    .summary = "which method to take for a log, and why, as commands to paste",
+    .summary = "which method to use for a log, and why, as commands to paste",
     .description =
-        "Runs the methods on the log itself: what they have to know is learned from its first part, and they "
-        "are measured on\nthe rest, as compare measures. Answers with the one whose output is off by least, "
-        "within what it may cost\nand must do, and with the next one.\n"
-        "Example: ripplenotch recommend log.csv --gear-ratio 100 --orders 1,2 --max-delay 10ms",
+        "Runs the methods on the log itself: their parameters are estimated on its first part, and they are "
+        "evaluated on\nthe rest, as compare measures. Reports the method with the smallest output error "
+        "within\nthe limits, and the next best.\nExample: ripplenotch recommend log.csv --gear-ratio 100 "
+        "--orders 1,2 --max-delay 10ms",
     .attach = attach_recommend,
 };
 

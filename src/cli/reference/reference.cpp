@@ -94,9 +94,9 @@ constexpr std::array exit_words = {
     ExitWords{ExitCode::done, "done; an honest \"nothing found\" included"},
     ExitWords{ExitCode::limit_violated, "a limit or check that the caller set is violated"},
     ExitWords{ExitCode::usage, "usage: an option or a specification is wrong"},
-    ExitWords{ExitCode::data, "bad or ambiguous input data; the message names the place and the remedy"},
+    ExitWords{ExitCode::data, "bad or ambiguous input data; the message names the position and the remedy"},
     ExitWords{ExitCode::file, "a file cannot be read, written or replaced, or changed while it was read"},
-    ExitWords{ExitCode::inconclusive, "not conclusive, where the caller asked to be told"},
+    ExitWords{ExitCode::inconclusive, "not conclusive, where the caller asked for an exit code"},
     ExitWords{ExitCode::memory, "what was asked for takes more memory than there is"},
     ExitWords{ExitCode::internal, "a fault of the tool itself"},
 };

@@ -109,12 +109,11 @@ const Command commands::report{
     .name = "report",
     .summary = "one HTML page on a log, or from any mix of results",
     .description =
-        "Of a log: which ripple is in it, which filter it needs, and what that filter does. Of results: puts "
-        "results into one self-contained page: verdicts first, key numbers, plots to zoom into, tables, "
-        "and the "
-        "command\nthat makes each again. The page loads nothing from anywhere.\n"
-        "Example: ripplenotch report log.csv -o page.html\n"
-        "Example: ripplenotch report joint.json table.json torque.json -o page.html",
+        "For a log, the page shows which ripple is in it, which filter it needs, and what that filter does. "
+        "Results are put into one self-contained page: verdicts first, key numbers, plots to zoom into, "
+        "tables, and the command\nthat makes each again. The page loads nothing from anywhere.\nExample: "
+        "ripplenotch report log.csv -o page.html\nExample: ripplenotch report joint.json table.json "
+        "torque.json -o page.html",
     .attach = attach_report,
 };
 

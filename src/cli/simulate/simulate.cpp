@@ -206,8 +206,8 @@ void check_course(const SimulateOptions& options) {
         return;
     }
     if (options.log_options.range.given())
-        raise<UsageError>("--from and --to: there is no LOG to take rows of");
-    if (options.simulated) raise<UsageError>("--simulated: it is beside a LOG, and there is none");
+        raise<UsageError>("--from and --to: there is no LOG to select rows from");
+    if (options.simulated) raise<UsageError>("--simulated: needs a LOG, and there is none");
     if (options.motions.empty()) {
         raise<UsageError>(
             "--motion is missing, for example --motion constant,speed=60deg/s,duration=5s, or a LOG");
@@ -233,7 +233,7 @@ void check_simulate(const SimulateOptions& options) {
                           shortest(most_decimals));
     }
     if (options.common.json && options.common.output == "-") {
-        raise<UsageError>("--json puts a summary on standard output; say where the log goes with -o FILE");
+        raise<UsageError>("--json puts a summary on standard output; state where the log goes with -o FILE");
     }
 }
 
@@ -301,7 +301,7 @@ ExitCode simulate(const SimulateOptions& options) {
 
 std::function<ExitCode()> attach_simulate(Options& options) {
     auto o = std::make_shared<SimulateOptions>();
-    options.argument("LOG", o->log, false, "log whose measured motion is used in place of --motion");
+    options.argument("LOG", o->log, false, "log whose measured motion is used instead of --motion");
     attach_joint_model(options, o->joint);
     options.text("--simulated", o->simulated, "SPEC",
                  "with a LOG: torque of your own simulation as a part of the model, "
@@ -312,7 +312,7 @@ std::function<ExitCode()> attach_simulate(Options& options) {
                     "another; motions: {}",
                     name_list(motion_kinds())));
     options.number("--sample-rate", o->log_options.sample_rate, Dimension::frequency,
-                   "samples per second; with a LOG, in place of its own time");
+                   "samples per second; with a LOG, instead of its own time");
     options.number("--smoothing", o->smoothing, Dimension::time,
                    "window in which a LOG's velocity is fitted to give speed and acceleration");
     options.number("--noise", o->noise, Dimension::torque, "rms of noise on the torque");

@@ -510,9 +510,8 @@ void require_memory_for_spectrum(const SpectrumRequest& request, const ReadOptio
     if (bytes <= static_cast<double>(*left)) return;
     constexpr double mebibyte = 1024.0 * 1024.0;
     raise<MemoryError>(
-        "{}: a spectrum of the whole log takes about {:.3g} MiB for some {:.3g} rows, and {:.3g} MiB are to "
-        "be "
-        "had; take it in pieces with --segment, or a part of the log with --from and --to",
+        "{}: a spectrum of the whole log takes about {:.3g} MiB for some {:.3g} rows, and {:.3g} MiB are "
+        "available; take it in pieces with --segment, or a part of the log with --from and --to",
         request.path, bytes / mebibyte, *rows, static_cast<double>(*left) / mebibyte);
 }
 
@@ -634,9 +633,8 @@ const Command commands::spectrum{
     .summary = "amplitude of the torque against frequency or output order",
     .description =
         "Writes CSV (frequency_hz, amplitude_nm, psd_nm2_hz, floor_nm), with --json or --peaks the lines "
-        "that stand out of the\n"
-        "noise. Amplitudes are zero to peak in Nm, whatever the window and the length.\n"
-        "Example: ripplenotch spectrum log.csv --peaks",
+        "that rise above the\nnoise. Amplitudes are zero to peak in Nm, whatever the window and the "
+        "length.\nExample: ripplenotch spectrum log.csv --peaks",
     .attach = attach_spectrum,
 };
 

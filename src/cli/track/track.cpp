@@ -44,9 +44,9 @@ std::vector<std::string> track_warnings(const TrackReport& report) {
                                        how_many(tracks.windows_too_few_samples, "window")));
     }
     if (tracks.rows_not_separable > 0) {
-        warnings.push_back(
-            fmt::format("{} rows where lines cannot be told apart from each other or from the trend are {}",
-                        tracks.rows_not_separable, report.method == "ls" ? "left out" : "nan or left out"));
+        warnings.push_back(fmt::format(
+            "{} rows where lines cannot be distinguished from each other or from the trend are {}",
+            tracks.rows_not_separable, report.method == "ls" ? "left out" : "nan or left out"));
     }
     if (tracks.rows_folded > 0) {
         warnings.push_back(
@@ -319,7 +319,7 @@ JointResult track_joint(TrackRequest request, const std::string& command_line, b
 void require_text_of_several(const TrackRequest& request) {
     if (request.common.json || names_joint(request.common.output)) return;
     if (output_format(request.common.output, std::nullopt).name != "csv")
-        raise<UsageError>("-o {}: an array is of one joint; say which with --joint, or put {} into the name",
+        raise<UsageError>("-o {}: an array is of one joint; select one with --joint, or put {} into the name",
                           request.common.output, joint_mark);
 }
 
@@ -361,7 +361,7 @@ std::function<ExitCode()> attach_track(Options& options) {
     options.number("--rows-per-second", request->rows_per_second, Dimension::frequency,
                    "vold-kalman: rows of the result; 8 in 1/bandwidth", true);
     options.choice("--amplitude", request->amplitude, amplitude_names,
-                   "what amplitudes are; the column names say it");
+                   "what amplitudes are; stated in the column names");
     options.choice("--against", request->against, against_names, "rows by time, or gathered by signed speed");
     options.number("--speed-step", request->speed_step, Dimension::speed,
                    "width of a row's speeds; about 24 rows when left out", true);
@@ -378,9 +378,8 @@ const Command commands::track{
     .summary = "amplitude and phase of each order against time or speed",
     .description =
         "Writes CSV (.npy by -o's extension): time_s, speed_deg_s, and per line amplitude, phase and "
-        "standard error.\n"
-        "All lines are fitted at once, so that close and crossing ones are told apart.\n"
-        "Example: ripplenotch track log.csv --orders 1,2 --gear-ratio 100 --against speed",
+        "standard error.\nAll lines are fitted at once, so that close and crossing ones are "
+        "separated.\nExample: ripplenotch track log.csv --orders 1,2 --gear-ratio 100 --against speed",
     .attach = attach_track,
 };
 

@@ -81,7 +81,7 @@ void check_page_pattern(const std::optional<std::string>& pattern) {
     if (!pattern) return;
     for (const char* word : telling)
         if (pattern->find(word) != std::string::npos) return;
-    raise<UsageError>("--log-page '{}' is the same for all logs; one of {} tells them apart", *pattern,
+    raise<UsageError>("--log-page '{}' is the same for all logs; one of {} distinguishes them", *pattern,
                       "{log}, {stem}, {name}, {date}");
 }
 
@@ -225,9 +225,9 @@ std::function<ExitCode()> attach_trend(Options& options) {
                  "alerts in a month of a joint that nothing happens to; holds for the whole report");
     options.count("--seed", request->seed, 0, 2147483647, "of the orders that chance is counted by");
     options.flag("--ndjson", request->ndjson, "an alert a line, as JSON");
-    options.text(
-        "--log-page", request->log_page, "PATTERN",
-        "where a log's own report is: '{stem}.html', 'pages/{robot}/{date}.html'; default: beside the log");
+    options.text("--log-page", request->log_page, "PATTERN",
+                 "where a log's own report is: '{stem}.html', 'pages/{robot}/{date}.html'; default: in the "
+                 "log's folder");
     attach_plot(options, request->plot, request->common);
     attach_common(options, request->common, {"a trend", ".txt .json .ndjson"});
     return [request, &options] { return run_trend(*request, options.command_line()); };

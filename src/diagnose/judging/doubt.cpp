@@ -159,7 +159,7 @@ Unevenness unevenness(const ModelBench& bench, const Model& stated, std::size_t 
     compare(between(torques, rules.least_sigma, by_time(bench, rules.times), rules.times),
             "early and late in the log");
     compare(between(torques, rules.least_sigma, by_speed(bench, rules.speeds), 2 * rules.speeds),
-            "slow and fast, forth and back");
+            "slow and fast, both directions");
     for (const std::size_t stretches : {rules.short_stretches, rules.long_stretches})
         compare(share_within(torques, rules.telling_deviations, by_time(bench, stretches), stretches),
                 "within short stretches of the log");
@@ -170,7 +170,7 @@ namespace {
 
 using DoubtRules = DiagnosisRules::DoubtRules;
 
-constexpr const char* more_is_left = "more is left unexplained than it explains";
+constexpr const char* more_is_left = "the unexplained residual is larger than its share";
 
 // Domains in which an unexplained region is a reason against an effect.
 bool touches(Domain domain, const ResidualRegion& region) {
@@ -286,7 +286,7 @@ RaisedDoubt doubt_of_size(const ModelBench& bench, const Candidate& model, std::
         slight = hearing.asked("doubt.least_delay_samples", *samples, *samples < rules.least_delay_samples);
     if (slight)
         return {FindingStatus::immaterial,
-                fmt::format("it changes the torque by {:.2g} Nm rms beside a noise of {:.2g} Nm",
+                fmt::format("it changes the torque by {:.2g} Nm rms, with a noise of {:.2g} Nm rms",
                             evidence.share_nm, bench.noise().material_nm)};
     const double share_nm = std::max(evidence.share_nm, 1e-12);
     if (hearing.asked("doubt.most_inflation", evidence.own_nm / share_nm,
@@ -376,7 +376,7 @@ void doubt_for_residual(Finding& finding, double excess_nm, const ModelBench& be
                                              !(largest->rms_nm < rules.casts_doubt * share_nm)))
         return;
     finding.status = FindingStatus::tentative;
-    finding.reason = "something unexplained is left where it acts";
+    finding.reason = "unexplained residual remains where it acts";
 }
 
 void doubt_for_size(Finding& finding, const std::vector<Finding>& findings, const DiagnosisRules& all) {
@@ -400,7 +400,7 @@ void doubt_for_size(Finding& finding, const std::vector<Finding>& findings, cons
             continue;
         Hearing(all, finding.decisions).asked("doubt.shape_part", share_nm / larger_nm, true);
         finding.status = is_doubtful(other) ? FindingStatus::tentative : FindingStatus::shape_correction;
-        finding.reason = fmt::format("it may only mend the form of {}, which is {}", larger.name,
+        finding.reason = fmt::format("it may only correct the form of {}, which is {}", larger.name,
                                      is_doubtful(other) ? "in doubt" : "far larger");
     }
 }

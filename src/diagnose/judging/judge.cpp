@@ -413,9 +413,9 @@ void withdraw_newest(const ModelBench& bench, Candidate& kept, const Model& give
         if (kept_nm <= bench.rules().reproduction.most_left * given_nm) return;
         newest->status = FindingStatus::not_reproduced;
         Hearing(bench.rules(), newest->decisions).asked("reproduction.most_left", kept_nm / given_nm, true);
-        newest->reason = fmt::format(
-            "the improved model leaves {:.3g} Nm of the validation log with it, the model as given {:.3g} Nm",
-            kept_nm, given_nm);
+        newest->reason =
+            fmt::format("residual on the validation log {:.3g} Nm with it, {:.3g} Nm with the model as given",
+                        kept_nm, given_nm);
         kept = without_term(bench, kept, place);
     }
 }
@@ -430,9 +430,8 @@ struct Worst {
 void withdraw(Finding& finding, double left_part, const DiagnosisRules& rules) {
     finding.status = FindingStatus::not_reproduced;
     Hearing(rules, finding.decisions).asked("reproduction.most_left", left_part, true);
-    finding.reason =
-        fmt::format("it leaves {:.3g} Nm of the validation log, where {:.3g} Nm are left without it",
-                    *finding.validation_after_nm, *finding.validation_before_nm);
+    finding.reason = fmt::format("residual on the validation log {:.3g} Nm with it, {:.3g} Nm without it",
+                                 *finding.validation_after_nm, *finding.validation_before_nm);
 }
 
 }  // namespace

@@ -175,7 +175,7 @@ void add_ties(const Diagnosis& diagnosis, std::vector<std::string>& steps) {
             sides += (sides.empty() ? "" : " or ") + side;
             accept += (accept.empty() ? "--accept " : " or --accept ") + side;
         }
-        steps.push_back(fmt::format("{}: {} would decide; {} takes a side", sides, tie.advice, accept));
+        steps.push_back(fmt::format("{}: {} would decide; {} selects one", sides, tie.advice, accept));
     }
 }
 
@@ -184,7 +184,7 @@ void add_doubtful(const Diagnosis& diagnosis, std::vector<std::string>& steps) {
     for (const Finding& finding : diagnosis.rounds) {
         const std::string_view name = finding.term.effect->name;
         if (!is_doubtful(finding) || !told.insert(name).second) continue;
-        steps.push_back(fmt::format("{} is {}: --accept {} takes it into the model all the same", name,
+        steps.push_back(fmt::format("{} is {}: --accept {} includes it in the model anyway", name,
                                     status_name(finding.status), name));
     }
 }
@@ -205,7 +205,7 @@ std::vector<std::string> next_steps(const Diagnosis& diagnosis, const Motion& sm
     if (missing.empty()) return steps;
     std::string words;
     for (const std::string& one : missing) words += (words.empty() ? "" : "; ") + one;
-    steps.push_back("a log that would tell more has " + words);
+    steps.push_back("a more informative log has " + words);
     return steps;
 }
 
@@ -257,7 +257,7 @@ std::string why_not(const Diagnosis& diagnosis, const std::string& name) {
     const auto& named = diagnosis.named;
     const bool confirmed = std::find(named.begin(), named.end(), name) != named.end();
     return fmt::format(
-        "--accept {}: {}; in doubt is {}", name,
+        "--accept {}: {}; uncertain findings: {}", name,
         confirmed ? "it is confirmed, and in the model already" : "this log gives no finding of that name",
         there.empty() ? "nothing" : there);
 }

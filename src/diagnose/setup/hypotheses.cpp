@@ -67,9 +67,8 @@ std::string statement_of(const SharedSeries& series, const MistakenFactor& found
                                    series.agreement.scale);
     switch (found.kind) {
         case SetupFaultKind::motion_unit:
-            text += larger
-                        ? "the simulated one is in radians, or that of the log is not in what its unit says"
-                        : "the simulated one is in degrees, or that of the log in radians";
+            text += larger ? "the simulated one is in radians, or that of the log is not in its stated unit"
+                           : "the simulated one is in degrees, or that of the log in radians";
             break;
         case SetupFaultKind::motor_side_motion:
             text += larger ? "the log has it on the motor side of the gear, the simulation on the joint side"

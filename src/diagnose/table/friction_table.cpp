@@ -218,13 +218,13 @@ void check_rows(const Rows& rows, FrictionDiagnosis& result) {
     constexpr double same = 0.01;
     if (speed.to - speed.from <= same * speed.to)
         raise<DataError>(
-            "every row has the speed {:.4g} deg/s, expected two speeds or more: one does not tell "
+            "every row has the speed {:.4g} deg/s, expected two speeds or more: one does not separate "
             "Coulomb from viscous friction",
             speed.to);
     if (along < 0.0)
         raise<DataError>(
-            "the torque has the sign against the speed in the mean, expected the torque that "
-            "moves the joint against its friction; turn the sign of one of the columns");
+            "the mean torque has the sign opposite to the speed, expected the torque that moves the joint "
+            "against its friction; invert the sign of one of the columns");
 }
 
 // Adds what lowers the squares by more than chance, the most unlikely first.
@@ -310,7 +310,7 @@ void list_undecidable(FrictionDiagnosis& result) {
             fmt::format("no row is slower than {:.4g} deg/s", result.speed_deg_s.from);
         if (!result.stribeck_deg_s)
             add("stribeck-friction",
-                slowest + ", or too few are slow: it cannot be told from Coulomb friction");
+                slowest + ", or too few are slow: it cannot be distinguished from Coulomb friction");
         else
             add("stribeck-friction", fmt::format("below a Stribeck speed of {:.3g} deg/s: {}",
                                                  result.stribeck_deg_s->from, slowest));

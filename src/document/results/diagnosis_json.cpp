@@ -244,7 +244,7 @@ void describe_decisions(Archive& archive, auto& diagnosis) {
                        fmt::format("is {}, expected one of {} rounds", *row.round, diagnosis.rounds.size()));
             Finding& finding = diagnosis.rounds[*row.round - 1];
             if (row.outcome != status_name(finding.status) || row.effect != finding.term.effect)
-                refuse("outcome", fmt::format("is not what rounds[{}] says", *row.round - 1));
+                refuse("outcome", fmt::format("differs from rounds[{}]", *row.round - 1));
             finding.decisions = std::move(row.rules);
         }
     }

@@ -70,7 +70,7 @@ typedef struct {
     text += "typedef struct {\n    @name@_signal " + memory + "\n} @name@_memory;\n\ntypedef struct {\n";
     text += all_bands_ ? "    @name@_memory memory[@NAME@_BANDS][@NAME@_SECTIONS];\n"
                        : "    @name@_memory memory[@NAME@_SECTIONS];\n";
-    text += "    int band; /* in force, counted from 0; -1 while the torque passes */\n";
+    text += "    int band; /* active band, counted from 0; -1 while the torque passes */\n";
     if (by_speed_)
         text +=
             "    int region; /* of speed; -1 before the first sample */\n"

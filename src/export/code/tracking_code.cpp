@@ -143,7 +143,7 @@ std::string oscillator_header(const OscillatorDesign& d, const CodeStyle& style)
         "in_noise: 1 / noise */\n";
     text += style.constants(oscillator_names, code_values(d));
     text += turn_code(style.is_float);
-    if (d.map) text += "\n/* the map that is taken off before */\n" + MapCode(*d.map, style).definitions();
+    if (d.map) text += "\n/* the map that is subtracted first */\n" + MapCode(*d.map, style).definitions();
     text += state_code;
     if (d.return_turns > 0.0) text += back_code;
     return text + step_of(d, style);

@@ -159,11 +159,13 @@ struct MjcfReason {
     std::string_view effect, words;
 };
 constexpr std::array reasons = {
-    MjcfReason{"offset", "the zero of a sensor is no torque on the joint; take it off what the sensor shows"},
-    MjcfReason{"drift", "nothing there follows the time; take it off what the sensor shows"},
+    MjcfReason{"offset",
+               "the zero of a sensor is no torque on the joint; subtract it from the sensor's torque"},
+    MjcfReason{"drift", "nothing there follows the time; subtract it from the sensor's torque"},
     MjcfReason{"tone", "nothing there follows the time"},
-    MjcfReason{"stribeck-friction",
-               "lugre has it only with a stiffness and a damping of its bristle, which no log here tells"},
+    MjcfReason{
+        "stribeck-friction",
+        "lugre has it only with a stiffness and a damping of its bristle, which no log here determines"},
     MjcfReason{"load-friction", "frictionloss does not follow the load"},
     MjcfReason{"payload-change", "a body has one mass at all times; attach the payload in the simulation"},
     MjcfReason{"asymmetric-friction", "frictionloss is the same in both directions"},
@@ -180,7 +182,7 @@ std::string why_not(const Effect& effect) {
         if (reason.effect == effect.name) return std::string(reason.words);
     switch (effect.side) {
         case Side::ripple:
-            return "cogging has one size and phase at every speed, place and load";
+            return "cogging has one size and phase at every speed, position and load";
         case Side::sensor:
             return "it is the torque sensor's, not the joint's";
         case Side::converter:
@@ -242,8 +244,9 @@ class Taking {
             return;
         }
         if (term.effect->resists && *term.values.front() < 0.0) {
-            mjcf_.not_held.push_back({std::string(term.effect->name),
-                                      "its size is below 0: take it off the friction of the simulation"});
+            mjcf_.not_held.push_back(
+                {std::string(term.effect->name),
+                 "its size is below 0: subtract it from the friction of the simulation"});
             return;
         }
         std::string words = place_of(term.effect->name, values_of(term));
@@ -270,7 +273,7 @@ class Taking {
     // Empty: none.
     std::string place_of(std::string_view name, const std::vector<double>& v) {
         if (name == "inertia") return mjcf_.inertia_kgm2 += v[0], "armature";
-        if (name == "gravity") return add_weight(mjcf_, v[0], v[1]), "mass and place of the body";
+        if (name == "gravity") return add_weight(mjcf_, v[0], v[1]), "mass and position of the body";
         if (name == "coulomb-friction") return coulomb(v);
         if (name == "viscous-friction") return mjcf_.damping += v[0] * degrees_per_radian, "damping";
         if (name == "quadratic-viscous-friction") {

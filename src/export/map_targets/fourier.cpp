@@ -21,7 +21,7 @@ constexpr std::string_view weights =
     "turn_sine k, "
     "cos and sin of k (position - zero); of load, the torque in Nm";
 constexpr std::string_view of_second_comb =
-    "; of second_comb_deg_s, as of a speed, with n (theta + second_comb (position - zero)) in the place of n "
+    "; of second_comb_deg_s, as of a speed, with n (theta + second_comb (position - zero)) instead of n "
     "theta";
 constexpr std::string_view of_temperature = "; of temperature, degC beyond the middle of its range";
 

@@ -156,7 +156,7 @@ std::vector<std::string> export_violations(const std::vector<SectionCheck>& chec
             found.push_back(
                 fmt::format("{}: too slow to be run, so its gain at 0 Hz is not known", label(check)));
         } else if (limits.dc_error_db && std::abs(*check.dc_error_db) > *limits.dc_error_db) {
-            past("gain at 0 Hz off by", *check.dc_error_db, " dB", *limits.dc_error_db);
+            past("gain error at 0 Hz", *check.dc_error_db, " dB", *limits.dc_error_db);
         }
         if (limits.pole_radius && check.pole_radius > *limits.pole_radius) {
             past("pole radius", check.pole_radius, "", *limits.pole_radius);

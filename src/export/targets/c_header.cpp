@@ -185,7 +185,7 @@ std::string regions_text(const std::vector<SwitchingRegion>& regions, const Code
                                      ? "and faster"
                                      : fmt::format("|v| <= {} {}", shortest(region.to_deg_s), unit.unit);
         const std::string rule = region.band == region_passes  ? "the torque passes"
-                                 : region.band == region_holds ? "the band in force stays"
+                                 : region.band == region_holds ? "the active band stays"
                                                                : fmt::format("band {}", region.band + 1);
         const std::string fade = region.full_deg_s != region.none_deg_s ? ", fading" : "";
         text += fmt::format("    {{{}, {}, {}, {}}}, /* {}: {}{} */\n", literal(to), region.band,

@@ -44,7 +44,7 @@ Written write(const FilterSet& filters, const Settings& settings, std::span<cons
     text += fmt::format("#define {0}_BANDS {1}\n#define {0}_STAGES {2}\n#define {0}_STATE_FLOATS {3}\n\n",
                         macro, filters.bands.size(), stages, stages * (df1 ? 4 : 2));
     if (filters.by_speed()) {
-        text += "/* A band is in force while from < |v| <= to, joint speed in deg/s. */\n";
+        text += "/* A band is active while from < |v| <= to, joint speed in deg/s. */\n";
         text += fmt::format(
             "static const float32_t {0}_from_deg_s[] = {{{1}}};\n"
             "static const float32_t {0}_to_deg_s[] = {{{2}}};\n\n",

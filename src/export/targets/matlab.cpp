@@ -25,8 +25,8 @@ Written write(const FilterSet& filters, const Settings& settings, std::span<cons
     text += fmt::format("{}.fs = {};\n{}.g = 1;\n", name, shortest(filters.sample_rate.value()), name);
     if (filters.by_speed()) {
         text += fmt::format(
-            "% A band is in force while from < |v| <= to, joint speed in deg/s.\n"
-            "{0}.from_deg_s = [{1}];\n{0}.to_deg_s = [{2}];\n",
+            "% A band is active while from < |v| <= to, joint speed in deg/s.\n{0}.from_deg_s = "
+            "[{1}];\n{0}.to_deg_s = [{2}];\n",
             name, joined(edges(filters, &ExportBand::from), " ", shortest),
             joined(edges(filters, &ExportBand::to), " ", shortest));
     }

@@ -518,7 +518,7 @@ std::string map_form_words(const MapForm& form) {
     const bool by_speed = form.speeds_deg_s.size() > 1, by_direction = form.directions > 1;
     std::string text = by_speed ? fmt::format("by speed ({} of them)", form.speeds_deg_s.size()) : "";
     if (by_direction) text += by_speed ? " and direction" : "by direction";
-    if (text.empty()) text = "alike at every speed";
+    if (text.empty()) text = "the same at every speed";
     if (form.second_comb != 0)
         text += fmt::format(", with the second comb at n (Kg {} 1)", form.second_comb > 0 ? '+' : '-');
     if (form.turn_harmonics > 0)

@@ -86,7 +86,7 @@ std::optional<StatedMap> map_of(std::string_view method, const Settings& setting
     if (!stated.map.form.by_temperature) return stated;
     if (!settings.has("temperature"))
         raise<UsageError>(
-            "method {}: its map depends on the joint's temperature, and nobody states it; say it in degC, "
+            "method {}: its map depends on the joint's temperature, which is not stated; state it in degC, "
             "temperature=31",
             method);
     stated.degc = settings.number("temperature");

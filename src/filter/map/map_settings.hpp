@@ -187,9 +187,8 @@ inline constexpr std::array oscillator_own_keys = {
         .default_text = "0",
         .at_least = 0.0,
         .at_most = 1e6,
-        .help = "a sample that is off by more than this many of its deviations is a jump of the torque, not "
-                "ripple; "
-                "0: none is"},
+        .help = "a sample that deviates by more than this many of its standard deviations is a jump of the "
+                "torque, not ripple; 0: none is"},
     Key{.name = "slip",
         .default_text = "0.03",
         .at_least = 0.0,

@@ -237,7 +237,8 @@ OscillatorDesign oscillator_design(const Settings& settings, Hertz sample_rate) 
     for (const double order : p.ripple.orders) {
         if (order == std::floor(order)) continue;
         raise<UsageError>(
-            "method oscillator as code: order {} is not whole, and the motor's angle is told within a turn",
+            "method oscillator as code: order {} is not whole, and the motor's angle is known within a turn "
+            "only",
             shortest(order));
     }
     OscillatorDesign design{p.ripple.orders, {}, p.model.step_s, p.noise_nm};

@@ -121,7 +121,7 @@ class SubtractLearner final : public Learner {
         }
         for (std::size_t i = 0; i < plan_.ripple.orders.size() && !windows.empty(); ++i) {
             const CourseScore score = choose_course(windows, i);
-            notes_.push_back(fmt::format("order {:g}: {}, about {:.1f} % of its power left ({} windows)",
+            notes_.push_back(fmt::format("order {:g}: {}, about {:.1f} % of its power remaining ({} windows)",
                                          plan_.ripple.orders[i], course_name(score.course),
                                          100.0 * std::min(score.error, 1.0), windows.size()));
         }

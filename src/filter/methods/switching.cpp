@@ -47,7 +47,8 @@ constexpr std::array keys = {
     Key{.name = "hysteresis",
         .dimension = Dimension::speed,
         .at_least = 0.0,
-        .help = "a band is left only when the speed is this far outside it; else the table's"},
+        .help = "hysteresis: the filter leaves a band only when the speed is this far outside it; else the "
+                "table's"},
     Key{.name = "dwell",
         .dimension = Dimension::time,
         .default_text = "0",

@@ -166,7 +166,7 @@ void JointFit::estimate(Descriptor& one, const Wanted& wanted, std::string reaso
     if (value == nullptr) {
         one.reason = "the motion of this log does not show it";
     } else if (!value->standard_error || !value->ci95 || !std::isfinite(value->value)) {
-        one.reason = "this log does not tell it from the other torques";
+        one.reason = "this log does not separate it from the other torques";
     } else if (value->at_bound) {
         one.reason = fmt::format("the best value is {:g}, the least there is", value->value);
     } else {
@@ -188,7 +188,7 @@ std::string JointFit::one_way() const {
     if (!facts_.both_directions()) return "the joint does not move in both directions";
     if (facts_.accelerations.like_friction)
         return "the joint speeds up in one direction only as much as it slows down in the other, where "
-               "friction and inertia look alike";
+               "friction and inertia are collinear";
     return "";
 }
 
@@ -196,7 +196,7 @@ std::string JointFit::one_way() const {
 std::string JointFit::one_speed() const {
     const std::string reason = one_way();
     if (!reason.empty() || facts_.several_speeds()) return reason;
-    return "the joint moves at one speed, where viscous and Coulomb friction look alike";
+    return "the joint moves at one speed, where viscous and Coulomb friction are collinear";
 }
 
 void JointFit::coulomb_friction(Descriptor& one) const {

@@ -138,7 +138,7 @@ void add_condition(JointHistory& history, const std::string& name,
     }
     if (missing == history.lines.size()) return;
     if (missing > 0) {
-        history.notes.push_back(fmt::format("{} of {} logs do not tell {}; it is not regressed out", missing,
+        history.notes.push_back(fmt::format("{} of {} logs do not state {}; it is not regressed out", missing,
                                             values.size(), name));
         return;
     }
@@ -207,7 +207,7 @@ void add_series(JointHistory& history) {
             untold.name = name;
             untold.lines = series.rows.size();
             untold.reason =
-                fmt::format("{} of {} logs tell it{}{}", series.rows.size(), history.lines.size(),
+                fmt::format("{} of {} logs have a value{}{}", series.rows.size(), history.lines.size(),
                             reasons.contains(name) ? "; " : "", reasons.contains(name) ? reasons[name] : "");
             history.untold.push_back(std::move(untold));
             continue;

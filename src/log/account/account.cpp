@@ -120,21 +120,21 @@ std::string AngleFacts::reason() const {
         case Verdict::no_position:
             return "the log has no position of this joint";
         case Verdict::no_velocity:
-            return "no velocity is logged that the position could be held against";
+            return "no velocity is logged to check the position against";
         case Verdict::too_little_motion:
-            return "the joint moves too little to hold the position against the velocity";
+            return "the joint moves too little to check the position against the velocity";
         case Verdict::agrees:
-            return "the position moves as the velocity says";
+            return "the position agrees with the velocity";
         case Verdict::reversed:
-            return "velocity and position have opposite signs: the position is taken with its sign turned";
+            return "velocity and position have opposite signs: the sign of the position is inverted";
         case Verdict::stands:
-            return "the position stands still while the velocity says that the joint moves";
+            return "the position is constant while the velocity is not zero";
         case Verdict::scaled:
             return factor_in_words(*factor);
         case Verdict::unrelated:
             break;
     }
-    return "the position does not move as the velocity says: it may be another joint's";
+    return "the position does not agree with the velocity: it may be another joint's";
 }
 
 std::string AngleFacts::warning() const {
@@ -144,9 +144,8 @@ std::string AngleFacts::warning() const {
         text = fmt::format("{}; the angle is taken from the velocity", reason());
     if (!contradicted) return text;
     const std::string later = fmt::format(
-        "from data row {} on the position no longer moves as the velocity says; from there the angle is "
-        "taken from "
-        "the velocity",
+        "from data row {} on the position no longer agrees with the velocity; from there the angle is taken "
+        "from the velocity",
         contradicted->row + 1);
     return text.empty() ? later : fmt::format("{}; {}", text, later);
 }
@@ -280,9 +279,10 @@ std::vector<LogWarning> recording_warnings(const Recording& recording, const std
     if (held >= 0.1) {
         warnings.push_back(
             {"held samples",
-             fmt::format("{} rows ({} %) hold the sample before while the joint moves, up to {} in a row{}",
-                         recording.held.count, percent_text(held), recording.held.longest,
-                         update_rate_text(recording)),
+             fmt::format(
+                 "{} rows ({} %) repeat the previous sample while the joint moves, up to {} in a row{}",
+                 recording.held.count, percent_text(held), recording.held.longest,
+                 update_rate_text(recording)),
              true});
     }
     using Verdict = AngleFacts::Verdict;

@@ -133,8 +133,7 @@ void settle_clock(const ColumnFacts& facts, bool unit_is_stated, Layout& layout)
     if (unit == nullptr) {
         raise<DataError>(
             "{}: {} advances by {} a row and no unit is stated: in seconds that is {:.3g} rows a second, and "
-            "no other unit gives {:g} Hz to {:g} kHz; say --unit time=UNIT (s, ms, us, ns), or "
-            "--sample-rate",
+            "no other unit gives {:g} Hz to {:g} kHz; use --unit time=UNIT (s, ms, us, ns), or --sample-rate",
             layout.source, label, shortest(opening.step), 1.0 / opening.step, lowest_rate_hz,
             1e-3 * highest_rate_hz);
     }
@@ -194,7 +193,7 @@ std::string time_backward(const TimeStep& step) {
                    round->words, shortest(round->length));
     }
     return seen +
-           "expected time to run forward; sort or split the log, or say --sample-rate if the clock is of no "
+           "expected time to run forward; sort or split the log, or use --sample-rate if the clock is of no "
            "use";
 }
 
@@ -325,9 +324,10 @@ Clocks find_clocks(const ColumnFacts& facts, const Forced& forced, const ReadOpt
 // No column is the clock: an error that says what to state, or a warning where a log may go without.
 void refuse_clocks(const ColumnFacts& facts, const Clocks& clocks, const ReadOptions& options,
                    Layout& layout) {
-    std::string why = facts.names.empty()
-                          ? "the columns have no names, say what they are with --columns time,velocity,torque"
-                          : "no column is named as a time";
+    std::string why =
+        facts.names.empty()
+            ? "the columns have no names, state what they are with --columns time,velocity,torque"
+            : "no column is named as a time";
     if (!clocks.counters.empty()) {
         why = fmt::format(
             "{} only counts rows (1, 2, 3, ...), which is a row number, or a time whose unit is not "
@@ -339,11 +339,11 @@ void refuse_clocks(const ColumnFacts& facts, const Clocks& clocks, const ReadOpt
     if (!options.needs_torque) {
         layout.warnings.push_back(
             {"no sample rate",
-             fmt::format("{}: no sample rate; say --sample-rate 1kHz, --unit time=ms, or --columns time=NAME",
+             fmt::format("{}: no sample rate; use --sample-rate 1kHz, --unit time=ms, or --columns time=NAME",
                          why)});
         return;
     }
-    raise<DataError>("{}: {}, expected a time column; say --sample-rate 1kHz, {}or --columns time=NAME",
+    raise<DataError>("{}: {}, expected a time column; use --sample-rate 1kHz, {}or --columns time=NAME",
                      layout.source, why, clocks.counters.empty() ? "" : "--unit time=ms, ");
 }
 
@@ -354,7 +354,7 @@ bool use_step_of_head(const ColumnFacts& facts, const Clocks& clocks, Layout& la
     layout.stated_rate = Hertz(1.0 / *facts.row_step_s);
     layout.inferences.push_back({"time",
                                  fmt::format("{} s a row", *facts.row_step_s),
-                                 "no column is a time, and the head of the file says " + facts.row_step_key,
+                                 "no column is a time, and the head of the file states " + facts.row_step_key,
                                  fmt::format("--sample-rate {}Hz", shortest(layout.stated_rate->value())),
                                  {}});
     return true;
@@ -387,7 +387,7 @@ void choose_time(const ColumnFacts& facts, const Forced& forced, const ReadOptio
     const Clocks found = find_clocks(facts, forced, options);
     const auto& [clocks, texts, counters, broken] = found;
     if (clocks.size() > 1) {
-        raise<DataError>("{}: {} could each be the time; say which, with --columns time={}", layout.source,
+        raise<DataError>("{}: {} could each be the time; state which, with --columns time={}", layout.source,
                          labels(facts, clocks),
                          facts.names[clocks[0]] == facts.names[clocks[1]] ? std::to_string(clocks[0] + 1)
                                                                           : facts.names[clocks[0]]);
@@ -407,7 +407,7 @@ void choose_time(const ColumnFacts& facts, const Forced& forced, const ReadOptio
             if (!finite_values(facts, column).empty()) {
                 raise<DataError>(
                     "{}: {} and {} are both named as times, and the first does not run forward; check the "
-                    "header, or say which is the time with --columns time={}",
+                    "header, or state which is the time with --columns time={}",
                     layout.source, column_label(facts.names, column), column_label(facts.names, clocks[0]),
                     facts.names[clocks[0]]);
             }

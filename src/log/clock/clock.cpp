@@ -191,7 +191,7 @@ std::string Clock::refusal(std::size_t rows) const {
     if (facts_.stated) return {};
     if (rows < 2) {
         return fmt::format(
-            "read {} of data, expected at least two, which tell the sample rate; check what wrote it",
+            "read {} of data, expected at least two, which determine the sample rate; check what wrote it",
             rows == 0 ? "no row" : "one row");
     }
     if (!timed_) return "no column of time; state the rate of its rows, for example --sample-rate 1kHz";
@@ -201,8 +201,9 @@ std::string Clock::refusal(std::size_t rows) const {
             over_all_.value(), ripplenotch::nominal_rate(over_all_).value());
     };
     if (rows_a_time_ > most_rows_a_time)
-        return fmt::format("time advances once in {:.0f} rows, too seldom to say when each was taken; {}",
-                           rows_a_time_, state_rate());
+        return fmt::format(
+            "time advances once in {:.0f} rows, too seldom to determine when each was taken; {}",
+            rows_a_time_, state_rate());
     if (rows_a_burst_ > 0.0)
         return fmt::format(
             "time comes in bursts of {:.0f} rows, {:.3g} s apart and then none for long, as of arrival; {}",

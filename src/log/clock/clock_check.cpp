@@ -188,11 +188,9 @@ std::vector<LogWarning> clock_warnings(const ClockFacts& clock) {
     const double mean = clock.mean_rate.value(), nominal = clock.nominal_rate.value();
     if (nominal > 0.0 && std::abs(mean / nominal - 1.0) > rate_worth_a_word) {
         warnings.push_back(
-            {"mean rate",
-             fmt::format("the rows come at {:.6g} Hz in the mean, but at {:.6g} Hz by the usual step: rows "
-                         "are lost or late; "
-                         "filters are designed for {:.6g} Hz",
-                         mean, nominal, nominal)});
+            {"mean rate", fmt::format("mean rate {:.6g} Hz, typical step {:.6g} ms ({:.6g} Hz): samples are "
+                                      "missing or delayed;  filters are designed for {:.6g} Hz",
+                                      mean, 1e3 / nominal, nominal, nominal)});
     }
     return warnings;
 }
@@ -333,7 +331,7 @@ constexpr std::array named_factors = {
 };
 
 std::string start_of(double factor) {
-    return fmt::format("position changes {:.4g} times as much as velocity and time say", factor);
+    return fmt::format("position changes {:.4g} times as much as velocity and time imply", factor);
 }
 
 std::string explain(double factor, Hertz sample_rate) {

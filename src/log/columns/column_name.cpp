@@ -445,7 +445,7 @@ std::vector<JointGroup> collect_groups(const KnownColumns& known, bool merge) {
         choices.push_back(fmt::format("--columns {}={}", role_name(role),
                                       repeated ? std::to_string(c + 1) : known.facts.names[c]));
     }
-    raise<DataError>("{}: {} could each be the {}; say {}", known.source, fmt::join(labels, " and "),
+    raise<DataError>("{}: {} could each be the {}; use {}", known.source, fmt::join(labels, " and "),
                      role_name(role), fmt::join(choices, " or "));
 }
 
@@ -508,7 +508,7 @@ std::string mixed_numberings(const KnownColumns& known) {
                 const std::size_t first = a->second.first_column, second = b->second.first_column;
                 const auto& names = known.facts.names;
                 return fmt::format(
-                    "{} is the first {} and {} the first {}: joints are numbered from {} and from {}; say "
+                    "{} is the first {} and {} the first {}: joints are numbered from {} and from {}; state "
                     "which columns are one joint's, with --columns {}={},{}={}",
                     column_label(names, first), role_name(a->first), column_label(names, second),
                     role_name(b->first), a->second.lowest, b->second.lowest, role_name(a->first),

@@ -208,7 +208,7 @@ class Decision {
         }
         if (group == nullptr && layout_.asked.size() > 1 && options_.needs_torque) {
             raise<DataError>(
-                "{}: read {} joints ({}), expected one; say which with --joint {}, or --joint all where the "
+                "{}: read {} joints ({}), expected one; select one with --joint {}, or --joint all where the "
                 "command takes several",
                 source_, layout_.asked.size(), fmt::join(layout_.asked, ", "), layout_.asked.front());
         }
@@ -253,7 +253,8 @@ class Decision {
     void take_constant_speed() {
         if (!options_.constant_speed) return;
         if (layout_.chosen.velocity || layout_.velocity_from_position)
-            raise<UsageError>("--constant-speed: {} says itself how the joint moves; leave it out", source_);
+            raise<UsageError>("--constant-speed: {} itself states how the joint moves; leave it out",
+                              source_);
         const auto side = options_.sides.find(Role::velocity);
         const bool motor = side != options_.sides.end() && side->second == Shaft::motor;
         if (motor && !options_.gear_ratio)
@@ -366,8 +367,8 @@ class Decision {
             if (role == Role::torque && options_.every_joint && !options_.torque_of_each) continue;
             const std::string perhaps = maybe(role);
             raise<DataError>(
-                "{}: read {}{}, expected a {} column; {}say which it is, with --columns {}=NAME{}{}", source_,
-                names, facts_.left_out, role_name(role), perhaps.empty() ? "" : perhaps + "; ",
+                "{}: read {}{}, expected a {} column; {}state which it is, with --columns {}=NAME{}{}",
+                source_, names, facts_.left_out, role_name(role), perhaps.empty() ? "" : perhaps + "; ",
                 role_name(role),
                 facts_.names.empty() ? ", or all by place, with --columns time,velocity,torque" : "",
                 role == Role::velocity ? "; or how fast the joint turns, with --constant-speed 60rpm" : "");
@@ -436,7 +437,7 @@ class Decision {
             column.unit_assumed = column.unit_assumed && !stated_[c];
         } else if (is_chosen(c)) {
             raise<DataError>(
-                "{}: read {} in '{}', expected a {} in {}; if the header is wrong, say --unit {}={}", source_,
+                "{}: read {} in '{}', expected a {} in {}; if the header is wrong, use --unit {}={}", source_,
                 column_label(facts_.names, c), written, role_name(role), unit_list(role), role_name(role),
                 base_unit(dimension_of(role)));
         } else {
@@ -473,10 +474,9 @@ class Decision {
     void refuse_unscaled() {
         if (!linear_.empty()) {
             const std::string what = fmt::format(
-                "read {}, of a linear axis, expected the travel of one turn of its screw; say --lead 5mm, "
-                "and "
-                "results are those of the screw, in deg and Nm; "
-                "if the header is wrong, --unit says another unit",
+                "read {}, of a linear axis, expected the travel of one turn of its screw; use --lead 5mm, "
+                "and results are those of the screw, in deg and Nm; if the header is wrong, --unit states "
+                "another unit",
                 fmt::join(linear_, ", "));
             if (options_.needs_torque) raise<DataError>("{}: {}", source_, what);
             layout_.warnings.push_back({"linear axis", what, true});
@@ -490,7 +490,8 @@ class Decision {
         const std::string what = fmt::format("{}", fmt::join(read, "; ")),
                           say = fmt::format("{}", fmt::join(options, " "));
         if (options_.needs_torque)
-            raise<DataError>("{}: read {}, expected quantities; say what 1 is, as in {}", source_, what, say);
+            raise<DataError>("{}: read {}, expected quantities; state what 1 is, as in {}", source_, what,
+                             say);
         layout_.warnings.push_back(
             {"unscaled", fmt::format("read {}; commands that use it ask what 1 is, as in {}", what, say),
              true});

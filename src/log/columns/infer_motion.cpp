@@ -337,8 +337,7 @@ class Inference {
                 continue;
             raise<DataError>(
                 "{}: read {} in whole numbers throughout, as counts are, and no unit, expected quantities; "
-                "say "
-                "what 1 is, as in {} (or --unit {}={})",
+                "state what 1 is, as in {} (or --unit {}={})",
                 layout_.source, label(**column), scale_example(role), role_name(role),
                 base_unit(dimension_of(role)));
         }
@@ -356,8 +355,7 @@ class Inference {
         const bool both = subject_->velocity && subject_->position && !subject_->position->unit_is_stated;
         raise<DataError>(
             "{}: read {:.4g} in {}, of which no unit is stated: in {} the {} would turn at {:.3g} deg/s, "
-            "expected "
-            "at most {:g}; say what 1 is, as in {}{}, or --unit if that is the speed",
+            "expected at most {:g}; state what 1 is, as in {}{}, or --unit if that is the speed",
             layout_.source, evidence_.fastest, label(*column), read.unit, motor ? "motor" : "joint", deg_s,
             motor ? no_motor_deg_s : no_joint_deg_s,
             scale_example(subject_->velocity ? Role::velocity : Role::position),
@@ -369,8 +367,7 @@ class Inference {
         const auto& column = subject_->velocity ? subject_->velocity : subject_->position;
         raise<DataError>(
             "{}: {} is measured before the gear (named so, or too fast for a joint), and no ratio is known "
-            "to "
-            "bring it to the joint; say --gear-ratio, or --side joint if it is the joint's",
+            "to bring it to the joint; use --gear-ratio, or --side joint if it is the joint's",
             layout_.source, label(*column));
     }
 
@@ -502,7 +499,7 @@ class Inference {
     std::string reason(const std::vector<OtherReading>& possible,
                        const std::vector<MotionReading>& without_position) const {
         if (!possible.empty()) {
-            return fmt::format("nothing in the log says it; the largest values read are {:.3g}{}",
+            return fmt::format("not stated in the log; the largest values read are {:.3g}{}",
                                evidence_.fastest,
                                subject_->position ? fmt::format(" and {:.3g}", evidence_.farthest) : "");
         }

@@ -256,7 +256,7 @@ void say_assumed_units(Layout& layout, const ColumnFacts& facts) {
         const Column& torque = layout.columns[*joint.torque];
         layout.assumptions.push_back({fmt::format("unit of {}", column_label(facts.names, *joint.torque)),
                                       torque.unit,
-                                      "nothing in the log says it",
+                                      "not stated in the log",
                                       fmt::format("--unit torque={}", torque.unit),
                                       {}});
     }

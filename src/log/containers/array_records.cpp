@@ -442,7 +442,7 @@ std::vector<const ArrayGroup*> asked_groups(const std::string& source, const std
     if (joined && std::any_of(found.begin(), found.end(), [](const ArrayGroup* g) { return !g->clock; })) {
         raise<UsageError>(
             "--columns: {} of {} has {} rows, {} has {}: their clocks differ; name arrays of one length, or "
-            "with a time of their own beside each",
+            "each with its own time",
             asked.first_of(*found[0], style), source, found[0]->rows, asked.first_of(*found[1], style),
             found[1]->rows);
     }

@@ -196,7 +196,7 @@ void require_whole_records(const RawLayout& layout, const ByteSource& source, st
 Records make_raw(std::unique_ptr<ByteSource> source, std::string first_bytes, const ReadOptions& options) {
     if (!options.records) {
         raise<UsageError>(
-            "{}: a raw dump does not say what is in it; say what a record holds, as in --format raw "
+            "{}: a raw dump does not state what is in it; state what a record holds, as in --format raw "
             "--layout f8:time_s,f4:velocity_deg_s,f4:torque_nm",
             source->name());
     }
@@ -221,7 +221,7 @@ Records make_raw(std::unique_ptr<ByteSource> source, std::string first_bytes, co
 
 const LogFormat formats::raw{
     .name = "raw",
-    .summary = "records of numbers without a head, told by --layout",
+    .summary = "records of numbers without a header, described by --layout",
     .extensions = extensions,
     .binary = true,
     .told = true,

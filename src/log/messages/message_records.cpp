@@ -351,7 +351,7 @@ class TopicChoice {
         if (options_.clock == "log") return false;
         if (options_.clock == "header") {
             if (!has)
-                raise<UsageError>("--clock header: messages of {} in {} have no header; say --clock log",
+                raise<UsageError>("--clock header: messages of {} in {} have no header; use --clock log",
                                   source_->channels()[chosen].topic, source_->name());
             return true;
         }

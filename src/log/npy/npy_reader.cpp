@@ -86,7 +86,7 @@ void NpyReader::plan_columns(const std::vector<std::string>& names) {
     before_.assign(factors_.size(), not_a_number);
     for (const WantedColumn& wanted : wanted_) {
         if (header_.fields[wanted.column].kind != '\0') continue;
-        raise<DataError>("{}: {} holds no numbers, expected a {}; say which column with --columns",
+        raise<DataError>("{}: {} holds no numbers, expected a {}; state which column with --columns",
                          source_->name(), column_label(names, wanted.column),
                          role_name(layout_.columns[wanted.column].role));
     }
@@ -224,7 +224,7 @@ double NpyReader::read_value(RowBlock& block, const char* record, const WantedCo
              fmt::format("read {}, expected a {}; {}", shortest(value),
                          std::isfinite(value) ? "number from -1e30 to 1e30" : "finite number",
                          std::isnan(value) && !time && !hold_bad_values_
-                             ? "remove the row, or say --hold-bad-values to repeat the value before"
+                             ? "remove the row, or use --hold-bad-values to repeat the value before"
                              : "remove the row"));
 }
 
@@ -418,8 +418,8 @@ void NpyReader::keep_wanted(RecordSource& records) {
 
 void NpyReader::complain_of_end(std::size_t left_over) const {
     raise<DataError>(
-        "{}: read {} rows and {} bytes of one more, expected records of {} bytes; the file is cut off, "
-        "or its records are others than told",
+        "{}: read {} rows and {} bytes of one more, expected records of {} bytes; the file is cut off, or "
+        "its records differ from its header",
         source_->name(), number_in_file(*source_, fetched_), left_over, header_.record_size);
 }
 

@@ -210,8 +210,8 @@ std::unique_ptr<RecordSource> join_records(std::unique_ptr<RecordSource> base, s
         table.add(number, side.path, side.read_as, side.unit);
         table.warnings.push_back(
             {"joined by time",
-             fmt::format("{} has a clock of its own: joined to the rows by --join {}, from {}s that "
-                         "are up to {} ms away; nearest, hold and linear can be said",
+             fmt::format("{} has a clock of its own: joined to the rows by --join {}, from {}s that are up "
+                         "to {} ms away; nearest, hold and linear are allowed",
                          side.path, how, side.noun, static_cast<double>(side.limit_ns) / 1e6),
              true});
     }

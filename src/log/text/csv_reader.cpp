@@ -267,10 +267,9 @@ bool CsvReader::accept_line(RowBlock& block, std::size_t begin, std::size_t end)
 void CsvReader::append_row(RowBlock& block, ParsedRow& row) {
     if (layout_.time_is_steps) {
         if (row.values[time_slot] < 0.0)
-            complain(1,
-                     fmt::format("read the time step {}, expected none below 0; mend or remove the line, or "
-                                 "say --sample-rate",
-                                 shortest(row.values[time_slot])));
+            complain(1, fmt::format("read the time step {}, expected none below 0; correct or remove the "
+                                    "line, or use --sample-rate",
+                                    shortest(row.values[time_slot])));
         row.values[time_slot] = rows_ == 0 ? 0.0 : before_.values[time_slot] + row.values[time_slot];
     }
     const double time = row.values[time_slot], before = before_.values[time_slot];
@@ -321,7 +320,7 @@ void CsvReader::parse_carefully(std::string_view line, RowBlock& block, ParsedRo
     const auto& cells = split_.cells;
     if (split_.unclosed) {
         complain(cells.back().begin,
-                 "read a quote that is not closed on its line, expected its end; mend or remove the line");
+                 "read a quote that is not closed on its line, expected its end; correct or remove the line");
     }
     refuse_controls(line);
     if (cells.size() != dialect_.columns) {
@@ -329,7 +328,7 @@ void CsvReader::parse_carefully(std::string_view line, RowBlock& block, ParsedRo
         complain(cells.empty() ? 1 : cells.back().end + 1,
                  fmt::format("read {} cells, expected {}; {}", cells.size(), dialect_.columns,
                              cut ? "the last line is cut off: remove it, e.g. with head -n -1"
-                                 : "mend or remove the line"));
+                                 : "correct or remove the line"));
     }
     row.values[time_slot] = nothing_yet;
     for (const WantedColumn& wanted : wanted_) {
@@ -363,15 +362,15 @@ double CsvReader::read_cell(std::string_view line, const Cell& cell, const Wante
         ++block.held_bad_values;
         return before_.values[slot];
     }
-    std::string remedy = "mend or remove the line";
+    std::string remedy = "correct or remove the line";
     if (missing && slot != time_slot) {
         remedy = options_.hold_bad_values
                      ? "the first row has no value before it: remove the line"
-                     : "mend the line, or say --hold-bad-values to repeat the value before";
+                     : "correct the line, or use --hold-bad-values to repeat the value before";
     } else if (!number && dialect_.rules.delimiter != ',' &&
                text.find(dialect_.rules.decimal_mark == '.' ? ',' : '.') != std::string_view::npos) {
-        remedy =
-            fmt::format("mend the line, or say --decimal {}", dialect_.rules.decimal_mark == '.' ? ',' : '.');
+        remedy = fmt::format("correct the line, or use --decimal {}",
+                             dialect_.rules.decimal_mark == '.' ? ',' : '.');
     }
     complain(
         cell.begin + 1,

@@ -209,17 +209,16 @@ class Signals {
         if (!number) {
             const auto stamp = clock_text(time);
             if (!stamp)
-                lines_.complain(
-                    fmt::format("read '{}' in '{}', expected a number, or a time such as {}; mend or "
-                                "remove the line",
-                                time, time_name_, stamp_forms));
+                lines_.complain(fmt::format(
+                    "read '{}' in '{}', expected a number, or a time such as {}; correct or remove the line",
+                    time, time_name_, stamp_forms));
             if (!origin_s_) origin_s_ = stamp->whole_s;
             number = since(stamp->whole_s, *origin_s_) + stamp->fraction_s;
         }
         const auto read = number_in(value, delimiter);
         if (!read)
             lines_.complain(
-                fmt::format("read '{}' as the value of '{}', expected a number; mend or remove the line",
+                fmt::format("read '{}' as the value of '{}', expected a number; correct or remove the line",
                             value, all[signal].name));
         Signal& one = all[signal];
         if (!one.time.empty() && *number < one.time.back())
@@ -323,11 +322,10 @@ std::unique_ptr<ByteSource> as_table(const std::string& source, const std::vecto
     std::vector<LogWarning> warnings;
     if (!joined.empty())
         warnings.push_back(
-            {"joined by time",
-             fmt::format("{} {} times of {} own: joined to those of '{}' by --join {}; nearest, hold "
-                         "and linear can be said",
-                         fmt::join(joined, ", "), joined.size() == 1 ? "has" : "have",
-                         joined.size() == 1 ? "its" : "their", base.name, how)});
+            {"joined by time", fmt::format("{} {} times of {} own: joined to those of '{}' by --join {}; "
+                                           "nearest, hold and linear are allowed",
+                                           fmt::join(joined, ", "), joined.size() == 1 ? "has" : "have",
+                                           joined.size() == 1 ? "its" : "their", base.name, how)});
     return std::make_unique<ReshapedText>(
         source, std::move(text),
         Assumption{"shape", fmt::format("{} signals as columns", signals.size()), std::string(shape), "", {}},
@@ -353,7 +351,7 @@ std::unique_ptr<ByteSource> widened_tidy(const std::string& source, std::string_
         const std::vector<std::string> cells = lines.cells(header.delimiter);
         if (cells.size() <= std::max({header.time, header.signal.back(), header.value}) ||
             cells.size() > header.cells)
-            lines.complain(fmt::format("read {} cells, expected {}; mend or remove the line", cells.size(),
+            lines.complain(fmt::format("read {} cells, expected {}; correct or remove the line", cells.size(),
                                        header.cells));
         const std::string unit = header.unit && *header.unit < cells.size() ? cells[*header.unit] : "";
         std::string name;
@@ -480,7 +478,7 @@ Log read_files_as_one(const std::vector<std::string>& paths, const ReadOptions& 
                     c < cells.size() ? parse_number(cells[c], dialect.rules.decimal_mark) : std::nullopt;
                 if (!number)
                     lines.complain(
-                        fmt::format("read '{}' in cell {}, expected a number; mend or remove the line",
+                        fmt::format("read '{}' in cell {}, expected a number; correct or remove the line",
                                     c < cells.size() ? cells[c] : "", c + 1));
                 own[c].push_back(*number);
             }

@@ -173,7 +173,7 @@ class Channels {
         std::vector<double> row;
         for (const std::size_t channel : group.channels) {
             const auto number = rows.number(channel);
-            if (!number) rows.complain(source_, channel, "a finite number; mend or remove the line");
+            if (!number) rows.complain(source_, channel, "a finite number; correct or remove the line");
             row.push_back(*number);
         }
         if (!group.time_ns.empty() && time <= group.time_ns.back()) {
@@ -201,7 +201,7 @@ class Channels {
         } else if (const auto ms = rows.number(clock); ms && std::abs(ns_per_ms * *ms) < longest_ns) {
             return std::llround(ns_per_ms * *ms);
         }
-        rows.complain(source_, clock, "a time; mend or remove the line");
+        rows.complain(source_, clock, "a time; correct or remove the line");
     }
 
     const std::string& source_;

@@ -198,7 +198,7 @@ std::optional<ScopeHeader> scope_header(std::string_view bytes, const std::vecto
             content[found.first_row].number, row.size(), names.size(),
             found.delimiter == ','
                 ? "a comma that separates cells cannot mark decimals too: export again with another separator"
-                : "mend the head, or export again");
+                : "correct the head, or export again");
     }
     // "Name" alone over names may be a column of names; over times it runs forward.
     const auto first_time = number_of(row.front());

@@ -50,8 +50,8 @@ GuessedRules rules_of(std::string_view bytes, const std::vector<TextLine>& conte
     if (content.size() <= 2 && has_letters(first.of(bytes)) && !has_digits(content.back().of(bytes)))
         refuse_header_only(first, source.name());
     raise<DataError>(
-        "{}:{}:1: read '{}', expected numbers separated by comma, semicolon, tab or blanks; say how it "
-        "is written with --delimiter and --decimal",
+        "{}:{}:1: read '{}', expected numbers separated by comma, semicolon, tab or blanks; state how it is "
+        "written with --delimiter and --decimal",
         source.name(), number_in_file(source, content[aside].number), content[aside].of(bytes).substr(0, 40));
 }
 
@@ -208,7 +208,7 @@ void refuse_binary(std::string_view bytes, const ByteSource& source) {
         const auto byte = static_cast<unsigned char>(bytes[i]);
         const TextPlace place = place_of(bytes, i, '\n');
         raise<DataError>(
-            "{}:{}:{}: read the byte 0x{:02x}, expected text; this is not a text log, say which format it "
+            "{}:{}:{}: read the byte 0x{:02x}, expected text; this is not a text log, state which format it "
             "has with --format, or export it as CSV",
             source.name(), number_in_file(source, place.line), place.column, byte);
     }

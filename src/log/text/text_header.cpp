@@ -153,7 +153,7 @@ std::size_t read_names(std::string_view bytes, const TextLines& lines, const std
         dialect.names.pop_back();
     if (dialect.names.size() != dialect.columns) {
         raise<DataError>(
-            "{}:{}: read {} names over rows of {} cells, expected as many; mend the header, or say "
+            "{}:{}: read {} names over rows of {} cells, expected as many; correct the header, or use "
             "--delimiter, or --no-header with --columns",
             source, first.number, dialect.names.size(), dialect.columns);
     }
@@ -197,8 +197,8 @@ std::size_t read_header(std::string_view bytes, const TextLines& lines, const st
     if (wanted && kind == FirstLine::mixed && !options.header && lines.content.size() > 1 &&
         is_half_names(first.of(bytes), lines.content[1].of(bytes), dialect.rules)) {
         raise<DataError>(
-            "{}:{}:1: read '{}', half names and half numbers, expected a header or a row; mend the line, "
-            "or say --no-header",
+            "{}:{}:1: read '{}', half names and half numbers, expected a header or a row; correct the line, "
+            "or use --no-header",
             source, first.number, first.of(bytes).substr(0, 60));
     }
     if (wanted && (kind == FirstLine::names || options.header.value_or(false)))

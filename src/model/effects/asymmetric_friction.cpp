@@ -47,7 +47,7 @@ const Effect effects::asymmetric_friction{
     .name = "asymmetric-friction",
     .summary = "Coulomb friction whose level differs between the two directions of motion",
     .equation = "torque = difference_nm / 2 * tanh(v / width_deg_s)^2",
-    .symptom = "an offset in the residual that is there in motion, in both directions alike, and not at rest",
+    .symptom = "an offset in the residual that is the same in both directions of motion and absent at rest",
     .look_alikes = look_alikes,
     .source =
         "Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30, 1994, for friction that depends on the "

@@ -32,7 +32,7 @@ constexpr LookAlike look_alikes[] = {
     {"velocity-bias", "the log is one stroke",
      "strokes both ways: the phase of a delay returns, that of a bias grows on"},
     {"a velocity estimated by a filter or a backward difference", "always",
-     "the position beside the velocity"},
+     "a comparison of position and velocity"},
 };
 
 void apply(const Situation& situation, std::span<const double> values, std::span<double> torque_nm) {

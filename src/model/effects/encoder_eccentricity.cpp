@@ -59,8 +59,7 @@ const Effect effects::encoder_eccentricity{
     .name = "encoder-eccentricity",
     .summary = "the angle of the log errs with the output angle: an eccentric or tilted encoder disc",
     .equation =
-        "q - amplitude_deg * cos(order * q + phase_deg) takes the place of q, and its derivatives those of v "
-        "and dv/dt",
+        "q - amplitude_deg * cos(order * q + phase_deg) replaces q, and its derivatives those of v and dv/dt",
     .symptom = "lines of the ripple in the residual whose phase error comes and goes with the output angle",
     .look_alikes = look_alikes,
     .source =

@@ -10,7 +10,7 @@ constexpr double tried_errors[] = {-1.0, -0.5, -0.25, -0.12, -0.06, -0.03, 0.03,
 constexpr Parameter parameters[] = {
     {.name = "error_percent",
      .unit = "%",
-     .help = "by which the gear ratio is larger than the model says",
+     .help = "by which the gear ratio is larger than in the model",
      .start = 0.1,
      .lower = -99.0,
      .upper = 900.0,
@@ -34,8 +34,8 @@ void change_motion(std::span<const double> values, Motion&, GearRatio& ratio) {
 
 const Effect effects::gear_ratio{
     .name = "gear-ratio",
-    .summary = "the gear has another ratio than the model says",
-    .equation = "gear_ratio * (1 + error_percent / 100) takes the place of gear_ratio",
+    .summary = "the gear ratio differs from that of the model",
+    .equation = "gear_ratio * (1 + error_percent / 100) replaces gear_ratio",
     .symptom =
         "lines of the ripple in the residual whose phase error grows with the angle gone; with quite another "
         "ratio, lines at orders that the model does not have",

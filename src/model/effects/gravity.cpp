@@ -21,7 +21,7 @@ constexpr Parameter parameters[] = {
 
 constexpr LookAlike look_alikes[] = {
     {"crosstalk of the sensor, once per output revolution", "always",
-     "a second mounting of the joint; no log of one mounting tells"},
+     "a second mounting of the joint; no log of one mounting distinguishes them"},
     {"offset", "the travel is below 30 deg", "a travel of half a turn"},
     {"quadratic-viscous-friction", "the log is one smooth stroke",
      "the same positions passed at two speeds, or in both directions"},

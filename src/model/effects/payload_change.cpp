@@ -80,7 +80,7 @@ const Effect effects::payload_change{
     .equation =
         "torque = (1 + tanh((t - time_s) / ramp_s)) / 2 * (inertia_kgm2 * dv/dt in rad/s2 + cosine_nm * "
         "cos(q) + sine_nm * sin(q))",
-    .symptom = "a residual that follows acceleration and position from a time on, and is not there before it",
+    .symptom = "a residual that follows acceleration and position from a time on, and is absent before it",
     .look_alikes = look_alikes,
     .source = "statics and Newton's second law; Atkeson, An, Hollerbach, IJRR 5, 1986, for payloads",
     .side = Side::joint,

@@ -43,7 +43,7 @@ const Effect effects::ripple_modulation{
     .summary =
         "ripple whose size swells and fades with the output angle: an eccentric or tilted circular spline",
     .equation = "ripple amplitude * (1 + depth_percent / 100 * cos(output_order * q + phase_deg))",
-    .symptom = "two lines beside each line of the ripple, output_order cycles per output revolution away",
+    .symptom = "sidebands of each line of the ripple, output_order cycles per output revolution away",
     .look_alikes = look_alikes,
     .source =
         "amplitude modulation; Tuttle, 1992, and Taghirad and Belanger, 1998, for dissipation and torque "

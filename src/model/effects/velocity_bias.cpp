@@ -39,8 +39,9 @@ void change_motion(std::span<const double> values, Motion& motion, GearRatio&) {
 const Effect effects::velocity_bias{
     .name = "velocity-bias",
     .summary =
-        "the velocity of the log is off by a constant, and so is the position integrated from it, ever more",
-    .equation = "v - bias_deg_s takes the place of v, q - bias_deg_s * t that of q",
+        "the velocity of the log has a constant error, and the position integrated from it an error that "
+        "grows with time",
+    .equation = "v - bias_deg_s replaces v, q - bias_deg_s * t replaces q",
     .symptom = "lines of the ripple in the residual whose phase error grows with time while the joint moves",
     .look_alikes = look_alikes,
     .source = "integration of an offset",

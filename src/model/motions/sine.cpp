@@ -35,7 +35,7 @@ MotionPiece make(const Settings& settings, const std::optional<MotionState>& bef
 
 const MotionKind motions::sine{
     .name = "sine",
-    .summary = "swing to and fro",
+    .summary = "swing back and forth",
     .equation = "q(t) = from + amplitude * (sin(360deg * frequency * t + phase) - sin(phase))",
     .source =
         "the usual excitation for friction and reversal, e.g. Olsson et al., European Journal of Control 4, "

@@ -40,7 +40,7 @@ MotionPiece make(const Settings& settings, const std::optional<MotionState>& bef
 
 const MotionKind motions::sweep{
     .name = "sweep",
-    .summary = "swing to and fro ever faster, or ever slower",
+    .summary = "swing back and forth ever faster, or ever slower",
     .equation =
         "q(t) = from + amplitude * (sin(360deg * (f0 t + (f1 - f0) t^2 / (2 duration)) + phase) - "
         "sin(phase)), "

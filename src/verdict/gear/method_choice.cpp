@@ -95,7 +95,7 @@ std::shared_ptr<const RippleMap> use_map(Spec& spec, const Method& method, const
         } else if (key == "gear-ratio") {
             refuse_other_map(spec.name, path, value, entry_of(spec, key)->second);
         } else {
-            raise<UsageError>("method {}: {}=... and map={} both say it; leave one out", spec.name, key,
+            raise<UsageError>("method {}: {}=... and map={} both state it; leave one out", spec.name, key,
                               path);
         }
     }

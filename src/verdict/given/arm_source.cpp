@@ -170,9 +170,8 @@ ArmReading read_arm(const std::string& path, const ReadOptions& options, std::si
     for (const std::size_t place : reading.match.of) {
         if (!all[place].trace.view().has_position()) {
             raise<UsageError>(
-                "arm: {} has the velocity of '{}' and not its position; gravity depends on it and its "
-                "integral "
-                "does not tell from where",
+                "arm: {} has the velocity of '{}' and not its position; gravity depends on it, and the "
+                "integrated velocity does not determine the start position",
                 source, there[place]);
         }
         reading.names.push_back(there[place]);

@@ -135,7 +135,7 @@ Spec spec_of(std::string_view text) {
                           text);
     if (std::filesystem::is_regular_file(spec.name))
         raise<UsageError>(
-            "--simulated: {} is a file; say which column of it is the torque: --simulated "
+            "--simulated: {} is a file; state which of its columns is the torque: --simulated "
             "log,file={},column=NAME",
             spec.name, spec.name);
     spec.values.emplace_back("name", std::exchange(spec.name, "column"));

@@ -42,12 +42,12 @@ std::vector<Doubt> log_doubts(const Log& log, const OtherReading& reading) {
     const bool clock = size < widest_clock && size > 1.0 / widest_clock;
     return {{DoubtReason::clock,
              fmt::format(
-                 "in {} the position changes {:.4g} times as much as velocity and time say, so {}",
+                 "in {} the position changes {:.4g} times as much as velocity and time imply, so {}",
                  log.layout.source, size,
-                 clock ? fmt::format("the clock or a unit is wrong: --sample-rate {:.4g}Hz would mend "
-                                     "the clock, --unit the velocity or the position",
+                 clock ? fmt::format("the clock or a unit is wrong: --sample-rate {:.4g}Hz would correct the "
+                                     "clock, --unit the velocity or the position",
                                      log.recording.clock.nominal_rate.value() / reading.time_factor / size)
-                       : "a unit is wrong, or one of the two is the motor's: --unit would mend it")}};
+                       : "a unit is wrong, or one of the two is the motor's: --unit would correct it")}};
 }
 
 /// The ratio that motion of the motor's shaft is divided by where the real one is unknown, so that its
@@ -179,7 +179,7 @@ Identification cannot_tell(Identification found, const std::string& assumed,
                        fmt::format("{}: {}", assumed, found.verdict));
     found.verdict = fmt::format("{}; {} settles it.", verdict, options);
     found.doubts.push_back(
-        {DoubtReason::unit, fmt::format("the log does not say its units; {} settles it", options)});
+        {DoubtReason::unit, fmt::format("the log does not state its units; {} settles it", options)});
     found.conclusive = false;
     found.gear_ratio = {};
     found.lines.clear();
@@ -233,7 +233,7 @@ std::string reading_doubt(std::span<const Log> logs,
         return may_hold(reading) ? reading.words : "";
     });
     if (rivals.empty()) return "";
-    return fmt::format("the log does not say its units, and its orders are others if {}; {} settles it",
+    return fmt::format("the log does not state its units, and its orders are others if {}; {} settles it",
                        rivals, settling_options(logs));
 }
 
@@ -348,11 +348,12 @@ void refuse_open_readings(const Log& log) {
     const std::span one(&log, 1);
     const auto open = open_readings(one);
     if (!open.empty())
-        raise<DataError>("{}: the log does not say its units: {}, or {}; {} settles it", log.layout.source,
+        raise<DataError>("{}: the log does not state its units: {}, or {}; {} settles it", log.layout.source,
                          assumed_reading(one), open.front().words, settling_options(one));
     if (log.layout.motor_units)
-        raise<DataError>("{}: the motion is measured before the gear; --gear-ratio tells the joint's",
-                         log.layout.source);
+        raise<DataError>(
+            "{}: the motion is measured before the gear; --gear-ratio states how to convert it to the joint",
+            log.layout.source);
 }
 
 }  // namespace ripplenotch
