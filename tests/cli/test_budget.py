@@ -161,7 +161,7 @@ class Gates(Budget):
         done = run("filter", "steady.csv", "--method", "lowpass,cutoff=13rad/s", "--gear-ratio", "100", "-o", "gate.csv",
                    "--force", "--min-attenuation", "25dB", cwd=self.folder)
         self.assertEqual(done.returncode, 1)
-        self.assertRegex(done.stderr, r"lowpass,cutoff=13rad/s: it takes 21\.\d dB off order 1, 3\.\d dB less than")
+        self.assertRegex(done.stderr, r"lowpass,cutoff=13rad/s: it attenuates order 1 by 21\.\d dB, 3\.\d dB less than")
         self.assertNotIn("order 2", done.stderr)
 
     def test_compare_names_each_method_that_breaks_a_limit(self):
@@ -173,7 +173,7 @@ class Gates(Budget):
         self.assertIn("lowpass", done.stdout)
         self.assertRegex(done.stderr, r"tracking,\S+: it delays by 2\d\.\d ms, \d+\.\d ms more than --max-delay 15ms at 20 deg/s")
         self.assertRegex(done.stderr, r"from 2[89](\.\d)? deg/s on it stays within")
-        self.assertRegex(done.stderr, r"lowpass,cutoff=13Hz: it takes 0\.\d dB off order 1")
+        self.assertRegex(done.stderr, r"lowpass,cutoff=13Hz: it attenuates order 1 by 0\.\d dB")
 
     def test_a_limit_on_attenuation_without_a_gear_is_a_usage_error(self):
         done = run("filter", "steady.csv", "--method", "lowpass,cutoff=13Hz", "-o", "gate.csv", "--force",

@@ -102,7 +102,7 @@ class Improved(SharedCase):
         page = self.run_tool("report", "every.json", "-o", "every.html", "--no-plotly")
         self.assertEqual(page.returncode, 0, page.stderr)
         for one in every["joints"]:
-            self.assertIn(f'diagnosis: every.json, joint {one["joint"]}', (self.folder / "every.html").read_text())
+            self.assertIn(f'Missing effects: every.json, joint {one["joint"]}', (self.folder / "every.html").read_text())
         told = self.run_tool(*words, "--joint", "all")
         self.assertEqual(told.returncode, 0, told.stderr)
         table = told.stdout.split("\n\n")[-1].splitlines()

@@ -153,5 +153,5 @@ TEST_CASE("where no low-pass is equal, the match says why and names none") {
     const Trace log = steady_log(80.0, 0.0);
     const LowPassMatch loud = match_on_log("fixed", 5.0, 1, {log.view()}, paper_lines);
     CHECK_FALSE(loud.low_pass.has_value());
-    CHECK_THAT(loud.clause, Catch::Contains("leaves 5 Nm rms"));
+    CHECK_THAT(loud.clause, Catch::Contains("remaining ripple of 5 Nm rms"));
 }
