@@ -739,8 +739,9 @@ PageSection section_of_result(const std::string& text, const std::string& source
 std::vector<PageSection> sections_of_result(const std::string& text, const std::string& source) {
     const auto [kind, whole] = parse_any_document(text, source);
     // Lists of what a command gives of each joint of a log, and what each entry is.
-    static constexpr std::array<std::pair<std::string_view, std::string_view>, 6> lists = {
-        {{"diagnoses", "diagnosis"},
+    static constexpr std::array<std::pair<std::string_view, std::string_view>, 7> lists = {
+        {{"joints", "joint"},
+         {"diagnoses", "diagnosis"},
          {"spectra", "spectrum"},
          {"responses", "response"},
          {"tracks", "track"},

@@ -68,7 +68,7 @@ Signal signal_named(const std::string& name, const ResponseLog& read) {
         if (read.path == "-")
             raise<UsageError>(
                 "--response: '{}' is a column by its name, for which a log is read again, and standard input "
-                "cannot be; give a file, or say --columns torque={}",
+                "cannot be; give a file, or use --columns torque={}",
                 name, name);
         Signal signal{name, "", side_column(read.path, name, trace.joint, read.reading, all_rows)};
         require_beside(signal.values, trace, read.path, name);
