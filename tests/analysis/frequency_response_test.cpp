@@ -97,7 +97,7 @@ TEST_CASE("the response of a filter is within the 95 % region at 95 % of the fre
     CHECK_THAT(static_cast<double>(all.within) / static_cast<double>(all.bins), WithinAbs(0.95, 0.012));
 }
 
-TEST_CASE("noise of the input lowers H1 by the coherence and leaves H2; noise of the output the other way") {
+TEST_CASE("noise of the input lowers H1 by the coherence and leaves H2, noise of the output the other way") {
     const std::vector<double> signal = noise(200'000, 1.0, 7), more = noise(200'000, 1.0, 8);
     const auto mean_gain = [](const FrequencyResponse& response) {
         double total = 0.0;
