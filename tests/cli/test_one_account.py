@@ -111,7 +111,7 @@ class Angles(Account):
                 ("another_joints_position", "velocity", "0.3 times as much"),
                 ("unrelated_position", "velocity", "another joint's"),
                 ("motor_side_position", "position", "motor side"),
-                ("standing_position", "velocity", "stands still"),
+                ("standing_position", "velocity", "position is constant"),
                 ("reversed_position", "position", "opposite signs"),
                 ("position_stops_on_the_way", "position", "from data row")):
             with self.subTest(name):

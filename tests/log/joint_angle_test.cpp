@@ -56,7 +56,7 @@ TEST_CASE("a position is judged by scale, sign and motion, and what was decided 
         {Verdict::scaled, "gear ratio", [](std::size_t, Row& row) { row.position_deg *= -100.0 * -1.0; }},
         {Verdict::scaled, "57.3", [](std::size_t, Row& row) { row.velocity_deg_s *= 0.0174533; }},
         {Verdict::reversed, "opposite signs", [](std::size_t, Row& row) { row.position_deg *= -1.0; }},
-        {Verdict::stands, "stands still", [](std::size_t, Row& row) { row.position_deg = 7.0; }},
+        {Verdict::stands, "position is constant", [](std::size_t, Row& row) { row.position_deg = 7.0; }},
         {Verdict::unrelated, "another joint",
          [](std::size_t, Row& row) { row.position_deg = 60 * std::sin(2.3 * row.time_s); }},
         {Verdict::unrelated, "another joint", [](std::size_t, Row& row) { row.velocity_deg_s = 0.0; }},
