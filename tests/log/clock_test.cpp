@@ -189,7 +189,7 @@ TEST_CASE("where rows are lost the steps tell the controller's rate, and rounded
         const ClockFacts facts = watch(times).facts;
         CHECK(facts.nominal_rate.value() == Approx(1000.0).epsilon(0.02));
         CHECK(facts.mean_rate.value() < 985.0);
-        CHECK_THAT(clock_warnings(facts).back().text, Contains("rows are lost or late"));
+        CHECK_THAT(clock_warnings(facts).back().text, Contains("samples are missing or delayed"));
     }
     CHECK(watch(lost).facts.nominal_rate.value() == 1000.0);
     for (const double rate : {800.0, 227.3, 150.0, 666.7, 300.0}) {

@@ -190,12 +190,12 @@ class Run {
 }  // namespace
 
 bool is_log(const std::string& path) {
-    if (path == "-") return false;
+    if (path == "-" || path.ends_with(".json")) return false;
     std::ifstream file(path, std::ios::binary);
     char first = ' ';
     while (file.get(first) && std::isspace(static_cast<unsigned char>(first)) != 0) {
     }
-    return file && first != '{';
+    return file && first != '{' && first != '[';
 }
 
 std::vector<PageSection> sections_of_log(const LogReport& report) { return Run(report).sections(); }

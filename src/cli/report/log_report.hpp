@@ -15,7 +15,7 @@ struct LogReport {
     bool quiet = false;
 };
 
-/// False where the file begins as a JSON document of this tool does, and for standard input.
+/// False where the file is named or begins as JSON, and for standard input.
 [[nodiscard]] bool is_log(const std::string& path);
 
 /// Runs the commands one after the other. What one of them refuses is a section with its message; without a

@@ -189,7 +189,7 @@ std::vector<LogWarning> clock_warnings(const ClockFacts& clock) {
     if (nominal > 0.0 && std::abs(mean / nominal - 1.0) > rate_worth_a_word) {
         warnings.push_back(
             {"mean rate", fmt::format("mean rate {:.6g} Hz, typical step {:.6g} ms ({:.6g} Hz): samples are "
-                                      "missing or delayed;  filters are designed for {:.6g} Hz",
+                                      "missing or delayed; filters are designed for {:.6g} Hz",
                                       mean, 1e3 / nominal, nominal, nominal)});
     }
     return warnings;
