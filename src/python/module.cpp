@@ -85,7 +85,7 @@ py::tuple run_words(const CommandWords& words) {
     return py::make_tuple(static_cast<int>(end.code), end.error, py::bytes(end.output), end.talk);
 }
 
-/// An array that owns the values; nobody writes into it, since it stands for the log.
+/// An array that owns the values; read-only, since it represents the log.
 py::array_t<double> array_of(std::vector<double>&& values) {
     auto* const kept = new std::vector<double>(std::move(values));
     const py::capsule owner(kept, [](void* gone) { delete static_cast<std::vector<double>*>(gone); });

@@ -15,7 +15,7 @@ namespace ripplenotch {
 struct ResponseRequest {
     std::optional<std::string> signals;  ///< "OUT/IN"; nothing without it
     std::string estimator = "h1";
-    std::optional<std::string> method;  ///< whose predicted response stands beside the measured one
+    std::optional<std::string> method;  ///< whose predicted response is shown with the measured one
     std::optional<Seconds> segment;
     std::optional<Hertz> resolution;
 

@@ -12,7 +12,7 @@
 
 namespace ripplenotch {
 
-DerivedVelocity::DerivedVelocity(std::unique_ptr<LogReader> reader) : reader_(std::move(reader)) {
+DerivedVelocity::DerivedVelocity(std::unique_ptr<LogReader> reader) : ChangedRows(std::move(reader)) {
     const Layout& read = reader_->layout();
     const std::vector<JointColumns> joints = read.all_chosen();
     for (std::size_t j = 0; j < joints.size(); ++j) {

@@ -15,16 +15,25 @@ namespace ripplenotch {
 
 // Velocity for logs that hold none: the slope of the position, or one that is stated.
 
-/// Passes on the rows of another reader, with the slope of the position as the velocity of joints that have
-/// none: central differences from row to row, one-sided at both ends of the log. A step of more than half a
-/// turn is taken as a wrap.
-class DerivedVelocity : public LogReader {
+/// A reader whose rows are those of another one, changed.
+class ChangedRows : public LogReader {
   public:
-    explicit DerivedVelocity(std::unique_ptr<LogReader> reader);
-
+    explicit ChangedRows(std::unique_ptr<LogReader> reader) : reader_(std::move(reader)) {}
     [[nodiscard]] const Layout& layout() const override { return reader_->layout(); }
     [[nodiscard]] std::string_view head() const override { return reader_->head(); }
     [[nodiscard]] const LogReader& base() const override { return reader_->base(); }
+
+  protected:
+    std::unique_ptr<LogReader> reader_;
+};
+
+/// Passes on the rows of another reader, with the slope of the position as the velocity of joints that have
+/// none: central differences from row to row, one-sided at both ends of the log. A step of more than half a
+/// turn is taken as a wrap.
+class DerivedVelocity : public ChangedRows {
+  public:
+    explicit DerivedVelocity(std::unique_ptr<LogReader> reader);
+
     bool next(RowBlock& block) override;
 
   private:
@@ -34,7 +43,6 @@ class DerivedVelocity : public LogReader {
     void look_ahead();
     void derive(RowBlock& block, std::size_t joint);
 
-    std::unique_ptr<LogReader> reader_;
     std::vector<std::size_t> joints_;           ///< without a velocity of their own
     std::vector<double> turns_deg_;             ///< of them: where the position would wrap
     std::vector<std::optional<Point>> before_;  ///< of them: the last row of the block before
@@ -44,32 +52,22 @@ class DerivedVelocity : public LogReader {
 };
 
 /// Passes on the rows of another reader, with the shifts of its columns added.
-class ShiftedColumns : public LogReader {
+class ShiftedColumns : public ChangedRows {
   public:
-    explicit ShiftedColumns(std::unique_ptr<LogReader> reader) : reader_(std::move(reader)) {}
+    using ChangedRows::ChangedRows;
 
-    [[nodiscard]] const Layout& layout() const override { return reader_->layout(); }
-    [[nodiscard]] std::string_view head() const override { return reader_->head(); }
-    [[nodiscard]] const LogReader& base() const override { return reader_->base(); }
     bool next(RowBlock& block) override;
-
-  private:
-    std::unique_ptr<LogReader> reader_;
 };
 
 /// Passes on the rows of another reader, with one velocity for all joints.
-class ConstantVelocity : public LogReader {
+class ConstantVelocity : public ChangedRows {
   public:
     ConstantVelocity(std::unique_ptr<LogReader> reader, DegPerSec speed)
-        : reader_(std::move(reader)), speed_(speed) {}
+        : ChangedRows(std::move(reader)), speed_(speed) {}
 
-    [[nodiscard]] const Layout& layout() const override { return reader_->layout(); }
-    [[nodiscard]] std::string_view head() const override { return reader_->head(); }
-    [[nodiscard]] const LogReader& base() const override { return reader_->base(); }
     bool next(RowBlock& block) override;
 
   private:
-    std::unique_ptr<LogReader> reader_;
     DegPerSec speed_;
 };
 

@@ -240,7 +240,8 @@ Records scope_records(std::unique_ptr<ByteSource> source, std::string first_byte
     const auto text = std::make_shared<const std::string>(rest_of(*source, std::move(first_bytes)));
     ReadOptions first = options;
     first.range = {};
-    first.takes_motor_units = true;  // of rows that belong to several moments no side can be told
+    first.takes_motor_units =
+        true;  // a row holds samples of several times, from which the side cannot be determined
     const CsvReader whole(std::make_unique<ByteSource>(name, text), "", first);
     const TextDialect& dialect = whole.dialect();
     const auto read = columns_read(whole.layout(), dialect);

@@ -138,7 +138,7 @@ std::optional<double> common_step(const Head& head, const ScopeHeader& found, co
     return step_ms ? std::optional<double>(1e-3 * *step_ms) : std::nullopt;
 }
 
-// "Name A Name B": times beside each channel. "Name A B": times that A and B share.
+// "Name A Name B": a column of times for each channel. "Name A B": times that A and B share.
 void read_channels(const std::vector<std::string>& names, const std::vector<std::string>& units,
                    double first_time, ScopeHeader& found) {
     found.clock_of.assign(names.size(), 0);

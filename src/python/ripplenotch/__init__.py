@@ -240,7 +240,7 @@ def identify(logs: AnyLog | list[AnyLog], gear_ratio: float | None = None, **opt
     """Ripple lines and gear ratio of one joint, from one log of it or several.
 
     logs        a log, or a list of logs that were read with the same options
-    gear_ratio  a ratio to check; it is not believed
+    gear_ratio  expected ratio, checked against the lines
     options     order_hint=, false_alarm=, require_conclusive=, simulated=, residual=, and how paths and arrays are read
     """
     return _run("identify", list(logs) if isinstance(logs, (list, tuple)) else [logs], {"gear_ratio": gear_ratio, **options}, Identification)

@@ -291,7 +291,7 @@ Diagnosis diagnose_readings(const Model& model, const Log& log, const Log* valid
     std::string doubt;
     for (OtherReading reading : open_readings({&log, 1})) {
         if (reading.changes_side && model.has_gear_ratio()) continue;
-        // The joint's motion is then less than the log's by a ratio that nobody knows.
+        // The joint's motion is then less than the log's by an unknown ratio.
         if (reading.changes_side) {
             reading.velocity_factor /= stand_in_ratio;
             reading.position_factor /= stand_in_ratio;
