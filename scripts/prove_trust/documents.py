@@ -38,7 +38,7 @@ def make(tool, source, folder):
     made = {
         "joint": ("identify", *logs, "--json", "-o"),
         "table": ("design", "joint.json", "--speed", "18:180:54", "--q", "0.25", "--json", "-o"),
-        "diagnosis": ("diagnose", "log.csv", "--model", "base.json", "-o", "model.json", "--json"),
+        "diagnosis": ("diagnose", "log.csv", "--model", "base.json", "--improved-model", "model.json", "--json"),
         "info": ("info", "log.csv", "--json", "-o"),
         "spectrum": ("spectrum", "log.csv", "--peaks", "--json", "-o"),
         "track": ("track", "log.csv", "--gear-ratio", "100", "--orders", "1,2", "--json", "-o"),

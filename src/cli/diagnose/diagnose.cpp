@@ -65,8 +65,8 @@ std::string story(const JointDiagnosis& one, bool explain) {
 
 void write_improved(const DiagnoseRequest& request, JointDiagnosis& one) {
     if (request.plan) one.planned = plan_for(request, one);
-    if (request.common.output == "-") return;
-    const std::string path = with_joint(request.common.output, one.joint);
+    if (!request.improved) return;
+    const std::string path = with_joint(*request.improved, one.joint);
     if (names_mjcf(path)) {
         one.mjcf = write_improved_mjcf(request, one, path);
         return;
@@ -194,7 +194,12 @@ std::function<ExitCode()> attach_diagnose(Options& options) {
                  "exit with 5 unless the log is explained in the end");
     attach_plot(options, request->plot, request->common);
     attach_log(options, request->log);
-    attach_common(options, request->common, {"a model", ""});
+    options.text("--improved-model", request->improved, "FILE",
+                 "write the improved model here: .json, or .xml and .mjcf for MuJoCo");
+    options.writes("--improved-model");
+    options.was_output("--improved-model", request->improved_by_output);
+    attach_json(options, request->common);
+    attach_manner(options, request->common);
     return [request, &options] { return run_diagnose(*request, options.command_line()); };
 }
 
@@ -205,10 +210,10 @@ const Command commands::diagnose{
     .summary = "where model and log disagree, the effect that is missing, and how far the gap shrinks",
     .description =
         "Fits the model to the log, reports where they disagree, tries every effect of the catalogue, names "
-        "and adds\nwhat is missing, and reports what no effect explains. -o writes the improved model.json; "
-        "named .xml or\n.mjcf, it is written for MuJoCo, with a list of what MuJoCo cannot "
-        "represent.\nExample: ripplenotch diagnose log.csv --model model.json --validate other.csv -o "
-        "improved.json",
+        "and adds\nwhat is missing, and reports what no effect explains. --improved-model writes the model "
+        "with it; named\n.xml or .mjcf, for MuJoCo, with a list of what MuJoCo cannot "
+        "represent.\nExample: ripplenotch diagnose log.csv --model model.json --validate other.csv "
+        "--improved-model improved.json",
     .attach = attach_diagnose,
 };
 

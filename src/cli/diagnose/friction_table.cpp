@@ -67,7 +67,7 @@ void check_table_options(const DiagnoseRequest& request) {
     refuse(request.given.arm.has_value(), "--arm");
     refuse(request.log.sample_rate.has_value(), "--sample-rate");
     refuse(request.plot.wanted(), "--plot");
-    check_output_name(request.common.output, "a model", ".json");
+    check_improved(request, ".json");
 }
 
 std::string values_of_term(const FrictionDiagnosis& found, std::size_t place) {
@@ -151,9 +151,9 @@ ExitCode run_friction_table(const DiagnoseRequest& request, const Log& table,
     } catch (const DataError& error) {  // the library knows no file
         raise<DataError>("{}: {}", request.path, error.what());
     }
-    if (request.common.output != "-") {
-        write_text(request.common.output, write_model(found.model, provenance), request.common.overwrite());
-        say(request.common, fmt::format("the model is in {}", request.common.output));
+    if (request.improved) {
+        write_text(*request.improved, write_model(found.model, provenance), request.common.overwrite());
+        say(request.common, fmt::format("the model is in {}", *request.improved));
     }
     write_text("-", request.common.json ? write_friction(found, provenance) : friction_story(found),
                ByteSink::Overwrite::no);

@@ -82,12 +82,15 @@ class Options {
     /// The file that the option of this first name takes is written; of all others whose type says that they
     /// name files (FILE, LOG, SPEC, ...), and of arguments, files are read. Those that collide are refused.
     void writes(std::string_view name);
+    /// -o and --output, which the command does not declare, are read as the option of this name for one more
+    /// release, and `used` says so. No help names them.
+    void was_output(std::string_view name, bool& used);
     /// Runs when all options are read, before the work.
     void after_parse(std::function<void()> check);
 
     [[nodiscard]] std::string command_name() const;
-    /// The command line as it would be typed again, without -o, --plot, --force, -q, -v and --json; for
-    /// provenance.
+    /// The command line as it would be typed again, without -o, --improved-model, --plot, --force, -q, -v
+    /// and --json; for provenance.
     [[nodiscard]] std::string command_line() const;
     /// The options of attach_log() that are given, each with a blank before it, for command lines that people
     /// paste; `from`, `to` and `joint` take the place of --from, --to and --joint.
@@ -145,6 +148,7 @@ struct OutputNames {
 /// How a file says where it is from, one line each: tool, command and inputs.
 [[nodiscard]] std::vector<std::string> heading_of(const Provenance& provenance);
 void attach_common(Options& options, CommonOptions& common, const OutputNames& names);
+void attach_json(Options& options, CommonOptions& common);
 /// How it writes and what it says: --force, --no-sync, --quiet and --verbose.
 void attach_manner(Options& options, CommonOptions& common);
 [[nodiscard]] bool ends_with_json(std::string_view path);
