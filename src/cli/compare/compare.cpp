@@ -337,7 +337,8 @@ std::string legend(const Comparison& comparison) {
 // The verdict, one row a method, and what was measured on what. Columns that nothing fills are left out.
 std::string comparison_view(const Comparison& comparison) {
     const Comparison named = with_short_names(comparison);
-    std::string text = paragraph(verdict(comparison)) + "\n" + rows_of(named) + "\n" + conditions(named);
+    std::string text = comparison.best_sentence.empty() ? "" : paragraph(comparison.best_sentence) + "\n";
+    text += paragraph(differences(comparison)) + "\n" + rows_of(named) + "\n" + conditions(named);
     if (comparison.match && !comparison.match->low_pass) {
         std::string sentence = comparison.match->clause;
         sentence.front() = 'N';  // all of them begin with "no low-pass"
@@ -629,6 +630,7 @@ void add_methods(Comparison& comparison, const std::vector<Contender>& contender
         warn(common, fmt::format("the ripple cannot be measured on this log: {}", levels->why_none));
     }
     comparison.windows = levels->windows;
+    comparison.why_none = levels->why_none;
     comparison.measured_share = levels->measured_share;
 }
 
@@ -708,6 +710,11 @@ Comparison compare_on_log(const CompareRequest& request, Field& field, Provenanc
     add_methods(comparison, field.contenders, compared, request.common);
     compared.watch = {};  // what is matched is measured more than once
     if (wants_match(request)) add_match_on_log(comparison, request, compared);
+    std::vector<Contender> all = field.contenders;
+    if (comparison.match && comparison.match->low_pass)
+        all.push_back(make_contender(parse_spec(*comparison.match->low_pass)));
+    const Gates& gates = request.costs.gates;
+    judge(comparison, all, compared, {gates.max_delay, gates.min_attenuation_db});
     return comparison;
 }
 

@@ -83,7 +83,7 @@ std::string methods_text(const Recommendation& found) {
             rows.back().push_back(fmt::format("{:.4f}", nm));
         rows.back().push_back(method.meets() ? "" : "no");
     }
-    rows.front().back() = found.limits.max_delay || found.limits.min_attenuation_db ? "within limits" : "";
+    rows.front().back() = found.limits.any() ? "within limits" : "";
     return "\n" + text_table(rows, "lr");
 }
 
