@@ -80,7 +80,7 @@ class Improved(SharedCase):
     def test_a_residual_is_looked_into(self):
         strongest = []
         for words in (("--joint", "j2"), ("--residual", "j2.json"), ("--residual", "j2.json", "--segment", "4s")):
-            done = self.run_tool("spectrum", "log.csv", *words)
+            done = self.run_tool("spectrum", "log.csv", "--bins", *words)
             self.assertEqual(done.returncode, 0, done.stderr)
             strongest.append(max(float(line.split(",")[1]) for line in done.stdout.splitlines()[1:]))
         self.assertLess(max(strongest[1:]), 0.02 * strongest[0])

@@ -59,7 +59,7 @@ class NamesOfOtherKinds(Told):
         self.good(*self.DESIGN, "-o", "t.json", "--json")
         yield from (["info", MOVE], ["effects"], ["identify", PAPER_90], ["compare", MOVE, *LOW], self.DESIGN,
                     [*self.DESIGN[:-1], "18:90", "--frontier"], ["spectrum", PAPER_90],
-                    ["spectrum", PAPER_90, "--peaks"], ["spectrum", MOVE, "--map", "order"],
+                    ["spectrum", PAPER_90, "--peaks"], ["spectrum", PAPER_90, "--bins"], ["spectrum", MOVE, "--map", "order"],
                     ["track", MOVE, "--gear-ratio", 100], ["track", MOVE, "--gear-ratio", 100, "--json"],
                     ["filter", MOVE, *LOW], self.SIMULATE, ["report", "t.json"],
                     ["diagnose", MOVE, "--model", DATA / "paper_model.json"])
