@@ -57,8 +57,9 @@ std::string rules_text(const DiagnosisRules& rules) {
     return text_table(rows, "lrrrl");
 }
 
-std::string story(const JointDiagnosis& one, bool explain) {
-    return (one.given.account ? arm_text(*one.given.account) : "") + diagnosis_story(one.diagnosis, explain) +
+std::string story(const DiagnoseRequest& request, const JointDiagnosis& one) {
+    return (one.given.account ? arm_text(*one.given.account) : "") +
+           diagnosis_story(request.common, one.diagnosis, request.explain) +
            (one.diagnosis.model.has_gear_ratio() ? "" : gear_in_words(one.gear) + "\n") +
            (one.mjcf ? mjcf_text(*one.mjcf) : "") + (one.planned ? plan_text(*one.planned) : "");
 }
@@ -92,7 +93,7 @@ ExitCode run_one(const DiagnoseRequest& request, GivenSource& given, const std::
                request.common.json
                    ? write_diagnosis(one.diagnosis, one.gear, one.provenance,
                                      one.given.account ? &*one.given.account : nullptr, written_of(one))
-                   : story(one, request.explain),
+                   : story(request, one),
                ByteSink::Overwrite::no);
     draw_plot(request.plot, request.common, one.provenance, [&] {
         return diagnosis_figure(request.path, one.diagnosis, one.log.trace.view(), request.smoothing);
@@ -132,7 +133,7 @@ ExitCode run_all(const DiagnoseRequest& request, GivenSource& given, const std::
         for (const std::string& why : one.diagnosis.not_accepted)
             warn(request.common, fmt::format("joint {}: {}", joint, why));
         write_improved(request, one);
-        text += fmt::format("joint {}\n{}\n", joint, story(one, request.explain));
+        text += fmt::format("joint {}\n{}\n", joint, story(request, one));
         let_columns_go(one);
     }
     write_text("-", request.common.json ? list_of(all, command_line) : text + joints_table(all),

@@ -16,6 +16,7 @@
 #include "ripplenotch/core/files.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/progress.hpp"
+#include "ripplenotch/core/visible_text.hpp"
 #include "ripplenotch/evaluate/ledger.hpp"
 #include "ripplenotch/log/format.hpp"
 
@@ -389,6 +390,26 @@ void say_warnings(const CommonOptions& common, std::span<const LogWarning> warni
 
 void say(const CommonOptions& common, std::string_view sentence) {
     if (common.verbose && !common.quiet) say_or_gather(common, false, sentence);
+}
+
+std::string paragraph(const CommonOptions& common, std::string_view sentence, std::size_t before,
+                      std::size_t indent) {
+    const auto width =
+        common.output == "-" || ends_with_json(common.output) ? terminal_columns() : std::nullopt;
+    if (!width) return fmt::format("{}\n", sentence);
+    const std::string visible = visible_text(sentence);
+    std::string text = wrapped(std::string(before, '.') + visible, *width).front().substr(before);
+    std::string_view rest = std::string_view(visible).substr(text.size());
+    text += "\n";
+    if (rest.starts_with(' ')) rest.remove_prefix(1);
+    if (rest.empty()) return text;
+    for (const std::string& line : wrapped(rest, *width - std::min(indent, *width - 1)))
+        text += std::string(indent, ' ') + line + "\n";
+    return text;
+}
+
+std::size_t joint_columns(const CommonOptions& common) {
+    return common.messages ? text_width(visible_text(common.joint)) + 2 : 0;
 }
 
 void write_result(const CommonOptions& common, const std::function<std::string()>& json,

@@ -163,6 +163,13 @@ void warn(const CommonOptions& common, std::string_view sentence);
 void say_warnings(const CommonOptions& common, std::span<const std::string> warnings);
 void say_warnings(const CommonOptions& common, std::span<const LogWarning> warnings);
 void say(const CommonOptions& common, std::string_view sentence);  ///< only with -v
+/// A sentence with its end of line. On a terminal it is wrapped at blanks, to the terminal's width: the first
+/// line begins after `before` columns, the others with `indent` blanks. In a pipe or a file it is one line,
+/// so that the first line of a result is its verdict.
+[[nodiscard]] std::string paragraph(const CommonOptions& common, std::string_view sentence,
+                                    std::size_t before = 0, std::size_t indent = 0);
+/// The columns of "j1: ", which stand before the result of a joint where there are several.
+[[nodiscard]] std::size_t joint_columns(const CommonOptions& common);
 /// The option line that would force the reading of a log, with -v; its warnings always unless quiet.
 void say_layout(const CommonOptions& common, const Layout& layout);
 /// A log that was read: what is said of it, and its place among the inputs.
