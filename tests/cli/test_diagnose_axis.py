@@ -12,8 +12,8 @@ LEAD_M = 0.02
 MASS_KG = 95.0
 COULOMB_N, WIDTH_M_S = 20.4, 5e-4
 OFFSET_N = -3.2
-FORCE_NOISE_N, SPEED_NOISE_M_S, POSITION_NOISE_M = 1.0, 5e-5, 1e-6
-RATE_HZ = 500
+FORCE_NOISE_N, SPEED_NOISE_M_S, POSITION_NOISE_M = 2.0, 5e-5, 1e-6
+RATE_HZ = 1000
 SPEEDS_M_S = (0.03, 0.06, 0.1, 0.16, 0.25, 0.4)  # the fastest of each stroke, forth and back
 # A force of 1 N is LEAD / (2 pi) Nm at the screw, and 1 m/s is 360 / LEAD deg/s.
 NM_PER_N = LEAD_M / (2 * math.pi)
@@ -83,8 +83,8 @@ class LinearAxis(Case):
                     self.assertLess(abs(values[name]["value"] / expected[name] - 1), 0.03, name)
                 inertia = next(one for one in found["model"]["effects"] if one["effect"] == "inertia")
                 self.assertAlmostEqual(inertia["inertia_kgm2"] / NM_PER_N**2, MASS_KG, delta=0.5)
-                # Speed noise of 0.18 deg/s (25 samples are smoothed) on a step 9 deg/s wide is 0.4 N during the rests, a quarter
-                # of the log: 2 %. Chance is 0.5 %, a standard deviation of 19,000 samples.
+                # Speed noise of 0.13 deg/s (50 samples are smoothed) on a step 9 deg/s wide is 0.3 N during the rests, a quarter
+                # of the log, and chance 0.4 %, a standard deviation of 38,000 samples.
                 self.assertAlmostEqual(found["gap"]["after_nm"] / NM_PER_N, FORCE_NOISE_N, delta=0.05)
 
     def test_coulomb_friction_viscous_friction_its_difference_and_the_offset_are_named_and_nothing_else(self):
