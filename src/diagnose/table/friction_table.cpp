@@ -230,7 +230,8 @@ void check_rows(const Rows& rows, FrictionDiagnosis& result) {
 }
 
 // Adds what lowers the squares by more than chance, the most unlikely first. Differences of level and of
-// slope that oppose each other each explain little alone: where neither is found, the two are tried together.
+// slope that oppose each other explain little alone: where nothing is found, the two are tried together, and
+// each has to be more than chance beside the other.
 TableFit::Fitted with_found(const TableFit& table, Model model, std::vector<std::string_view> names,
                             FrictionDiagnosis& result, double false_alarm) {
     using Names = std::vector<std::string_view>;
@@ -249,17 +250,21 @@ TableFit::Fitted with_found(const TableFit& table, Model model, std::vector<std:
         const double chance = table.chance(fitted, best);
         return Trial{std::move(added), std::move(fitted), chance};
     };
-    const Names differences = {"asymmetric-friction", "asymmetric-viscous-friction"};
     while (!names.empty()) {
         std::vector<Trial> trials;
         for (const std::string_view name : names) trials.push_back(tried({name}));
-        const auto least = std::ranges::min_element(trials, {}, &Trial::chance);
-        const bool both_are_open = std::ranges::all_of(differences, [&](std::string_view name) {
-            return std::ranges::find(names, name) != names.end();
-        });
-        std::optional<Trial> together;
-        if (least->chance > false_alarm && both_are_open) together = tried(differences);
-        Trial& found = together && together->chance <= false_alarm ? *together : *least;
+        Trial found = *std::ranges::min_element(trials, {}, &Trial::chance);
+        std::vector<const Trial*> differences;
+        for (const Trial& one : trials) {
+            if (one.added[0].starts_with("asymmetric-")) differences.push_back(&one);
+        }
+        if (found.chance > false_alarm && differences.size() == 2) {
+            Trial both = tried({differences[0]->added[0], differences[1]->added[0]});
+            const bool is_each_needed = std::ranges::all_of(differences, [&](const Trial* alone) {
+                return table.chance(both.fitted, alone->fitted) <= false_alarm;
+            });
+            if (is_each_needed) found = std::move(both);
+        }
         if (found.chance > false_alarm) {
             for (std::size_t i = 0; i < names.size(); ++i)
                 result.tried.push_back({names[i], false, trials[i].chance});
