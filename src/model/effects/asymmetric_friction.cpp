@@ -55,6 +55,7 @@ const Effect effects::asymmetric_friction{
     .side = Side::joint,
     .domain = Domain::speed,
     .parameters = parameters,
+    .differs = true,
     .apply = apply,
 };
 

@@ -46,6 +46,7 @@ const Effect effects::asymmetric_viscous_friction{
     .side = Side::joint,
     .domain = Domain::speed,
     .parameters = parameters,
+    .differs = true,
     .apply = apply,
 };
 
