@@ -318,7 +318,7 @@ class DiagnosisRun {
         result_.angle = before.account(whole_, other_ ? &*other_ : nullptr);
         if (!has_position_) result_.undecidable = undecidable(*found.bench, last, effects_, without_);
         if (!model_.has_gear_ratio()) list_effects_of_motor();
-        if (!moves_both_ways_) list_differences();
+        if (!moves_both_ways_) list_of_both_directions();
         measure_at_samples(spoiled, whole_, last.stated);
         result_.unexplained.insert(result_.unexplained.begin(), spoiled.begin(), spoiled.end());
         result_.unexplained.insert(result_.unexplained.begin(), aside.begin(), aside.end());
@@ -334,7 +334,7 @@ class DiagnosisRun {
         }
     }
 
-    void list_differences() {
+    void list_of_both_directions() {
         for (const Effect* effect : examined(without_, {})) {
             if (effect->differs)
                 result_.undecidable.push_back({effect->name, "needs motion in both directions", 0.0});

@@ -55,7 +55,6 @@ const Effect effects::asymmetric_friction{
     .side = Side::joint,
     .domain = Domain::speed,
     .parameters = parameters,
-    .differs = true,
     .apply = apply,
 };
 
