@@ -126,6 +126,7 @@ TORQUES = {
     "coulomb-friction": lambda x, e: e["torque_nm"] * direction(x.v, e["width_deg_s"]),
     "asymmetric-friction": lambda x, e: e["difference_nm"] / 2 * direction(x.v, 0.2) ** 2,
     "viscous-friction": lambda x, e: e["coefficient_nm_per_deg_s"] * x.v,
+    "asymmetric-viscous-friction": lambda x, e: e["difference_nm_per_deg_s"] / 2 * np.abs(x.v),
     "quadratic-viscous-friction": lambda x, e: e["coefficient_nm_per_deg2_s2"] * x.v * np.abs(x.v),
     "stribeck-friction": lambda x, e: (e["torque_nm"] * direction(x.v, 0.2)
                                        * np.exp(-((x.v / e["stribeck_speed_deg_s"]) ** 2))),
@@ -279,6 +280,8 @@ FURTHER = {
 RARER = {
     "quadratic-viscous-friction": lambda r: effect("quadratic-viscous-friction",
                                                    coefficient_nm_per_deg2_s2=r.uniform(1.5e-5, 4e-5)),
+    "asymmetric-viscous-friction": lambda r: effect("asymmetric-viscous-friction",
+                                                    difference_nm_per_deg_s=sign(r) * r.uniform(0.003, 0.01)),
     "load-friction": lambda r: effect("load-friction", torque_nm=r.uniform(0.08, 0.2), exponent=r.uniform(0.8, 1.3)),
     "ripple-direction-dependence": lambda r: effect("ripple-direction-dependence", gain_percent=r.uniform(15.0, 40.0),
                                                     phase_deg=r.uniform(5.0, 30.0)),

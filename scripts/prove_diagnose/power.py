@@ -30,7 +30,8 @@ SIZE = {"offset": ("torque_nm", 1), "drift": ("rate_nm_s", 1), "gravity": ("ampl
         "quantization": ("step_nm", 1), "spikes": ("size_nm", 1), "dropout": ("milliseconds", 1), "gear-ratio": ("error_percent", 1),
         "quadratic-viscous-friction": ("coefficient_nm_per_deg2_s2", 1), "load-friction": ("torque_nm", 1),
         "ripple-direction-dependence": ("gain_percent", 1), "start-stop-ringing": ("amplitude_nm", 1),
-        "asymmetric-friction": ("difference_nm", 1), "backlash": ("torque_nm", 1), "friction-warm-up": ("change_nm", 1),
+        "asymmetric-friction": ("difference_nm", 1), "asymmetric-viscous-friction": ("difference_nm_per_deg_s", 1),
+        "backlash": ("torque_nm", 1), "friction-warm-up": ("change_nm", 1),
         "position-dependent-friction": ("amplitude_nm", 1), "payload-change": ("cosine_nm", 1), "sensor-lowpass": ("cutoff_hz", -1)}
 ALSO = {"ripple-direction-dependence": ("phase_deg",), "payload-change": ("inertia_kgm2", "sine_nm")}  # grow with it
 

@@ -114,8 +114,9 @@ std::vector<Undecidable> undecidable(const ModelBench& bench, const Candidate& m
                                      std::span<const Effect* const> tried,
                                      std::span<const std::string> without) {
     std::vector<const Effect*> others;
-    for (const Effect* effect : examined(without, true, model.stated.has_gear_ratio())) {
-        if (std::find(tried.begin(), tried.end(), effect) == tried.end()) others.push_back(effect);
+    for (const Effect* effect : examined(without, {.of_motor = model.stated.has_gear_ratio()})) {
+        if (needs_position(*effect) && std::find(tried.begin(), tried.end(), effect) == tried.end())
+            others.push_back(effect);
     }
     std::vector<Undecidable> told;
     for (const Effect* effect : others)
@@ -215,6 +216,14 @@ double fastest_deg_s(const Motion& motion) {
     return fastest;
 }
 
+bool moves_both_ways(const Case& c, double least_part) {
+    std::size_t positive = 0, negative = 0;
+    for (const double v : c.motion.velocity_deg_s) {
+        if (std::abs(v) > c.moving_deg_s) ++(v > 0.0 ? positive : negative);
+    }
+    return static_cast<double>(std::min(positive, negative)) >= least_part * static_cast<double>(c.size());
+}
+
 // A value that is fitted in its logarithm has an interval of factors.
 void widen_interval(FittedValue& value, const Parameter& parameter, double times) {
     if (!value.ci95) return;
@@ -254,8 +263,11 @@ class DiagnosisRun {
         // An arm has inertia and gravity of its own.
         if (is_given(options.given, "arm"))
             without_.insert(without_.end(), {"inertia", "gravity", "payload-change"});
-        effects_ = examined(without_, has_position_ || tells_position(whole_.motion, rules_.recording),
-                            model_.has_gear_ratio());
+        moves_both_ways_ = moves_both_ways(whole_, rules_.advice.least_part);
+        effects_ = examined(without_,
+                            {.of_position = has_position_ || tells_position(whole_.motion, rules_.recording),
+                             .of_motor = model_.has_gear_ratio(),
+                             .of_direction = moves_both_ways_});
         if (validation == nullptr) return;
         other_ = whole_case(*validation, options.smoothing, rules_.recording);
         take_known_torque(*other_, options.validation_given);
@@ -306,6 +318,7 @@ class DiagnosisRun {
         result_.angle = before.account(whole_, other_ ? &*other_ : nullptr);
         if (!has_position_) result_.undecidable = undecidable(*found.bench, last, effects_, without_);
         if (!model_.has_gear_ratio()) list_effects_of_motor();
+        if (!moves_both_ways_) list_of_both_directions();
         measure_at_samples(spoiled, whole_, last.stated);
         result_.unexplained.insert(result_.unexplained.begin(), spoiled.begin(), spoiled.end());
         result_.unexplained.insert(result_.unexplained.begin(), aside.begin(), aside.end());
@@ -315,9 +328,16 @@ class DiagnosisRun {
 
   private:
     void list_effects_of_motor() {
-        for (const Effect* effect : examined(without_, true, true)) {
+        for (const Effect* effect : examined(without_, {})) {
             if (needs_gear_ratio(*effect))
                 result_.undecidable.push_back({effect->name, "needs the gear ratio, --gear-ratio N", 0.0});
+        }
+    }
+
+    void list_of_both_directions() {
+        for (const Effect* effect : examined(without_, {})) {
+            if (effect->differs)
+                result_.undecidable.push_back({effect->name, "needs motion in both directions", 0.0});
         }
     }
 
@@ -589,7 +609,7 @@ class DiagnosisRun {
     const DiagnosisOptions& options_;
     const DiagnosisRules& rules_;
     Model model_;
-    bool has_position_, other_has_position_ = false, fits_offset_ = false;
+    bool has_position_, other_has_position_ = false, fits_offset_ = false, moves_both_ways_ = true;
     Case whole_;
     std::optional<Case> other_;
     Work work_, more_work_;

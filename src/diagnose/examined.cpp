@@ -13,12 +13,12 @@ bool is_among(std::span<const std::string> names, std::string_view name) {
     return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-std::vector<const Effect*> examined(std::span<const std::string> without, bool of_position, bool of_motor) {
+std::vector<const Effect*> examined(std::span<const std::string> without, Examinable some) {
     std::vector<const Effect*> effects;
     for (const Effect* effect : catalogue()) {
         const bool left_out = is_among(without, effect->name);
-        if (left_out || effect->side == Side::converter || (!of_position && needs_position(*effect)) ||
-            (!of_motor && needs_gear_ratio(*effect)))
+        if (left_out || effect->side == Side::converter || (!some.of_position && needs_position(*effect)) ||
+            (!some.of_motor && needs_gear_ratio(*effect)) || (!some.of_direction && effect->differs))
             continue;
         effects.push_back(effect);
     }

@@ -14,11 +14,13 @@ namespace ripplenotch {
 
 [[nodiscard]] bool is_among(std::span<const std::string> names, std::string_view name);
 
+/// Whether effects take part that need the joint's position, the gear ratio, or motion in both directions.
+struct Examinable {
+    bool of_position = true, of_motor = true, of_direction = true;
+};
+
 /// Effects that a fit can find; those of the converter are found in the log itself (find_faults).
-/// `of_position`: whether effects that need the joint's position take part; `of_motor`: whether those that
-/// need the gear ratio do.
-[[nodiscard]] std::vector<const Effect*> examined(std::span<const std::string> without, bool of_position,
-                                                  bool of_motor);
+[[nodiscard]] std::vector<const Effect*> examined(std::span<const std::string> without, Examinable some);
 
 /// Faults whose effect is not among those tried have no name: the samples that they invalidate are
 /// unexplained. They are removed from `faults`.

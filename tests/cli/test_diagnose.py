@@ -50,6 +50,15 @@ class Diagnose(Case):
         self.assertEqual(json.loads((self.folder / "improved.json").read_text())["effects"],
                          found["model"]["effects"])
 
+    def test_a_difference_of_viscous_friction_is_not_examined_on_a_log_of_one_direction(self):
+        self.log("log.csv", move(0, 60, 90, 400, 520, 560), "viscous-friction,coefficient_nm_per_deg_s=0.006")
+        done = self.run_tool("diagnose", "log.csv", "--model", "model.json", "--json", "-q")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        found = json.loads(done.stdout)
+        self.assertEqual((found["verdict"], found["named"]), ("explained", ["viscous-friction"]))
+        self.assertEqual([(one["effect"], one["reason"]) for one in found["undecidable"]],
+                         [("asymmetric-viscous-friction", "needs motion in both directions")])
+
     def test_a_torque_of_the_output_angle_over_less_than_its_cycle_is_not_confirmed(self):
         self.log("log.csv", move(0, 130, 10, 120, 5), "output-ripple,order=2,amplitude_nm=70,phase_deg=20")
         done = self.run_tool("diagnose", "log.csv", "--model", "model.json", "--json", "-q")

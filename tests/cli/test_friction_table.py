@@ -12,9 +12,9 @@ TRUTH = {"coulomb": 0.6, "viscous": 0.01, "stribeck": 0.4, "speed": 8.0}
 SPEEDS = [0.5, 1, 2, 3, 5, 8, 12, 18, 25, 40, 60, 90]
 
 
-def friction(v, difference=0.0, stribeck=0.0):
+def friction(v, difference=0.0, stribeck=0.0, viscous_difference=0.0):
     size = TRUTH["coulomb"] + TRUTH["viscous"] * abs(v) + stribeck * math.exp(-(v / TRUTH["speed"]) ** 2)
-    return math.copysign(size, v) + 0.5 * difference
+    return math.copysign(size, v) + 0.5 * difference + 0.5 * viscous_difference * abs(v)
 
 
 def table(speeds, chance, noise=0.01, **hidden):
@@ -58,6 +58,23 @@ class FrictionTable(Case):
                              "100Hz", "-o", "log.csv")
         self.assertEqual(done.returncode, 0, done.stderr)
 
+    def test_viscous_friction_that_differs_by_direction_is_found_with_and_without_a_difference_of_the_level(self):
+        key = ("asymmetric-viscous-friction", "difference_nm_per_deg_s")
+        for seed in range(1, 4):
+            for viscous_difference, difference in ((0.003, 0.0), (-0.003, 0.0), (0.003, -0.1), (0.0, 0.1), (0.0, 0.0)):
+                with self.subTest(seed=seed, viscous_difference=viscous_difference, difference=difference):
+                    found = self.found(table(both_ways(SPEEDS), random.Random(seed), difference=difference,
+                                             viscous_difference=viscous_difference))
+                    names = [term["effect"] for term in found["terms"]]
+                    hidden = {"coulomb-friction", "viscous-friction"}
+                    hidden |= {"asymmetric-viscous-friction"} if viscous_difference else set()
+                    hidden |= {"asymmetric-friction"} if difference else set()
+                    self.assertEqual(set(names), hidden)
+                    if viscous_difference:
+                        value = self.parameters(found)[key]
+                        low, high = value["ci95"]
+                        self.assertLess(abs(value["value"] - viscous_difference), high - low)
+
     def test_the_story_has_every_value_its_unit_and_what_was_not_examined(self):
         done = self.table(table(both_ways(SPEEDS), random.Random(6)))
         self.assertEqual((done.returncode, done.stderr), (0, ""))
@@ -74,6 +91,7 @@ class FrictionTable(Case):
         one_way = self.found(table(SPEEDS, random.Random(8)))
         names = [one["effect"] for one in one_way["undecidable"]]
         self.assertIn("asymmetric-friction", names)
+        self.assertIn("asymmetric-viscous-friction", names)
         self.assertIn("offset", names)
 
     def test_units_of_the_header_count_and_rows_at_rest_do_not(self):

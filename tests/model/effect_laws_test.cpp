@@ -75,10 +75,11 @@ TEST_CASE("effects have unique names in kebab-case, are found by them, and descr
             CHECK(effect->parameters[effect->polar->phase].unit == "deg");
         }
     }
-    CHECK_THROWS_WITH(find_effect("friction"),
-                      Contains("coulomb-friction, asymmetric-friction, viscous-friction, "
-                               "quadratic-viscous-friction, stribeck-friction, load-friction, "
-                               "position-dependent-friction"));
+    CHECK_THROWS_WITH(
+        find_effect("friction"),
+        Contains("coulomb-friction, asymmetric-friction, viscous-friction, "
+                 "asymmetric-viscous-friction, quadratic-viscous-friction, stribeck-friction, load-friction, "
+                 "position-dependent-friction"));
     CHECK_THROWS_WITH(find_effect("rippel"),
                       Contains("did you mean ripple?") && Contains("ripplenotch effects"));
 }
@@ -145,6 +146,27 @@ TEST_CASE("what resists is a friction at the joint whose first parameter is its 
         CHECK(effect->parameters[0].lower == 0.0);
     }
     CHECK(count == 5);
+}
+
+TEST_CASE("what is tried in both directions only is a torque of the joint that is the same forth and back") {
+    int count = 0;
+    const auto forth =
+        make_motion(std::vector<std::string>{"poly6,from=0,to=90deg,duration=1s"}, Hertz(100.0));
+    auto back = forth;
+    for (std::size_t k = 0; k < back.size(); ++k) {
+        back.velocity_deg_s[k] *= -1.0;
+        back.acceleration_deg_s2[k] *= -1.0;
+    }
+    for (const Effect* effect : catalogue()) {
+        if (!effect->differs) continue;
+        CAPTURE(effect->name);
+        ++count;
+        CHECK(effect->side == Side::joint);
+        CHECK_FALSE(effect->resists);
+        const Model model = with({GearRatio(100.0), {}}, *effect, active_values(*effect));
+        CHECK(predict_nm(model, forth) == predict_nm(model, back));
+    }
+    CHECK(count == 1);
 }
 
 TEST_CASE("neutral values change nothing, to the last bit") {

@@ -62,6 +62,17 @@ TEST_CASE("friction that differs by direction is half the difference either way,
     CHECK(at_speed({"asymmetric-friction,difference_nm=-0.6"}, 50.0) == Approx(-0.3));
 }
 
+TEST_CASE("viscous friction that differs by direction is half the difference times the speed either way") {
+    constexpr std::string_view term = "asymmetric-viscous-friction,difference_nm_per_deg_s=0.004";
+    CHECK(at_speed({term}, 50.0) == Approx(0.1));
+    CHECK(at_speed({term}, -50.0) == Approx(0.1));
+    CHECK(at_speed({term}, 0.0) == 0.0);
+    // With a coefficient of 0.01: 0.012 Nm/(deg/s) forth, 0.008 Nm/(deg/s) back.
+    constexpr std::string_view viscous = "viscous-friction,coefficient_nm_per_deg_s=0.01";
+    CHECK(at_speed({viscous, term}, 50.0) == Approx(0.6));
+    CHECK(at_speed({viscous, term}, -100.0) == Approx(-0.8));
+}
+
 TEST_CASE("friction by position turns with the position and with the direction") {
     // 90 deg/s, one sample a second: 0, 90, 180, 270 deg.
     constexpr std::string_view term = "position-dependent-friction,order=1,amplitude_nm=0.4,phase_deg=0";

@@ -120,6 +120,7 @@ struct Effect {
     bool bears_load = false;  ///< joint: its torque is part of the load that gear and bearings carry
     bool uses_load = false;   ///< it uses Situation::load_nm
     bool resists = false;     ///< joint: a friction, whose first parameter is its size; below 0 it drives
+    bool differs = false;     ///< joint: in one direction it is another effect's torque, and is not tried
     bool chance = false;      ///< converter: which samples it hits is chance, so that no prediction holds it
     bool linear_in_torque = true;  ///< sensor, converter: acts on a sum as the sum of its actions
     std::optional<std::size_t> ripple_order = std::nullopt;  ///< joint: it is a ripple term, and this

@@ -90,6 +90,7 @@ struct Joint {
     const double coulomb = p.get("coulomb"), stick = p.get("stick"), stribeck = p.get("stribeck_speed", 1);
     const double viscous = p.get("viscous"), drag = p.get("drag"), drag_exponent = p.get("drag_exponent", 2);
     const double by_load = p.get("friction_by_load"), asymmetry = p.get("asymmetry");
+    const double viscous_asymmetry = p.get("viscous_asymmetry");
     const double warm = p.get("warm"), warm_s = p.get("warm_s", 10);
     const double uneven = p.get("uneven"), uneven_angle = p.get("uneven_angle");
     const double motor_level = p.get("motor_coulomb"), motor_viscous = p.get("motor_viscous");
@@ -131,7 +132,7 @@ struct Joint {
         if (asymmetry != 0) level *= 1 + (v > 0 ? asymmetry : -asymmetry);
         if (warm != 0) level *= 1 + warm * (1 - heat);
         if (uneven != 0) level *= 1 + uneven * std::cos(q + uneven_angle);
-        double total = link_friction.force(v, level) + viscous * v;
+        double total = link_friction.force(v, level) + viscous * (v + viscous_asymmetry * sliding);
         if (drag != 0) total += drag * std::copysign(std::pow(sliding, drag_exponent), v);
         if (soft_level > 0) total += soft_friction.force(v, soft_level);
         if (bump != 0) total += bump * std::exp(-std::pow((q - bump_at) / bump_width, 2));

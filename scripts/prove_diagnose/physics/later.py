@@ -15,6 +15,15 @@ def asymmetric_friction(rng, j):
     return Hidden([[("asymmetric-friction", None)]], apply, start=0.3, most=0.9)
 
 
+def asymmetric_viscous_friction(rng, j):
+    """Another coefficient of the viscous friction in each direction. Their mean is known."""
+    sign = rng.choice([-1.0, 1.0])
+
+    def apply(p, s):
+        p["viscous_asymmetry"] = sign * s
+    return Hidden(one("asymmetric-viscous-friction"), apply, start=0.3, most=0.9)
+
+
 def backlash(rng, j):
     """Play between motor and link: torque is next to none until the flanks meet again."""
     return Hidden(one("backlash"), setter("backlash"), start=1e-3, most=math.radians(0.3),
@@ -61,7 +70,8 @@ def sensor_lowpass(rng, j):
     return Hidden(one("sensor-lowpass"), apply, start=0.004, most=0.02)
 
 
-LATER = {"asymmetric-friction": asymmetric_friction, "backlash": backlash, "friction-warm-up": friction_warm_up,
+LATER = {"asymmetric-friction": asymmetric_friction, "asymmetric-viscous-friction": asymmetric_viscous_friction,
+         "backlash": backlash, "friction-warm-up": friction_warm_up,
          "payload-change": payload_change, "position-dependent-friction": position_dependent_friction,
          "encoder-eccentricity": encoder_eccentricity, "sensor-lowpass": sensor_lowpass}
 GRAVITY = {"payload-change": True}

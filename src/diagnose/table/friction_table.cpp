@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "core/matrices/least_squares.hpp"
@@ -107,8 +108,9 @@ class TableFit {
         return std::sqrt(freedom * (1.0 / ratio - 1.0));
     }
 
-    // Trials in all: a Stribeck speed may be anything between the rows, which their number bounds.
-    [[nodiscard]] double cells() const { return 2.0 + static_cast<double>(motion_.size()); }
+    // Trials in all: three curves of fixed form, two of them together, and a Stribeck speed may be anything
+    // between the rows, which their number bounds.
+    [[nodiscard]] double cells() const { return 4.0 + static_cast<double>(motion_.size()); }
 
     // From where to where a value may go until the squares, least over all others, rise by as much as
     // Student's t allows. For a value that the torque is linear in, in a linear model, it is the usual
@@ -227,29 +229,52 @@ void check_rows(const Rows& rows, FrictionDiagnosis& result) {
             "against its friction; invert the sign of one of the columns");
 }
 
-// Adds what lowers the squares by more than chance, the most unlikely first.
+// Adds what lowers the squares by more than chance, the most unlikely first. Differences of level and of
+// slope that oppose each other explain little alone: where nothing is found, the two are tried together, and
+// each has to be more than chance beside the other.
 TableFit::Fitted with_found(const TableFit& table, Model model, std::vector<std::string_view> names,
                             FrictionDiagnosis& result, double false_alarm) {
+    using Names = std::vector<std::string_view>;
+    struct Trial {
+        Names added;
+        TableFit::Fitted fitted;
+        double chance = 1.0;
+    };
     TableFit::Fitted best = table.fitted(model);
+    const auto tried = [&](Names added) {
+        Model with = best.open;
+        for (const std::string_view name : added) with.terms.push_back(table.term(name));
+        if (table.motion().size() <= best.fit.values.size() + added.size() + 1)
+            return Trial{std::move(added), best};
+        TableFit::Fitted fitted = table.fitted(with);
+        const double chance = table.chance(fitted, best);
+        return Trial{std::move(added), std::move(fitted), chance};
+    };
     while (!names.empty()) {
-        std::vector<std::pair<double, TableFit::Fitted>> trials;
-        for (const std::string_view name : names) {
-            Model with = best.open;
-            with.terms.push_back(table.term(name));
-            const bool fits = table.motion().size() > best.fit.values.size() + 2;
-            TableFit::Fitted trial = fits ? table.fitted(with) : best;
-            trials.emplace_back(fits ? table.chance(trial, best) : 1.0, std::move(trial));
+        std::vector<Trial> trials;
+        for (const std::string_view name : names) trials.push_back(tried({name}));
+        Trial found = *std::ranges::min_element(trials, {}, &Trial::chance);
+        std::vector<const Trial*> differences;
+        for (const Trial& one : trials) {
+            if (one.added[0].starts_with("asymmetric-")) differences.push_back(&one);
         }
-        const auto first = std::ranges::min_element(trials, {}, [](const auto& one) { return one.first; });
-        const auto place = first - trials.begin();
-        if (first->first > false_alarm) {
+        if (found.chance > false_alarm && differences.size() == 2) {
+            Trial both = tried({differences[0]->added[0], differences[1]->added[0]});
+            const bool is_each_needed = std::ranges::all_of(differences, [&](const Trial* alone) {
+                return table.chance(both.fitted, alone->fitted) <= false_alarm;
+            });
+            if (is_each_needed) found = std::move(both);
+        }
+        if (found.chance > false_alarm) {
             for (std::size_t i = 0; i < names.size(); ++i)
-                result.tried.push_back({names[i], false, trials[i].first});
+                result.tried.push_back({names[i], false, trials[i].chance});
             break;
         }
-        result.tried.push_back({names[static_cast<std::size_t>(place)], true, first->first});
-        best = std::move(first->second);
-        names.erase(names.begin() + place);
+        for (const std::string_view name : found.added) {
+            result.tried.push_back({name, true, found.chance});
+            std::erase(names, name);
+        }
+        best = std::move(found.fitted);
     }
     return best;
 }
@@ -267,8 +292,11 @@ void add_rivals(const TableFit& table, const TableFit::Fitted& best, FrictionDia
             const double behind = static_cast<double>(table.motion().size()) *
                                   portable::log(table.fitted(model).squares / best.squares);
             if (behind >= tie_margin) continue;
-            result.ambiguous.push_back({{name, std::string(other.effect)},
-                                        "rows at more speeds, below the Stribeck speed and far above it,"});
+            const bool is_stribeck = name == "stribeck-friction" || other.effect == "stribeck-friction";
+            result.ambiguous.push_back(
+                {{name, std::string(other.effect)},
+                 is_stribeck ? "rows at more speeds, below the Stribeck speed and far above it,"
+                             : "rows at more speeds, the fastest five times the slowest or more,"});
         }
     }
 }
@@ -317,6 +345,7 @@ void list_undecidable(FrictionDiagnosis& result) {
     }
     if (result.positive == 0 || result.negative == 0) {
         add("asymmetric-friction", "all rows turn one way");
+        add("asymmetric-viscous-friction", "all rows turn one way");
         add("offset", "all rows turn one way: it is part of the Coulomb friction");
     }
     for (const std::string_view effect :
@@ -337,7 +366,7 @@ FrictionDiagnosis diagnose_friction(const FrictionTable& table, const DiagnosisR
     const TableFit fit({rows.velocity_deg_s, rows.torque_nm}, rules);
     std::vector<std::string_view> names = {"stribeck-friction", "quadratic-viscous-friction"};
     const bool both_ways = result.positive > 0 && result.negative > 0;
-    if (both_ways) names.insert(names.begin(), "asymmetric-friction");
+    if (both_ways) names.insert(names.begin(), {"asymmetric-friction", "asymmetric-viscous-friction"});
     const TableFit::Fitted best =
         with_found(fit, {{}, {fit.term("coulomb-friction"), fit.term("viscous-friction")}}, std::move(names),
                    result, rules.screening.false_alarm);

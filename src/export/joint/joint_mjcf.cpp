@@ -169,6 +169,7 @@ constexpr std::array reasons = {
     MjcfReason{"load-friction", "frictionloss does not follow the load"},
     MjcfReason{"payload-change", "a body has one mass at all times; attach the payload in the simulation"},
     MjcfReason{"asymmetric-friction", "frictionloss is the same in both directions"},
+    MjcfReason{"asymmetric-viscous-friction", "damping is the same in both directions"},
     MjcfReason{"position-dependent-friction", "frictionloss does not follow the angle"},
     MjcfReason{"friction-warm-up", "frictionloss does not follow the time"},
     MjcfReason{"backlash", "play takes two bodies, motor and link, with a limit between them"},

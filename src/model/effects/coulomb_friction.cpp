@@ -22,6 +22,7 @@ constexpr Parameter parameters[] = {
      .start = 0.2,
      .lower = 0.001,
      .upper = 100.0,
+     .logarithmic = true,
      .tried = tried_widths},
 };
 
