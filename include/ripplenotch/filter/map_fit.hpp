@@ -49,6 +49,7 @@ struct MapFit {
     std::vector<MapOrderScore> scores;  ///< scores of every order requested
     std::vector<MapAgreement> agreement;
     MapFinding finding = MapFinding::too_little;
+    double false_alarm = 1.0;  ///< probability that chance is as regular at any or all of the orders
     std::size_t windows = 0, blocks = 0;
     bool anchored = true;     ///< the angle is that of a position; else it counts from the first row
     bool conclusive = false;  ///< mapped or nothing, anchored, and the logs agree

@@ -129,7 +129,8 @@ constexpr double map_false_alarm = 0.01, other_order_false_alarm = 0.05;
 // Speeds of a map that depends on it. Cross-validation on six joints of a robot: 4, 6 and 8 are alike.
 constexpr std::size_t most_speeds = 5;
 constexpr double least_warming_degc = 1.0;  ///< a narrower range does not determine the effect of a degree
-constexpr std::size_t surrogates_an_order = 200;  ///< twice the resolution of the smallest level of the test
+// Draws, and at least so many beyond the level, so that it is no matter of a single one.
+constexpr double fewest_draws = 600.0, draws_beyond_level = 3.0;
 // Orders that are compared with: so far to both sides, beyond the modulation by the joint's turn. Of ten that
 // are independent, noise at the order is twice the largest once in 66 logs (exponential variables).
 constexpr double nearest_order = 0.1, order_span = 0.3, farthest_start = 0.3;
@@ -185,6 +186,24 @@ MatrixXcd random_phasors(std::size_t blocks, std::size_t draws, unsigned seed) {
     return phasors;
 }
 
+/// The same for each order, unlike those of the others; the first draw is the log itself.
+class RandomPhases {
+  public:
+    RandomPhases(std::size_t blocks, double draws, std::size_t orders)
+        : blocks_(static_cast<Eigen::Index>(blocks)),
+          all_(random_phasors(blocks * orders, static_cast<std::size_t>(draws) + 1, 20)) {
+        all_.col(0).setOnes();
+    }
+    [[nodiscard]] Eigen::Index count() const { return all_.cols(); }
+    [[nodiscard]] MatrixXcd of(std::size_t order) const {
+        return all_.middleRows(static_cast<Eigen::Index>(order) * blocks_, blocks_);
+    }
+
+  private:
+    Eigen::Index blocks_;
+    MatrixXcd all_;
+};
+
 // Squares, in variances of each part of the noise, by which one amplitude of noise reduces them at most.
 double least_reduction(double level) { return -2.0 * portable::log(level); }
 
@@ -216,66 +235,134 @@ bool stands_above_neighbours(const MapData& data, const MapForm& form, std::size
     return true;
 }
 
-/// Rotation test of one order. Torque that is not locked to the motor has in each block of a log a phase of
-/// its own: logs whose blocks are turned at random are draws of the null hypothesis, whatever its noise is. A
-/// statistic above all draws is significant even with four blocks, since four random phases are hardly alike.
-/// The statistic is the reduction of left-out squares, in deviations of its draws, largest of all forms.
-struct RotationTest {
-    std::vector<MapForm> forms;
-    double level;       ///< false-alarm probability at which an order alone makes a map
-    MatrixXcd phasors;  ///< the first draw is the log itself
-
-    RotationTest(const MapData& data, bool tied)
-        : forms(candidate_forms(data, tied)),
-          level(map_false_alarm / static_cast<double>(data.frame.orders.size())),
-          phasors(random_phasors(data.blocks, surrogates_an_order * data.frame.orders.size(), 20)) {
-        phasors.col(0).setOnes();
-    }
-    /// The false-alarm probability: the share of draws that are as large, the log itself counted. 1 where the
-    /// noise near the order alone may be as large (chi-square of two degrees of freedom at `level`), or
-    /// where the order is no line among its neighbours.
-    [[nodiscard]] double false_alarm(const MapData& data, std::size_t order,
-                                     std::span<const MapForm> of_forms) const {
-        ArrayXd largest = ArrayXd::Constant(phasors.cols(), -std::numeric_limits<double>::infinity());
-        double most = 0.0;
-        const MapForm* best = &of_forms.front();
-        for (const MapForm& form : of_forms) {
-            const MatrixXcd reduction = MapRegression(data, form, order).reduction();
-            const MatrixXcd turned = phasors.conjugate().cwiseProduct(reduction * phasors);
-            const ArrayXd squares = turned.colwise().sum().real().transpose().array();
-            const ArrayXd beyond = squares - squares.mean();
-            const double spread = std::sqrt(beyond.square().mean());
-            most = std::max(most, squares(0));
-            if (!(spread > 0.0)) continue;
-            if (beyond(0) / spread > largest(0)) best = &form;
-            largest = largest.max(beyond / spread);
+/// Rotation test. Torque that is not locked to the motor has in each block of a log, and at each order, a
+/// phase of its own: logs whose blocks are turned at random are draws of the null hypothesis, whatever its
+/// noise is. A statistic above all draws is significant even with four blocks, since four random phases are
+/// hardly alike. Of an order it is the reduction of left-out squares, in deviations of its draws, largest of
+/// all forms; of the motor the largest of its orders or their sum, so that several weak orders count
+/// together.
+class RotationTest {
+  public:
+    RotationTest(const MapData& data, bool tied, double level)
+        : forms_(candidate_forms(data, tied)),
+          level_(level),
+          draws_(data.blocks, std::max(fewest_draws, draws_beyond_level / level), data.frame.orders.size()) {
+        for (std::size_t order = 0; order < data.frame.orders.size(); ++order) {
+            std::vector<Reduction>& of_order = reductions_.emplace_back();
+            for (const MapForm& form : forms_) of_order.emplace_back(data, form, order);
+            largest_.push_back(largest(order, of_order));
         }
-        if (!(most > least_reduction(level))) return 1.0;
-        const double share =
-            static_cast<double>((largest >= largest(0)).count()) / static_cast<double>(largest.size());
-        const bool none = share > other_order_false_alarm;
-        return none || stands_above_neighbours(data, *best, order) ? share : 1.0;
     }
+    [[nodiscard]] const std::vector<MapForm>& forms() const { return forms_; }
+    [[nodiscard]] double level() const { return level_; }
+
+    /// The share of draws in which an order is as large, the log itself counted.
+    [[nodiscard]] double false_alarm(std::size_t order) const { return share(largest_[order]); }
+    /// The same under one form alone.
+    [[nodiscard]] double false_alarm(std::size_t order, std::size_t form) const {
+        return share(largest(order, std::span(reductions_[order]).subspan(form, 1)));
+    }
+    [[nodiscard]] double motor_false_alarm(const std::vector<bool>& orders) const {
+        const ArrayXd all = of_motor(orders);
+        return all.size() > 0 ? share(all) : 1.0;
+    }
+    /// The deviations of one order alone that are too large for chance at the level of the motor.
+    [[nodiscard]] double threshold(std::size_t order) const {
+        ArrayXd drawn = largest_[order].tail(largest_[order].size() - 1);
+        const auto beyond = static_cast<Eigen::Index>(level_ / static_cast<double>(orders()) *
+                                                      static_cast<double>(drawn.size()));
+        std::nth_element(drawn.begin(), drawn.begin() + beyond, drawn.end(), std::greater<>());
+        return drawn(beyond);
+    }
+    /// The most squares that a form reduces of an order, and which form has the most deviations.
+    [[nodiscard]] double squares(std::size_t order) const {
+        double most = 0.0;
+        for (const Reduction& one : reductions_[order]) most = std::max(most, one.squares);
+        return most;
+    }
+    [[nodiscard]] const MapForm& best_form(std::size_t order) const {
+        const auto& all = reductions_[order];
+        const auto best = std::max_element(
+            all.begin(), all.end(),
+            [](const Reduction& a, const Reduction& b) { return a.deviations() < b.deviations(); });
+        return forms_[static_cast<std::size_t>(best - all.begin())];
+    }
+
+    /// What a form reduces of left-out squares, as a function of the phases of the blocks.
+    struct Reduction {
+        MatrixXcd form;
+        double squares, mean, spread;  ///< of the log itself; of random phases
+
+        Reduction(const MapData& data, const MapForm& map_form, std::size_t order)
+            : form(MapRegression(data, map_form, order).reduction()),
+              squares(form.sum().real()),
+              mean(form.trace().real()),
+              // Of a Hermitian form of independent unit phasors the terms off the diagonal vary.
+              spread(std::sqrt(std::max(form.cwiseAbs2().sum() - form.diagonal().cwiseAbs2().sum(), 0.0))) {}
+        [[nodiscard]] double deviations() const { return spread > 0.0 ? (squares - mean) / spread : 0.0; }
+    };
+
+  private:
+    [[nodiscard]] std::size_t orders() const { return reductions_.size(); }
+    static double share(const ArrayXd& of_draws) {
+        return static_cast<double>((of_draws >= of_draws(0)).count()) / static_cast<double>(of_draws.size());
+    }
+    [[nodiscard]] ArrayXd largest(std::size_t order, std::span<const Reduction> of) const {
+        ArrayXd found = ArrayXd::Constant(draws_.count(), 0.0);
+        const MatrixXcd phasors = draws_.of(order);
+        for (const Reduction& one : of) {
+            if (!(one.spread > 0.0)) continue;
+            const MatrixXcd turned = phasors.conjugate().cwiseProduct(one.form * phasors);
+            found = found.max((turned.colwise().sum().real().transpose().array() - one.mean) / one.spread);
+        }
+        return found;
+    }
+    // Each order in deviations of its own draws, so that none weighs more.
+    [[nodiscard]] ArrayXd of_motor(const std::vector<bool>& orders) const {
+        ArrayXd most, sum;
+        double count = 0.0;
+        for (std::size_t i = 0; i < orders.size(); ++i) {
+            if (!orders[i]) continue;
+            const ArrayXd centred = largest_[i] - largest_[i].mean();
+            const double spread = std::sqrt(centred.square().mean());
+            if (!(spread > 0.0)) continue;
+            most = count > 0.0 ? ArrayXd(most.max(centred / spread)) : ArrayXd(centred / spread);
+            sum = count > 0.0 ? ArrayXd(sum + centred / spread) : ArrayXd(centred / spread);
+            count += 1.0;
+        }
+        return count > 0.0 ? ArrayXd(most.max(sum / std::sqrt(count))) : ArrayXd();
+    }
+
+    std::vector<MapForm> forms_;
+    double level_;
+    RandomPhases draws_;
+    std::vector<std::vector<Reduction>> reductions_;  ///< by order, by form
+    std::vector<ArrayXd> largest_;                    ///< by order: of all forms, by draw
 };
 
 // The amplitude of an order, Nm, that is found in 20 of 20 logs like this one that hold it: alike at every
 // speed, at a random phase, added to the log's own amplitudes with the phases of its blocks drawn at random.
+// It counts as found where the simplest form alone is significant: the other forms can only add to it.
 // Infinity where there is none.
 double detectable_amplitude(const MapData& data, const MapRegression& own, const RotationTest& test,
                             std::size_t order) {
     const MatrixXcd phasors = random_phasors(data.blocks + 1, injections, 21);
+    const double threshold = test.threshold(order);
+    const MapForm& simplest = test.forms().front();
     const auto found = [&](double amplitude_nm, Eigen::Index trial) {
         MapData injected = data;
         for (MapWindow& window : injected.windows) {
             window.value[order] *= phasors(static_cast<Eigen::Index>(window.block), trial);
             window.value[order] += amplitude_nm * phasors(phasors.rows() - 1, trial);
         }
-        const MapRegression alike(injected, test.forms.front(), order);
+        const RotationTest::Reduction reduction(injected, simplest, order);
+        if (!(reduction.deviations() > threshold) || !(reduction.squares > least_reduction(test.level())))
+            return false;
+        const MapRegression alike(injected, simplest, order);
         ArrayXd better = -alike.residuals().diagonal().array();
         for (std::size_t b = 0; b < data.blocks; ++b)
             better(static_cast<Eigen::Index>(b)) += alike.squares(b).total;
-        return in_errors(better) > least_errors_better &&
-               test.false_alarm(injected, order, test.forms) <= test.level;
+        return in_errors(better) > least_errors_better && stands_above_neighbours(injected, simplest, order);
     };
     double amplitude_nm = std::sqrt(own.noise() / static_cast<double>(data.windows.size()));
     for (; amplitude_nm < most_injected * std::sqrt(own.energy()); amplitude_nm *= injection_step) {
@@ -302,22 +389,31 @@ std::size_t smallest_good(const std::vector<MatrixXd>& residuals, Eigen::Index l
 
 // Finding, scores, notes and the map's form, of data that have a window. Where `fit` is not anchored the
 // joint's own angle is not known, and a second comb means nothing.
-void choose_map(const MapData& data, MapFit& fit) {
-    const RotationTest test(data, fit.anchored);
+void choose_map(const MapData& data, double level, MapFit& fit) {
+    const RotationTest test(data, fit.anchored, level);
     const auto blocks = static_cast<Eigen::Index>(data.blocks);
     const std::size_t orders = data.frame.orders.size();
-    std::vector<bool> chooses;
+    std::vector<bool> is_line(orders, true), may_be, chooses;
     for (std::size_t i = 0; i < orders; ++i) {
-        fit.scores.push_back({data.frame.orders[i].value()});
-        fit.scores[i].false_alarm = test.false_alarm(data, i, test.forms);
-        chooses.push_back(fit.scores[i].false_alarm <= test.level);
+        MapOrderScore& score = fit.scores.emplace_back();
+        score.order = data.frame.orders[i].value();
+        score.false_alarm = test.false_alarm(i);
+        is_line[i] = score.false_alarm > other_order_false_alarm ||
+                     stands_above_neighbours(data, test.best_form(i), i);
+    }
+    fit.false_alarm = test.motor_false_alarm(is_line);
+    for (std::size_t i = 0; i < orders; ++i) {
+        // Neither noise as it is near the order, nor leakage of a slow torque.
+        may_be.push_back(is_line[i] && test.squares(i) > least_reduction(level));
+        if (!may_be[i]) fit.scores[i].false_alarm = 1.0;
+        chooses.push_back(fit.false_alarm <= level && fit.scores[i].false_alarm <= other_order_false_alarm);
     }
     // Residual squares of left-out blocks: of each form by order, and of each form over the orders that
     // choose.
     std::vector<std::vector<MatrixXd>> residuals(orders);
     std::vector<MatrixXd> sums;
     const bool any = std::find(chooses.begin(), chooses.end(), true) != chooses.end();
-    for (const MapForm& form : std::span(test.forms).first(any ? test.forms.size() : 1)) {
+    for (const MapForm& form : std::span(test.forms()).first(any ? test.forms().size() : 1)) {
         sums.emplace_back(MatrixXd::Zero(blocks, blocks));
         for (std::size_t i = 0; i < orders; ++i) {
             residuals[i].push_back(MapRegression(data, form, i).residuals());
@@ -325,15 +421,14 @@ void choose_map(const MapData& data, MapFit& fit) {
         }
     }
     const std::size_t chosen = smallest_good(sums, blocks);
-    fit.map.form = test.forms[chosen];
+    fit.map.form = test.forms()[chosen];
+    ArrayXd all_better = ArrayXd::Zero(blocks);
     std::vector<double> errors_better;
-    bool mapped = false;
     for (std::size_t i = 0; i < orders; ++i) {
         MapOrderScore& score = fit.scores[i];
         // The form was chosen without the other orders: they are tested under that form alone.
-        if (any && !chooses[i])
-            score.false_alarm = test.false_alarm(data, i, std::span(test.forms).subspan(chosen, 1));
-        const MapRegression alike(data, test.forms.front(), i);
+        if (any && !chooses[i]) score.false_alarm = may_be[i] ? test.false_alarm(i, chosen) : 1.0;
+        const MapRegression alike(data, test.forms().front(), i);
         MapSquares all;
         double residual = 0.0;
         ArrayXd better(blocks);
@@ -354,7 +449,7 @@ void choose_map(const MapData& data, MapFit& fit) {
         if (all.total > all.noise)
             score.predicted_share = std::clamp((all.total - residual) / (all.total - all.noise), 0.0, 1.0);
         errors_better.push_back(in_errors(better));
-        mapped = mapped || (chooses[i] && errors_better[i] > least_errors_better);
+        if (chooses[i]) all_better += better;
         fit.notes.push_back(fmt::format(
             "order {}: false-alarm probability {:.2g}; of {:.4g} squares of left-out blocks the simplest "
             "form "
@@ -362,12 +457,13 @@ void choose_map(const MapData& data, MapFit& fit) {
             shortest(score.order), score.false_alarm, all.total, residuals[i].front().trace(),
             residuals[i][chosen].trace(), residual));
     }
+    const bool mapped = any && in_errors(all_better) > least_errors_better;
     bool unclear = false;
     for (std::size_t i = 0; i < orders; ++i) {
         MapOrderScore& score = fit.scores[i];
         score.in_map = mapped && errors_better[i] > 0.0 && score.false_alarm <= other_order_false_alarm;
         if (score.in_map) continue;
-        const MapRegression alike(data, test.forms.front(), i);
+        const MapRegression alike(data, test.forms().front(), i);
         score.detectable_nm = detectable_amplitude(data, alike, test, i);
         // A ripple in the log itself that the test did not find gives no bound.
         if (std::norm(alike.values()(0)) > score.detectable_nm * score.detectable_nm)
@@ -499,7 +595,7 @@ MapFit fit_ripple_map(std::span<const TraceView> logs, const GearAccount& gear, 
         for (const Order order : gear.orders) fit.scores.push_back({order.value()});
         return fit;
     }
-    choose_map(data, fit);
+    choose_map(data, map_false_alarm, fit);
     const MapForm form = fit.map.form;
     if (fit.finding == MapFinding::mapped) fill_map(data, form, fit);
     hold_logs_together(data, form, logs.size(), fit);
