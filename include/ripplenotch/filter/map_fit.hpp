@@ -5,6 +5,7 @@
 
 #include <complex>
 #include <cstddef>
+#include <memory>
 #include <span>
 #include <string>
 #include <utility>
@@ -13,6 +14,7 @@
 #include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/core/trace.hpp"
 #include "ripplenotch/design/ripple_map.hpp"
+#include "ripplenotch/filter/method.hpp"
 
 namespace ripplenotch {
 
@@ -99,6 +101,9 @@ struct OtherMotor {
 
 /// The ripple that a map predicts along a log of its motor's joint, Nm by row.
 [[nodiscard]] std::vector<double> map_along(const RippleMap& map, const TraceView& log);
+
+/// A filter whose output is the ripple that the map predicts, whatever the torque.
+[[nodiscard]] std::unique_ptr<CausalFilter> map_prediction(const RippleMap& map, Hertz sample_rate);
 
 /// "by speed (3) and direction, with 2 harmonics of the joint's turn"
 [[nodiscard]] std::string map_form_words(const MapForm& form);

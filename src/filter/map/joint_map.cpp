@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <memory>
 #include <numbers>
 #include <optional>
 #include <span>
@@ -137,17 +138,44 @@ bool has_positions(const Source& source) {
 
 }  // namespace
 
+namespace {
+
+class MapPrediction final : public CausalFilter {
+  public:
+    MapPrediction(const RippleMap& map, Hertz sample_rate)
+        : runner_(StatedMap{with_zero(map, 0.0)}),
+          path_(MotorAngle(map.gear_ratio.value(), sample_rate.value(), MotorAngle::Source::best, 0.0)) {}
+    void restart() override { path_.restart(); }
+    void process(const Samples& in, std::span<double> out) override {
+        for (std::size_t k = 0; k < out.size(); ++k) {
+            path_.next(in.velocity_deg_s[k], in.position_deg.empty() ? nullptr : &in.position_deg[k]);
+            runner_.at(in.velocity_deg_s[k], path_.turns(), 0.0);
+            out[k] = runner_.ripple(path_.turns(), path_.step_turns());
+        }
+    }
+
+  private:
+    MapRunner runner_;
+    MotorPath path_;
+};
+
+}  // namespace
+
+std::unique_ptr<CausalFilter> map_prediction(const RippleMap& map, Hertz sample_rate) {
+    return std::make_unique<MapPrediction>(map, sample_rate);
+}
+
 std::vector<double> map_along(const RippleMap& map, const TraceView& log) {
-    MapRunner runner(StatedMap{with_zero(map, 0.0)});
-    MotorPath path(
-        MotorAngle(map.gear_ratio.value(), log.sample_rate.value(), MotorAngle::Source::best, 0.0));
-    std::vector<double> ripple;
-    ripple.reserve(log.size());
-    for (std::size_t k = 0; k < log.size(); ++k) {
-        if (k > 0 && log.starts_run(k)) path.restart();
-        path.next(log.velocity_deg_s[k], log.has_position() ? &log.position_deg[k] : nullptr);
-        runner.at(log.velocity_deg_s[k], path.turns(), log.torque_nm[k]);
-        ripple.push_back(runner.ripple(path.turns(), path.step_turns()));
+    MapPrediction prediction(map, log.sample_rate);
+    std::vector<double> ripple(log.size());
+    std::size_t from = 0;
+    for (std::size_t k = 1; k <= log.size(); ++k) {
+        if (k < log.size() && !log.starts_run(k)) continue;
+        const TraceView run = log.part(from, k - from);
+        prediction.restart();
+        prediction.process({run.velocity_deg_s, run.torque_nm, run.position_deg, {}},
+                           std::span(ripple).subspan(from, run.size()));
+        from = k;
     }
     return ripple;
 }
