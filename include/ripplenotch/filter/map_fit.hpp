@@ -99,6 +99,11 @@ struct OtherMotor {
                                    double zero_deg = 0.0,
                                    std::span<const std::vector<double>> temperatures_degc = {});
 
+/// The torques of these logs less the ripple of the other motors that are in the map, by log.
+[[nodiscard]] std::vector<std::vector<double>> without_other_motors(std::span<const TraceView> logs,
+                                                                    const RippleMap& map,
+                                                                    std::span<const OtherMotor> others);
+
 /// The ripple that a map predicts along a log of its motor's joint, Nm by row.
 [[nodiscard]] std::vector<double> map_along(const RippleMap& map, const TraceView& log);
 

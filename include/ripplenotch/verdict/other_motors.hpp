@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "ripplenotch/analysis/identification.hpp"
 #include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/filter/map_fit.hpp"
 #include "ripplenotch/log/log.hpp"
@@ -42,6 +43,10 @@ struct OtherMotors {
     std::vector<std::string> not_known;  ///< joints whose gear ratio nobody knows
     std::size_t pairs = 1;               ///< of a torque and another motor that the log has
 };
+
+/// The gear of a joint's motor as identify found it in the joint's own torque, or as it is stated.
+[[nodiscard]] std::optional<GearAccount> gear_of_motor(const Identification& found,
+                                                       const StatedMotors& stated);
 
 /// The motors of these joints; a gear that nobody states is identified from the joint's own torque.
 [[nodiscard]] OtherMotors motors_of(std::span<const JointLogs> joints, const StatedMotors& stated);

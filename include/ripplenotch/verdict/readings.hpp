@@ -30,6 +30,11 @@ namespace ripplenotch {
 /// before a gear of unknown ratio gives orders of the motor and no ratio.
 [[nodiscard]] Identification identify_readings(std::span<const Log> logs, const IdentifyOptions& options);
 
+/// The same where the motors of other joints may be in the torque. What is found of them (fit_joint_map) is
+/// subtracted before the lines are searched again; `alone` is what identify_readings() gave.
+[[nodiscard]] Identification identify_among(std::span<const Log> logs, Identification alone,
+                                            const OtherMotors& others, const IdentifyOptions& options);
+
 /// diagnose(); `undecided`, with nothing named and the model as given, where another reading of the log that
 /// is as possible would name something else.
 [[nodiscard]] Diagnosis diagnose_readings(const Model& model, const Log& log, const Log* validation,

@@ -53,7 +53,10 @@ class Backfitting {
         for (std::size_t round = 1; round <= most_rounds; ++round) {
             const std::vector<bool> before = which_mapped();
             for (Source& source : sources_) fit(source, zero_deg, temperatures_degc, false);
-            if (round > 1 && which_mapped() == before) break;
+            const bool own_alone = std::none_of(sources_.begin(), sources_.end(), [](const Source& one) {
+                return !one.is_own && one.mapped();
+            });
+            if (own_alone || (round > 1 && which_mapped() == before)) break;
         }
         for (Source& source : sources_)
             if (!source.mapped()) fit(source, zero_deg, temperatures_degc, true);
@@ -216,6 +219,21 @@ MapFit fit_joint_map(std::span<const TraceView> logs, const GearAccount* own,
         fit.others.push_back(std::move(all[j].fit));
     }
     return fit;
+}
+
+std::vector<std::vector<double>> without_other_motors(std::span<const TraceView> logs, const RippleMap& map,
+                                                      std::span<const OtherMotor> others) {
+    std::vector<std::vector<double>> torques;
+    for (const TraceView& log : logs) torques.emplace_back(log.torque_nm.begin(), log.torque_nm.end());
+    for (const RippleMap& other : map.others) {
+        const auto motor = std::find_if(others.begin(), others.end(),
+                                        [&](const OtherMotor& one) { return one.joint == other.joint; });
+        for (std::size_t l = 0; motor != others.end() && l < logs.size(); ++l) {
+            const std::vector<double> ripple = map_along(other, motor->motion[l]);
+            for (std::size_t k = 0; k < ripple.size(); ++k) torques[l][k] -= ripple[k];
+        }
+    }
+    return torques;
 }
 
 }  // namespace ripplenotch

@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "core/process/two_cores.hpp"
 #include "filter/map/map_fit.hpp"
 #include "filter/map/map_regression.hpp"
 #include "ripplenotch/core/number.hpp"
@@ -110,9 +111,7 @@ double least_reduction(double level) { return -2.0 * portable::log(level); }
 // every order nearby. A line of the motor has not: the same amplitudes turned by another order's angle
 // cancel.
 bool stands_above_neighbours(const MapData& data, const MapForm& form, std::size_t order) {
-    const auto reduction = [&](const MapData& of) {
-        return MapRegression(of, form, order).reduction().sum().real();
-    };
+    const auto reduction = [&](const MapData& of) { return MapRegression(of, form, order).own_reduction(); };
     const double ratio = data.frame.gear_ratio.value(), own = reduction(data);
     const double start = std::min(nearest_order + data.frame.orders[order].value() / ratio, farthest_start);
     for (int k = 0; k < 2 * compared_orders; ++k) {
@@ -139,11 +138,13 @@ class RotationTest {
         : forms_(candidate_forms(data, tied)),
           level_(level),
           draws_(data.blocks, random_draws, data.frame.orders.size()) {
-        for (std::size_t order = 0; order < data.frame.orders.size(); ++order) {
-            std::vector<Reduction>& of_order = reductions_.emplace_back();
-            for (const MapForm& form : forms_) of_order.emplace_back(data, form, order);
-            largest_.push_back(largest(order, of_order));
-        }
+        const std::size_t orders = data.frame.orders.size();
+        reductions_.resize(orders);
+        largest_.resize(orders);
+        on_two_cores(orders, [&](std::size_t order) {
+            for (const MapForm& form : forms_) reductions_[order].emplace_back(data, form, order);
+            largest_[order] = largest(order, reductions_[order]);
+        });
     }
     [[nodiscard]] const std::vector<MapForm>& forms() const { return forms_; }
     [[nodiscard]] double level() const { return level_; }

@@ -9,7 +9,6 @@
 
 #include "ripplenotch/analysis/identification.hpp"
 #include "ripplenotch/core/error.hpp"
-#include "ripplenotch/verdict/gear_choice.hpp"
 #include "ripplenotch/verdict/readings.hpp"
 
 namespace ripplenotch {
@@ -23,27 +22,27 @@ bool same_rows(const Log& one, const Log& other) {
 std::optional<GearAccount> gear_of(const JointLogs& joint, const StatedMotors& stated) {
     if (stated.of_file)
         if (auto of_file = stated.of_file(joint.joint)) return of_file;
-    const JointFile file{joint.joint, "identified in the torque of " + joint.joint,
-                         identify_readings(joint.logs, {})};
-    const GearStatement found = file.facts();
-    const GearRatioFit& fit = file.found.gear_ratio;
-    GearAccount gear{GearRatio(0.0), stated.orders, {}, {}, file.source};
-    const bool agrees =
-        stated.ratio &&
-        (!found.ratio || (fit.ci95_low <= stated.ratio->value() && stated.ratio->value() <= fit.ci95_high));
-    if (agrees) {
-        gear.ratio = *stated.ratio;
-        gear.source = "--gear-ratio";
-    } else if (found.ratio) {
-        gear.ratio = *found.ratio;
-    } else {
-        return std::nullopt;
-    }
-    if (gear.orders.empty()) gear.orders = found.orders.empty() ? default_orders() : found.orders;
-    return gear;
+    return gear_of_motor(identify_readings(joint.logs, {}), stated);
 }
 
 }  // namespace
+
+std::optional<GearAccount> gear_of_motor(const Identification& found, const StatedMotors& stated) {
+    std::optional<GearAccount> gear = found_gear(found);
+    const GearRatioFit& fit = found.gear_ratio;
+    if (stated.ratio &&
+        (!gear || (fit.ci95_low <= stated.ratio->value() && stated.ratio->value() <= fit.ci95_high))) {
+        if (!gear) gear.emplace();
+        gear->ratio = *stated.ratio;
+        gear->source = "--gear-ratio";
+    }
+    if (!gear) return std::nullopt;
+    gear->amplitude_nm.clear();
+    gear->phase_deg.clear();
+    if (!stated.orders.empty()) gear->orders = stated.orders;
+    if (gear->orders.empty()) gear->orders = default_orders();
+    return gear;
+}
 
 std::vector<JointLogs> read_other_joints(std::span<const std::string> paths, std::span<const Log> own,
                                          const ReadOptions& options, std::size_t most_rows) {
