@@ -111,6 +111,9 @@ std::string other_motors_table(const Identification& found) {
         }
     }
     std::string text = "\nmotors of other joints in this torque\n" + text_table(rows, "lrrrrl");
+    if (!found.other_motors_not_known.empty())
+        text += fmt::format("not looked for, since no gear ratio is known: {}\n",
+                            fmt::join(found.other_motors_not_known, ", "));
     for (const OtherMotorRipple& motor : found.other_motors)
         if (!motor.doubt.empty()) text += "note: " + motor.doubt + "\n";
     return text;

@@ -2,6 +2,7 @@
 #include "ripplenotch/verdict/other_motors.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <string>
 #include <utility>
@@ -19,28 +20,45 @@ bool same_rows(const Log& one, const Log& other) {
     return one.trace.time_s == other.trace.time_s && one.trace.run_starts == other.trace.run_starts;
 }
 
-std::optional<GearAccount> gear_of(const JointLogs& joint, const StatedMotors& stated) {
-    if (stated.of_file)
-        if (auto of_file = stated.of_file(joint.joint)) return of_file;
-    return gear_of_motor(identify_readings(joint.logs, {}), stated);
+// A line n (Kg + 1) of the second comb is at n (1 + 1 / Kg) turns of the motor: a map has both combs of n.
+std::vector<Order> orders_of(const std::vector<Line>& lines, double ratio) {
+    constexpr double a_tooth_and_a_half = 1.5;  // between a tooth of the second comb and no tooth
+    std::vector<Order> found;
+    for (const Line& line : lines) {
+        if (!line.order_output) continue;
+        const double order = *line.order_output / ratio, whole = std::round(order);
+        const bool on_comb = whole > 0.0 && std::abs(order - whole) * ratio <= a_tooth_and_a_half * whole;
+        found.emplace_back(on_comb ? whole : order);
+    }
+    std::sort(found.begin(), found.end());
+    found.erase(std::unique(found.begin(), found.end()), found.end());
+    return found;
 }
 
 }  // namespace
 
 std::optional<GearAccount> gear_of_motor(const Identification& found, const StatedMotors& stated) {
-    std::optional<GearAccount> gear = found_gear(found);
     const GearRatioFit& fit = found.gear_ratio;
-    if (stated.ratio &&
-        (!gear || (fit.ci95_low <= stated.ratio->value() && stated.ratio->value() <= fit.ci95_high))) {
-        if (!gear) gear.emplace();
-        gear->ratio = *stated.ratio;
-        gear->source = "--gear-ratio";
+    GearAccount gear{GearRatio(0.0), stated.orders, {}, {}, "identified in its own torque"};
+    const bool agrees =
+        stated.ratio &&
+        (!fit.value || (fit.ci95_low <= stated.ratio->value() && stated.ratio->value() <= fit.ci95_high));
+    // Where 50 and 100 are both possible the lines are the same, and the angle of either map.
+    const auto possible = std::find_if(fit.candidates.begin(), fit.candidates.end(),
+                                       [](const RatioCandidate& one) { return !one.other_unit; });
+    if (agrees) {
+        gear.ratio = *stated.ratio;
+        gear.source = "--gear-ratio";
+    } else if (fit.value) {
+        gear.ratio = GearRatio(*fit.value);
+    } else if (found.doubts.empty() && possible != fit.candidates.end()) {
+        gear.ratio = GearRatio(possible->value);
+        gear.source = "the most probable ratio in its own torque";
+    } else {
+        return std::nullopt;
     }
-    if (!gear) return std::nullopt;
-    gear->amplitude_nm.clear();
-    gear->phase_deg.clear();
-    if (!stated.orders.empty()) gear->orders = stated.orders;
-    if (gear->orders.empty()) gear->orders = default_orders();
+    if (gear.orders.empty()) gear.orders = orders_of(found.lines, gear.ratio.value());
+    if (gear.orders.empty()) gear.orders = default_orders();
     return gear;
 }
 
@@ -87,6 +105,16 @@ OtherMotors motors_of(std::span<const JointLogs> joints, std::span<const std::op
     }
     return others;
 }
+
+namespace {
+
+std::optional<GearAccount> gear_of(const JointLogs& joint, const StatedMotors& stated) {
+    if (stated.of_file)
+        if (auto of_file = stated.of_file(joint.joint)) return of_file;
+    return gear_of_motor(identify_readings(joint.logs, {}), stated);
+}
+
+}  // namespace
 
 OtherMotors motors_of(std::span<const JointLogs> joints, const StatedMotors& stated) {
     std::vector<std::optional<GearAccount>> gears;

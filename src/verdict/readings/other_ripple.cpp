@@ -22,6 +22,17 @@ std::string names_of(std::span<const RippleMap> maps) {
     return joined(maps, ",", [](const RippleMap& map) { return map.joint; });
 }
 
+void require_joints(std::span<const RippleMap> maps, const Spool& log, ReadOptions options) {
+    options.joint.reset();
+    options.check_joint = {};
+    const std::vector<std::string> names = asked_joints(log, options).names;
+    for (const RippleMap& map : maps)
+        if (std::find(names.begin(), names.end(), map.joint) == names.end())
+            raise<DataError>(
+                "{}: the map also holds ripple of the motor of {}, and the log has no joint of that name",
+                log.open()->name(), map.joint);
+}
+
 // Each joint by its own gear, where it is measured before the gear.
 ReadOptions reading_of(std::span<const RippleMap> maps, const ReadOptions& options) {
     ReadOptions read = options;
@@ -65,6 +76,7 @@ OtherRipple::OtherRipple(std::span<const RippleMap> maps, const Spool& log, cons
         raise<FileError>("cannot make a temporary file for the other joints' ripple: {}",
                          std::strerror(errno));
     try {
+        require_joints(maps, log, options);
         LogStream stream(open_log(log.open(), reading_of(maps, options)), gap_steps);
         std::vector<std::unique_ptr<CausalFilter>> filters;
         std::vector<JointRun> runs;
@@ -76,8 +88,7 @@ OtherRipple::OtherRipple(std::span<const RippleMap> maps, const Spool& log, cons
         }
         if (runs.size() != maps.size())
             raise<DataError>(
-                "{}: the map also holds ripple of the motors of {}, and the log has not the motion of all "
-                "of them",
+                "{}: the map also holds ripple of the motors of {}, and not all of them have a motion",
                 stream.reader().layout().source, names_of(maps));
         SumOfJoints sum(file_);
         static_cast<void>(stream.run(runs, &sum));
