@@ -27,7 +27,7 @@ def lines_of(tool, log, count=2):
 
 def figures_1_and_2(tool, data):
     """Spectra at four speeds, and the lines in them against eq. 1 and 3."""
-    spectra = {speed: columns(tool.text("spectrum", data / log)) for speed, log in RUNS.items()}
+    spectra = {speed: columns(tool.text("spectrum", data / log, "--bins")) for speed, log in RUNS.items()}
     hz = [f for f in spectra[0]["frequency_hz"] if f <= 120.0]
     names = ["frequency_hz"] + [f"amplitude_{speed}_deg_s_nm" for speed in RUNS]
     rows = [[f"{f:g}", *(fixed(spectra[speed]["amplitude_nm"][i], 5) for speed in RUNS)] for i, f in enumerate(hz)]
@@ -69,9 +69,9 @@ def figures_7_and_8(tool, data):
     files = {"figure7.csv": csv_text(
         ["time_s", "raw_nm", "notch_nm", "lowpass_13rad_s_nm"],
         [[f"{raw['time_s'][k]:.3f}", *(fixed(signals[n][k], 4) for n in signals)] for k in window])}
-    spectra = {"raw": columns(tool.text("spectrum", log))}
+    spectra = {"raw": columns(tool.text("spectrum", log, "--bins"))}
     for name in ("notch", "lowpass"):
-        spectra[name] = columns(tool.text("spectrum", f"{name}.csv"))
+        spectra[name] = columns(tool.text("spectrum", f"{name}.csv", "--bins"))
     files["figure8.csv"] = csv_text(
         ["frequency_hz", "raw_nm", "notch_nm", "lowpass_13rad_s_nm"],
         [[f"{f:g}", *(fixed(spectra[n]["amplitude_nm"][i], 5) for n in spectra)]

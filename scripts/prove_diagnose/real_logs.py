@@ -41,7 +41,7 @@ def diagnosed(program, robot, logs, ratio, effects, words, folder):
     model = folder / "base.json"
     model.write_text(json.dumps({**tool.MODEL, "gear_ratio": ratio, "effects": effects}))
     before = tool.cpu_seconds()
-    found = tool.run(program, "diagnose", logs[0], "--model", model, "--validate", logs[1], "--json", "--force", "-o",
+    found = tool.run(program, "diagnose", logs[0], "--model", model, "--validate", logs[1], "--json", "--force", "--improved-model",
                      folder / "improved.json", *words)
     return found, tool.cpu_seconds() - before
 

@@ -243,7 +243,7 @@ APART = {"recorded": of_recorders, "nulls": of_nulls, "physics": of_physics}
 
 
 def blocks(abouts, rows, failed):
-    """Every table by the name of its mark in docs/diagnose.md and docs/studies; failed(row) says which cases are listed as wrong."""
+    """Every table by the name of its mark in docs/studies; failed(row) says which cases are listed as wrong."""
     others, found = [row for row in rows if row["study"] not in APART], {}
     if others or not rows:
         wrong = [failure(row) for row in others if failed(row)]

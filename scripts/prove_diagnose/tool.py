@@ -47,7 +47,7 @@ def diagnose(tool, folder, options=()):
     folder = pathlib.Path(folder)
     before = cpu_seconds()
     found = run(tool, "diagnose", folder / "train.npy", "--model", folder / "base.json", "--validate",
-                folder / "validate.npy", "--json", "--force", "-o", folder / "improved.json", *options)
+                folder / "validate.npy", "--json", "--force", "--improved-model", folder / "improved.json", *options)
     seconds = cpu_seconds() - before
     (folder / "diagnosis.json").write_text(json.dumps(found, indent=2))
     return found, seconds

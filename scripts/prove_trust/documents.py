@@ -38,9 +38,9 @@ def make(tool, source, folder):
     made = {
         "joint": ("identify", *logs, "--json", "-o"),
         "table": ("design", "joint.json", "--speed", "18:180:54", "--q", "0.25", "--json", "-o"),
-        "diagnosis": ("diagnose", "log.csv", "--model", "base.json", "-o", "model.json", "--json"),
+        "diagnosis": ("diagnose", "log.csv", "--model", "base.json", "--improved-model", "model.json", "--json"),
         "info": ("info", "log.csv", "--json", "-o"),
-        "spectrum": ("spectrum", "log.csv", "--peaks", "--json", "-o"),
+        "spectrum": ("spectrum", "log.csv", "--json", "-o"),
         "track": ("track", "log.csv", "--gear-ratio", "100", "--orders", "1,2", "--json", "-o"),
         "comparison": ("compare", "--step", "10Nm", "--speed", "90deg/s", "--sample-rate", "1kHz", "--gear-ratio", "100",
                        "--orders", "1,2", "--method", "lowpass,cutoff=13Hz,order=1", "--json", "-o"),

@@ -41,7 +41,7 @@ WAYS = {
     "identify": ("short.csv",),
     "identify of a steady joint": ("steady.csv",),
     "identify of gzip": ("short.csv.gz",),
-    "spectrum by order": ("short.csv", "--domain", "order", "--peaks"),
+    "spectrum by order": ("short.csv", "--domain", "order"),
     "features": ("short.csv",),
     "diagnose": ("short.csv", "--model", "auto"),
 }

@@ -54,7 +54,7 @@ Figure ComparedCourse::figure(const std::string& source, const Comparison& compa
     torque.curves.back().style = CurveStyle::dashed;
     return {"compared-log",
             fmt::format("Methods on one log: {}", source),
-            verdict(comparison),
+            differences(comparison),
             {std::move(torque), std::move(error)}};
 }
 
@@ -203,7 +203,7 @@ Figure comparison_figure(const Comparison& comparison, std::span<const Contender
     Figure figure{"comparison",
                   fmt::format("Methods at {:.6g} deg/s, sampled at {:.6g} Hz", comparison.speed.value(),
                               comparison.sample_rate.value()),
-                  verdict(comparison),
+                  differences(comparison),
                   {}};
     std::vector<Panel> responses = response_panels(comparison, contenders);
     std::vector<Panel> courses = course_panels(comparison, contenders);

@@ -165,9 +165,9 @@ class ShortHelp : public CLI::Formatter {
 // shown only where it is asked for.
 void group_options(CLI::App& command, bool whole) {
     constexpr std::array<std::string_view, 3> gear = {"--gear-ratio", "--orders", "--joint-file"};
-    constexpr std::array<std::string_view, 8> output = {
-        "--output",  "--json",  "--plot",    "--force",
-        "--no-sync", "--quiet", "--verbose", "--require-conclusive"};
+    constexpr std::array<std::string_view, 9> output = {
+        "--output",  "--improved-model",    "--json", "--plot", "--force", "--no-sync", "--quiet",
+        "--verbose", "--require-conclusive"};
     const auto is_one = [](const auto& names, const std::string& name) {
         return std::find(names.begin(), names.end(), name) != names.end();
     };

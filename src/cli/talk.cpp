@@ -215,6 +215,13 @@ void talk(std::string_view line) { put(visible_text(line) + "\n"); }
 
 void talk_lines(std::string_view lines) { put(visible_lines(lines)); }
 
+std::optional<std::size_t> terminal_columns() {
+    if (::isatty(STDOUT_FILENO) != 1) return std::nullopt;
+    winsize size{};
+    const bool known = ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
+    return known ? size.ws_col : std::size_t{80};
+}
+
 void write_text(const std::string& path, std::string_view lines, ByteSink::Overwrite overwrite) {
     if (all_plain(lines)) {
         write_all(path, lines, overwrite);  // a spectrum may be long

@@ -5,6 +5,7 @@
 // what a command does.
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -47,6 +48,9 @@ void talk(std::string_view line);
 
 /// Several lines on standard error, each made visible.
 void talk_lines(std::string_view lines);
+
+/// Columns of standard output where it is a terminal, 80 where it does not say; empty where it is none.
+[[nodiscard]] std::optional<std::size_t> terminal_columns();
 
 /// write_all() of visible_lines().
 void write_text(const std::string& path, std::string_view lines, ByteSink::Overwrite overwrite);

@@ -187,7 +187,7 @@ const MethodFigures* Comparison::rival() const {
     return rival != nullptr ? rival : other;
 }
 
-std::string verdict(const Comparison& comparison) {
+std::string differences(const Comparison& comparison) {
     const MethodFigures* const a = comparison.subject();
     if (a == nullptr) return "Only the control ran; there is nothing to compare.";
     const MethodFigures* const b = comparison.rival();
@@ -200,6 +200,11 @@ std::string verdict(const Comparison& comparison) {
         parts.push_back(text);
     if (const std::string text = ripple(*a, *b, comparison); !text.empty()) parts.push_back(text);
     return fmt::format("{} {}.{}", name, fmt::join(parts, ", "), nearest(*a, name, comparison));
+}
+
+std::string verdict(const Comparison& comparison) {
+    const std::string& best = comparison.best_sentence;
+    return best.empty() ? differences(comparison) : best + " " + differences(comparison);
 }
 
 std::unique_ptr<CausalFilter> Contender::start(Hertz sample_rate) const {

@@ -260,6 +260,80 @@ std::string recommendation_verdict(const Recommendation& found) {
 
 namespace {
 
+std::string error_text(const JudgedMethod& method) {
+    return fmt::format("{:.3g} Nm rms (remaining ripple {:.3g}, distortion {:.3g})", method.error_nm,
+                       method.figures.ripple_rms_nm.value_or(0.0),
+                       portable::hypot(method.distortion.in_band_nm, method.distortion.added_nm));
+}
+
+std::string longest_delay_text(const JudgedMethod& method) {
+    const std::string ms = rounded(1e3 * method.delay.value(), 1);
+    return ms == "0.0" ? "without delay" : fmt::format("at most {} ms of delay", ms);
+}
+
+// Of what recommend() found among the methods of a comparison; the control is there to be compared with, not
+// to be held to anything.
+void tell_best(Comparison& comparison, const Recommendation& found) {
+    const auto name = [&](const JudgedMethod& method) {
+        const auto same = std::find_if(
+            comparison.methods.begin(), comparison.methods.end(),
+            [&](const MethodFigures& figures) { return figures.method == method.figures.method; });
+        return short_name(*same, comparison);
+    };
+    const JudgedMethod *first = nullptr, *second = nullptr, *control = nullptr;
+    for (const JudgedMethod& method : found.methods) {
+        const JudgedMethod*& place = is_control(method.figures) ? control : first == nullptr ? first : second;
+        if (place == nullptr) place = &method;
+    }
+    if (first == nullptr || control == nullptr) return;
+    if (!first->meets()) {
+        comparison.best_sentence = fmt::format("No method is within the limits. The nearest is {}: {}.",
+                                               name(*first), fmt::join(first->shortfalls, "; "));
+        return;
+    }
+    comparison.best = found.methods.front();
+    if (is_control(comparison.best->figures)) {
+        comparison.best_sentence = fmt::format(
+            "Nothing is better than {}: its output error is {:.3g} Nm rms, that of {} {}, {}.",
+            name(*control), control->error_nm, name(*first), error_text(*first), longest_delay_text(*first));
+        return;
+    }
+    std::string against;
+    if (second != nullptr && second->meets()) {
+        constexpr double about_alike = 1.05;  // as in the sentence on settling
+        against = fmt::format("{:.3g} of {}{} and ", second->error_nm, name(*second),
+                              second->error_nm < about_alike * first->error_nm ? ", about as good," : "");
+    }
+    comparison.best_sentence =
+        fmt::format("{} is best: smallest output error{}, {}, against {}{:.3g} of {}; {}.", name(*first),
+                    found.limits.any() ? " within the limits" : "", error_text(*first), against,
+                    control->error_nm, name(*control), longest_delay_text(*first));
+}
+
+}  // namespace
+
+void judge(Comparison& comparison, std::span<const Contender> contenders, const ComparedLog& log,
+           const RecommendationLimits& limits) {
+    if (comparison.subject() == nullptr) return;
+    if (!comparison.lines) {
+        comparison.best_sentence = "Cannot tell which method is best: no gear ratio is known.";
+        return;
+    }
+    const GearAccount& lines = *comparison.lines;
+    const Recommendation found = recommend(
+        contenders, log, lines, limits, estimate_ripple({&log.trace, 1}, lines.ratio, lines.orders),
+        std::nullopt,
+        LogLevels{comparison.methods, comparison.windows, comparison.measured_share, comparison.why_none});
+    if (found.finding == RecommendationFinding::cannot_tell)
+        comparison.best_sentence = fmt::format("Cannot tell which method is best: {}.", found.why);
+    else if (found.finding == RecommendationFinding::no_ripple)
+        comparison.best_sentence = fmt::format("Nothing is better than none: {}.", found.why);
+    else
+        tell_best(comparison, found);
+}
+
+namespace {
+
 constexpr double slow_turn_s = 0.5;        // chosen, not derived
 constexpr NewtonMeters judged_step{10.0};  // as compare takes on a log
 constexpr Seconds run_in{2.0};             // chosen, not derived: the motor has turned several times
@@ -415,7 +489,8 @@ double torque_rate_nm_s(const TraceView& trace, GearRatio ratio) {
 
 Recommendation recommend(std::span<const Contender> contenders, const ComparedLog& log,
                          const GearAccount& lines, const RecommendationLimits& limits,
-                         std::vector<RippleEstimate> ripple, std::optional<TorqueBand> band) {
+                         std::vector<RippleEstimate> ripple, std::optional<TorqueBand> band,
+                         std::optional<LogLevels> measured) {
     Recommendation found;
     found.limits = limits;
     found.orders = std::move(ripple);
@@ -426,7 +501,7 @@ Recommendation recommend(std::span<const Contender> contenders, const ComparedLo
         found.why = ripple_text(found.orders);
         return found;
     }
-    LogLevels levels = measure_on_log(contenders, log, lines);
+    LogLevels levels = measured ? std::move(*measured) : measure_on_log(contenders, log, lines);
     found.windows = levels.windows;
     if (levels.windows < fewest_judged_windows) {
         found.why = levels.windows == 0

@@ -416,10 +416,13 @@ void of_metrics(const Json& json, Numbers& numbers) {
         numbers.add_text("delay at 0 Hz", from_to(*delay), "ms");
 }
 
-// The figures of the first method other than the control.
+// The figures of the best method; without one, or where it is the control, of the first other.
 void of_comparison(const Json& json, Numbers& numbers) {
+    const Json::json_pointer best("/best/method");
+    const Json wanted = json.contains(best) ? json[best] : Json("none");
     for (const Json& method : list_at(json, "methods")) {
-        if (!method.is_object() || method.value("method", Json("none")) == "none") continue;
+        const Json name_of = method.is_object() ? method.value("method", Json("none")) : Json("none");
+        if (name_of == "none" || (wanted != "none" && name_of != wanted)) continue;
         Numbers own(method);
         const std::string name = parted(value_text(method.value("method", Json("")))).first;
         own.add((name + ": settling time (0.5 %)").c_str(), "/settle_ms/0.5", "ms");

@@ -13,9 +13,9 @@ from commands import COMMANDS, GEAR, OF_A_LOG, Case, SharedCase, asked
 LISTS = {
     "compare": "comparisons", "spectrum": "spectra", "spectrum --segment": "spectra", "spectrum --domain order": "spectra",
     "spectrum --map campbell": "spectra", "spectrum --map order": "spectra", "spectrum --response": "responses",
-    "identify": "joints", "track": "tracks", "recommend": "recommendations", "spectrum --peaks": "spectra",
+    "identify": "joints", "track": "tracks", "recommend": "recommendations",
 }
-CSV = ("spectrum", "spectrum --segment", "spectrum --domain order", "spectrum --map campbell", "track")
+CSV = {"spectrum": ["--bins"], "spectrum --segment": ["--bins"], "spectrum --domain order": ["--bins"], "spectrum --map campbell": [], "track": []}
 HEAD = ("schema", "tool", "version", "command", "inputs", "recording", "recordings")
 
 
@@ -75,16 +75,16 @@ class EachAsAlone(SharedCase):
                     self.assertEqual(found, expected)
 
     def test_rows(self):
-        for name in CSV:
+        for name, more in CSV.items():
             with self.subTest(name):
-                head, *rows = rows_of(self.good(*asked(name, "wide.csv")).stdout)
+                head, *rows = rows_of(self.good(*asked(name, "wide.csv"), *more).stdout)
                 for joint in ("j1", "j2", "j3"):
-                    alone = rows_of(self.alone(name, joint))
+                    alone = rows_of(self.alone(name, joint, *more))
                     self.assertEqual(head, ["joint", *alone[0]])
                     self.assertEqual([row[1:] for row in rows if row[0] == joint], alone[1:])
 
     def test_reports(self):
-        for name in ("compare", "recommend", "spectrum --peaks", "identify"):
+        for name in ("compare", "recommend", "spectrum", "identify"):
             with self.subTest(name):
                 whole = self.good(*asked(name, "wide.csv")).stdout
                 for joint in ("j1", "j2", "j3"):
@@ -130,7 +130,7 @@ class Selection(Case):
     """--joint: names, numbers, lists and ranges."""
 
     def taken(self, *words, log="wide.csv"):
-        return [line.split(":")[0] for line in self.good("spectrum", log, "--peaks", "-q", *words).stdout.splitlines() if ": " in line[:20]]
+        return [line.split(":")[0] for line in self.good("spectrum", log, "-q", *words).stdout.splitlines() if ": " in line[:20]]
 
     def write(self, name, text):
         (self.folder / name).write_text(text)
@@ -183,7 +183,7 @@ class LeftOut(Case):
         (self.folder / "wide.csv").write_text(wide_log(without=("j2_torque_nm",)))
 
     def test_no_torque(self):
-        for command in ("spectrum --peaks", "track", "compare", "identify", "recommend", "filter"):
+        for command in ("spectrum", "track", "compare", "identify", "recommend", "filter"):
             for words in (["--joint", "all"], ["--joint", "j1-j3"]):
                 with self.subTest(command=command, words=words):
                     done = self.good(*asked(command, "wide.csv"), *words)
@@ -240,7 +240,7 @@ class Currents(Case):
         (self.folder / "amps.csv").write_text(wide_log(("j1", "j2")).replace("_torque_nm", "_current_A"))
 
     def test_reports_and_documents(self):
-        for name in ("compare", "recommend", "spectrum --peaks", "identify", "map", "info"):
+        for name in ("compare", "recommend", "spectrum", "identify", "map", "info"):
             with self.subTest(name):
                 words = [*asked(name, "amps.csv"), "--joint", "j1", "-q"]
                 report = self.good(*words).stdout.split("\nwarnings\n")[0]
@@ -254,8 +254,8 @@ class Currents(Case):
                 self.assertNotIn("torque_unit", json.loads(self.good(*words, "--kt", "2", "--json").stdout)["recording"])
 
     def test_the_columns_of_a_table_keep_their_places(self):
-        amps = self.good("spectrum", "amps.csv", "--joint", "j1", "--peaks", "-q").stdout
-        newton_metres = self.good("spectrum", "amps.csv", "--joint", "j1", "--peaks", "-q", "--kt", "1").stdout
+        amps = self.good("spectrum", "amps.csv", "--joint", "j1", "-q").stdout
+        newton_metres = self.good("spectrum", "amps.csv", "--joint", "j1", "-q", "--kt", "1").stdout
         self.assertEqual([len(line) for line in amps.splitlines()[1:3]], [len(line) for line in newton_metres.splitlines()[1:3]])
 
 

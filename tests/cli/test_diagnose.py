@@ -31,7 +31,7 @@ class Diagnose(Case):
     def test_what_is_hidden_is_named_added_and_the_improved_model_does_on_another_log_what_was_said(self):
         self.log("log.csv", move(0, 120, -60, 30, -40), "viscous-friction,coefficient_nm_per_deg_s=0.006")
         self.log("other.csv", move(40, -90, 60), "viscous-friction,coefficient_nm_per_deg_s=0.006", seed=2)
-        done = self.run_tool("diagnose", "log.csv", "--model", "model.json", "--validate", "other.csv", "-o", "improved.json",
+        done = self.run_tool("diagnose", "log.csv", "--model", "model.json", "--validate", "other.csv", "--improved-model", "improved.json",
                              "--json")
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         found = json.loads(done.stdout)
@@ -94,7 +94,7 @@ class Diagnose(Case):
 
     def test_a_model_is_made_of_the_log_by_identify(self):
         self.log("log.csv", move(0, 120, -60), "coulomb-friction,torque_nm=0.4,width_deg_s=2")
-        done = self.run_tool("diagnose", "log.csv", "--model", "auto", "-v", "-o", "made.json", "--force")
+        done = self.run_tool("diagnose", "log.csv", "--model", "auto", "-v", "--improved-model", "made.json", "--force")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("the model is made of the log: gear ratio ", done.stderr)
         self.assertIn("named: coulomb-friction", done.stdout)
@@ -108,6 +108,26 @@ class Diagnose(Case):
         silent = self.run_tool("diagnose", "rest.csv", "--model", "auto")
         self.assertEqual((silent.returncode, silent.stdout), (3, ""), silent.stderr)
         self.assertIn("--gear-ratio N", silent.stderr)
+
+    def test_the_old_spelling_of_improved_model_is_taken_with_a_warning_and_stands_in_no_help(self):
+        self.log("log.csv", move(0, 120))
+        words = ("diagnose", "log.csv", "--model", "model.json")
+        expected = self.run_tool(*words, "--improved-model", "improved.json")
+        self.assertEqual((expected.returncode, expected.stderr), (0, ""))
+        warning = ("ripplenotch: warning: --output of diagnose will mean the result; write --improved-model FILE\n")
+        for spelling, said in ((("-o", "old.json"), warning), (("-oold.json",), warning), (("--output", "old.json"), warning),
+                               (("--output=old.json",), warning), (("-qo", "old.json"), "")):
+            with self.subTest(spelling):
+                done = self.run_tool(*words, *spelling, "--force")
+                self.assertEqual((done.returncode, done.stdout, done.stderr), (0, expected.stdout, said))
+                self.assertEqual((self.folder / "old.json").read_bytes(), (self.folder / "improved.json").read_bytes())
+        twice = self.run_tool(*words, "-o", "a.json", "--improved-model", "b.json")
+        self.assertEqual(twice.returncode, 2)
+        self.assertIn("--improved-model is given more than once", twice.stderr)
+        told = self.run_tool(*words, "--improved-model", "-")
+        self.assertEqual((told.returncode, told.stdout), (2, ""))
+        self.assertIn("--improved-model -: the result goes to standard output; give a file", told.stderr)
+        self.assertNotRegex(self.run_tool("diagnose", "--help-all").stdout, r"-o\b|--output\b")
 
     def test_wrong_requests_get_one_message(self):
         self.log("log.csv", move(0, 120))

@@ -38,7 +38,7 @@ class Accept(Case):
         tentative = [one["effect"] for one in before["rounds"] if one["status"] == "tentative"]
         self.assertIn("load-friction", tentative)
         self.assertTrue(any("--accept load-friction" in step for step in before["next"]), before["next"])
-        after = self.json_of(*words, "--accept", "load-friction", "-o", "improved.json")
+        after = self.json_of(*words, "--accept", "load-friction", "--improved-model", "improved.json")
         self.assertEqual([(one["effect"], one["status"]) for one in after["accepted"]], [("load-friction", "tentative")])
         self.assertNotIn("load-friction", after["named"])
         self.assertEqual(after["gap"]["before_nm"], before["gap"]["before_nm"])

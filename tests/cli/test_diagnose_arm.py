@@ -170,7 +170,7 @@ class Arm(Case):
         arm = f"dh,file=dh.csv,{DOWN}"
         whole = ["diagnose", "log.csv", "--joint", "j1", "--gear-ratio", "100"]
         for words, code, message in (
-                (["diagnose", "log.csv", "--joint", "all", "--gear-ratio", "100", "--arm", arm, "-o", "one.json"], 2, "{joint}"),
+                (["diagnose", "log.csv", "--joint", "all", "--gear-ratio", "100", "--arm", arm, "--improved-model", "one.json"], 2, "{joint}"),
                 (["diagnose", "log.csv", "--joint", "all", "--gear-ratio", "100", "--arm", arm, "--plot", "a.svg"], 2, "--plot"),
                 (["diagnose", "log.csv", "--joint", "j1", "--gear-ratio", "100", "--arm", arm, "--accept", "frictoin"], 2, "frictoin"),
                 ([*whole, "--arm", "dh"], 2, "file"),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""diagnose -o improved.xml: what is written for MuJoCo, and that MuJoCo itself leaves of the log what was said."""
+"""diagnose --improved-model improved.xml: what is written for MuJoCo, and that MuJoCo itself leaves of the log what was said."""
 
 import json
 import math
@@ -50,7 +50,7 @@ class Joint(Case):
             "effects": [{"effect": "inertia"}, {"effect": "ripple", "order": 1}, {"effect": "ripple", "order": 2}, *effects]}))
 
     def diagnosed(self, output, *words):
-        return json.loads(self.run_tool("diagnose", "log.csv", "--model", "model.json", "-o", output, "--json", "--force", *words).stdout)
+        return json.loads(self.run_tool("diagnose", "log.csv", "--model", "model.json", "--improved-model", output, "--json", "--force", *words).stdout)
 
     def root(self, name):
         return xml.etree.ElementTree.parse(self.folder / name).getroot()
@@ -119,7 +119,7 @@ class Written(Joint):
         self.assertEqual(sorted(part["effect"] for part in found["mjcf"]["not_held"]), ["delay", "offset"])
         self.assertGreater(found["mjcf"]["gap_after_nm"], 0.4)
         comment = (self.folder / "improved.mjcf").read_text()
-        story = self.run_tool("diagnose", "log.csv", "--model", "model.json", "-o", "improved.mjcf", "--force").stdout
+        story = self.run_tool("diagnose", "log.csv", "--model", "model.json", "--improved-model", "improved.mjcf", "--force").stdout
         for part in found["mjcf"]["not_held"]:
             self.assertIn(f"not held: {part['effect']}: {part['reason']}", comment)
             self.assertIn(f"improved.mjcf: not held: {part['effect']}: {part['reason']}", story)
@@ -127,7 +127,7 @@ class Written(Joint):
     def test_other_kinds_of_names_are_refused(self):
         self.logged("inertia,inertia_kgm2=0.45")
         self.model()
-        refused = self.run_tool("diagnose", "log.csv", "--model", "model.json", "-o", "improved.csv", code=2)
+        refused = self.run_tool("diagnose", "log.csv", "--model", "model.json", "--improved-model", "improved.csv", code=2)
         self.assertIn("name it .json, .xml or .mjcf", refused.stderr)
 
 
@@ -193,7 +193,7 @@ class Arm(Joint):
                 log.write(f"{row[0]:.4f},{q1:.6f},{v1:.6f},{one:.6f},{q2:.6f},{v2:.6f},{two:.6f}\n")
         (self.folder / "arm.xml").write_text(BODY)
         found = json.loads(self.run_tool("diagnose", "log.csv", "--joint", "elbow", "--arm", "mjcf,file=arm.xml", "--gear-ratio", 100,
-                                         "-o", "improved.xml", "--json").stdout)
+                                         "--improved-model", "improved.xml", "--json").stdout)
         self.assertEqual(sorted(found["named"]), ["coulomb-friction", "viscous-friction"])
         self.assertEqual([part["effect"] for part in found["mjcf"]["not_held"]], ["arm", "offset"])
         text = (self.folder / "improved.xml").read_text()
@@ -216,6 +216,6 @@ class Arm(Joint):
                 t = k / 250
                 log.write(f"{t},{40 * math.sin(t)},{40 * math.cos(t)},{math.sin(t) + noise.gauss(0, 0.05)},"
                           f"{30 * math.sin(1.3 * t)},{39 * math.cos(1.3 * t)},{math.cos(2 * t) + noise.gauss(0, 0.05)}\n")
-        done = self.run_tool("diagnose", "log.csv", "--joint", "elbow", "--arm", "mjcf,file=arm.xml", "--gear-ratio", 100, "-o", "b.xml",
+        done = self.run_tool("diagnose", "log.csv", "--joint", "elbow", "--arm", "mjcf,file=arm.xml", "--gear-ratio", 100, "--improved-model", "b.xml",
                              code=2)
         self.assertIn('no joint with name="elbow"', done.stderr)

@@ -21,7 +21,7 @@ class NoGearRatio(Case):
 
     def test_friction_is_named_and_ripple_is_said_not_to_be_examined(self):
         self.log(*self.FRICTION)
-        done = self.run_tool("diagnose", "log.csv", "--model", "auto", "--json", "-o", "improved.json")
+        done = self.run_tool("diagnose", "log.csv", "--model", "auto", "--json", "--improved-model", "improved.json")
         self.assertEqual(done.returncode, 0, done.stderr)
         found = json.loads(done.stdout)
         self.assertIsNone(found["gear"]["ratio"])

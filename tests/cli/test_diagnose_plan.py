@@ -31,7 +31,7 @@ class Plan(Case):
 
     def test_rows_keep_within_the_limits_and_are_those_that_simulate_makes_of_the_words(self):
         self.logged(ONE_WAY, "log.csv")
-        told = self.planned("log.csv", "--json", "-o", "improved.xml").stdout
+        told = self.planned("log.csv", "--json", "--improved-model", "improved.xml").stdout
         (self.folder / "told.json").write_text(told)
         self.run_tool("report", "told.json", "-o", "told.html")
         plan = json.loads(told)["plan"]

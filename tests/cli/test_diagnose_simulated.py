@@ -53,7 +53,7 @@ class Simulated(Case):
             log.write(b"\x93NUMPY\x01\x00" + len(header).to_bytes(2, "little") + header.encode())
             log.write(b"".join(struct.pack("<4d", 0.001 * k, 60.0, 1.0, 2.0) for k in range(100_000)))
             log.truncate(10 + len(header) + 32 * 10**10)  # zeros that take no room
-        done = self.run_tool("diagnose", "long.npy", "--simulated", "tau_model", "--gear-ratio", "100", "-o", "model.json")
+        done = self.run_tool("diagnose", "long.npy", "--simulated", "tau_model", "--gear-ratio", "100", "--improved-model", "model.json")
         self.assertEqual(done.returncode, 6, done.stderr)
         self.assertIn("the whole log is held", done.stderr)
         self.assertIn("--from and --to", done.stderr)
@@ -61,7 +61,7 @@ class Simulated(Case):
 
     def test_a_column_without_a_model_names_both_frictions_and_becomes_part_of_the_improved_model(self):
         done = self.run_tool("diagnose", "log.csv", "--simulated", "column,name=tau_model_nm", "--gear-ratio", "100",
-                             "--json", "-o", "improved.json")
+                             "--json", "--improved-model", "improved.json")
         self.assertEqual(done.returncode, 0, done.stderr)
         found = json.loads(done.stdout)
         self.assertEqual(sorted(found["named"]), NAMES)
@@ -88,7 +88,7 @@ class Simulated(Case):
         for name, scale in (("tried", ""), ("kept", ",scale=1")):
             with self.subTest(name):
                 done = self.run_tool("diagnose", "log.csv", "--simulated", f"column,name=tau_model_nm{scale}", "--gear-ratio",
-                                     "100", "--json", "-o", f"{name}.json")
+                                     "100", "--json", "--improved-model", f"{name}.json")
                 self.assertEqual(done.returncode, 0, done.stderr)
                 found = json.loads(done.stdout)
                 self.assertEqual("simulation-scale" in found["named"], not scale)
@@ -113,7 +113,7 @@ class Simulated(Case):
     def test_what_a_simulation_has_too_much_of_is_a_finding_below_0_and_for_that_simulation_alone(self):
         self.write_with_friction(1.3)  # 0.9 are there
         words = ["diagnose", "rubs.csv", "--gear-ratio", "100", "--simulated", "tau_model_nm"]
-        done = self.run_tool(*words, "-o", "improved.json")
+        done = self.run_tool(*words, "--improved-model", "improved.json")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertRegex(done.stdout.splitlines()[0],
                          r"^Missing: .*coulomb-friction -0\.4\d* \+/- [\d.]+ Nm \(the simulation has too much of it\).*; residual ")
@@ -180,7 +180,7 @@ class Simulated(Case):
     def test_a_simulation_in_a_file_of_its_own_is_named_again_beside_the_model(self):
         written(self.folder / "sim.csv", ["time_s", "velocity_deg_s", "torque_nm"], [[t, v, arm_nm(t, q, 1.0)] for t, v, _, q in self.rows])
         own = "log,file=sim.csv,column=torque_nm"
-        done = self.run_tool("diagnose", "log.csv", "--simulated", own, "--gear-ratio", "100", "--json", "-o", "own.json")
+        done = self.run_tool("diagnose", "log.csv", "--simulated", own, "--gear-ratio", "100", "--json", "--improved-model", "own.json")
         self.assertEqual(done.returncode, 0, done.stderr)
         left = self.residual_nm("--model", "own.json", "--simulated", own, "log.csv")
         self.assertAlmostEqual(left / json.loads(done.stdout)["gap"]["after_nm"], 1.0, delta=1e-4)
@@ -292,7 +292,7 @@ class Known(Case):
         return self.checked("tau_sim_nm" + more, ())
 
     def checked(self, simulated, beside):
-        found = self.json_of("diagnose", "log.csv", "--simulated", simulated, "--gear-ratio", "100", "-o", "improved.json")
+        found = self.json_of("diagnose", "log.csv", "--simulated", simulated, "--gear-ratio", "100", "--improved-model", "improved.json")
         gap = found["gap"]
         self.assertLessEqual(gap["after_nm"], gap["before_nm"])
         left = self.json_of("simulate", "--model", "improved.json", *beside, "log.csv", "-o", "again.csv")

@@ -41,7 +41,7 @@ class FrictionTable(Case):
 
     def test_coulomb_viscous_stribeck_and_asymmetry_are_fitted_with_intervals_and_written_as_a_model(self):
         text = table(both_ways(SPEEDS), random.Random(5), difference=0.1, stribeck=TRUTH["stribeck"])
-        found = self.found(text, "-o", "model.json")
+        found = self.found(text, "--improved-model", "model.json")
         self.assertEqual(found["schema"], "ripplenotch/friction-table/1")
         values = self.parameters(found)
         for key, truth in ((("coulomb-friction", "torque_nm"), 0.6), (("viscous-friction", "coefficient_nm_per_deg_s"), 0.01),

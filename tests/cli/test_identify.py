@@ -5,6 +5,7 @@ import json
 import math
 import pathlib
 import random
+import tempfile
 import unittest
 
 from commands import DATA, LOGS, Case, run
@@ -308,11 +309,30 @@ class Spectra(unittest.TestCase):
         self.assertGreater(one["noise_floor_nm"], 0.0)
 
     def test_csv_has_one_row_a_bin(self):
-        rows = run("spectrum", "-", stdin=log_text(72.0, 0.5)).stdout.splitlines()
+        rows = run("spectrum", "-", "--bins", stdin=log_text(72.0, 0.5)).stdout.splitlines()
         self.assertEqual(rows[0], "frequency_hz,amplitude_nm,psd_nm2_hz,floor_nm")
         self.assertEqual(len(rows), 1 + 1001)
         strongest = max(rows[1:], key=lambda row: float(row.split(",")[1]))
         self.assertAlmostEqual(float(strongest.split(",")[0]), 20.0, delta=0.26)
+
+    def test_the_lines_are_printed_and_the_bins_where_they_are_asked_for(self):
+        log = str(DATA / "paper_90deg_s.csv")
+        with tempfile.TemporaryDirectory() as folder:
+            for words in ([], ["--domain", "order"], ["--stretch", "all"], ["--segment", "1s"]):
+                with self.subTest(words):
+                    text = run("spectrum", log, *words).stdout
+                    self.assertRegex(text, r"(?m)^(Stretch 1, 90 deg/s: )?2 lines in .*resolution .*, floor ")
+                    self.assertRegex(text, r"SNR\n")
+                    self.assertEqual(run("spectrum", log, *words, "--peaks").stdout, text)
+                    bins = run("spectrum", log, *words, "--bins").stdout
+                    self.assertRegex(bins.splitlines()[0], r"^[a-z0-9_]+(,[a-z0-9_]+)+$")
+                    for name, written in (("a.csv", bins), ("a.txt", text)):
+                        self.assertEqual(run("spectrum", log, *words, "-o", f"{folder}/{name}", "--force").returncode, 0)
+                        self.assertEqual(pathlib.Path(folder, name).read_text(), written)
+        for words in (["--peaks"], ["--json"], ["--map", "campbell"], ["--response", "torque/velocity"]):
+            done = run("spectrum", log, "--bins", *words)
+            self.assertEqual((done.returncode, done.stdout), (2, ""), words)
+            self.assertIn("--bins", done.stderr)
 
     def test_stretches_by_number_and_all(self):
         text = log_text(36.0, 0.5)
@@ -321,7 +341,7 @@ class Spectra(unittest.TestCase):
         found = json.loads(run("spectrum", "-", "--stretch", "all", "--json", stdin=text).stdout)
         self.assertEqual([s["stretch"] for s in found["spectra"]], [1, 2])
         self.assertAlmostEqual(found["spectra"][0]["peaks"][0]["hz"], 10.0, delta=0.05)
-        second = run("spectrum", "-", "--stretch", "2", stdin=text).stdout.splitlines()
+        second = run("spectrum", "-", "--stretch", "2", "--bins", stdin=text).stdout.splitlines()
         self.assertEqual(second[0], "stretch,speed_deg_s,frequency_hz,amplitude_nm,psd_nm2_hz,floor_nm")
         self.assertEqual(run("spectrum", "-", "--stretch", "3", stdin=text).returncode, 2)
         self.assertEqual(run("spectrum", "-", "--stretch", "0", stdin=text).returncode, 2)
@@ -414,7 +434,7 @@ class RealLogs(unittest.TestCase):
             one = json.loads(run("spectrum", log, "--joint", joint, "--json").stdout)["spectra"][0]
             told = [(hump["from_hz"] - 1.0, hump["to_hz"] + 1.0) for hump in one["humps"]]
             told += [(peak["hz"] - 0.5, peak["hz"] + 0.5) for peak in one["peaks"]]
-            for row in run("spectrum", log, "--joint", joint).stdout.splitlines()[1:]:
+            for row in run("spectrum", log, "--joint", joint, "--bins").stdout.splitlines()[1:]:
                 hz, amplitude, _, floor = map(float, row.split(","))
                 if hz > 5.0 and amplitude > 5.0 * floor:
                     self.assertTrue(any(low <= hz <= high for low, high in told), f"{joint}: {hz} Hz, {amplitude} Nm")
@@ -422,7 +442,7 @@ class RealLogs(unittest.TestCase):
     def test_panda_clock_makes_no_lines_of_the_slow_torque(self):
         # The model's torque is smooth; read at the log's stumbling stamps it showed 0.81 Nm at 59.7 Hz.
         log = str(LOGS / "gpl3" / "panda_gaz_all.csv")
-        done = run("spectrum", log, "--columns", "time=time_s,velocity=panda_joint2_velocity_rad_s,torque=panda_joint2_model_torque_Nm")
+        done = run("spectrum", log, "--bins", "--columns", "time=time_s,velocity=panda_joint2_velocity_rad_s,torque=panda_joint2_model_torque_Nm")
         self.assertEqual(done.returncode, 0, done.stderr)
         for row in done.stdout.splitlines()[1:]:
             hz, amplitude = map(float, row.split(",")[:2])

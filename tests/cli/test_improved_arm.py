@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""An arm in model.json: what diagnose -o writes, simulate, diagnose, identify and spectrum read; and --joint all."""
+"""An arm in model.json: what diagnose --improved-model writes, simulate, diagnose, identify and spectrum read; and --joint all."""
 
 import hashlib
 import json
@@ -25,7 +25,7 @@ class Improved(SharedCase):
         cls.found = {}
         for joint in ("j1", "j2"):
             cls.found[joint] = cls.json_of("diagnose", "log.csv", "--joint", joint, "--arm", ARM, "--gear-ratio", "100",
-                                           "--validate", "other.csv", "-o", f"{joint}.json")
+                                           "--validate", "other.csv", "--improved-model", f"{joint}.json")
 
     @classmethod
     def json_of(cls, *words):
@@ -58,7 +58,7 @@ class Improved(SharedCase):
     def test_diagnosed_again_nothing_is_missing_and_the_gap_is_the_same(self):
         for joint, found in self.found.items():
             with self.subTest(joint=joint):
-                again = self.json_of("diagnose", "log.csv", "--model", f"{joint}.json", "-o", "again.json")
+                again = self.json_of("diagnose", "log.csv", "--model", f"{joint}.json", "--improved-model", "again.json")
                 self.assertEqual(again["named"], [])
                 self.assertAlmostEqual(again["gap"]["before_nm"] / found["gap"]["after_nm"], 1.0, delta=1e-4)
                 self.assertLessEqual(again["gap"]["after_nm"], found["gap"]["after_nm"] * 1.001)
@@ -80,7 +80,7 @@ class Improved(SharedCase):
     def test_a_residual_is_looked_into(self):
         strongest = []
         for words in (("--joint", "j2"), ("--residual", "j2.json"), ("--residual", "j2.json", "--segment", "4s")):
-            done = self.run_tool("spectrum", "log.csv", *words)
+            done = self.run_tool("spectrum", "log.csv", "--bins", *words)
             self.assertEqual(done.returncode, 0, done.stderr)
             strongest.append(max(float(line.split(",")[1]) for line in done.stdout.splitlines()[1:]))
         self.assertLess(max(strongest[1:]), 0.02 * strongest[0])
@@ -90,7 +90,7 @@ class Improved(SharedCase):
 
     def test_all_joints_are_what_each_alone_is(self):
         words = ("diagnose", "log.csv", "--arm", ARM, "--gear-ratio", "100", "--validate", "other.csv")
-        every = self.json_of(*words, "--joint", "all", "-o", "all_{joint}.json")
+        every = self.json_of(*words, "--joint", "all", "--improved-model", "all_{joint}.json")
         self.assertEqual(every["schema"], "ripplenotch/diagnoses/1")
         self.assertEqual([one["joint"] for one in every["joints"]], ["j1", "j2"])
         for one in every["joints"]:

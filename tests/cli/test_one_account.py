@@ -33,7 +33,7 @@ class Account(SharedCase):
     def commands(self, log, read):
         """Every command that tells of the recording, as words; none is asked to search for more than that."""
         for name in ACCOUNTS:
-            if name not in ("spectrum --peaks", "recommend"):
+            if name != "recommend":
                 words = asked_for_json(name, log, self.folder / "out.csv")
                 yield name, [*words, *(self.nothing_tried if name == "diagnose" else []), *read]
 

@@ -143,10 +143,10 @@ class Plots(Case):
         self.assertEqual(done.returncode, 4)
         self.assertIn("no gnuplot", done.stderr)
         self.assertIn("gnuplot-nox", done.stderr)
-        self.assertTrue((self.folder / "result").read_text().startswith("frequency_hz,"))
+        self.assertTrue((self.folder / "result").read_text().startswith("2 lines in "))
         self.assertEqual(json.loads((self.folder / "picture.json").read_text())["name"], "spectrum")
         self.assertFalse((self.folder / "picture.svg").exists())
-        terminal = run(*COMMANDS["spectrum"], "--plot", "-", environment={"PATH": "/nowhere"})
+        terminal = run(*COMMANDS["spectrum"], "--bins", "--plot", "-", environment={"PATH": "/nowhere"})
         self.assertEqual((terminal.returncode, terminal.stdout), (4, ""))
 
     def test_a_gnuplot_that_fails_is_quoted(self):

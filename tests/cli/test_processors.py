@@ -28,7 +28,7 @@ COMMANDS = {
     "simulate": MADE,
     "identify": ("identify", *STEADY, "--json"),
     "identify a move": ("identify", "made.csv", "--json"),
-    "spectrum": ("spectrum", "made.csv"),
+    "spectrum": ("spectrum", "made.csv", "--bins"),
     "spectrum over orders": ("spectrum", "made.csv", "--domain", "order", "--json"),
     "track": ("track", MOVE, *GEAR),
     "track by Vold and Kalman": ("track", MOVE, *GEAR, "--method", "vold-kalman", "--json"),

@@ -71,6 +71,9 @@ class Pasted(Recommended):
             for mine, theirs in zip(judged["attenuation_db"], rows[name]["attenuation_db"], strict=True):
                 self.assertAlmostEqual(mine["db"], theirs["db"], places=6)
             self.assertAlmostEqual(judged["ripple_rms_nm"], rows[name]["ripple_rms_nm"], places=8)
+        # One judgement: what is recommended is the best on the rows that it was judged on, by the same figures.
+        best = {key: value for key, value in compared["best"].items() if key != "reason"}
+        self.assertEqual(best, next(one for one in told["methods"] if one["method"] == told["take"]))
 
     def test_a_table_that_is_pasted_is_the_one_that_was_judged(self):
         # Only tables fit into this target; without limits none of them has to come first, so both are pasted.

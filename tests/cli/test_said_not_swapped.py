@@ -59,7 +59,7 @@ class NamesOfOtherKinds(Told):
         self.good(*self.DESIGN, "-o", "t.json", "--json")
         yield from (["info", MOVE], ["effects"], ["identify", PAPER_90], ["compare", MOVE, *LOW], self.DESIGN,
                     [*self.DESIGN[:-1], "18:90", "--frontier"], ["spectrum", PAPER_90],
-                    ["spectrum", PAPER_90, "--peaks"], ["spectrum", MOVE, "--map", "order"],
+                    ["spectrum", PAPER_90, "--peaks"], ["spectrum", PAPER_90, "--bins"], ["spectrum", MOVE, "--map", "order"],
                     ["track", MOVE, "--gear-ratio", 100], ["track", MOVE, "--gear-ratio", 100, "--json"],
                     ["filter", MOVE, *LOW], self.SIMULATE, ["report", "t.json"],
                     ["diagnose", MOVE, "--model", DATA / "paper_model.json"])
@@ -91,18 +91,19 @@ class NamesOfOtherKinds(Told):
 
     def test_a_file_is_of_the_kind_that_its_name_says_or_is_refused(self):
         for words in self.commands():
+            option = "--improved-model" if words[0] == "diagnose" else "-o"
             fitting = []
             for ending in self.ENDINGS:
                 path = self.folder / f"x.{ending}"
                 path.unlink(missing_ok=True)
-                done = self.run_tool(*words, "-o", path.name, "--force", "-q")
+                done = self.run_tool(*words, option, path.name, "--force", "-q")
                 with self.subTest(words=words, ending=ending):
                     if done.returncode == 0:
                         fitting.append(ending)
                         self.assertIn(ending, self.kind_of(path))
                         continue
                     self.assertEqual(done.returncode, 2, done.stderr)
-                    self.assertRegex(done.stderr, rf"-o x\.{ending}: .*(name it \.|name the file)")
+                    self.assertRegex(done.stderr, rf"{option} x\.{ending}: .*(name it \.|name the file)")
                     self.assertFalse(path.exists())
             self.assertTrue(fitting, words)
 

@@ -29,7 +29,7 @@ class Streams(Case):
 
     def test_a_pipe_gives_the_bytes_that_the_file_gives(self):
         for name in ("paper_90deg_s.csv", "paper_move_2s.csv", "paper_rest.csv"):
-            for words in (("--segment", "0.5s"), ("--segment", "0.5s", "--peaks", "-v"), ("--segment", "100s")):
+            for words in (("--segment", "0.5s", "--bins"), ("--segment", "0.5s", "-v"), ("--segment", "100s", "--bins", "-v")):
                 with self.subTest(log=name, words=words):
                     self.assertEqual(self.equal_by_pipe(DATA / name, *words).returncode, 0)
 

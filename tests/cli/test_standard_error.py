@@ -121,7 +121,7 @@ class Visible(Case):
     def test_tables_keep_their_lines(self):
         rows = "".join(f"{k / 1000},60,{math.cos(2 * math.pi * 16.7 * k / 1000)}\n" for k in range(2000))
         self.write("log.csv", "time_s,velocity_deg_s,torque_nm\n" + rows)
-        for words in (("spectrum", "log.csv", "-v"), ("spectrum", "log.csv", "-v", "--segment", "1s"),
+        for words in (("spectrum", "log.csv", "-v", "--bins"), ("spectrum", "log.csv", "-v", "--bins", "--segment", "1s"),
                       ("track", "log.csv", "--gear-ratio", "100", "--orders", "1", "-v")):
             done = self.shown(*words)
             self.assertGreater(done.stderr.count(b"\n"), 1)

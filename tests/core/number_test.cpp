@@ -127,3 +127,17 @@ TEST_CASE("a figure for people that rounds to zero has no sign") {
     CHECK(rounded(-0.0, 0) == "0");
     CHECK(rounded(127.27, 1) == "127.3");
 }
+
+TEST_CASE("a value has as many decimals as its error has two digits") {
+    CHECK(with_error(0.59983, 0.00241) == "0.5998 +/- 0.0024");
+    CHECK(with_error(0.7993, 0.002) == "0.7993 +/- 0.0020");
+    CHECK(with_error(0.43214, 0.21) == "0.43 +/- 0.21");
+    CHECK(with_error(-12.3456, 3.7) == "-12.3 +/- 3.7");
+    CHECK(with_error(1234.5, 35.0) == "1234 +/- 35");
+    CHECK(with_error(-0.001, 0.2) == "0.00 +/- 0.20");
+    CHECK(with_error(1.23456e-9, 2.1e-11) == "1.235e-09 +/- 2.1e-11");
+    CHECK(with_error(1.23456e6, 3.5e4) == "1.235e+06 +/- 3.5e+04");
+    CHECK(with_error(2.0, 0.0) == "2 +/- 0");
+    CHECK(decimals_of(0.003, 1) == 3);
+    CHECK(decimals_of(30.0, 1) == 0);
+}

@@ -26,7 +26,8 @@ Json written(const Comparison& comparison) {
 TEST_CASE("what was not measured is null, never zero and never missing") {
     const Json json = written(one_method());
     CHECK(json["schema"] == "ripplenotch/comparison/1");
-    for (const char* name : {"step_nm", "ramp_nm_s", "gear_ratio", "match"}) CHECK(json.at(name).is_null());
+    for (const char* name : {"best", "step_nm", "ramp_nm_s", "gear_ratio", "match"})
+        CHECK(json.at(name).is_null());
     const Json& method = json["methods"][0];
     for (const char* name :
          {"settle_ms", "overshoot_percent", "ramp_delay_ms", "dc_delay_ms", "ripple_rms_nm",

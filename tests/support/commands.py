@@ -54,7 +54,6 @@ COMMANDS = {
     "filter": "filter {log} --method tracking {gear}",
     "compare": "compare {log} --method lowpass,cutoff=5Hz,order=1 {gear}",
     "spectrum": "spectrum {log}",
-    "spectrum --peaks": "spectrum {log} --peaks",
     "spectrum --segment": "spectrum {log} --segment 0.5s",
     "spectrum --domain order": "spectrum {log} --domain order",
     "spectrum --map campbell": "spectrum {log} --map campbell {gear}",

@@ -82,6 +82,11 @@ struct ValueInRow {
 /// The same in steps that suit the largest: what a transform leaves where nothing is comes out as 0.
 [[nodiscard]] double to_digits_in_row(const ValueInRow& cell, int digits = fitted_digits);
 
+/// As many decimals as `error` (above 0) has so many digits; none where it is larger.
+[[nodiscard]] int decimals_of(double error, int digits);
+/// "0.5998 +/- 0.0024": two digits of the error, and as many decimals of the value.
+[[nodiscard]] std::string with_error(double value, double error);
+
 /// A figure for people: `decimals` digits after the mark, and no sign where all of them are zero.
 [[nodiscard]] std::string rounded(double value, int decimals);
 

@@ -47,6 +47,34 @@ struct MethodFigures {
 /// The part of its method; a contender's where no method has this name.
 [[nodiscard]] MethodPart part_of(const MethodFigures& figures);
 
+// What a method does to a torque without ripple.
+
+struct Distortion {
+    double in_band_nm = 0.0;  ///< output minus torque within the band, rms
+    double added_nm = 0.0;    ///< above the band: by how much its octaves are stronger, rms, added up
+};
+
+/// Phase delay and gain over a band, smallest and largest.
+struct BandResponse {
+    Seconds least_delay, longest_delay;
+    double least_gain = 1.0, largest_gain = 1.0;
+};
+
+/// One method on the log.
+struct JudgedMethod {
+    MethodFigures figures;
+    Seconds delay;       ///< the longest, at 0 Hz and within the torque's band, at speeds of the log ...
+    DegPerSec delay_at;  ///< ... and where
+    std::optional<BandResponse> response;     ///< at the log's median speed
+    std::optional<OrderAttenuation> weakest;  ///< the least attenuated of the orders that are present
+    Distortion distortion;                    ///< of the log's torque without ripple
+    double error_nm = 0.0;  ///< of its output: remaining ripple and distortion, root of the sum of squares
+    std::vector<std::string> shortfalls;  ///< one clause for each limit that it breaks
+    double excess = 0.0;                  ///< by how much, as a share of the limits, added up; 0: none
+
+    [[nodiscard]] bool meets() const { return shortfalls.empty(); }
+};
+
 /// How a low-pass was made equal to a method, or why none is.
 struct LowPassMatch {
     std::string subject;                  ///< the method, or "22 dB" when the attenuation was given
@@ -73,6 +101,9 @@ struct Comparison {
     DegPerSec slowest, fastest;         ///< |v| of the log
     std::size_t rows = 0, windows = 0;  ///< rows of the log; windows that RippleMeter measured
     double measured_share = 0.0;
+    std::string why_none;              ///< LogLevels::why_none
+    std::string best_sentence;         ///< on a log: which method is best, or why that cannot be told
+    std::optional<JudgedMethod> best;  ///< empty where it cannot be told, or none is within the limits
 
     /// The method that the others are compared with: the first contender, else the first rival. Null when
     /// only the control runs.
@@ -88,6 +119,9 @@ struct Comparison {
 [[nodiscard]] std::string short_name(const MethodFigures& figures, const Comparison& comparison);
 
 /// One sentence with numbers: how subject and rival differ in settling, delay and ripple.
+[[nodiscard]] std::string differences(const Comparison& comparison);
+
+/// Which method is best, on a log, and how subject and rival differ.
 [[nodiscard]] std::string verdict(const Comparison& comparison);
 
 /// Fills settling, delays and, with lines, attenuations measured with sines. Empty optionals are left out.

@@ -63,11 +63,6 @@ struct TorqueBand {
 /// the sample rate. Never less than four periods in the log. Throws DataError for fewer than 64 samples.
 [[nodiscard]] TorqueBand torque_band(const TraceView& torque);
 
-struct Distortion {
-    double in_band_nm = 0.0;  ///< output minus torque within the band, rms
-    double added_nm = 0.0;    ///< above the band: by how much its octaves are stronger, rms, added up
-};
-
 /// The torque of a log without its ripple: what a method should pass.
 class TorqueReference {
   public:
@@ -90,11 +85,6 @@ class TorqueReference {
     TorqueBand band_;
 };
 
-/// Phase delay and gain over a band, smallest and largest.
-struct BandResponse {
-    Seconds least_delay, longest_delay;
-    double least_gain = 1.0, largest_gain = 1.0;
-};
 /// Of the filter that is active at a constant speed; empty for methods that have none.
 [[nodiscard]] std::optional<BandResponse> band_response(const Contender& contender, Hertz sample_rate,
                                                         DegPerSec speed, const TorqueBand& band);
@@ -102,21 +92,7 @@ struct BandResponse {
 struct RecommendationLimits {
     std::optional<Seconds> max_delay;          ///< at 0 Hz and within the torque's band, at speeds of the log
     std::optional<double> min_attenuation_db;  ///< attenuation of every order that is present
-};
-
-/// One method on the log.
-struct JudgedMethod {
-    MethodFigures figures;
-    Seconds delay;       ///< the longest, at 0 Hz and within the torque's band, at speeds of the log ...
-    DegPerSec delay_at;  ///< ... and where
-    std::optional<BandResponse> response;     ///< at the log's median speed
-    std::optional<OrderAttenuation> weakest;  ///< the least attenuated of the orders that are present
-    Distortion distortion;                    ///< of the log's torque without ripple
-    double error_nm = 0.0;  ///< of its output: remaining ripple and distortion, root of the sum of squares
-    std::vector<std::string> shortfalls;  ///< one clause for each limit that it breaks
-    double excess = 0.0;                  ///< by how much, as a share of the limits, added up; 0: none
-
-    [[nodiscard]] bool meets() const { return shortfalls.empty(); }
+    [[nodiscard]] bool any() const { return max_delay || min_attenuation_db; }
 };
 
 enum class RecommendationFinding {
@@ -154,13 +130,19 @@ inline constexpr std::size_t fewest_judged_windows = 7;
 /// Runs all over the log and sorts them by the error of their output. The same methods under looser limits
 /// give the same or a better one. The control is among them or not, as given. `ripple`: the result of
 /// estimate_ripple() for the whole log, of which `log` is the part used for the recommendation, one for each
-/// of `lines`. `band`: the torque's, where it is stated.
+/// of `lines`. `band`: the torque's, where it is stated. `measured`: what measure_on_log() gave, if it ran.
 [[nodiscard]] Recommendation recommend(std::span<const Contender> contenders, const ComparedLog& log,
                                        const GearAccount& lines, const RecommendationLimits& limits,
                                        std::vector<RippleEstimate> ripple,
-                                       std::optional<TorqueBand> band = std::nullopt);
+                                       std::optional<TorqueBand> band = std::nullopt,
+                                       std::optional<LogLevels> measured = std::nullopt);
 
 /// One sentence, or two, with numbers: the recommended method, its performance, and the next best.
 [[nodiscard]] std::string recommendation_verdict(const Recommendation& found);
+
+/// Judges the methods of a comparison on its log, as measured already, and fills in its best one.
+/// `contenders` are as its methods. The judgement is that of recommend(), on all rows.
+void judge(Comparison& comparison, std::span<const Contender> contenders, const ComparedLog& log,
+           const RecommendationLimits& limits);
 
 }  // namespace ripplenotch

@@ -2,7 +2,7 @@
 // The torque that a sensor of one joint shows, by MuJoCo, along a motion of all joints.
 // usage: node along.mjs < case.json > torque.json   (with @mujoco/mujoco in ./node_modules)
 //
-// case.json: {"xml": a file of diagnose -o improved.xml, "joint": its name, "rows": [[time, q..., v..., a...], ...] in rad}.
+// case.json: {"xml": a file of diagnose --improved-model improved.xml, "joint": its name, "rows": [[time, q..., v..., a...], ...] in rad}.
 // The torque is qfrc_inverse, plus the force of the actuators ripple_*, less that of friction_*, whose bristles go along:
 // of dz/dt = v - stiffness |v| / friction z the exact step at the speed of the row before.
 import fs from 'fs';

@@ -73,7 +73,7 @@ def diagnosed(program, case, folder, options):
     before = tool.cpu_seconds()
     options = [*(folder / option if option == "base.json" else option for option in case.options()), *options]
     found = tool.run(program, "diagnose", folder / "train.npy", *options, "--validate", folder / "validate.npy", "--json", "--force",
-                     "-o", folder / "improved.json")
+                     "--improved-model", folder / "improved.json")
     return found, tool.cpu_seconds() - before
 
 

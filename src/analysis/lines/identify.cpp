@@ -21,6 +21,7 @@
 #include "ripplenotch/analysis/identification.hpp"
 #include "ripplenotch/analysis/motion_lines.hpp"
 #include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
@@ -149,7 +150,7 @@ bool settled(const Identification& result) {
 std::string told(double value, double error, std::string_view unit, std::string_view below,
                  std::string_view above) {
     const double reach = normal_95_errors * error;
-    const int decimals = std::max(0, -static_cast<int>(std::floor(portable::log10(error))));
+    const int decimals = decimals_of(error, 1);
     if (std::abs(value) <= reach) return fmt::format("0 within {:.{}f} {}", reach, decimals, unit);
     return fmt::format("{:.{}f} +/- {:.{}f} {} too {}", std::abs(value), decimals, error, decimals, unit,
                        value < 0.0 ? below : above);

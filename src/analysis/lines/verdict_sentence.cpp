@@ -26,6 +26,14 @@ std::string speeds(double from, double to) {
                                  : fmt::format("{:.3g} to {:.3g} deg/s", from, to);
 }
 
+/// Zero to peak, in Nm, with the decimals that its error deserves, that of the noise beside the line: at most
+/// two, but of less than 0.1 Nm two digits.
+std::string amplitude_text(const Line& line) {
+    const double error = line.snr > 0.0 ? line.amplitude_nm / line.snr : 0.0;
+    const int most = line.amplitude_nm > 0.0 ? std::max(2, decimals_of(line.amplitude_nm, 2)) : 2;
+    return rounded(line.amplitude_nm, error > 0.0 ? std::min(most, decimals_of(error, 1)) : most);
+}
+
 /// "3 sweeps over 5 output turns at 60 to 180 deg/s"
 std::string basis(const Grounds& grounds) {
     const std::string at = speeds(grounds.slowest_deg_s, grounds.fastest_deg_s);
@@ -151,7 +159,7 @@ std::string with_ratio(const Identification& found) {
     std::vector<std::string> orders, amplitudes;
     for (const Line* line : lines) {
         orders.push_back(fmt::format("{:.4g}", *line->order));
-        amplitudes.push_back(fmt::format("{:.2f}", line->amplitude_nm));
+        amplitudes.push_back(amplitude_text(*line));
     }
     std::vector<std::string> doubted;  // may be tones
     for (const Line* line : lines) {

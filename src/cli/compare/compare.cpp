@@ -133,12 +133,7 @@ std::string ledger_text(const Comparison& comparison) {
     return text;
 }
 
-constexpr std::size_t page_width = 100;
-
-// A sentence wrapped to lines that a terminal shows whole.
-std::string paragraph(const std::string& sentence) {
-    return joined(wrapped(sentence, page_width), "\n") + "\n";
-}
+constexpr std::size_t page_width = 100;  // of tables; chosen, not derived
 
 struct ViewColumn {
     std::string title, unit;
@@ -274,7 +269,7 @@ std::string rows_of(const Comparison& comparison) {
 }
 
 // The band that switching methods have in force, said once where it is the same for all of them.
-std::string notes_in_force(const Comparison& comparison) {
+std::string notes_in_force(const CommonOptions& common, const Comparison& comparison) {
     std::vector<const MethodFigures*> switching;
     for (const MethodFigures& figures : comparison.methods) {
         if (figures.switches && !figures.note.empty()) switching.push_back(&figures);
@@ -283,15 +278,15 @@ std::string notes_in_force(const Comparison& comparison) {
         return figures->note == switching.front()->note;
     });
     if (switching.size() > 1 && alike)
-        return paragraph(fmt::format("All {} switching methods at this speed: {}.", switching.size(),
-                                     switching.front()->note));
+        return paragraph(common, fmt::format("All {} switching methods at this speed: {}.", switching.size(),
+                                             switching.front()->note));
     std::string text;
     for (const MethodFigures* figures : switching)
-        text += paragraph(fmt::format("{} at this speed: {}.", figures->method, figures->note));
+        text += paragraph(common, fmt::format("{} at this speed: {}.", figures->method, figures->note));
     return text;
 }
 
-std::string conditions(const Comparison& comparison) {
+std::string conditions(const CommonOptions& common, const Comparison& comparison) {
     std::string text, on;
     if (comparison.on_log) {
         on = fmt::format("Log: {} rows at {:.6g} Hz.", comparison.rows, comparison.sample_rate.value());
@@ -302,7 +297,7 @@ std::string conditions(const Comparison& comparison) {
                 "{:.0f} % of the log.",
                 comparison.windows, comparison.windows == 1 ? "" : "s", 100.0 * comparison.measured_share);
         }
-        text = paragraph(on);
+        text = paragraph(common, on);
         on = comparison.fastest > DegPerSec(0.0)
                  ? fmt::format("Settling and delays: at {:.6g} deg/s, on", comparison.speed.value())
                  : "Settling and delays: on";
@@ -313,7 +308,7 @@ std::string conditions(const Comparison& comparison) {
     if (comparison.step_nm) on += fmt::format(" a step of {:.6g} Nm", *comparison.step_nm);
     if (comparison.step_nm && comparison.ramp_nm_s) on += " and";
     if (comparison.ramp_nm_s) on += fmt::format(" a ramp of {:.6g} Nm/s", *comparison.ramp_nm_s);
-    return text + paragraph(on + ".") + notes_in_force(comparison);
+    return text + paragraph(common, on + ".") + notes_in_force(common, comparison);
 }
 
 // The same with short names for its methods.
@@ -335,13 +330,20 @@ std::string legend(const Comparison& comparison) {
 }
 
 // The verdict, one row a method, and what was measured on what. Columns that nothing fills are left out.
-std::string comparison_view(const Comparison& comparison) {
+std::string comparison_view(const CommonOptions& common, const Comparison& comparison) {
     const Comparison named = with_short_names(comparison);
-    std::string text = paragraph(verdict(comparison)) + "\n" + rows_of(named) + "\n" + conditions(named);
+    std::size_t before = joint_columns(common);
+    std::string text;
+    if (!comparison.best_sentence.empty()) {
+        text = paragraph(common, comparison.best_sentence, before) + "\n";
+        before = 0;
+    }
+    text += paragraph(common, differences(comparison), before) + "\n" + rows_of(named) + "\n" +
+            conditions(common, named);
     if (comparison.match && !comparison.match->low_pass) {
         std::string sentence = comparison.match->clause;
         sentence.front() = 'N';  // all of them begin with "no low-pass"
-        text += paragraph(sentence + ".");
+        text += paragraph(common, sentence + ".");
     }
     return text + legend(comparison) + ledger_text(named);
 }
@@ -629,6 +631,7 @@ void add_methods(Comparison& comparison, const std::vector<Contender>& contender
         warn(common, fmt::format("the ripple cannot be measured on this log: {}", levels->why_none));
     }
     comparison.windows = levels->windows;
+    comparison.why_none = levels->why_none;
     comparison.measured_share = levels->measured_share;
 }
 
@@ -708,6 +711,11 @@ Comparison compare_on_log(const CompareRequest& request, Field& field, Provenanc
     add_methods(comparison, field.contenders, compared, request.common);
     compared.watch = {};  // what is matched is measured more than once
     if (wants_match(request)) add_match_on_log(comparison, request, compared);
+    std::vector<Contender> all = field.contenders;
+    if (comparison.match && comparison.match->low_pass)
+        all.push_back(make_contender(parse_spec(*comparison.match->low_pass)));
+    const Gates& gates = request.costs.gates;
+    judge(comparison, all, compared, {gates.max_delay, gates.min_attenuation_db});
     return comparison;
 }
 
@@ -722,8 +730,9 @@ JointResult compare_once(const CompareRequest& request, const std::string& comma
                                                 : compare_on_log(request, field, provenance, course);
     add_costs(comparison, request.costs, field);
     const std::string unit = provenance.recordings.empty() ? "Nm" : provenance.recordings.front().torque_unit;
-    JointResult result{in_torque_unit(
-        request.common.json ? comparison_text(comparison, provenance) : comparison_view(comparison), unit)};
+    JointResult result{in_torque_unit(request.common.json ? comparison_text(comparison, provenance)
+                                                          : comparison_view(request.common, comparison),
+                                      unit)};
     const auto broken = violations(comparison, request.costs, field);
     if (!broken.empty()) result.code = ExitCode::limit_violated;
     result.afterwards = [request, provenance, broken, field = std::move(field),

@@ -57,16 +57,17 @@ std::string rules_text(const DiagnosisRules& rules) {
     return text_table(rows, "lrrrl");
 }
 
-std::string story(const JointDiagnosis& one, bool explain) {
-    return (one.given.account ? arm_text(*one.given.account) : "") + diagnosis_story(one.diagnosis, explain) +
+std::string story(const DiagnoseRequest& request, const JointDiagnosis& one) {
+    return (one.given.account ? arm_text(*one.given.account) : "") +
+           diagnosis_story(request.common, one.diagnosis, request.explain) +
            (one.diagnosis.model.has_gear_ratio() ? "" : gear_in_words(one.gear) + "\n") +
            (one.mjcf ? mjcf_text(*one.mjcf) : "") + (one.planned ? plan_text(*one.planned) : "");
 }
 
 void write_improved(const DiagnoseRequest& request, JointDiagnosis& one) {
     if (request.plan) one.planned = plan_for(request, one);
-    if (request.common.output == "-") return;
-    const std::string path = with_joint(request.common.output, one.joint);
+    if (!request.improved) return;
+    const std::string path = with_joint(*request.improved, one.joint);
     if (names_mjcf(path)) {
         one.mjcf = write_improved_mjcf(request, one, path);
         return;
@@ -92,7 +93,7 @@ ExitCode run_one(const DiagnoseRequest& request, GivenSource& given, const std::
                request.common.json
                    ? write_diagnosis(one.diagnosis, one.gear, one.provenance,
                                      one.given.account ? &*one.given.account : nullptr, written_of(one))
-                   : story(one, request.explain),
+                   : story(request, one),
                ByteSink::Overwrite::no);
     draw_plot(request.plot, request.common, one.provenance, [&] {
         return diagnosis_figure(request.path, one.diagnosis, one.log.trace.view(), request.smoothing);
@@ -132,7 +133,7 @@ ExitCode run_all(const DiagnoseRequest& request, GivenSource& given, const std::
         for (const std::string& why : one.diagnosis.not_accepted)
             warn(request.common, fmt::format("joint {}: {}", joint, why));
         write_improved(request, one);
-        text += fmt::format("joint {}\n{}\n", joint, story(one, request.explain));
+        text += fmt::format("joint {}\n{}\n", joint, story(request, one));
         let_columns_go(one);
     }
     write_text("-", request.common.json ? list_of(all, command_line) : text + joints_table(all),
@@ -194,7 +195,12 @@ std::function<ExitCode()> attach_diagnose(Options& options) {
                  "exit with 5 unless the log is explained in the end");
     attach_plot(options, request->plot, request->common);
     attach_log(options, request->log);
-    attach_common(options, request->common, {"a model", ""});
+    options.text("--improved-model", request->improved, "FILE",
+                 "write the improved model here: .json, or .xml and .mjcf for MuJoCo");
+    options.writes("--improved-model");
+    options.was_output("--improved-model", request->improved_by_output);
+    attach_json(options, request->common);
+    attach_manner(options, request->common);
     return [request, &options] { return run_diagnose(*request, options.command_line()); };
 }
 
@@ -205,10 +211,10 @@ const Command commands::diagnose{
     .summary = "where model and log disagree, the effect that is missing, and how far the gap shrinks",
     .description =
         "Fits the model to the log, reports where they disagree, tries every effect of the catalogue, names "
-        "and adds\nwhat is missing, and reports what no effect explains. -o writes the improved model.json; "
-        "named .xml or\n.mjcf, it is written for MuJoCo, with a list of what MuJoCo cannot "
-        "represent.\nExample: ripplenotch diagnose log.csv --model model.json --validate other.csv -o "
-        "improved.json",
+        "and adds\nwhat is missing, and reports what no effect explains. --improved-model writes the model "
+        "with it; named\n.xml or .mjcf, for MuJoCo, with a list of what MuJoCo cannot "
+        "represent.\nExample: ripplenotch diagnose log.csv --model model.json --validate other.csv "
+        "--improved-model improved.json",
     .attach = attach_diagnose,
 };
 

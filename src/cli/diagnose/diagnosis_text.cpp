@@ -122,9 +122,8 @@ std::string size_text(const Finding& finding) {
     }
     if (size == nullptr) return text;
     const Parameter& parameter = effect.parameters[size->parameter];
-    text += fmt::format(" {}", short_number(size->value));
-    if (size->ci95)
-        text += fmt::format(" +/- {}", fmt::format("{:.2g}", 0.5 * (size->ci95->high - size->ci95->low)));
+    text += " " + (size->ci95 ? with_error(size->value, 0.5 * (size->ci95->high - size->ci95->low))
+                              : short_number(size->value));
     return text + unit_after(parameter.unit);
 }
 
@@ -138,23 +137,24 @@ bool drives(const Finding& finding) {
     return finding.term.effect->resists && finding.term.values.front().value_or(0.0) < 0.0;
 }
 
-std::string setup_text(const Diagnosis& diagnosis) {
-    std::string text;
+std::vector<std::string> setup_sentences(const Diagnosis& diagnosis) {
+    std::vector<std::string> all;
     for (const SetupFault& fault : diagnosis.setup)
-        text += fmt::format("Check the set-up: {}{}.\n", fault.statement,
-                            fault.option.empty() ? "" : fmt::format(" ({})", fault.option));
-    if (!diagnosis.alignment) return text;
+        all.push_back(fmt::format("Check the set-up: {}{}.", fault.statement,
+                                  fault.option.empty() ? "" : fmt::format(" ({})", fault.option)));
+    if (!diagnosis.alignment) return all;
     const SimulationLag& lag = *diagnosis.alignment;
     const double half_s = 0.5 * (lag.delay_95_s.high - lag.delay_95_s.low);
-    text +=
-        fmt::format("Delay: the log is {} +/- {} ms {} the simulation (by their motions, correlation {:.4f})",
-                    short_number(1e3 * std::abs(lag.delay_s)), fmt::format("{:.2g}", 1e3 * half_s),
+    std::string text =
+        fmt::format("Delay: the log is {} ms {} the simulation (by their motions, correlation {:.4f})",
+                    with_error(1e3 * std::abs(lag.delay_s), 1e3 * half_s),
                     lag.delay_s > 0.0 ? "behind" : "ahead of", lag.correlation);
     if (lag.clock_error) text += fmt::format("; clocks differ by {:.3g} ppm", 1e6 * *lag.clock_error);
     if (lag.position)
         text +=
             fmt::format("; positions then differ by {} deg rms", short_number(lag.position->rms_difference));
-    return text + ".\n";
+    all.push_back(text + ".");
+    return all;
 }
 
 // The verdict in one sentence, with names, sizes and what is left.
@@ -175,8 +175,9 @@ std::string answer(const Diagnosis& diagnosis) {
                              : diagnosis.model.has_gear_ratio()
                                  ? "Nothing is missing"
                                  : "Nothing is missing of what was examined, which ripple is not";
-    return fmt::format("{}; residual {} to {} Nm rms, noise {} Nm rms.\n", head, short_number(gap.before_nm),
-                       short_number(gap.after_nm), short_number(gap.noise_floor_nm));
+    // Of a thousand samples, which logs have, an rms is known to 2 %.
+    return fmt::format("{}; residual {:.3g} to {:.3g} Nm rms, noise {:.3g} Nm rms.", head, gap.before_nm,
+                       gap.after_nm, gap.noise_floor_nm);
 }
 
 std::string round_text(const Finding& finding, std::size_t number) {
@@ -325,10 +326,12 @@ std::string angle_text(const Diagnosis& diagnosis) {
 
 }  // namespace
 
-std::string diagnosis_story(const Diagnosis& diagnosis, bool explain) {
-    if (diagnosis.verdict == DiagnosisVerdict::undecided) return diagnosis.doubt + "\n";
+std::string diagnosis_story(const CommonOptions& common, const Diagnosis& diagnosis, bool explain) {
+    if (diagnosis.verdict == DiagnosisVerdict::undecided) return paragraph(common, diagnosis.doubt);
     const DiagnosisGap& gap = diagnosis.gap;
-    std::string text = setup_text(diagnosis) + answer(diagnosis);
+    std::string text;
+    for (const std::string& sentence : setup_sentences(diagnosis)) text += paragraph(common, sentence);
+    text += paragraph(common, answer(diagnosis));
     text += fmt::format("verdict: {}\n", closing(diagnosis));
     text += fmt::format("named: {}\n", diagnosis.named.empty() ? "nothing" : joined(diagnosis.named, ", "));
     text += fmt::format("{} samples, {} used; noise floor {} Nm rms\n", diagnosis.samples,

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/options/options.hpp"
 #include "ripplenotch/arm/arm_setup.hpp"
 #include "ripplenotch/diagnose/diagnosis.hpp"
 
@@ -20,7 +21,8 @@ namespace ripplenotch {
 [[nodiscard]] std::string value_text(const Term& term, const FittedValue& value);
 
 /// `explain`: with the rules that were asked about each finding and each refused candidate.
-[[nodiscard]] std::string diagnosis_story(const Diagnosis& diagnosis, bool explain = false);
+[[nodiscard]] std::string diagnosis_story(const CommonOptions& common, const Diagnosis& diagnosis,
+                                          bool explain = false);
 
 /// "arm: 6 joints of ur10.urdf matched by number (-v shows them); 36 of 36 combinations ... 0.1 s", and what
 /// it leaves.

@@ -67,7 +67,7 @@ void check_table_options(const DiagnoseRequest& request) {
     refuse(request.given.arm.has_value(), "--arm");
     refuse(request.log.sample_rate.has_value(), "--sample-rate");
     refuse(request.plot.wanted(), "--plot");
-    check_output_name(request.common.output, "a model", ".json");
+    check_improved(request, ".json");
 }
 
 std::string values_of_term(const FrictionDiagnosis& found, std::size_t place) {
@@ -87,12 +87,13 @@ std::string values_of_term(const FrictionDiagnosis& found, std::size_t place) {
     return text;
 }
 
-std::string friction_story(const FrictionDiagnosis& found) {
+std::string friction_story(const CommonOptions& common, const FrictionDiagnosis& found) {
     std::string names;
     for (const Term& term : found.model.terms)
         names += fmt::format("{}{}", names.empty() ? "" : ", ", term.effect->name);
-    std::string text = fmt::format("Friction: {}; residual {} Nm rms, noise of a row {} Nm.\n", names,
-                                   short_number(found.residual_nm), short_number(found.noise_nm));
+    std::string text =
+        paragraph(common, fmt::format("Friction: {}; residual {:.3g} Nm rms, noise of a row {:.3g} Nm.",
+                                      names, found.residual_nm, found.noise_nm));
     text +=
         fmt::format("{} rows from {} to {} deg/s, {} in positive and {} in negative direction{}\n",
                     found.rows, short_number(found.speed_deg_s.from), short_number(found.speed_deg_s.to),
@@ -151,12 +152,13 @@ ExitCode run_friction_table(const DiagnoseRequest& request, const Log& table,
     } catch (const DataError& error) {  // the library knows no file
         raise<DataError>("{}: {}", request.path, error.what());
     }
-    if (request.common.output != "-") {
-        write_text(request.common.output, write_model(found.model, provenance), request.common.overwrite());
-        say(request.common, fmt::format("the model is in {}", request.common.output));
+    if (request.improved) {
+        write_text(*request.improved, write_model(found.model, provenance), request.common.overwrite());
+        say(request.common, fmt::format("the model is in {}", *request.improved));
     }
-    write_text("-", request.common.json ? write_friction(found, provenance) : friction_story(found),
-               ByteSink::Overwrite::no);
+    write_text(
+        "-", request.common.json ? write_friction(found, provenance) : friction_story(request.common, found),
+        ByteSink::Overwrite::no);
     return request.require_conclusive && !found.ambiguous.empty() ? ExitCode::inconclusive : ExitCode::done;
 }
 

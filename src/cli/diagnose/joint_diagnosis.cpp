@@ -325,7 +325,8 @@ void check_model(const DiagnoseRequest& request) {
         raise<UsageError>(
             "--model is missing: the model.json whose gap to the log is to be explained; --model auto makes "
             "one "
-            "of the log itself, from what identify finds in it, and -o FILE writes it with what was added");
+            "of the log itself, from what identify finds in it, and --improved-model FILE writes it with "
+            "what was added");
     if (request.model.empty() && !request.gear.ratio)
         raise<UsageError>("--gear-ratio is missing; give it, or --model FILE, which states it");
     if (!request.model.empty() && request.model != model_from_log && request.gear.ratio)
@@ -344,12 +345,22 @@ void check_joints(const DiagnoseRequest& request) {
     if (request.path == "-" || request.model == "-")
         raise<UsageError>("--joint all: standard input can be read once only; give a file");
     if (request.plot.wanted()) raise<UsageError>("--plot draws one joint, and --joint all asks for each");
-    if (request.common.output != "-" && !names_joint(request.common.output))
-        raise<UsageError>("-o {}: each joint has a model of its own; put {{joint}} into the name",
-                          request.common.output);
+    if (request.improved && !names_joint(*request.improved))
+        raise<UsageError>(
+            "--improved-model {}: each joint has a model of its own; put {{joint}} into the name",
+            *request.improved);
 }
 
 }  // namespace
+
+void check_improved(const DiagnoseRequest& request, std::string_view endings) {
+    if (request.improved_by_output)
+        warn(request.common, "--output of diagnose will mean the result; write --improved-model FILE");
+    if (!request.improved) return;
+    check_output_name(*request.improved, "a model", endings, "--improved-model");
+    if (*request.improved == "-")
+        raise<UsageError>("--improved-model -: the result goes to standard output; give a file");
+}
 
 void check(const DiagnoseRequest& request) {
     if (request.path.empty()) raise<UsageError>("LOG is missing: the measured log; - is standard input");
@@ -359,7 +370,7 @@ void check(const DiagnoseRequest& request) {
         raise<UsageError>("--smoothing: {} s is below 0", shortest(request.smoothing.value()));
     for (const std::string& name : request.without) (void)find_effect(name);
     for (const std::string& name : request.accept) (void)find_effect(name);
-    check_output_name(request.common.output, "a model", ".json .xml .mjcf");
+    check_improved(request, ".json .xml .mjcf");
     check_joints(request);
     check_plan(request);
     if (request.plot.path == "-" && request.common.json)

@@ -27,7 +27,9 @@ struct DiagnoseRequest {
     PlotRequest plot;
     ReadOptions log;
     std::string path, model;
-    GearOptions gear;  ///< a ratio alone, in place of a model
+    std::optional<std::string> improved;  ///< file of the improved model
+    bool improved_by_output = false;      ///< which was named by -o
+    GearOptions gear;                     ///< a ratio alone, in place of a model
     GivenOptions given;
     std::optional<std::string> validate;
     std::optional<std::string> plan, limits;  ///< a file; "speed=90deg/s,acceleration=..."
@@ -42,6 +44,8 @@ struct DiagnoseRequest {
 
 /// Throws UsageError, before anything is read.
 void check(const DiagnoseRequest& request);
+/// The file of --improved-model, of which names may end so.
+void check_improved(const DiagnoseRequest& request, std::string_view endings);
 [[nodiscard]] DiagnosisRules rules_of(const DiagnoseRequest& request);
 
 /// What --plan wrote.
@@ -75,7 +79,7 @@ struct JointDiagnosis {
 
 // --plan FILE --limits ...: the motion that would decide what a log left open, as a file of positions.
 
-// -o improved.xml: the improved model in the words of MuJoCo, as far as it has words for it.
+// --improved-model joint.xml: the improved model in the words of MuJoCo, as far as it has words for it.
 
 /// Names that end in .xml or .mjcf.
 [[nodiscard]] bool names_mjcf(std::string_view path);

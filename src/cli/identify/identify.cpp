@@ -160,9 +160,9 @@ std::string motor_matrix(const std::vector<Identification>& found) {
 
 // Verdict first, then ratio, lines, rivals, what the recordings disagree about, notes. `recordings` are
 // their names.
-std::string identification_report(const Identification& found, const std::vector<std::string>& recordings) {
-    std::string text = found.joint.empty() ? "" : found.joint + ": ";
-    text += found.verdict + "\n";
+std::string identification_report(const CommonOptions& common, const Identification& found,
+                                  const std::vector<std::string>& recordings) {
+    std::string text = paragraph(common, (found.joint.empty() ? "" : found.joint + ": ") + found.verdict);
     const GearRatioFit& ratio = found.gear_ratio;
     if (ratio.value) {
         text += fmt::format("\ngear ratio {:.4f}, standard error {:.2g}, 95 % interval {:.4f} to {:.4f}\n",
@@ -416,9 +416,9 @@ ExitCode run_identify(IdentifyRequest& request, const std::string& command_line)
     look_for_other_motors(request, joints, found);
     std::string text;
     for (std::size_t i = 0; i < found.size(); ++i)
-        text +=
-            (text.empty() ? "" : "\n") + in_torque_unit(identification_report(found[i], log_names(joints[i])),
-                                                        joints[i].logs.front().recording.torque_unit);
+        text += (text.empty() ? "" : "\n") +
+                in_torque_unit(identification_report(request.common, found[i], log_names(joints[i])),
+                               joints[i].logs.front().recording.torque_unit);
     text += motor_matrix(found);
     const bool json_file = ends_with_json(request.common.output);
     if ((request.common.json || json_file) && names_joint(request.common.output)) {

@@ -16,6 +16,7 @@
 #include "ripplenotch/core/files.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/progress.hpp"
+#include "ripplenotch/core/visible_text.hpp"
 #include "ripplenotch/evaluate/ledger.hpp"
 #include "ripplenotch/log/format.hpp"
 
@@ -48,11 +49,42 @@ std::string Options::Implementation::names_for_parser(std::string_view names) {
     return fmt::format("{}", fmt::join(known, ","));
 }
 
+namespace {
+
+enum class Word { stays, goes, goes_with_the_next };
+
+// Letters behind one dash: "-q", "-qv", "-oFILE", "-qo FILE".
+Word letters(std::string_view word) {
+    for (std::size_t i = 1; i < word.size(); ++i) {
+        if (word[i] == 'o') return i + 1 == word.size() ? Word::goes_with_the_next : Word::goes;
+        if (word[i] != 'q' && word[i] != 'v') return Word::stays;
+    }
+    return Word::goes;
+}
+
+// "-oFILE" as "--output=FILE", "-qo FILE" as "-q --output FILE".
+void spell_output(std::vector<std::string>& words, std::size_t at) {
+    const std::string word = words[at];
+    if (word.size() < 2 || word[0] != '-' || word[1] == '-' || letters(word) == Word::stays) return;
+    const std::size_t o = word.find('o');
+    if (o == std::string::npos) return;
+    words[at] = "--output" + (o + 1 < word.size() ? "=" + word.substr(o + 1) : "");
+    if (o > 1) words.insert(words.begin() + static_cast<std::ptrdiff_t>(at), word.substr(0, o));
+}
+
+}  // namespace
+
 void Options::Implementation::spell_out(std::vector<std::string>& command_line) const {
-    for (std::string& word : command_line) {
-        if (word == "--") return;
+    for (std::size_t i = 0; i < command_line.size() && command_line[i] != "--"; ++i) {
+        if (old_output != nullptr) spell_output(command_line, i);
+        std::string& word = command_line[i];
         const std::size_t name_end = std::min(word.find('='), word.size());
-        const auto entry = spelled_out.find(word.substr(0, name_end));
+        const std::string name = word.substr(0, name_end);
+        if (old_output != nullptr && name == "--output") {
+            word.replace(0, name_end, was_output);
+            *old_output = true;
+        }
+        const auto entry = spelled_out.find(name);
         if (entry != spelled_out.end()) word.replace(0, name_end, entry->second);
     }
 }
@@ -158,6 +190,11 @@ void Options::arguments(std::string_view name, std::vector<std::string>& target,
     names_file(name, "LOG");
 }
 
+void Options::was_output(std::string_view name, bool& used) {
+    implementation_.was_output = owned(name);
+    implementation_.old_output = &used;
+}
+
 void Options::after_parse(std::function<void()> check) {
     implementation_.after_parse.push_back(std::move(check));
 }
@@ -180,24 +217,13 @@ void Options::Implementation::check_files() const {
 
 namespace {
 
-enum class Word { stays, goes, goes_with_the_next };
-
-// Letters behind one dash: "-q", "-qv", "-oFILE", "-qo FILE".
-Word letters(std::string_view word) {
-    for (std::size_t i = 1; i < word.size(); ++i) {
-        if (word[i] == 'o') return i + 1 == word.size() ? Word::goes_with_the_next : Word::goes;
-        if (word[i] != 'q' && word[i] != 'v') return Word::stays;
-    }
-    return Word::goes;
-}
-
 // What says where a result goes and how much is told on the way is no part of how it was made.
 Word in_command_line(std::string_view word) {
     if (word.size() < 2 || word.front() != '-') return Word::stays;
     if (word[1] != '-') return letters(word);
     for (const std::string_view flag : {"--force", "--no-sync", "--quiet", "--verbose", "--json"})
         if (word == flag) return Word::goes;
-    for (const std::string_view option : {"--output", "--plot"}) {
+    for (const std::string_view option : {"--output", "--improved-model", "--plot"}) {
         if (word == option) return Word::goes_with_the_next;
         if (word.starts_with(option) && word[option.size()] == '=') return Word::goes;
     }
@@ -298,8 +324,12 @@ void attach_common(Options& options, CommonOptions& common, const OutputNames& n
     });
     options.text("-o,--output", common.output, "FILE", "where the result goes; - is standard output");
     options.writes("-o");
-    options.flag("--json", common.json, "one JSON object instead of text");
+    attach_json(options, common);
     attach_manner(options, common);
+}
+
+void attach_json(Options& options, CommonOptions& common) {
+    options.flag("--json", common.json, "one JSON object instead of text");
 }
 
 std::string joints_in_words(std::span<const std::string> joints) {
@@ -360,6 +390,26 @@ void say_warnings(const CommonOptions& common, std::span<const LogWarning> warni
 
 void say(const CommonOptions& common, std::string_view sentence) {
     if (common.verbose && !common.quiet) say_or_gather(common, false, sentence);
+}
+
+std::string paragraph(const CommonOptions& common, std::string_view sentence, std::size_t before,
+                      std::size_t indent) {
+    const auto width =
+        common.output == "-" || ends_with_json(common.output) ? terminal_columns() : std::nullopt;
+    if (!width) return fmt::format("{}\n", sentence);
+    const std::string visible = visible_text(sentence);
+    std::string text = wrapped(std::string(before, '.') + visible, *width).front().substr(before);
+    std::string_view rest = std::string_view(visible).substr(text.size());
+    text += "\n";
+    if (rest.starts_with(' ')) rest.remove_prefix(1);
+    if (rest.empty()) return text;
+    for (const std::string& line : wrapped(rest, *width - std::min(indent, *width - 1)))
+        text += std::string(indent, ' ') + line + "\n";
+    return text;
+}
+
+std::size_t joint_columns(const CommonOptions& common) {
+    return common.messages ? text_width(visible_text(common.joint)) + 2 : 0;
 }
 
 void write_result(const CommonOptions& common, const std::function<std::string()>& json,

@@ -82,12 +82,15 @@ class Options {
     /// The file that the option of this first name takes is written; of all others whose type says that they
     /// name files (FILE, LOG, SPEC, ...), and of arguments, files are read. Those that collide are refused.
     void writes(std::string_view name);
+    /// -o and --output, which the command does not declare, are read as the option of this name for one more
+    /// release, and `used` says so. No help names them.
+    void was_output(std::string_view name, bool& used);
     /// Runs when all options are read, before the work.
     void after_parse(std::function<void()> check);
 
     [[nodiscard]] std::string command_name() const;
-    /// The command line as it would be typed again, without -o, --plot, --force, -q, -v and --json; for
-    /// provenance.
+    /// The command line as it would be typed again, without -o, --improved-model, --plot, --force, -q, -v
+    /// and --json; for provenance.
     [[nodiscard]] std::string command_line() const;
     /// The options of attach_log() that are given, each with a blank before it, for command lines that people
     /// paste; `from`, `to` and `joint` take the place of --from, --to and --joint.
@@ -145,6 +148,7 @@ struct OutputNames {
 /// How a file says where it is from, one line each: tool, command and inputs.
 [[nodiscard]] std::vector<std::string> heading_of(const Provenance& provenance);
 void attach_common(Options& options, CommonOptions& common, const OutputNames& names);
+void attach_json(Options& options, CommonOptions& common);
 /// How it writes and what it says: --force, --no-sync, --quiet and --verbose.
 void attach_manner(Options& options, CommonOptions& common);
 [[nodiscard]] bool ends_with_json(std::string_view path);
@@ -159,6 +163,13 @@ void warn(const CommonOptions& common, std::string_view sentence);
 void say_warnings(const CommonOptions& common, std::span<const std::string> warnings);
 void say_warnings(const CommonOptions& common, std::span<const LogWarning> warnings);
 void say(const CommonOptions& common, std::string_view sentence);  ///< only with -v
+/// A sentence with its end of line. On a terminal it is wrapped at blanks, to the terminal's width: the first
+/// line begins after `before` columns, the others with `indent` blanks. In a pipe or a file it is one line,
+/// so that the first line of a result is its verdict.
+[[nodiscard]] std::string paragraph(const CommonOptions& common, std::string_view sentence,
+                                    std::size_t before = 0, std::size_t indent = 0);
+/// The columns of "j1: ", which stand before the result of a joint where there are several.
+[[nodiscard]] std::size_t joint_columns(const CommonOptions& common);
 /// The option line that would force the reading of a log, with -v; its warnings always unless quiet.
 void say_layout(const CommonOptions& common, const Layout& layout);
 /// A log that was read: what is said of it, and its place among the inputs.

@@ -21,6 +21,9 @@ struct Options::Implementation {
     /// "--q" -> "--quality": what stands on the command line, and what CLI11 knows it as. CLI11 from 2.2 on
     /// takes a long name of one letter for the short name too, so that `--q` would be refused beside `-q`.
     std::map<std::string, std::string> spelled_out = {};
+    /// What -o was before, and whether it was used (Options::was_output).
+    std::string was_output = {};
+    bool* old_output = nullptr;
 
     /// Options and arguments that name files, which are read, and those among them that are written.
     std::vector<std::string> files = {};
@@ -30,7 +33,7 @@ struct Options::Implementation {
 
     /// The names for CLI11: "--quality" of "--quality,--q", which goes to `spelled_out`.
     [[nodiscard]] std::string names_for_parser(std::string_view names);
-    /// Rewrites the options before "--" as CLI11 knows them.
+    /// Rewrites the options before "--" as CLI11 knows them; -o as what it was before.
     void spell_out(std::vector<std::string>& command_line) const;
 };
 

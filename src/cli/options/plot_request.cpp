@@ -2,12 +2,11 @@
 #include "cli/options/plot_request.hpp"
 
 #include <fmt/format.h>
-#include <sys/ioctl.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
 
+#include "cli/talk.hpp"
 #include "core/text/lower_case.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/files.hpp"
@@ -28,14 +27,6 @@ std::optional<PictureKind> picture_kind(const std::string& path) {
     if (extension == ".png") return PictureKind::png;
     if (extension == ".pdf") return PictureKind::pdf;
     return std::nullopt;
-}
-
-// A pipe gets 80 columns whoever reads it, so that the same input gives the same bytes.
-int terminal_columns() {
-    winsize size{};
-    if (::isatty(STDOUT_FILENO) == 1 && ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0)
-        return size.ws_col;
-    return 80;
 }
 
 std::string data_path(const std::string& path) {
@@ -97,8 +88,9 @@ void draw_plot(const PlotRequest& request, const CommonOptions& common, const Pr
         write_all(path, data(), common.overwrite());
         return;
     }
-    const auto drawn =
-        path == "-" ? draw_text(figure, terminal_columns()) : draw_picture(figure, *picture_kind(path));
+    // A pipe gets 80 columns whoever reads it, so that the same input gives the same bytes.
+    const auto drawn = path == "-" ? draw_text(figure, static_cast<int>(terminal_columns().value_or(80)))
+                                   : draw_picture(figure, *picture_kind(path));
     if (drawn) {
         write_all(path, *drawn, common.overwrite());
         return;

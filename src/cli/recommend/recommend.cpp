@@ -39,7 +39,7 @@ namespace {
 
 // A recommendation as people read it.
 
-constexpr std::size_t report_width = 110, widest_name = 60;
+constexpr std::size_t widest_name = 60;
 
 std::string next_commands(std::string_view head, const std::vector<std::string>& lines) {
     if (lines.empty()) return "";
@@ -83,24 +83,22 @@ std::string methods_text(const Recommendation& found) {
             rows.back().push_back(fmt::format("{:.4f}", nm));
         rows.back().push_back(method.meets() ? "" : "no");
     }
-    rows.front().back() = found.limits.max_delay || found.limits.min_attenuation_db ? "within limits" : "";
+    rows.front().back() = found.limits.any() ? "within limits" : "";
     return "\n" + text_table(rows, "lr");
 }
 
-std::string paragraph(const std::string& text) { return joined(wrapped(text, report_width), "\n") + "\n"; }
-
-std::string bulleted(std::string_view head, const std::vector<std::string>& sentences) {
+std::string bulleted(const CommonOptions& common, std::string_view head,
+                     const std::vector<std::string>& sentences) {
     if (sentences.empty()) return "";
     std::string text = fmt::format("\n{}\n", head);
-    for (const std::string& sentence : sentences)
-        text += "* " + joined(wrapped(sentence, report_width - 2), "\n  ") + "\n";
+    for (const std::string& sentence : sentences) text += "* " + paragraph(common, sentence, 2, 2);
     return text;
 }
 
 // Verdict, commands to paste, what is in the log, all methods, and what was assumed.
-std::string recommendation_view(const RecommendationReport& report) {
+std::string recommendation_view(const CommonOptions& common, const RecommendationReport& report) {
     const Recommendation& found = report.found;
-    std::string text = paragraph(recommendation_verdict(found));
+    std::string text = paragraph(common, recommendation_verdict(found), joint_columns(common));
     text += next_commands("To use it:", report.take);
     text += next_commands("The other:", report.runner_up);
     if (!found.orders.empty()) text += orders_text(found);
@@ -108,19 +106,25 @@ std::string recommendation_view(const RecommendationReport& report) {
         text += methods_text(found);
         text +=
             "\n" +
-            paragraph(fmt::format(
-                "Trained up to {:.6g} s, evaluated from there on in {} windows. The torque's band, {}: "
-                "{:.3g} to {:.3g} Hz. Error, rms: the remaining ripple, the distortion of the torque without "
-                "ripple within its band, and what is added to it outside the band. Gain, within the band, "
-                "and step: at the log's median speed; delay: maximum over its speeds.",
-                report.split_s, found.windows,
-                found.band->stated    ? "as stated"
-                : found.band->at_rest ? "which does not rise above the noise, as far as this log resolves it"
-                                      : "99 % of what rises above the noise",
-                found.band->from.value(), found.band->to.value()));
+            paragraph(
+                common,
+                fmt::format(
+                    "Trained up to {:.6g} s, evaluated from there on in {} windows. The torque's band, {}: "
+                    "{:.3g} to {:.3g} Hz. Error, rms: the remaining ripple, the distortion of the torque "
+                    "without "
+                    "ripple within its band, and what is added to it outside the band. Gain, within the "
+                    "band, "
+                    "and step: at the log's median speed; delay: maximum over its speeds.",
+                    report.split_s, found.windows,
+                    found.band->stated ? "as stated"
+                    : found.band->at_rest
+                        ? "which does not rise above the noise, as far as this log resolves it"
+                        : "99 % of what rises above the noise",
+                    found.band->from.value(), found.band->to.value()));
     }
     if (!report.check.empty()) text += next_commands("To measure it again:", {report.check});
-    return text + bulleted("Assumed:", report.assumed) + bulleted("Not tried:", report.left_out);
+    return text + bulleted(common, "Assumed:", report.assumed) +
+           bulleted(common, "Not tried:", report.left_out);
 }
 
 template <class Entries>
@@ -434,9 +438,9 @@ RecommendationReport report_of(const RecommendRequest& request, Provenance& prov
 JointResult recommend_for_joint(const RecommendRequest& request, const std::string& command_line) {
     Provenance provenance{{}, command_line};
     const RecommendationReport report = report_of(request, provenance);
-    JointResult result{in_torque_unit(
-        request.common.json ? recommendation_text(report, provenance) : recommendation_view(report),
-        provenance.recordings.front().torque_unit)};
+    JointResult result{in_torque_unit(request.common.json ? recommendation_text(report, provenance)
+                                                          : recommendation_view(request.common, report),
+                                      provenance.recordings.front().torque_unit)};
     if (report.found.finding == RecommendationFinding::out_of_reach)
         result.code = ExitCode::limit_violated;
     else if (request.require_conclusive && !report.conclusive)

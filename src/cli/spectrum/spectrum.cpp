@@ -348,7 +348,7 @@ struct SpectrumRequest {
     ResidualOptions residual;
     ResponseRequest response;
     PlotRequest plot;
-    bool peaks = false;
+    bool peaks = false, bins = false;
 
     /// Frequencies of all of the log are the same however the joint moves.
     [[nodiscard]] bool needs_motion() const {
@@ -357,8 +357,7 @@ struct SpectrumRequest {
     }
     /// Numbers by the thousand, and no table for people.
     [[nodiscard]] bool is_csv() const {
-        if (response.signals) return !common.json && common.output.ends_with(".csv");
-        return !peaks && !common.json;
+        return !common.json && (map.map || bins || common.output.ends_with(".csv"));
     }
     /// Half-overlapping pieces of all of the log, which need no more of it at a time.
     [[nodiscard]] bool in_pieces() const { return segment && !needs_motion() && !response.signals; }
@@ -411,8 +410,8 @@ Result order_result(const SpectrumRequest& request, const TraceView& trace, cons
     }
     std::string text = request.common.json
                            ? order_spectrum_text(joint, result, request.false_alarm, provenance)
-                       : request.peaks ? order_peaks(result)
-                                       : order_csv(result.stack);
+                       : request.is_csv() ? order_csv(result.stack)
+                                          : order_peaks(result);
     return {std::move(text), [result, source = joint_in_words(request.path, joint)] {
                 return order_spectrum_figure(source, result.stack, result.lines);
             }};
@@ -451,11 +450,11 @@ void say_segment(const SpectrumRequest& request, const StretchSpectrum& one) {
 Result frequency_result(const SpectrumRequest& request, std::vector<StretchSpectrum> spectra,
                         const std::string& joint, const Provenance& provenance) {
     for (const StretchSpectrum& one : spectra) say_segment(request, one);
-    if (!request.common.json && !request.peaks && request.common.verbose && !request.common.quiet)
+    if (request.is_csv() && request.common.verbose && !request.common.quiet)
         talk_lines(frequency_peaks(spectra));
     std::string text = request.common.json ? spectra_text(joint, spectra, request.false_alarm, provenance)
-                       : request.peaks     ? frequency_peaks(spectra)
-                                           : frequency_csv(spectra);
+                       : request.is_csv()  ? frequency_csv(spectra)
+                                           : frequency_peaks(spectra);
     return {std::move(text), [spectra = std::move(spectra), source = joint_in_words(request.path, joint)] {
                 return frequency_figure(source, spectra);
             }};
@@ -564,8 +563,8 @@ void check_response(SpectrumRequest& request) {
             raise<UsageError>("--method and --estimator belong to --response");
         return;
     }
-    if (request.map.map || request.stretch || request.peaks || request.domain != "frequency")
-        raise<UsageError>("--response goes with neither --domain, --stretch, --map nor --peaks");
+    if (request.map.map || request.stretch || request.peaks || request.bins || request.domain != "frequency")
+        raise<UsageError>("--response goes with neither --domain, --stretch, --map, --peaks nor --bins");
     if (request.segment && request.map.resolution)
         raise<UsageError>(
             "--segment and --resolution state the same, 1.5 over one is the other: leave one out");
@@ -582,10 +581,14 @@ ExitCode run_spectrum(SpectrumRequest& request, const std::string& command_line)
     check_speed_map(request.map, request.response.signals.has_value());
     check_response(request);
     hash_where_told(request.common, request.plot);
-    if (request.map.map &&
-        (request.stretch || request.segment || request.peaks || request.domain != "frequency"))
-        raise<UsageError>("--map goes with neither --domain, --stretch, --segment nor --peaks");
+    if (request.map.map && (request.stretch || request.segment || request.peaks || request.bins ||
+                            request.domain != "frequency"))
+        raise<UsageError>("--map goes with neither --domain, --stretch, --segment, --peaks nor --bins");
     if (request.peaks) check_output_name(request.common.output, "a table of lines", ".txt .json");
+    if (request.bins) check_output_name(request.common.output, "a table of bins", ".csv .txt");
+    if (request.bins && (request.peaks || request.common.json))
+        raise<UsageError>("--bins and {}: the bins are CSV, and not the lines; give one of them",
+                          request.peaks ? "--peaks" : "--json");
     ReadOptions log = request.log;
     take_joint_of(request.residual, log.joint);
     const std::string_view documents = request.response.signals ? "responses" : "spectra";
@@ -609,7 +612,9 @@ std::function<ExitCode()> attach_spectrum(Options& options) {
                  "steady stretches instead of the whole log, each or one of them");
     options.number("--segment", request->segment, Dimension::time,
                    "average half-overlapping pieces of this length (Welch)", true);
-    options.flag("--peaks", request->peaks, "tables of the lines and humps instead of the bins");
+    options.flag("--bins", request->bins,
+                 "every bin as CSV instead of tables of the lines and humps; as with -o FILE.csv");
+    options.flag("--peaks", request->peaks, "these tables, which are the default");
     options.number("--false-alarm", request->false_alarm, Dimension::none,
                    "chance that noise gives any line in a spectrum");
     options.number("--steady-band", request->steady.band_percent, Dimension::none,
@@ -632,9 +637,9 @@ const Command commands::spectrum{
     .name = "spectrum",
     .summary = "amplitude of the torque against frequency or output order",
     .description =
-        "Writes CSV (frequency_hz, amplitude_nm, psd_nm2_hz, floor_nm), with --json or --peaks the lines "
-        "that rise above the\nnoise. Amplitudes are zero to peak in Nm, whatever the window and the "
-        "length.\nExample: ripplenotch spectrum log.csv --peaks",
+        "Prints the lines that rise above the noise; with --bins, or -o FILE.csv, every bin as CSV "
+        "(frequency_hz, amplitude_nm,\npsd_nm2_hz, floor_nm). Amplitudes are zero to peak in Nm, whatever "
+        "the window and the length.\nExample: ripplenotch spectrum log.csv",
     .attach = attach_spectrum,
 };
 

@@ -276,6 +276,25 @@ double to_digits_in_row(const ValueInRow& cell, int digits) {
            0.0;  // + 0.0: no negative zero
 }
 
+int decimals_of(double error, int digits) {
+    return std::max(0, digits - 1 - static_cast<int>(std::floor(portable::log10(error))));
+}
+
+std::string with_error(double value, double error) {
+    constexpr int error_digits = 2;
+    if (!(error > 0.0) || !std::isfinite(error)) return fmt::format("{:.4g} +/- {:.2g}", value, error);
+    const int decimals = decimals_of(error, error_digits);
+    // Beyond these an exponent is read faster than zeros are counted.
+    constexpr int most_decimals = 7;
+    constexpr double largest_error = 100.0;
+    if (decimals <= most_decimals && error < largest_error)
+        return fmt::format("{} +/- {}", rounded(value, decimals), rounded(error, decimals));
+    const double size = std::max(std::abs(value), error);
+    const int digits = error_digits + static_cast<int>(std::floor(portable::log10(size)) -
+                                                       std::floor(portable::log10(error)));
+    return fmt::format("{:.{}g} +/- {:.{}g}", value, digits, error, error_digits);
+}
+
 std::string rounded(double value, int decimals) {
     std::string text;
     append_fixed(text, value, decimals);

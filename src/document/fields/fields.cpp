@@ -114,7 +114,7 @@ std::string_view written_by(std::string_view kind) {
          {"joints", "identify --joint all --json"},
          {"table", "design --json"},
          {"map", "map -o map.json"},
-         {"model", "diagnose -o model.json"},
+         {"model", "diagnose --improved-model model.json"},
          {"figure", "--plot FILE.json of any command"}}};
     for (const auto& [name, writer] : writers) {
         if (name == kind) return writer;

@@ -195,6 +195,10 @@ void describe(JsonWriter& json, const Comparison& comparison) {
     const GearAccount no_gear;
     const GearAccount& gear = comparison.lines ? *comparison.lines : no_gear;
     json("verdict", verdict(comparison));
+    json.group_if("best", comparison.best, [&](JsonWriter& best, const JudgedMethod& method) {
+        describe(best, method);
+        best("reason", comparison.best_sentence);
+    });
     json("sample_rate_hz", comparison.sample_rate);
     json("speed_deg_s", comparison.speed);
     json("step_nm", comparison.step_nm);

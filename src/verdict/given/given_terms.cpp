@@ -276,7 +276,8 @@ std::vector<double> stated_torque_along(const GivenOptions& options, const Model
     const auto open = given.open();
     if (!open.empty())
         raise<UsageError>(
-            "the model does not state {}; give the value, or fit it to a log first: diagnose -o",
+            "the model does not state {}; give the value, or fit it to a log first: diagnose "
+            "--improved-model",
             fmt::join(open, ", "));
     return known_torque_nm(given.log, log.log.trace.size());
 }
@@ -309,8 +310,9 @@ std::vector<double> predicted_torque(const ResidualOptions& residual, const Mode
     if (options.any() || model.any_given()) {
         GivenTerms given = GivenSource(options).read(model, reading, log, nullptr);
         if (given.fitted_arm)
-            raise<UsageError>("--residual {}: the model does not state arm.links; diagnose -o writes them",
-                              *residual.model);
+            raise<UsageError>(
+                "--residual {}: the model does not state arm.links; diagnose --improved-model writes them",
+                *residual.model);
         settle_simulation(given.log, log.log.trace);
         terms = std::move(given.log);
     }
