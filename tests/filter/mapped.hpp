@@ -61,7 +61,7 @@ inline RippleMap two_comb_map() {
 /// A joint that swings at up to 110 deg/s under a slow torque, at 1 kHz, with this ripple and white noise.
 /// The encoder counts `shift_deg` more than the map does.
 inline Trace mapped_log(const RippleMap& map, double seconds, double noise_nm, unsigned seed,
-                        double shift_deg = 0.0) {
+                        double shift_deg = 0.0, double swing_rad_s = 0.9) {
     std::mt19937 engine(seed);
     std::normal_distribution<double> noise;
     const double phase = std::uniform_real_distribution<double>(0.0, 6.0)(engine);
@@ -70,7 +70,7 @@ inline Trace mapped_log(const RippleMap& map, double seconds, double noise_nm, u
     double position = 7.0;
     for (std::size_t k = 0; static_cast<double>(k) < 1000.0 * seconds; ++k) {
         const double t = static_cast<double>(k) / 1000.0;
-        const double v = 80.0 * std::sin(0.9 * t + phase) + 30.0 * std::sin(0.37 * t);
+        const double v = 80.0 * std::sin(swing_rad_s * t + phase) + 30.0 * std::sin(0.37 * t);
         if (k > 0) position += (trace.velocity_deg_s.back() + v) / 2000.0;
         trace.time_s.push_back(t);
         trace.velocity_deg_s.push_back(v);

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+
 // Results of identify for a joint: ripple lines, the gear ratio, and a sentence that states it. "Nothing
 // found" and "cannot be determined" are values of these types, not errors.
 
+#include <algorithm>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -156,6 +158,25 @@ struct SearchedOrders {
     std::vector<Bound> bounds;  ///< ascending in order, the first for the whole range
 };
 
+/// What a joint's torque holds of the motor of another joint.
+struct OtherMotorRipple {
+    struct AtOrder {
+        double order = 0.0;  ///< cycles per turn of that motor
+        bool found = false;
+        double amplitude_nm = 0.0, standard_error_nm = 0.0;  ///< zero to peak, where it was found
+        /// Where it was not: would have been found in 20 of 20 such logs; empty where there is no bound.
+        std::optional<double> detectable_nm;
+    };
+    std::string joint;
+    GearRatio gear_ratio;
+    std::vector<AtOrder> orders;
+    std::string doubt;  ///< why it may be the ripple of another motor as well, a sentence; or empty
+
+    [[nodiscard]] bool found() const {
+        return std::any_of(orders.begin(), orders.end(), [](const AtOrder& one) { return one.found; });
+    }
+};
+
 struct Identification {
     std::string joint;
     Hertz sample_rate;
@@ -170,6 +191,10 @@ struct Identification {
     std::vector<Hum> hums;  ///< most torque first
     std::vector<Disagreement> disagreements;
     std::optional<SearchedOrders> searched;  ///< empty where the motion allows no search
+    /// Of each other joint of the logs whose gear ratio is known. What was found of them, without a doubt,
+    /// was taken from the torque before the lines were searched.
+    std::vector<OtherMotorRipple> other_motors;
+    std::vector<std::string> other_motors_not_known;  ///< joints whose gear ratio is not known
     RippleFinding finding = RippleFinding::too_little;
     std::vector<Doubt> doubts;
     Grounds grounds;                 ///< not in joint.json
@@ -188,6 +213,9 @@ struct Identification {
 
 /// The verdict as text, reasons against it first.
 [[nodiscard]] std::string verdict_sentence(const Identification& found);
+
+/// What was found of the motors of other joints, a sentence; empty where nothing was.
+[[nodiscard]] std::string other_motors_sentence(const Identification& found);
 
 /// Retracts the orders and the gear ratio in `found` and records why: every line that would turn with the
 /// joint becomes of kind unknown, with its frequencies. The ratios that it would fit stay listed.

@@ -75,6 +75,9 @@ struct RippleMap {
     std::string temperature_column;  ///< column in the logs, with {joint} for the joint's name
     std::vector<std::vector<std::complex<double>>> values;  ///< by order, then by column; Nm
     std::vector<double> spread_nm;  ///< by order: rms deviation of amplitudes from the map in its logs
+    /// Ripple of the motors of other joints in this joint's torque: each goes by the angle and speed of
+    /// `joint`.
+    std::vector<RippleMap> others;
 };
 
 /// The weight of each column at this state. Beyond the range of the map its edge counts; slower than the

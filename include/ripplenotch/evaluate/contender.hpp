@@ -26,6 +26,9 @@ struct Contender {
     std::optional<GearAccount> gear = std::nullopt;         ///< empty when unknown
     std::vector<std::string> files = {};                    ///< files of table and gear, each once
     std::shared_ptr<const RippleMap> map = nullptr;         ///< its ripple map, if any
+    /// Maps of the motors of other joints, whose ripple is taken from the torque first; of its own map, or of
+    /// another file.
+    std::vector<RippleMap> others = {};
     /// The same method without its ripple map, where it has one.
     std::shared_ptr<const Contender> without_ripple = nullptr;
 

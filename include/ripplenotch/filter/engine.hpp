@@ -111,6 +111,8 @@ struct JointRun {
     /// grows with the logarithm of the log's length.
     bool sparsely = false;
     RowValues* temperature = nullptr;
+    /// Ripple of the motors of other joints, Nm, taken from the torque before the filter; or null.
+    RowValues* other_ripple = nullptr;
 };
 
 /// One log on its way through a filter, or through one filter for each joint that is read.

@@ -5,6 +5,7 @@
 
 #include <complex>
 #include <cstddef>
+#include <memory>
 #include <span>
 #include <string>
 #include <utility>
@@ -13,6 +14,7 @@
 #include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/core/trace.hpp"
 #include "ripplenotch/design/ripple_map.hpp"
+#include "ripplenotch/filter/method.hpp"
 
 namespace ripplenotch {
 
@@ -49,11 +51,19 @@ struct MapFit {
     std::vector<MapOrderScore> scores;  ///< scores of every order requested
     std::vector<MapAgreement> agreement;
     MapFinding finding = MapFinding::too_little;
+    double false_alarm = 1.0;  ///< probability that chance is as regular at any or all of the orders
     std::size_t windows = 0, blocks = 0;
     bool anchored = true;     ///< the angle is that of a position; else it counts from the first row
     bool conclusive = false;  ///< mapped or nothing, anchored, and the logs agree
     std::string doubt;        ///< stated before the verdict, from the code that read the logs; empty: none
     std::vector<std::string> notes;  ///< one sentence each
+    std::vector<MapFit> others;      ///< of the motors of other joints (fit_joint_map), named by map.joint
+};
+
+/// How a map is looked for.
+struct MapTest {
+    double false_alarm = 0.01;  ///< probability that a log without ripple has a map
+    bool bounds = true;  ///< amplitudes that would have been found are wanted, which take the most time
 };
 
 /// Windows of fewer motor turns, or fewer windows, are not enough to leave some out.
@@ -68,7 +78,37 @@ inline constexpr std::size_t fewest_map_windows = 12;
 /// each log, which is included where it improves the map; or nothing.
 [[nodiscard]] MapFit fit_ripple_map(std::span<const TraceView> logs, const GearAccount& gear,
                                     double zero_deg = 0.0,
-                                    std::span<const std::vector<double>> temperatures_degc = {});
+                                    std::span<const std::vector<double>> temperatures_degc = {},
+                                    const MapTest& looking = {});
+
+/// Another joint of the same arm, whose motor may put ripple into this joint's torque.
+struct OtherMotor {
+    std::string joint;
+    GearAccount gear;
+    std::vector<TraceView> motion;  ///< by log: its rows are those of the torque; with a position
+};
+
+/// A map of what a joint's torque holds of its own motor and, in `others`, of each other motor, in their
+/// order. Each is fitted to the torque less all other maps, until they stay (backfitting, Breiman and
+/// Friedman 1985). `own` null: its gear is not known; the map is then empty. That any other motor is mapped
+/// of which nothing is in the torque has a probability of 1 % for all `pairs` of a torque and another motor
+/// that are looked at in the log. A motor whose angle goes with that of a mapped one cannot be told from it
+/// and is in its `doubt`. Throws what fit_ripple_map throws.
+[[nodiscard]] MapFit fit_joint_map(std::span<const TraceView> logs, const GearAccount* own,
+                                   std::span<const OtherMotor> others, std::size_t pairs,
+                                   double zero_deg = 0.0,
+                                   std::span<const std::vector<double>> temperatures_degc = {});
+
+/// The torques of these logs less the ripple of the other motors that are in the map, by log.
+[[nodiscard]] std::vector<std::vector<double>> without_other_motors(std::span<const TraceView> logs,
+                                                                    const RippleMap& map,
+                                                                    std::span<const OtherMotor> others);
+
+/// The ripple that a map predicts along a log of its motor's joint, Nm by row.
+[[nodiscard]] std::vector<double> map_along(const RippleMap& map, const TraceView& log);
+
+/// A filter whose output is the ripple that the map predicts, whatever the torque.
+[[nodiscard]] std::unique_ptr<CausalFilter> map_prediction(const RippleMap& map, Hertz sample_rate);
 
 /// "by speed (3) and direction, with 2 harmonics of the joint's turn"
 [[nodiscard]] std::string map_form_words(const MapForm& form);

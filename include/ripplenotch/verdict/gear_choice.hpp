@@ -127,7 +127,8 @@ struct MethodRequest {
     std::string method;
     std::optional<std::string> table;
     GearOptions gear;
-    bool needs_gear = false;  ///< something was asked about the ripple's place
+    bool needs_gear = false;                                 ///< something was asked about the ripple's place
+    std::optional<std::string> other_motors = std::nullopt;  ///< a map whose `others` are subtracted first
 };
 
 class JointMethods {
@@ -142,6 +143,8 @@ class JointMethods {
     [[nodiscard]] std::optional<GearAccount> common_gear() const;
     /// Whether the method looks at the whole log before it filters.
     [[nodiscard]] bool learns() const;
+    /// Whether the log is read twice, as far as that is known before its joints are.
+    [[nodiscard]] bool needs_log_twice() const;
     /// Whether what the method does depends on how fast the joint turns.
     [[nodiscard]] bool follows_motion() const;
 

@@ -13,6 +13,7 @@
 #include "ripplenotch/diagnose/diagnosis.hpp"
 #include "ripplenotch/filter/map_fit.hpp"
 #include "ripplenotch/log/log.hpp"
+#include "ripplenotch/verdict/other_motors.hpp"
 
 namespace ripplenotch {
 
@@ -29,6 +30,11 @@ namespace ripplenotch {
 /// before a gear of unknown ratio gives orders of the motor and no ratio.
 [[nodiscard]] Identification identify_readings(std::span<const Log> logs, const IdentifyOptions& options);
 
+/// The same where the motors of other joints may be in the torque. What is found of them (fit_joint_map) is
+/// subtracted before the lines are searched again; `alone` is what identify_readings() gave.
+[[nodiscard]] Identification identify_among(std::span<const Log> logs, Identification alone,
+                                            const OtherMotors& others, const IdentifyOptions& options);
+
 /// diagnose(); `undecided`, with nothing named and the model as given, where another reading of the log that
 /// is as possible would name something else.
 [[nodiscard]] Diagnosis diagnose_readings(const Model& model, const Log& log, const Log* validation,
@@ -36,10 +42,12 @@ namespace ripplenotch {
 
 /// fit_ripple_map() of the logs of one joint, with the angle of the joint at which the map begins and the
 /// temperatures in degC at each log's rows (empty: of none). `doubt` says so where two readings of the logs
-/// are as possible and both show a map, or none of several does; then it is not conclusive. Throws what
-/// fit_ripple_map throws.
+/// are as possible and both show a map, or none of several does; then it is not conclusive. Where the reading
+/// is settled the motors of other joints are looked for, too (fit_joint_map). Throws what fit_ripple_map
+/// throws.
 [[nodiscard]] MapFit map_readings(std::span<const Log> logs, const GearAccount& gear, Degrees zero,
-                                  const std::vector<std::vector<double>>& temperatures_degc = {});
+                                  const std::vector<std::vector<double>>& temperatures_degc = {},
+                                  const OtherMotors& others = {});
 
 /// Throws DataError, naming what settles it, where the log may mean several motions: its units are open, or
 /// it was measured before the gear and its ratio is not stated.

@@ -298,6 +298,21 @@ std::string doubted(const Identification& found) {
 
 }  // namespace
 
+std::string other_motors_sentence(const Identification& found) {
+    std::vector<std::string> motors;
+    for (const OtherMotorRipple& motor : found.other_motors) {
+        std::vector<std::string> orders;
+        for (const OtherMotorRipple::AtOrder& at : motor.orders)
+            if (at.found)
+                orders.push_back(fmt::format("{:.2g} Nm at order {}", at.amplitude_nm, shortest(at.order)));
+        if (!orders.empty() && motor.doubt.empty())
+            motors.push_back(fmt::format("{} ({})", motor.joint, fmt::join(orders, ", ")));
+    }
+    if (motors.empty()) return {};
+    return fmt::format("The torque also holds ripple of the {} of {}, which was subtracted first.",
+                       motors.size() == 1 ? "motor" : "motors", fmt::join(motors, " and "));
+}
+
 std::string verdict_sentence(const Identification& found) {
     if (!found.doubts.empty()) return doubted(found);
     switch (found.finding) {

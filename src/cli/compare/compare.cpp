@@ -395,7 +395,7 @@ std::vector<std::vector<double>> temperatures_for(std::span<const Contender> con
 
 // Throws UsageError when `methods` is empty, and what choose_method and refuse_other_gear throw.
 Field load_contenders(const std::vector<std::string>& methods, const GearOptions& gear,
-                      Provenance& provenance) {
+                      const CommonOptions& common, Provenance& provenance) {
     if (methods.empty()) {
         raise<UsageError>(
             "nothing to compare; give --method, for example --method fixed,centers=25Hz:50Hz,q=0.25 "
@@ -407,6 +407,12 @@ Field load_contenders(const std::vector<std::string>& methods, const GearOptions
     const auto add = [&](const std::string& text) {
         const Contender& added = field.contenders.emplace_back(choose_method(text, std::nullopt, choice));
         if (!field.table) field.table = added.table;
+        if (!added.others.empty())
+            warn(common,
+                 fmt::format(
+                     "{}: the ripple of other joints' motors that its map holds is left in the torque; "
+                     "filter subtracts it",
+                     added.text));
         for (const std::string& file : added.files)
             if (recorded.insert(file).second) provenance.inputs.push_back(input_record(file));
     };
@@ -722,7 +728,7 @@ Comparison compare_on_log(const CompareRequest& request, Field& field, Provenanc
 JointResult compare_once(const CompareRequest& request, const std::string& command_line) {
     Provenance provenance{{}, command_line};
     Field field = load_contenders(methods_at(request.log, request.methods, request.log_options), request.gear,
-                                  provenance);
+                                  request.common, provenance);
     if (request.costs.gates.min_attenuation_db && !field.gear) raise_no_gear("--min-attenuation");
     if (field.gear) say(request.common, gear_in_words(*field.gear));
     ComparedCourse course;

@@ -188,7 +188,28 @@ struct MapExport {
     std::string map, to;
     bool verify = false;
     CommonOptions common;
+    std::optional<std::string> motor_of;  ///< of another joint than the map's own
 };
+
+// That of the joint's own motor, or of the motor of another joint: a map each, since each goes by an angle of
+// its own.
+RippleMap map_of_motor(const MapExport& request) {
+    const RippleMap all = load_map(request.map).map;
+    const std::string names = joined(all.others, ", ", [](const RippleMap& map) { return map.joint; });
+    if (request.motor_of) {
+        for (const RippleMap& other : all.others)
+            if (other.joint == *request.motor_of) return other;
+        raise<DataError>("{}: it holds no ripple of the motor of {}, but of {}", request.map,
+                         *request.motor_of, names.empty() ? "its own joint alone" : names);
+    }
+    if (!names.empty())
+        warn(request.common,
+             fmt::format("{}: the ripple of the {} of {} in this torque is not exported with it; --motor-of "
+                         "exports it "
+                         "by itself, to be taken from this torque at the position and speed of that joint",
+                         request.map, all.others.size() == 1 ? "motor" : "motors", names));
+    return all;
+}
 
 std::string check_text(const std::string& file, const std::string& target, const LoadedMap& loaded,
                        const MapCheck& check) {
@@ -207,7 +228,7 @@ ExitCode export_map(const MapExport& request, const std::string& command_line) {
     const MapTarget& target = find_map_target(spec.name);
     check_output_name(request.common.output, target.name, target.endings);
     const Settings settings(fmt::format("target {}", spec.name), spec, target.keys);
-    const RippleMap map = load_map(request.map).map;
+    const RippleMap map = map_of_motor(request);
     if (map.orders.empty()) raise<DataError>("{}: the map is empty: there is nothing to export", request.map);
     const Written written =
         target.write(map, settings, generated_by({{input_record(request.map)}, command_line}));
@@ -276,6 +297,7 @@ struct ExportRequest {
     std::optional<Hertz> sample_rate;
     int band = 0;
     bool verify = false;
+    std::optional<std::string> motor_of;
     ExportLimits limits;
     CommonOptions common;
 };
@@ -385,7 +407,9 @@ void say_violations(const ExportReport& report) {
 ExitCode run_export(const ExportRequest& request, const std::string& command_line) {
     check_export(request);
     if (is_map(request.table))
-        return export_map({request.table, request.to, request.verify, request.common}, command_line);
+        return export_map({request.table, request.to, request.verify, request.common, request.motor_of},
+                          command_line);
+    if (request.motor_of) raise<UsageError>("--motor-of is for maps, and {} is none", request.table);
     const Spec spec = parse_spec(request.to);
     const Target& target = find_target(spec.name);
     const Contender method = method_of(request);
@@ -452,6 +476,9 @@ std::function<ExitCode()> attach_export(Options& options) {
         "of a table: what becomes of the filters' memories at a switch, as the key of method switching "
         "(default: as there)");
     attach_gear(options, request->gear);
+    options.text("--motor-of", request->motor_of, "JOINT",
+                 "of a map: the ripple of this other joint's motor, which goes by the position and speed of "
+                 "that joint");
     options.number("--sample-rate", request->sample_rate, Dimension::frequency,
                    "with --method: rate at which the filter will run");
     options.count("--band", request->band, 0, 1000000,

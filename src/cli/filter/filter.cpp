@@ -196,6 +196,7 @@ void check_jobs(const FilterRequest& request, const std::vector<FilterJob>& jobs
     FileClaims claims;
     if (request.how.method != "switching") claims.reads(request.how.method, "--method");
     if (request.how.table) claims.reads(*request.how.table, "--table");
+    if (request.how.other_motors) claims.reads(*request.how.other_motors, "--other-motors");
     if (request.how.gear.joint_file) claims.reads(*request.how.gear.joint_file, "--joint-file");
     for (const FilterJob& job : jobs) {
         if (own_names && job.log == "-")
@@ -281,7 +282,7 @@ std::optional<JointMethods> methods_at_temperature(const FilterRequest& request,
 bool run_job(const FilterRequest& request, const FilterJob& job, JointMethods& methods,
              const std::string& command_line) {
     std::optional<Spool> spool;
-    if (methods.learns()) spool.emplace(job.log);
+    if (methods.needs_log_twice()) spool.emplace(job.log);
     const ReadOptions read = request.read_options(methods);
     LogStream stream(spool ? open_log(spool->open(), read) : open_log(job.log, read), request.gap_steps);
     const Layout& layout = stream.reader().layout();
@@ -312,7 +313,7 @@ bool run_job(const FilterRequest& request, const FilterJob& job, JointMethods& m
     for (JointWork& work : works) {
         followed.push_back(followed_rows(*work.method, job.log, read));
         runs.push_back({work.filter.get(), work.meter ? &*work.meter : nullptr, !must_measure(request, job),
-                        followed.back().get()});
+                        followed.back().get(), work.other_ripple.get()});
     }
     std::vector<StreamReport> reports = stream.run(runs, writer.get(), threads_of(request));
     for (std::size_t j = 0; j < works.size(); ++j)
@@ -370,6 +371,10 @@ std::function<ExitCode()> attach_filter(Options& options) {
     options.text("--metrics", request->metrics, "FILE",
                  "JSON about attenuation, residual, delays, switches, gaps; with --out-dir a folder");
     options.writes("--metrics");
+    options.text(
+        "--other-motors", request->how.other_motors, "FILE",
+        "map.json: the ripple of other joints' motors that it holds is subtracted first; a method with "
+        "map= takes that of its map");
     attach_gear(options, request->how.gear);
     options.number("--crossover", request->crossover, Dimension::frequency,
                    "the control loop's: phase lag and gain there, for -v and the metrics, e.g. 12Hz");

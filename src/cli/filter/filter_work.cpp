@@ -9,6 +9,7 @@
 #include "cli/options/joint_runs.hpp"
 #include "cli/options/verdict_options.hpp"
 #include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/visible_text.hpp"
 #include "ripplenotch/document/comparison_json.hpp"
 #include "ripplenotch/log/log.hpp"
 
@@ -96,8 +97,11 @@ void learn(const FilterRequest& request, const JointMethods& methods, const Spoo
     for (const JointWork& work : works) {
         learners.push_back(work.method->learner(stream.design_rate()));
         runs.push_back({learners.back().get()});
+        runs.back().other_ripple = work.other_ripple.get();
     }
     static_cast<void>(stream.run(runs, nullptr));
+    for (JointWork& work : works)
+        if (work.other_ripple) work.other_ripple->begin_again();
     for (std::size_t j = 0; j < works.size(); ++j) {
         works[j].filter = learners[j]->learned();
         for (const std::string& note : learners[j]->notes())
@@ -184,7 +188,23 @@ std::vector<JointWork> start_works(const FilterRequest& request, const FilterJob
     const auto messages = joints.size() > 1 ? std::make_shared<JointMessages>() : nullptr;
     for (const JointColumns& joint : joints)
         works.push_back(start_work(request, job, stream, joint.joint, methods, messages));
-    if (spool) learn(request, methods, *spool, works);
+    for (JointWork& work : works) {
+        if (work.method->others.empty()) continue;
+        if (!spool && job.log == "-")
+            raise<UsageError>(
+                "the map also holds ripple of the motors of other joints, for which the log is read twice, "
+                "and "
+                "standard input can be read once; give a file");
+        std::optional<Spool> again;
+        if (!spool) again.emplace(job.log);
+        work.other_ripple = std::make_unique<OtherRipple>(work.method->others, spool ? *spool : *again,
+                                                          request.read_options(methods), request.gap_steps);
+        say(work.common,
+            fmt::format("{}: less the ripple of the {} of {}, by the map", work.metrics.source,
+                        work.method->others.size() == 1 ? "motor" : "motors",
+                        joined(work.method->others, ", ", [](const RippleMap& map) { return map.joint; })));
+    }
+    if (spool && methods.learns()) learn(request, methods, *spool, works);
     for (JointWork& work : works) {
         start_filter(request, work);
         // Outputs are opened before the work, so that a name that is taken costs nobody an hour.

@@ -13,6 +13,7 @@
 #include "ripplenotch/evaluate/ledger.hpp"
 #include "ripplenotch/filter/engine.hpp"
 #include "ripplenotch/verdict/gear_choice.hpp"
+#include "ripplenotch/verdict/other_ripple.hpp"
 
 namespace ripplenotch {
 
@@ -49,6 +50,7 @@ struct JointWork {
     CommonOptions common;  ///< that what is said of the joint goes with
     std::shared_ptr<const Contender> method;
     std::unique_ptr<CausalFilter> filter;
+    std::unique_ptr<OtherRipple> other_ripple;  ///< null where the method has no map of other motors
     std::optional<RippleMeter> meter;
     FilterMetrics metrics;
     std::optional<std::string> metrics_path;

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <exception>
 #include <limits>
+#include <map>
 #include <memory>
 #include <string>
 #include <utility>
@@ -18,6 +19,7 @@
 #include "cli/options/plot_request.hpp"
 #include "cli/options/verdict_options.hpp"
 #include "cli/talk.hpp"
+#include "core/matrices/least_squares.hpp"
 #include "ripplenotch/analysis/identification.hpp"
 #include "ripplenotch/chart/spectrum_figure.hpp"
 #include "ripplenotch/core/files.hpp"
@@ -27,6 +29,7 @@
 #include "ripplenotch/log/log.hpp"
 #include "ripplenotch/verdict/gear_choice.hpp"
 #include "ripplenotch/verdict/given_terms.hpp"
+#include "ripplenotch/verdict/other_motors.hpp"
 #include "ripplenotch/verdict/readings.hpp"
 
 namespace ripplenotch {
@@ -91,6 +94,70 @@ std::string disagreement_table(const Disagreement& one, const std::vector<std::s
     return text;
 }
 
+/// The motors of other joints in this torque, where something was found, and the bound of all else.
+std::string other_motors_table(const Identification& found) {
+    if (found.other_motors.empty()) return "";
+    std::vector<std::vector<std::string>> rows = {
+        {"motor of", "gear ratio", "order", "amplitude Nm", "+/-", ""}};
+    for (const OtherMotorRipple& motor : found.other_motors) {
+        for (const OtherMotorRipple::AtOrder& at : motor.orders) {
+            const std::string bound = at.detectable_nm
+                                          ? fmt::format("none above {:.2g} Nm", *at.detectable_nm)
+                                          : "not found, no bound";
+            rows.push_back({motor.joint, fmt::format("{:.6g}", motor.gear_ratio.value()), shortest(at.order),
+                            at.found ? fmt::format("{:.3g}", at.amplitude_nm) : "-",
+                            at.found ? fmt::format("{:.1g}", normal_95_errors * at.standard_error_nm) : "-",
+                            at.found ? "" : bound});
+        }
+    }
+    std::string text = "\nmotors of other joints in this torque\n" + text_table(rows, "lrrrrl");
+    if (!found.other_motors_not_known.empty())
+        text += fmt::format("not looked for, since no gear ratio is known: {}\n",
+                            fmt::join(found.other_motors_not_known, ", "));
+    for (const OtherMotorRipple& motor : found.other_motors)
+        if (!motor.doubt.empty()) text += "note: " + motor.doubt + "\n";
+    return text;
+}
+
+std::string motor_cell(const Identification& found, const std::string& motor) {
+    double largest = 0.0, bound = 0.0;
+    if (found.joint == motor) {
+        for (const Line& line : found.lines)
+            if (motor_order(line)) largest = std::max(largest, line.amplitude_nm);
+        return largest > 0.0 ? fmt::format("{:.3g}", largest) : "-";
+    }
+    for (const OtherMotorRipple& other : found.other_motors) {
+        if (other.joint != motor) continue;
+        if (!other.doubt.empty()) return "?";
+        for (const OtherMotorRipple::AtOrder& at : other.orders) {
+            largest = std::max(largest, at.amplitude_nm);
+            bound = std::max(bound, at.detectable_nm.value_or(std::numeric_limits<double>::infinity()));
+        }
+        if (other.found()) return fmt::format("{:.3g}", largest);
+        return std::isfinite(bound) ? fmt::format("<{:.2g}", bound) : "?";
+    }
+    return "-";
+}
+
+/// Which motor is in which torque, the largest amplitude of its orders; of the joints that were looked at.
+std::string motor_matrix(const std::vector<Identification>& found) {
+    std::vector<std::string> motors;
+    for (const Identification& one : found) {
+        for (const OtherMotorRipple& motor : one.other_motors)
+            if (std::find(motors.begin(), motors.end(), motor.joint) == motors.end())
+                motors.push_back(motor.joint);
+    }
+    if (motors.empty() || found.size() < 2) return "";
+    std::vector<std::vector<std::string>> rows = {{"torque of"}};
+    for (const std::string& motor : motors) rows.front().push_back(motor);
+    for (const Identification& one : found) {
+        std::vector<std::string>& row = rows.emplace_back(1, one.joint);
+        for (const std::string& motor : motors) row.push_back(motor_cell(one, motor));
+    }
+    return "\nripple of each motor (columns) in each torque (rows), Nm\n" +
+           text_table(rows, "l" + std::string(motors.size(), 'r'));
+}
+
 // Verdict first, then ratio, lines, rivals, what the recordings disagree about, notes. `recordings` are
 // their names.
 std::string identification_report(const CommonOptions& common, const Identification& found,
@@ -121,6 +188,7 @@ std::string identification_report(const CommonOptions& common, const Identificat
         }
     }
     for (const Disagreement& one : found.disagreements) text += disagreement_table(one, recordings);
+    text += other_motors_table(found);
     if (!found.notes.empty()) text += "\n";
     for (const std::string& note : found.notes) text += "note: " + note + "\n";
     return text;
@@ -296,6 +364,43 @@ std::vector<Identification> identified_joints(const IdentifyRequest& request, co
     return found;
 }
 
+// The ripple of each joint's motor in the torques of the others. All joints of the logs count, whichever are
+// asked for, so that one joint alone gets the answer that it gets among all.
+void look_for_other_motors(const IdentifyRequest& request, std::span<const Joint> joints,
+                           std::vector<Identification>& found) {
+    if (joints.empty() || request.log.join == "rows" || joints.front().logs.size() != request.logs.size())
+        return;
+    ReadOptions read = request.log;
+    read.gear_ratio = request.gear.ratio;
+    read.takes_motor_units = true;
+    const std::size_t most_rows = std::max(fewest_rows_held, most_rows_held / request.logs.size());
+    const std::vector<JointLogs> others =
+        read_other_joints(request.logs, joints.front().logs, read, most_rows);
+    if (others.empty()) return;
+    StatedMotors stated;
+    if (request.gear.ratio) stated.ratio = GearRatio(*request.gear.ratio);
+    std::map<std::string, std::optional<GearAccount>> gears;
+    for (std::size_t i = 0; i < joints.size(); ++i) gears[joints[i].name] = gear_of_motor(found[i], stated);
+    for (const JointLogs& joint : others)
+        if (!gears.contains(joint.joint))
+            gears[joint.joint] = gear_of_motor(identify_readings(joint.logs, request.identify), stated);
+    Progress::current().begin("looking for the ripple of other joints' motors", "joints",
+                              joints.size() > 1 ? joints.size() : 0);
+    for (std::size_t i = 0; i < joints.size(); ++i) {
+        std::vector<JointLogs> motors =
+            i == 0 ? others : read_other_joints(request.logs, joints[i].logs, read, most_rows);
+        std::vector<std::optional<GearAccount>> of_motors;
+        for (const JointLogs& joint : motors) of_motors.push_back(gears[joint.joint]);
+        const Identification alone = found[i];
+        found[i] = identify_among(joints[i].logs, alone, motors_of(motors, of_motors), request.identify);
+        found[i].sample_rate = alone.sample_rate;
+        const std::string& unit = joints[i].logs.front().recording.torque_unit;
+        found[i].verdict = in_torque_unit(found[i].verdict, unit);
+        for (std::string& note : found[i].notes) note = in_torque_unit(note, unit);
+        if (joints.size() > 1) Progress::current().add(1);
+    }
+}
+
 ExitCode run_identify(IdentifyRequest& request, const std::string& command_line) {
     check_identify(request);
     hash_where_told(request.common, request.plot);
@@ -307,12 +412,14 @@ ExitCode run_identify(IdentifyRequest& request, const std::string& command_line)
             "--plot {}: a picture shows one joint, and the log has {}; select one with --joint, or put {} "
             "into the name",
             *request.plot.path, joints.size(), joint_mark);
-    const std::vector<Identification> found = identified_joints(request, common, joints);
+    std::vector<Identification> found = identified_joints(request, common, joints);
+    look_for_other_motors(request, joints, found);
     std::string text;
     for (std::size_t i = 0; i < found.size(); ++i)
         text += (text.empty() ? "" : "\n") +
                 in_torque_unit(identification_report(request.common, found[i], log_names(joints[i])),
                                joints[i].logs.front().recording.torque_unit);
+    text += motor_matrix(found);
     const bool json_file = ends_with_json(request.common.output);
     if ((request.common.json || json_file) && names_joint(request.common.output)) {
         for (const Identification& one : found)

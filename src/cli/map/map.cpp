@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -24,6 +25,7 @@
 #include "ripplenotch/filter/map_fit.hpp"
 #include "ripplenotch/log/log.hpp"
 #include "ripplenotch/verdict/gear_choice.hpp"
+#include "ripplenotch/verdict/other_motors.hpp"
 #include "ripplenotch/verdict/readings.hpp"
 #include "ripplenotch/verdict/side_column.hpp"
 
@@ -69,6 +71,26 @@ MapRows map_values(const MapFit& fit) {
     return rows;
 }
 
+// By motor and order: what is found, or the amplitude that would have been.
+MapRows others_of(const MapFit& fit) {
+    MapRows rows = {
+        {"motor of", "gear ratio", "order", "ripple Nm", "remaining Nm", "dB", "predicted %", ""}};
+    for (const MapFit& other : fit.others) {
+        for (const MapOrderScore& score : other.scores) {
+            const bool bound = std::isfinite(score.detectable_nm) && score.detectable_nm > 0.0;
+            rows.push_back({other.map.joint, fmt::format("{:.6g}", other.map.gear_ratio.value()),
+                            shortest(score.order), fmt::format("{:.3f}", score.ripple_nm),
+                            score.in_map ? fmt::format("{:.3f}", score.left_nm) : "-",
+                            score.in_map ? decibels(score.ripple_nm, score.left_nm) : "-",
+                            score.in_map ? without_decimals(100.0 * score.predicted_share) : "-",
+                            score.in_map ? ""
+                            : !bound     ? "not found, no bound"
+                                         : fmt::format("none above {:.2g} Nm", score.detectable_nm)});
+        }
+    }
+    return rows;
+}
+
 MapRows agreement_of(const MapFit& fit, const std::vector<std::string>& logs) {
     MapRows rows = {{"order", "times as large", "+/-", "deg ahead", "+/-", "", "log"}};
     for (const MapAgreement& one : fit.agreement) {
@@ -100,6 +122,10 @@ std::string map_report(const MapFit& fit, const std::vector<std::string>& logs) 
             fit.map.speeds_deg_s.from, fit.map.speeds_deg_s.to, fit.map.positions_deg.from,
             fit.map.positions_deg.to);
     }
+    if (!fit.others.empty()) {
+        text += "\nmotors of other joints in this torque\n";
+        text += text_table(others_of(fit), "lrrrrrrl");
+    }
     if (!fit.agreement.empty()) {
         text += "\neach log against a map of the others\n";
         text += text_table(agreement_of(fit, logs), "rrrrrll");
@@ -115,8 +141,9 @@ struct MapRequest {
     GearOptions gear;
     Degrees zero;
     bool require_conclusive = false;
-    std::optional<std::string> temperature;  ///< column of the logs
-    bool heads = false;                      ///< what is printed begins with the joint
+    std::optional<std::string> temperature;       ///< column of the logs
+    bool heads = false;                           ///< what is printed begins with the joint
+    std::optional<std::string> joint_files = {};  ///< --joint-file where it names one for each joint
 };
 
 /// Logs of one joint, and its temperature at their rows where a column is stated.
@@ -125,11 +152,15 @@ struct Read {
     std::vector<std::vector<double>> temperatures_degc;
 };
 
+std::size_t rows_of_each(const MapRequest& request) {
+    return std::max(most_rows_held / request.logs.size(), most_rows_held / 4);
+}
+
 Read read_map_logs(const MapRequest& request, const GearAccount& gear, Provenance& provenance) {
     const ReadOptions options = read_options(request.log, gear);
     Read read;
     for (const std::string& path : request.logs) {
-        const std::size_t most = std::max(most_rows_held / request.logs.size(), most_rows_held / 4);
+        const std::size_t most = rows_of_each(request);
         read.logs.push_back(read_log_in_part(path, options, most));
         const Log& log = read.logs.back();
         if (request.temperature) {
@@ -144,6 +175,29 @@ Read read_map_logs(const MapRequest& request, const GearAccount& gear, Provenanc
     return read;
 }
 
+// The gears of other joints: from their files where --joint-file names one each, else as --gear-ratio has it.
+StatedMotors stated_motors(const MapRequest& request, Provenance& provenance) {
+    StatedMotors stated;
+    if (request.joint_files) {
+        stated.of_file = [&request, &provenance](const std::string& joint) -> std::optional<GearAccount> {
+            GearOptions gear = request.gear;
+            gear.joint_file = with_joint(*request.joint_files, joint);
+            std::error_code failed;
+            if (!std::filesystem::exists(*gear.joint_file, failed)) return std::nullopt;
+            try {
+                const auto found = GearChoice(gear).of();
+                provenance.inputs.push_back(input_record(*gear.joint_file));
+                return found;
+            } catch (const DataError&) {
+                return std::nullopt;  // a joint of which identify found no gear
+            }
+        };
+    }
+    if (request.gear.ratio) stated.ratio = GearRatio(*request.gear.ratio);
+    stated.orders = sorted_orders(request.gear.orders);
+    return stated;
+}
+
 ExitCode run_map_once(const MapRequest& request, const std::string& command_line) {
     check_plot(request.plot, request.common);
     hash_where_told(request.common, request.plot);
@@ -154,7 +208,17 @@ ExitCode run_map_once(const MapRequest& request, const std::string& command_line
     say(request.common, gear_in_words(*gear));
     const Read read = read_map_logs(request, *gear, provenance);
     if (choice.joint()) provenance.inputs.push_back(input_record(choice.joint()->path));
-    MapFit fit = map_readings(read.logs, *gear, request.zero, read.temperatures_degc);
+    const std::vector<JointLogs> joints =
+        read_other_joints(request.logs, read.logs, read_options(request.log, gear), rows_of_each(request));
+    const OtherMotors others = motors_of(joints, stated_motors(request, provenance));
+    for (const std::string& joint : others.not_known)
+        say(request.common,
+            fmt::format("joint {}: its gear ratio is not known, so its motor is not looked for in "
+                        "this torque",
+                        joint));
+    for (const OtherMotor& other : others.motors)
+        say(request.common, fmt::format("joint {}: {}", other.joint, gear_in_words(other.gear)));
+    MapFit fit = map_readings(read.logs, *gear, request.zero, read.temperatures_degc, others);
     fit.map.joint = read.logs.front().trace.joint;
     fit.map.temperature_column = request.temperature.value_or("");
     for (const std::string& note : fit.notes) say(request.common, note);
@@ -214,6 +278,7 @@ ExitCode run_each(const MapRequest& request, const std::string& command_line) {
         one.common.output = with_joint(request.common.output, joint);
         if (request.plot.path) one.plot.path = with_joint(*request.plot.path, joint);
         if (request.gear.joint_file) one.gear.joint_file = with_joint(*request.gear.joint_file, joint);
+        one.joint_files = request.joint_files;
         const ExitCode code = run_or_complain(one, command_line);
         if (code == ExitCode::done || code == ExitCode::inconclusive)
             maps = std::max(maps, code);
@@ -224,7 +289,8 @@ ExitCode run_each(const MapRequest& request, const std::string& command_line) {
     return failed.value_or(maps);
 }
 
-ExitCode run_map(const MapRequest& request, const std::string& command_line) {
+ExitCode run_map(MapRequest& request, const std::string& command_line) {
+    if (names_joint(request.gear.joint_file.value_or(""))) request.joint_files = request.gear.joint_file;
     return asks_for_several(request.logs.front(), request.log) ? run_each(request, command_line)
                                                                : run_map_once(request, command_line);
 }

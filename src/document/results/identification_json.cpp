@@ -48,6 +48,21 @@ void describe(auto& archive, Is<GearRatioFit> auto& fit) {
     archive("residuals", fit.residuals, if_there);
 }
 
+void describe(auto& archive, Is<OtherMotorRipple::AtOrder> auto& at) {
+    archive("order", at.order);
+    archive("found", at.found);
+    archive.known("amplitude_nm", at.found, at.amplitude_nm);
+    archive.known("stderr_nm", at.found, at.standard_error_nm);
+    archive("detectable_nm", at.detectable_nm);
+}
+
+void describe(auto& archive, Is<OtherMotorRipple> auto& motor) {
+    archive("joint", motor.joint);
+    archive("gear_ratio", motor.gear_ratio, above_zero);
+    archive("orders", motor.orders);
+    archive("doubt", motor.doubt, if_any);
+}
+
 void describe(auto& archive, Is<AmplitudeAtSpeed> auto& at) {
     archive("speed_deg_s", at.speed_deg_s);
     archive("hz", at.hz);
@@ -127,6 +142,8 @@ void describe(auto& archive, Is<Identification> auto& found) {
     archive("families", found.families, if_there);
     archive("hums", found.hums, if_there);
     archive("disagreements", found.disagreements, if_there);
+    archive("other_motors", found.other_motors, if_there);
+    archive("other_motors_not_known", found.other_motors_not_known, if_there);
     archive("notes", found.notes);
 }
 

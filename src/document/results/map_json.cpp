@@ -165,6 +165,12 @@ void describe(Archive& archive, Is<MapFit> auto& fit) {
     archive("windows", fit.windows);
     archive("blocks", fit.blocks);
     archive("notes", fit.notes);
+    if (!archive.holds("others", !fit.others.empty())) return;
+    archive("others", fit.others);
+    if constexpr (Archive::reading) {
+        for (const MapFit& other : fit.others)
+            if (!other.map.orders.empty() && other.doubt.empty()) map.others.push_back(other.map);
+    }
 }
 
 std::string map_text(const MapFit& fit, const Provenance& provenance) {

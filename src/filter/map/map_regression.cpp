@@ -153,6 +153,15 @@ Eigen::MatrixXd MapRegression::residuals() const {
     return found;
 }
 
+double MapRegression::own_reduction() const {
+    double sum = 0.0;
+    for (const Block& block : blocks_) {
+        const Vector fit = HermitianFactors(gram_ - block.gram).solve(right_ - block.right);
+        sum += fit.dot(2.0 * block.scored_right - block.scored_gram * fit).real();
+    }
+    return sum;
+}
+
 Eigen::MatrixXcd MapRegression::reduction() const {
     const auto count = static_cast<Eigen::Index>(blocks_.size());
     Matrix rights(gram_.rows(), count), form = Matrix::Zero(count, count);

@@ -40,6 +40,8 @@ class MapRegression {
     /// The Hermitian form Q for which u* Q u is the reduction of the squares of left-out blocks, all
     /// amplitudes of block b turned by the unit phasor u_b.
     [[nodiscard]] Eigen::MatrixXcd reduction() const;
+    /// The reduction of the log itself, with all phases as they are: the sum of that form's entries.
+    [[nodiscard]] double own_reduction() const;
     [[nodiscard]] double noise() const { return noise_; }    ///< mean over the windows, Nm^2
     [[nodiscard]] double energy() const { return energy_; }  ///< the same of the squared amplitudes
 

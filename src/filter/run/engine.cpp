@@ -42,11 +42,15 @@ class StreamPass {
         StreamReport report{};
         std::size_t rows = 0, rows_left_out = 0;
         JointsPosition position{};
+        std::vector<double> torque_nm{};  ///< less the ripple of other joints
     };
 
-    /// `temperature_degc`: of the block's rows, or empty.
-    void filter_part(const RowBlock& block, std::size_t joint, const RunPart& part,
-                     std::span<const double> temperature_degc, std::vector<double>& torque_nm);
+    /// What else is known at the block's rows; empty where it is not.
+    struct Known {
+        std::span<const double> temperature_degc, other_ripple_nm;
+    };
+    void filter_part(const RowBlock& block, std::size_t joint, const RunPart& part, const Known& known,
+                     std::vector<double>& torque_nm);
     /// `first`: the place of the rows in the log.
     static void meter_rows(const TraceView& rows, std::size_t first, bool begins_run,
                            std::span<const double> torque_nm, Lane& lane);
@@ -68,16 +72,19 @@ void StreamPass::filter(const RowBlock& block, std::vector<std::vector<double>>&
         Lane& lane = lanes_[j];
         note_motion(block.joints[j], lane);
         torque_nm[j].resize(block.size());
-        const auto warmth = lane.run.temperature != nullptr ? lane.run.temperature->next(block.size())
-                                                            : std::span<const double>{};
-        for (const RunPart& part : parts) filter_part(block, j, part, warmth, torque_nm[j]);
+        Known known;
+        if (lane.run.temperature != nullptr)
+            known.temperature_degc = lane.run.temperature->next(block.size());
+        if (lane.run.other_ripple != nullptr)
+            known.other_ripple_nm = lane.run.other_ripple->next(block.size());
+        for (const RunPart& part : parts) filter_part(block, j, part, known, torque_nm[j]);
         lane.rows += block.size();
         lane.report.held_bad_values += block.held_bad_values;
     }
 }
 
 void StreamPass::filter_part(const RowBlock& block, std::size_t joint, const RunPart& part,
-                             std::span<const double> temperature_degc, std::vector<double>& torque_nm) {
+                             const Known& known, std::vector<double>& torque_nm) {
     Lane& lane = lanes_[joint];
     TraceView rows = view_of(block, joint, part.first, part.count);
     const std::span<double> out = std::span(torque_nm).subspan(part.first, part.count);
@@ -88,9 +95,17 @@ void StreamPass::filter_part(const RowBlock& block, std::size_t joint, const Run
     }
     rows.position_deg = lane.position.of(account_.angle(joint), rows);
     if (part.begins_run && lane.rows + part.first > lane.rows_left_out) lane.run.filter->restart();
-    const auto warmth =
-        temperature_degc.empty() ? temperature_degc : temperature_degc.subspan(part.first, part.count);
-    lane.run.filter->process({rows.velocity_deg_s, rows.torque_nm, rows.position_deg, warmth}, out);
+    const auto of_part = [&part](std::span<const double> values) {
+        return values.empty() ? values : values.subspan(part.first, part.count);
+    };
+    std::span<const double> torque = rows.torque_nm;
+    if (const auto ripple = of_part(known.other_ripple_nm); !ripple.empty()) {
+        lane.torque_nm.assign(torque.begin(), torque.end());
+        for (std::size_t k = 0; k < ripple.size(); ++k) lane.torque_nm[k] -= ripple[k];
+        torque = lane.torque_nm;
+    }
+    lane.run.filter->process(
+        {rows.velocity_deg_s, torque, rows.position_deg, of_part(known.temperature_degc)}, out);
     note_switches(block, lane);
     if (lane.run.meter != nullptr) meter_rows(rows, lane.rows + part.first, part.begins_run, out, lane);
 }

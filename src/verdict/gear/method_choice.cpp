@@ -184,6 +184,7 @@ Contender choose_method(const std::string& spec_text, const std::optional<std::s
     if (!maps.empty()) {
         chosen.text = typed;  // all the values of a map are no name
         chosen.map = map;
+        chosen.others = map->others;
         chosen.without_ripple = without_ripple(spec);
     }
     if (chosen.gear) refuse_other_gear(chosen, *chosen.gear);
@@ -228,7 +229,8 @@ std::string with_joint(std::string text, const std::string& joint) {
 
 JointMethods::JointMethods(MethodRequest request) : request_(std::move(request)) {
     const bool each = names_joint(request_.method) || names_joint(request_.table.value_or("")) ||
-                      names_joint(request_.gear.joint_file.value_or(""));
+                      names_joint(request_.gear.joint_file.value_or("")) ||
+                      names_joint(request_.other_motors.value_or(""));
     if (!each) common_ = choose("");
 }
 
@@ -245,6 +247,12 @@ std::shared_ptr<const Contender> JointMethods::choose(const std::string& joint) 
     gear.joint_file = named(gear.joint_file);
     Contender method =
         choose_method(with_joint(request_.method, joint), named(request_.table), GearChoice(gear));
+    if (const auto path = named(request_.other_motors)) {
+        method.others = load_map(*path).map.others;
+        if (method.others.empty())
+            raise<DataError>("--other-motors: {} holds no ripple of the motors of other joints", *path);
+        method.files.push_back(*path);
+    }
     if (!method.gear && request_.needs_gear) raise_no_gear("--min-attenuation");
     if (!method.gear && !gear.orders.empty()) raise_no_gear("--orders");
     return std::make_shared<const Contender>(std::move(method));
@@ -259,6 +267,10 @@ const Method& JointMethods::method() const {
 }
 
 bool JointMethods::learns() const { return method().learner != nullptr; }
+
+bool JointMethods::needs_log_twice() const {
+    return learns() || request_.other_motors || (common_ && !common_->others.empty());
+}
 
 bool JointMethods::follows_motion() const {
     return method().steady == nullptr && method().part != MethodPart::control;

@@ -331,14 +331,19 @@ MapFit map_under(const OtherReading& reading, std::span<const Log> logs, const G
 // A reading under which something turns with the motor is confirmed by that; where two have it, or none of
 // several, the log does not decide which one holds.
 MapFit map_readings(std::span<const Log> logs, const GearAccount& gear, Degrees zero,
-                    const std::vector<std::vector<double>>& temperatures_degc) {
+                    const std::vector<std::vector<double>>& temperatures_degc, const OtherMotors& others) {
     MapFit fit = map_under({}, logs, gear, zero, temperatures_degc);
     const std::string doubt = reading_doubt(logs, [&](const OtherReading& reading) {
         return !reading.changes_side &&
                (fit.finding != MapFinding::mapped ||
                 map_under(reading, logs, gear, zero, temperatures_degc).finding == MapFinding::mapped);
     });
-    if (doubt.empty()) return fit;
+    if (doubt.empty()) {
+        if (others.motors.empty()) return fit;
+        std::vector<TraceView> views;
+        for (const Log& log : logs) views.push_back(log.trace.view());
+        return fit_joint_map(views, &gear, others.motors, others.pairs, zero.value(), temperatures_degc);
+    }
     fit.doubt = fmt::format("Cannot tell: {}. {}:", doubt, assumed_reading(logs));
     fit.conclusive = false;
     return fit;

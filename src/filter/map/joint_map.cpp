@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: MIT
+// The ripple of several motors in the torque of one joint.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <memory>
+#include <numbers>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "filter/map/map_runner.hpp"
+#include "filter/ripple/ripple_course.hpp"
+#include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/portable_math.hpp"
+#include "ripplenotch/filter/map_fit.hpp"
+
+namespace ripplenotch {
+
+namespace {
+
+constexpr double any_pair_false_alarm = 0.01;
+// Chosen, not derived: with two motors of a robot in one torque the explained share stays after the second.
+constexpr std::size_t most_rounds = 4;
+// Share of the power of one motor's lines that the other motor's angle explains from which on they are not
+// told apart: more than half.
+constexpr double same_angle_share = 0.5;
+
+/// One motor and what its map predicts in the torque, by log and row.
+struct Source {
+    GearAccount gear;
+    std::vector<TraceView> motion;
+    bool is_own = false;
+    MapFit fit = {};
+    std::vector<std::vector<double>> ripple = {};
+
+    [[nodiscard]] bool mapped() const { return fit.finding == MapFinding::mapped; }
+};
+
+class Backfitting {
+  public:
+    Backfitting(std::span<const TraceView> logs, std::vector<Source> sources, std::size_t pairs)
+        : logs_(logs),
+          sources_(std::move(sources)),
+          pair_false_alarm_(any_pair_false_alarm / static_cast<double>(std::max<std::size_t>(pairs, 1))) {}
+
+    void run(double zero_deg, std::span<const std::vector<double>> temperatures_degc) {
+        for (std::size_t round = 1; round <= most_rounds; ++round) {
+            const std::vector<bool> before = which_mapped();
+            for (Source& source : sources_) fit(source, zero_deg, temperatures_degc, false);
+            const bool own_alone = std::none_of(sources_.begin(), sources_.end(), [](const Source& one) {
+                return !one.is_own && one.mapped();
+            });
+            if (own_alone || (round > 1 && which_mapped() == before)) break;
+        }
+        for (Source& source : sources_)
+            if (!source.mapped()) fit(source, zero_deg, temperatures_degc, true);
+    }
+    [[nodiscard]] std::vector<Source>& sources() { return sources_; }
+
+  private:
+    [[nodiscard]] std::vector<bool> which_mapped() const {
+        std::vector<bool> mapped;
+        for (const Source& source : sources_) mapped.push_back(source.mapped());
+        return mapped;
+    }
+
+    void fit(Source& source, double zero_deg, std::span<const std::vector<double>> temperatures_degc,
+             bool bounds) const {
+        std::vector<std::vector<double>> torques;
+        std::vector<TraceView> views;
+        for (std::size_t l = 0; l < logs_.size(); ++l) {
+            torques.emplace_back(logs_[l].torque_nm.begin(), logs_[l].torque_nm.end());
+            for (const Source& other : sources_) {
+                if (&other == &source || !other.mapped()) continue;
+                for (std::size_t k = 0; k < torques[l].size(); ++k) torques[l][k] -= other.ripple[l][k];
+            }
+        }
+        for (std::size_t l = 0; l < logs_.size(); ++l) {
+            views.push_back(source.motion[l]);
+            views.back().torque_nm = torques[l];
+        }
+        source.fit = source.is_own
+                         ? fit_ripple_map(views, source.gear, zero_deg, temperatures_degc, {.bounds = bounds})
+                         : fit_ripple_map(views, source.gear, 0.0, {},
+                                          {.false_alarm = pair_false_alarm_, .bounds = bounds});
+        source.ripple.clear();
+        if (!source.mapped()) return;
+        for (const TraceView& view : views) source.ripple.push_back(map_along(source.fit.map, view));
+    }
+
+    std::span<const TraceView> logs_;
+    std::vector<Source> sources_;
+    double pair_false_alarm_;
+};
+
+/// The share of the power of a line n of one motor that a line m of the other explains along the logs: the
+/// squared mean of exp(i (n a - m b)), a and b being their angles, while the first one turns.
+double shared_power(const Source& one, double n, const Source& other, double m) {
+    std::complex<double> sum;
+    double rows = 0.0;
+    for (std::size_t l = 0; l < one.motion.size(); ++l) {
+        const TraceView &a = one.motion[l], &b = other.motion[l];
+        for (std::size_t k = 1; k < a.size(); ++k) {
+            const double weight = std::abs(a.position_deg[k] - a.position_deg[k - 1]);
+            const double cycles = (n * a.position_deg[k] - m * b.position_deg[k]) / 360.0;
+            sum += weight * portable::phasor(2.0 * std::numbers::pi * (cycles - std::floor(cycles)));
+            rows += weight;
+        }
+    }
+    return rows > 0.0 ? std::norm(sum / rows) : 0.0;
+}
+
+// On both combs of either.
+bool same_angle(const Source& one, const Source& other) {
+    for (const Order order : one.fit.map.orders) {
+        for (const Order against : other.gear.orders) {
+            for (const int comb : {0, 1}) {
+                const double n = order.value() * (one.gear.ratio.value() + comb);
+                for (const int other_comb : {-1, 0, 1}) {
+                    const double m = against.value() * (other.gear.ratio.value() + other_comb);
+                    if (shared_power(one, n, other, m) > same_angle_share ||
+                        shared_power(one, n, other, -m) > same_angle_share)
+                        return true;
+                }
+            }
+        }
+    }
+    return false;
+}
+
+bool has_positions(const Source& source) {
+    return std::all_of(source.motion.begin(), source.motion.end(),
+                       [](const TraceView& log) { return log.has_position(); });
+}
+
+}  // namespace
+
+namespace {
+
+class MapPrediction final : public CausalFilter {
+  public:
+    MapPrediction(const RippleMap& map, Hertz sample_rate)
+        : runner_(StatedMap{with_zero(map, 0.0)}),
+          path_(MotorAngle(map.gear_ratio.value(), sample_rate.value(), MotorAngle::Source::best, 0.0)) {}
+    void restart() override { path_.restart(); }
+    void process(const Samples& in, std::span<double> out) override {
+        for (std::size_t k = 0; k < out.size(); ++k) {
+            path_.next(in.velocity_deg_s[k], in.position_deg.empty() ? nullptr : &in.position_deg[k]);
+            runner_.at(in.velocity_deg_s[k], path_.turns(), 0.0);
+            out[k] = runner_.ripple(path_.turns(), path_.step_turns());
+        }
+    }
+
+  private:
+    MapRunner runner_;
+    MotorPath path_;
+};
+
+}  // namespace
+
+std::unique_ptr<CausalFilter> map_prediction(const RippleMap& map, Hertz sample_rate) {
+    return std::make_unique<MapPrediction>(map, sample_rate);
+}
+
+std::vector<double> map_along(const RippleMap& map, const TraceView& log) {
+    MapPrediction prediction(map, log.sample_rate);
+    std::vector<double> ripple(log.size());
+    std::size_t from = 0;
+    for (std::size_t k = 1; k <= log.size(); ++k) {
+        if (k < log.size() && !log.starts_run(k)) continue;
+        const TraceView run = log.part(from, k - from);
+        prediction.restart();
+        prediction.process({run.velocity_deg_s, run.torque_nm, run.position_deg, {}},
+                           std::span(ripple).subspan(from, run.size()));
+        from = k;
+    }
+    return ripple;
+}
+
+MapFit fit_joint_map(std::span<const TraceView> logs, const GearAccount* own,
+                     std::span<const OtherMotor> others, std::size_t pairs, double zero_deg,
+                     std::span<const std::vector<double>> temperatures_degc) {
+    if (others.empty() && own != nullptr) return fit_ripple_map(logs, *own, zero_deg, temperatures_degc);
+    std::vector<Source> sources;
+    if (own != nullptr) sources.push_back({*own, {logs.begin(), logs.end()}, true});
+    for (const OtherMotor& other : others) {
+        for (std::size_t l = 0; l < logs.size(); ++l)
+            if (other.motion.size() != logs.size() || other.motion[l].size() != logs[l].size())
+                raise<DataError>("joint {}: its rows are not those of the torque", other.joint);
+        sources.push_back({other.gear, other.motion});
+    }
+    Backfitting backfitting(logs, std::move(sources), pairs);
+    backfitting.run(zero_deg, temperatures_degc);
+    std::vector<Source>& all = backfitting.sources();
+    const std::size_t first = own != nullptr ? 1 : 0;
+    for (std::size_t j = first; j < all.size(); ++j) all[j].fit.map.joint = others[j - first].joint;
+    for (std::size_t j = first; j < all.size(); ++j) {
+        Source& one = all[j];
+        if (!one.mapped()) continue;
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            if (i == j || !has_positions(all[i]) || !same_angle(one, all[i])) continue;
+            one.fit.doubt = fmt::format(
+                "Cannot tell the ripple of the motor of {} from that of {}: in this log one of their angles "
+                "follows "
+                "from the other.",
+                one.fit.map.joint, all[i].is_own ? "the joint itself" : all[i].fit.map.joint);
+            one.fit.conclusive = false;
+        }
+    }
+    MapFit fit = own != nullptr ? std::move(all.front().fit) : MapFit{};
+    for (std::size_t j = first; j < all.size(); ++j) {
+        if (all[j].mapped() && all[j].fit.doubt.empty()) fit.map.others.push_back(all[j].fit.map);
+        fit.others.push_back(std::move(all[j].fit));
+    }
+    return fit;
+}
+
+std::vector<std::vector<double>> without_other_motors(std::span<const TraceView> logs, const RippleMap& map,
+                                                      std::span<const OtherMotor> others) {
+    std::vector<std::vector<double>> torques;
+    for (const TraceView& log : logs) torques.emplace_back(log.torque_nm.begin(), log.torque_nm.end());
+    for (const RippleMap& other : map.others) {
+        const auto motor = std::find_if(others.begin(), others.end(),
+                                        [&](const OtherMotor& one) { return one.joint == other.joint; });
+        for (std::size_t l = 0; motor != others.end() && l < logs.size(); ++l) {
+            const std::vector<double> ripple = map_along(other, motor->motion[l]);
+            for (std::size_t k = 0; k < ripple.size(); ++k) torques[l][k] -= ripple[k];
+        }
+    }
+    return torques;
+}
+
+}  // namespace ripplenotch

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: MIT
+#include "ripplenotch/verdict/other_motors.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "ripplenotch/analysis/identification.hpp"
+#include "ripplenotch/core/error.hpp"
+#include "ripplenotch/verdict/readings.hpp"
+
+namespace ripplenotch {
+
+namespace {
+
+bool same_rows(const Log& one, const Log& other) {
+    return one.trace.time_s == other.trace.time_s && one.trace.run_starts == other.trace.run_starts;
+}
+
+// A line n (Kg + 1) of the second comb is at n (1 + 1 / Kg) turns of the motor: a map has both combs of n.
+std::vector<Order> orders_of(const std::vector<Line>& lines, double ratio) {
+    constexpr double a_tooth_and_a_half = 1.5;  // between a tooth of the second comb and no tooth
+    std::vector<Order> found;
+    for (const Line& line : lines) {
+        if (!line.order_output) continue;
+        const double order = *line.order_output / ratio, whole = std::round(order);
+        const bool on_comb = whole > 0.0 && std::abs(order - whole) * ratio <= a_tooth_and_a_half * whole;
+        found.emplace_back(on_comb ? whole : order);
+    }
+    std::sort(found.begin(), found.end());
+    found.erase(std::unique(found.begin(), found.end()), found.end());
+    return found;
+}
+
+}  // namespace
+
+std::optional<GearAccount> gear_of_motor(const Identification& found, const StatedMotors& stated) {
+    const GearRatioFit& fit = found.gear_ratio;
+    GearAccount gear{GearRatio(0.0), stated.orders, {}, {}, "identified in its own torque"};
+    const bool agrees =
+        stated.ratio &&
+        (!fit.value || (fit.ci95_low <= stated.ratio->value() && stated.ratio->value() <= fit.ci95_high));
+    // Where 50 and 100 are both possible the lines are the same, and the angle of either map.
+    const auto possible = std::find_if(fit.candidates.begin(), fit.candidates.end(),
+                                       [](const RatioCandidate& one) { return !one.other_unit; });
+    if (agrees) {
+        gear.ratio = *stated.ratio;
+        gear.source = "--gear-ratio";
+    } else if (fit.value) {
+        gear.ratio = GearRatio(*fit.value);
+    } else if (found.doubts.empty() && possible != fit.candidates.end()) {
+        gear.ratio = GearRatio(possible->value);
+        gear.source = "the most probable ratio in its own torque";
+    } else {
+        return std::nullopt;
+    }
+    if (gear.orders.empty()) gear.orders = orders_of(found.lines, gear.ratio.value());
+    if (gear.orders.empty()) gear.orders = default_orders();
+    return gear;
+}
+
+std::vector<JointLogs> read_other_joints(std::span<const std::string> paths, std::span<const Log> own,
+                                         const ReadOptions& options, std::size_t most_rows) {
+    std::vector<JointLogs> joints;
+    if (own.empty() || own.front().layout.joints.size() < 2 ||
+        std::find(paths.begin(), paths.end(), "-") != paths.end())
+        return joints;
+    for (std::size_t l = 0; l < paths.size(); ++l) {
+        std::vector<Log> all;
+        try {
+            all = read_joints_at_once_in_part(paths[l], options, most_rows);
+        } catch (const DataError&) {
+            return {};  // the joint that is looked at could be read, and its answer does not need the others
+        }
+        for (Log& log : all) {
+            if (log.trace.joint == own[l].trace.joint || !log.trace.view().has_position() ||
+                !same_rows(log, own[l]))
+                continue;
+            const auto same = std::find_if(joints.begin(), joints.end(), [&](const JointLogs& one) {
+                return one.joint == log.trace.joint;
+            });
+            if (same != joints.end())
+                same->logs.push_back(std::move(log));
+            else if (l == 0)
+                joints.push_back({log.trace.joint, {std::move(log)}});
+        }
+    }
+    std::erase_if(joints, [&](const JointLogs& one) { return one.logs.size() != paths.size(); });
+    return joints;
+}
+
+OtherMotors motors_of(std::span<const JointLogs> joints, std::span<const std::optional<GearAccount>> gears) {
+    OtherMotors others;
+    others.pairs = std::max<std::size_t>(joints.size() * (joints.size() + 1), 1);
+    for (std::size_t j = 0; j < joints.size(); ++j) {
+        if (!gears[j]) {
+            others.not_known.push_back(joints[j].joint);
+            continue;
+        }
+        OtherMotor& motor = others.motors.emplace_back(OtherMotor{joints[j].joint, *gears[j], {}});
+        for (const Log& log : joints[j].logs) motor.motion.push_back(log.trace.view());
+    }
+    return others;
+}
+
+namespace {
+
+std::optional<GearAccount> gear_of(const JointLogs& joint, const StatedMotors& stated) {
+    if (stated.of_file)
+        if (auto of_file = stated.of_file(joint.joint)) return of_file;
+    return gear_of_motor(identify_readings(joint.logs, {}), stated);
+}
+
+}  // namespace
+
+OtherMotors motors_of(std::span<const JointLogs> joints, const StatedMotors& stated) {
+    std::vector<std::optional<GearAccount>> gears;
+    for (const JointLogs& joint : joints) gears.push_back(gear_of(joint, stated));
+    return motors_of(joints, gears);
+}
+
+}  // namespace ripplenotch
