@@ -142,8 +142,10 @@ void describe(auto& archive, Is<Identification> auto& found) {
     archive("families", found.families, if_there);
     archive("hums", found.hums, if_there);
     archive("disagreements", found.disagreements, if_there);
-    archive("other_motors", found.other_motors, if_there);
-    archive("other_motors_not_known", found.other_motors_not_known, if_there);
+    if (archive.holds("other_motors", !found.other_motors.empty())) {
+        archive("other_motors", found.other_motors);
+        archive("other_motors_not_known", found.other_motors_not_known);
+    }
     archive("notes", found.notes);
 }
 
