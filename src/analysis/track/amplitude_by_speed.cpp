@@ -1,0 +1,420 @@
+// SPDX-License-Identifier: MIT
+#include "ripplenotch/analysis/amplitude_by_speed.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "analysis/shared_limits.hpp"
+#include "analysis/track/ripple_estimate.hpp"
+#include "ripplenotch/analysis/line_test.hpp"
+#include "ripplenotch/core/number.hpp"
+
+namespace ripplenotch {
+
+namespace {
+
+constexpr std::size_t most_bins = 6;  // chosen, not derived: a course with a maximum shows in as many
+// The scatter of n segments gives a standard error within a share of 1 / sqrt(2 (n - 1)) of the true one, 27
+// % here; the noise near the order is known better, from eight independent frequencies of each segment.
+constexpr std::size_t fewest_segments = 8;
+// Speeds this close are one stated speed, which the noise of the velocity must not cut in two.
+constexpr double same_speed = 1.05;
+
+/// Segments of one range of |speed|: forward, backward.
+using SpeedBin = std::array<OrderSegments, 2>;
+
+std::size_t segments_in(const SpeedBin& bin) { return bin[0].segments.size() + bin[1].segments.size(); }
+
+/// No direction has segments that are too few for an estimate.
+bool is_usable(const SpeedBin& bin) {
+    return std::all_of(bin.begin(), bin.end(), [](const OrderSegments& one) {
+        return one.segments.empty() || one.segments.size() >= fewest_segments;
+    });
+}
+
+void append(SpeedBin& bin, const SegmentAmplitude& segment) {
+    bin[segment.place.mean_deg_s < 0.0 ? 1 : 0].segments.push_back(segment);
+}
+
+/// Ranges of equal numbers of segments, the same in both directions, so that these are compared at the same
+/// speeds.
+std::vector<SpeedBin> speed_bins(const OrderSegments& order) {
+    std::vector<const SegmentAmplitude*> sorted;
+    std::array<std::size_t, 2> of_direction{};
+    for (const SegmentAmplitude& one : order.segments) {
+        sorted.push_back(&one);
+        ++of_direction[one.place.mean_deg_s < 0.0 ? 1 : 0];
+    }
+    const auto speed = [](const SegmentAmplitude* one) { return std::abs(one->place.mean_deg_s); };
+    std::stable_sort(sorted.begin(), sorted.end(),
+                     [&](const auto* a, const auto* b) { return speed(a) < speed(b); });
+    const std::size_t fewest = fewest_segments * (of_direction[0] > 0 && of_direction[1] > 0 ? 2 : 1);
+    std::vector<SpeedBin> bins;
+    std::size_t left = sorted.size(), wanted = 0;
+    double slowest_alike = 0.0;
+    for (const SegmentAmplitude* one : sorted) {
+        const bool other_speed = speed(one) > same_speed * slowest_alike;
+        if (other_speed) slowest_alike = speed(one);
+        // A direction that is rarer than the other is waited for, but not for long.
+        const bool full = !bins.empty() && segments_in(bins.back()) >= wanted &&
+                          (is_usable(bins.back()) || segments_in(bins.back()) >= 2 * wanted);
+        if (bins.empty() || (full && other_speed && bins.size() < most_bins)) {
+            wanted = std::max(fewest, left / (most_bins - bins.size()));
+            bins.emplace_back();
+        }
+        append(bins.back(), *one);
+        --left;
+    }
+    while (bins.size() > 1 && !is_usable(bins.back())) {
+        for (const OrderSegments& direction : bins.back())
+            for (const SegmentAmplitude& one : direction.segments) append(bins[bins.size() - 2], one);
+        bins.pop_back();
+    }
+    return bins;
+}
+
+void set_speeds(RippleAtSpeed& at, const OrderSegments& segments, const SpeedBin& bin) {
+    double weight = 0.0, sum = 0.0;
+    for (const SegmentAmplitude& one : segments.segments) {
+        weight += one.place.weight;
+        sum += one.place.weight * std::abs(one.place.mean_deg_s);
+    }
+    at.speed_deg_s = sum / weight;
+    at.speed_from_deg_s = at.speed_to_deg_s = at.speed_deg_s;
+    for (const OrderSegments& direction : bin) {
+        for (const SegmentAmplitude& one : direction.segments) {
+            at.speed_from_deg_s = std::min(at.speed_from_deg_s, std::abs(one.place.mean_deg_s));
+            at.speed_to_deg_s = std::max(at.speed_to_deg_s, std::abs(one.place.mean_deg_s));
+        }
+    }
+}
+
+// The test of a change.
+
+/// The square of an amplitude, which is about normal where the amplitude is not: near 0.
+struct Square {
+    const RippleAtSpeed* at = nullptr;
+    double value = 0.0, error = 0.0;
+    double freedom = 1.0;  ///< of the error
+
+    [[nodiscard]] double weight() const { return 1.0 / (error * error); }
+};
+
+std::vector<Square> squares_of(std::span<const RippleAtSpeed> rows) {
+    std::vector<Square> squares;
+    for (const RippleAtSpeed& row : rows) {
+        const double nm = row.ripple.amplitude_nm, above = nm + row.ripple.standard_error_nm;
+        // Without any noise the error is that of rounding.
+        constexpr double rounding = 1e-9;
+        const double error = std::max({above * above - nm * nm, rounding * nm * nm, 1e-100});
+        squares.push_back({&row, nm * nm, error, static_cast<double>(row.ripple.segments - 1)});
+    }
+    return squares;
+}
+
+/// A weighted sum of squares of amplitudes whose mean is 0 where they do not differ.
+struct Contrast {
+    double size = 0.0, variance = 0.0;
+    double slack = 0.0;  ///< sum of (share of the variance)^2 / degrees of freedom
+
+    void add(double coefficient, const Square& square) {
+        size += coefficient * square.value;
+        const double part = coefficient * coefficient * square.error * square.error;
+        variance += part;
+        slack += part * part / square.freedom;
+    }
+    /// By Satterthwaite (1946).
+    [[nodiscard]] double freedom() const { return variance * variance / slack; }
+    /// Of as large a size where there is no difference: F with one degree of freedom above.
+    [[nodiscard]] double chance() const {
+        return exceedance({.ratio = size * size / variance, .averages = 0.5, .cells = freedom()});
+    }
+    /// The size that is found at this false alarm in 95 of 100 logs.
+    [[nodiscard]] double detectable(double false_alarm) const {
+        constexpr double normal_95 = 1.6448536269514722;
+        const double ratio = exceeded(false_alarm, {.averages = 0.5, .cells = freedom()}).ratio;
+        return (std::sqrt(ratio) + normal_95) * std::sqrt(variance);
+    }
+};
+
+/// Slope over speed, with a mean of its own in each direction; empty at one speed.
+std::optional<Contrast> trend_of(std::span<const Square> squares) {
+    std::array<double, 2> weight{}, speed{};
+    const auto side = [](const Square& one) -> std::size_t { return one.at->direction < 0 ? 1 : 0; };
+    for (const Square& one : squares) {
+        weight[side(one)] += one.weight();
+        speed[side(one)] += one.weight() * one.at->speed_deg_s;
+    }
+    double spread = 0.0;
+    const auto apart = [&](const Square& one) {
+        return one.at->speed_deg_s - speed[side(one)] / weight[side(one)];
+    };
+    for (const Square& one : squares) spread += one.weight() * apart(one) * apart(one);
+    std::array<std::size_t, 2> count{};
+    for (const Square& one : squares) ++count[side(one)];
+    if ((count[0] < 2 && count[1] < 2) || !(spread > 0.0)) return std::nullopt;
+    Contrast slope;
+    for (const Square& one : squares) slope.add(one.weight() * apart(one) / spread, one);
+    return slope;
+}
+
+/// Forward and backward at the same speeds, of which the difference has this weight.
+struct Pair {
+    const Square *forward = nullptr, *backward = nullptr;
+
+    [[nodiscard]] double weight() const { return 1.0 / (1.0 / forward->weight() + 1.0 / backward->weight()); }
+};
+
+std::vector<Pair> pairs_of(std::span<const Square> squares) {
+    std::vector<Pair> pairs;
+    for (std::size_t i = 1; i < squares.size(); ++i) {
+        if (squares[i].at->speed_from_deg_s == squares[i - 1].at->speed_from_deg_s)
+            pairs.push_back({&squares[i - 1], &squares[i]});
+    }
+    return pairs;
+}
+
+/// Mean difference of the directions at the same speeds; empty without any.
+std::optional<Contrast> difference_of(const std::vector<Pair>& pairs) {
+    if (pairs.empty()) return std::nullopt;
+    double weights = 0.0;
+    for (const Pair& pair : pairs) weights += pair.weight();
+    Contrast difference;
+    for (const Pair& pair : pairs) {
+        difference.add(pair.weight() / weights, *pair.forward);
+        difference.add(-pair.weight() / weights, *pair.backward);
+    }
+    return difference;
+}
+
+/// That the speeds of one direction differ by chance, whatever the course over speed.
+double welch_chance(std::span<const Square> squares) {
+    const auto k = static_cast<double>(squares.size());
+    double weight = 0.0, mean = 0.0, scatter = 0.0, slack = 0.0;
+    for (const Square& one : squares) {
+        weight += one.weight();
+        mean += one.weight() * one.value;
+    }
+    mean /= weight;
+    for (const Square& one : squares) {
+        scatter += one.weight() * (one.value - mean) * (one.value - mean);
+        slack += (1.0 - one.weight() / weight) * (1.0 - one.weight() / weight) / one.freedom;
+    }
+    const double ratio = scatter / (k - 1.0) / (1.0 + 2.0 * (k - 2.0) / (k * k - 1.0) * slack);
+    const double averages = 0.5 * (k - 1.0), knowledge = 0.5 * (k * k - 1.0) / (3.0 * slack);
+    return exceedance({.ratio = ratio, .averages = averages, .cells = knowledge / averages});
+}
+
+/// Root of the weighted mean of some squares.
+double mean_amplitude(std::span<const Square> squares) {
+    double sum = 0.0, weight = 0.0;
+    for (const Square& one : squares) {
+        sum += one.weight() * one.value;
+        weight += one.weight();
+    }
+    return std::sqrt(sum / weight);
+}
+
+std::string chance_text(double chance) {
+    // Tails of the approximations above mean nothing beyond.
+    constexpr double least = 1e-9;
+    return chance < least ? fmt::format("p < {:.0e}", least) : fmt::format("p = {:.1g}", chance);
+}
+
+/// The amplitude of one range of speed, over its directions.
+struct AtSpeed {
+    double speed_deg_s = 0.0, nm = 0.0, error_nm = 0.0;
+};
+
+std::vector<AtSpeed> course_of(std::span<const Square> squares) {
+    std::vector<AtSpeed> course;
+    for (std::size_t i = 0; i < squares.size();) {
+        std::size_t end = i + 1;
+        while (end < squares.size() && squares[end].at->speed_from_deg_s == squares[i].at->speed_from_deg_s)
+            ++end;
+        const auto same = squares.subspan(i, end - i);
+        double weight = 0.0, speed = 0.0;
+        for (const Square& one : same) {
+            weight += one.weight();
+            speed += one.weight() * one.at->speed_deg_s;
+        }
+        const double nm = mean_amplitude(same);
+        course.push_back({speed / weight, nm, std::sqrt(nm * nm + std::sqrt(1.0 / weight)) - nm});
+        i = end;
+    }
+    return course;
+}
+
+/// "grows with speed: 0.21 Nm at 20 deg/s to 0.38 Nm at 100 deg/s", with the extreme between them where the
+/// amplitude there is beyond both by more than its 95 % interval.
+std::string course_text(const std::vector<AtSpeed>& course, bool trend, const std::string& where) {
+    const AtSpeed &first = course.front(), &last = course.back();
+    const AtSpeed* between = nullptr;
+    double furthest = 0.0;
+    for (const AtSpeed& at : course) {
+        const double beyond =
+            std::max(at.nm - std::max(first.nm, last.nm), std::min(first.nm, last.nm) - at.nm);
+        if (beyond > std::max(furthest, 2.0 * at.error_nm)) {
+            furthest = beyond;
+            between = &at;
+        }
+    }
+    const auto text = [](const AtSpeed& at) {
+        return fmt::format("{:.2g} Nm at {:.3g} deg/s", at.nm, at.speed_deg_s);
+    };
+    return fmt::format("{} with speed{}: {}{} to {}",
+                       between != nullptr || !trend ? "changes"
+                       : last.nm > first.nm         ? "grows"
+                                                    : "falls",
+                       where, text(first), between != nullptr ? ", " + text(*between) : "", text(last));
+}
+
+std::string_view direction_name(int direction) { return direction < 0 ? "backward" : "forward"; }
+
+class ChangeTest {
+  public:
+    explicit ChangeTest(std::span<const RippleAtSpeed> rows)
+        : squares_(squares_of(rows)),
+          trend_(trend_of(squares_)),
+          pairs_(pairs_of(squares_)),
+          difference_(difference_of(pairs_)) {
+        for (const int direction : {1, -1}) {
+            std::vector<Square> one;
+            for (const Square& square : squares_)
+                if (square.at->direction == direction) one.push_back(square);
+            if (one.size() > 1) by_direction_.push_back(std::move(one));
+        }
+    }
+
+    [[nodiscard]] AmplitudeChange result() const {
+        AmplitudeChange found;
+        found.order = squares_.front().at->ripple.order;
+        if (trend_) found.speed_chance = speed_chance();
+        if (difference_) found.direction_chance = difference_->chance();
+        found.sentence = fmt::format("order {:.4g}", found.order) + text(found);
+        return found;
+    }
+
+  private:
+    // Each direction is tested by itself, and their common trend: the chance counts as many tries.
+    [[nodiscard]] double tries() const { return 1.0 + static_cast<double>(by_direction_.size()); }
+    [[nodiscard]] double speed_chance() const {
+        double least = trend_->chance();
+        for (const auto& one : by_direction_) least = std::min(least, welch_chance(one));
+        return std::min(1.0, tries() * least);
+    }
+
+    [[nodiscard]] std::string speed_text() const {
+        if (tries() * trend_->chance() <= change_false_alarm)
+            return course_text(course_of(squares_), true, "");
+        const auto& one =
+            *std::min_element(by_direction_.begin(), by_direction_.end(),
+                              [](const auto& a, const auto& b) { return welch_chance(a) < welch_chance(b); });
+        const bool both = one.size() < squares_.size();
+        return course_text(course_of(one), false,
+                           both ? fmt::format(" {}", direction_name(one.front().at->direction)) : "");
+    }
+
+    [[nodiscard]] std::string direction_text() const {
+        double weights = 0.0, forward = 0.0, backward = 0.0;
+        for (const Pair& pair : pairs_) {
+            weights += pair.weight();
+            forward += pair.weight() * pair.forward->value;
+            backward += pair.weight() * pair.backward->value;
+        }
+        return fmt::format("differs by direction: {:.2g} Nm forward, {:.2g} Nm backward",
+                           std::sqrt(forward / weights), std::sqrt(backward / weights));
+    }
+
+    /// The change that would have been found, as a share of the amplitude: over the range of speed, and
+    /// between the directions.
+    [[nodiscard]] double speed_bound() const {
+        const auto [slow, fast] = std::minmax_element(
+            squares_.begin(), squares_.end(),
+            [](const Square& a, const Square& b) { return a.at->speed_deg_s < b.at->speed_deg_s; });
+        return share(trend_->detectable(change_false_alarm / tries()) *
+                     (fast->at->speed_deg_s - slow->at->speed_deg_s));
+    }
+    [[nodiscard]] double direction_bound() const {
+        return share(difference_->detectable(change_false_alarm));
+    }
+    [[nodiscard]] double share(double of_square) const {
+        const double nm = mean_amplitude(squares_);
+        return of_square / (2.0 * nm * nm);
+    }
+
+    [[nodiscard]] std::string text(const AmplitudeChange& found) const {
+        if (std::none_of(squares_.begin(), squares_.end(),
+                         [](const Square& one) { return one.at->ripple.present(); }))
+            return ": no ripple found at any speed";
+        const bool by_speed = found.speed_chance && *found.speed_chance <= change_false_alarm;
+        const bool by_direction = found.direction_chance && *found.direction_chance <= change_false_alarm;
+        std::string changes, none;
+        double bound = 0.0;
+        if (by_speed) {
+            changes = fmt::format(" {} ({})", speed_text(), chance_text(*found.speed_chance));
+        } else if (trend_) {
+            none = "speed";
+            bound = speed_bound();
+        }
+        if (by_direction) {
+            changes += fmt::format("{} {} ({})", changes.empty() ? "" : ";", direction_text(),
+                                   chance_text(*found.direction_chance));
+        } else if (difference_) {
+            none += none.empty() ? "direction" : " or direction";
+            bound = std::max(bound, direction_bound());
+        }
+        if (none.empty() && changes.empty())
+            return ": one speed in one direction only, so no change is tested";
+        if (none.empty()) return changes;
+        const std::string within =
+            bound < 1.0 ? fmt::format("no change with {} found: within {:.2g} %", none, 100.0 * bound)
+                        : fmt::format("cannot tell a change with {}: even one of {:.2g} % may go unseen",
+                                      none, 100.0 * bound);
+        return changes + (changes.empty() ? ": " : "; ") + within;
+    }
+
+    std::vector<Square> squares_;
+    std::optional<Contrast> trend_;
+    std::vector<Pair> pairs_;
+    std::optional<Contrast> difference_;
+    std::vector<std::vector<Square>> by_direction_;  ///< with more than one speed
+};
+
+}  // namespace
+
+AmplitudeBySpeed amplitude_by_speed(std::span<const TraceView> logs, GearRatio ratio,
+                                    std::span<const Order> orders) {
+    RippleSegments all(ratio, orders, {.noise = true});
+    for (const TraceView& log : logs) all.add(log);
+    const double least_nm = least_amplitude_nm(logs, least_range_share);
+    std::vector<std::vector<SpeedBin>> bins;
+    std::size_t tries = 0;
+    for (const Order order : orders) {
+        bins.push_back(speed_bins(all.of(order)));
+        tries += 2 * bins.back().size();
+    }
+    AmplitudeBySpeed found;
+    for (std::size_t i = 0; i < orders.size(); ++i) {
+        const std::size_t before = found.ripple.size();
+        for (const SpeedBin& bin : bins[i]) {
+            for (const int direction : {1, -1}) {
+                const OrderSegments& segments = bin[direction < 0 ? 1 : 0];
+                if (segments.segments.size() < fewest_segments) continue;
+                RippleAtSpeed at{estimate_of(orders[i].value(), segments, tries, least_nm), direction};
+                if (!at.ripple.searched()) continue;
+                set_speeds(at, segments, bin);
+                found.ripple.push_back(std::move(at));
+            }
+        }
+        if (found.ripple.size() > before)
+            found.changes.push_back(ChangeTest(std::span(found.ripple).subspan(before)).result());
+    }
+    return found;
+}
+
+}  // namespace ripplenotch
