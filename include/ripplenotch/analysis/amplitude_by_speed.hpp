@@ -36,7 +36,7 @@ inline constexpr double change_false_alarm = 0.01;
 
 struct AmplitudeBySpeed {
     std::vector<RippleAtSpeed> ripple;     ///< by order, then speed, then forward and backward
-    std::vector<AmplitudeChange> changes;  ///< one per order that has any of these
+    std::vector<AmplitudeChange> changes;  ///< one per order that the log has
 };
 
 /// The segments of estimate_ripple() by their mean speed and direction, at most six ranges of speed, each

@@ -18,9 +18,9 @@ namespace ripplenotch {
 namespace {
 
 constexpr std::size_t most_bins = 6;  // chosen, not derived: a course with a maximum shows in as many
-// The scatter of n segments gives a standard error within a share of 1 / sqrt(2 (n - 1)) of the true one, 27
-// % here; the noise near the order is known better, from eight independent frequencies of each segment.
-constexpr std::size_t fewest_segments = 8;
+// The scatter of n segments gives a standard error within a share of 1 / sqrt(2 (n - 1)) of the true one, a
+// third here; the noise near the order is known better, from eight independent frequencies of each segment.
+constexpr std::size_t fewest_segments = 6;
 // Speeds this close are one stated speed, which the noise of the velocity must not cut in two.
 constexpr double same_speed = 1.05;
 
@@ -369,12 +369,14 @@ class ChangeTest {
             bound = std::max(bound, direction_bound());
         }
         if (none.empty() && changes.empty())
-            return ": one speed in one direction only, so no change is tested";
+            return ": one range of speed in one direction, so no change was tested";
         if (none.empty()) return changes;
+        // Two digits.
+        const double percent = bound < 1.0 ? 100.0 * bound : 10.0 * std::round(10.0 * bound);
         const std::string within =
-            bound < 1.0 ? fmt::format("no change with {} found: within {:.2g} %", none, 100.0 * bound)
-                        : fmt::format("cannot tell a change with {}: even one of {:.2g} % may go unseen",
-                                      none, 100.0 * bound);
+            bound < 1.0 ? fmt::format("no change with {} found: within {:.2g} %", none, percent)
+                        : fmt::format("a change with {} of less than {:.0f} % would not have been found",
+                                      none, percent);
         return changes + (changes.empty() ? ": " : "; ") + within;
     }
 
@@ -384,6 +386,14 @@ class ChangeTest {
     std::optional<Contrast> difference_;
     std::vector<std::vector<Square>> by_direction_;  ///< with more than one speed
 };
+
+std::string too_short(Order order, std::size_t segments) {
+    return fmt::format(
+        "order {:.4g}: too little motion for amplitudes by speed: {} segments of eight motor turns or fewer, "
+        "{} in "
+        "one direction are needed",
+        order.value(), segments, fewest_segments);
+}
 
 }  // namespace
 
@@ -411,8 +421,11 @@ AmplitudeBySpeed amplitude_by_speed(std::span<const TraceView> logs, GearRatio r
                 found.ripple.push_back(std::move(at));
             }
         }
+        const std::size_t segments = all.of(orders[i]).segments.size();
         if (found.ripple.size() > before)
             found.changes.push_back(ChangeTest(std::span(found.ripple).subspan(before)).result());
+        else if (segments > 0)
+            found.changes.push_back({orders[i].value(), {}, {}, too_short(orders[i], segments)});
     }
     return found;
 }

@@ -55,7 +55,6 @@ void add_amplitudes(Identification& found, std::span<const Log> logs, std::optio
 }
 
 std::string amplitude_table(const AmplitudeBySpeed& found) {
-    if (found.ripple.empty()) return "";
     const auto goes = [&](int direction) {
         return std::any_of(found.ripple.begin(), found.ripple.end(),
                            [&](const RippleAtSpeed& at) { return at.direction == direction; });
@@ -68,9 +67,12 @@ std::string amplitude_table(const AmplitudeBySpeed& found) {
         for (const int direction : directions) text += fmt::format(" {:>18}", cell(direction));
         return text.substr(0, text.find_last_not_of(' ') + 1) + "\n";
     };
+    if (found.changes.empty()) return "";
     std::string text = "\namplitude by speed and direction, zero to peak, +/- 95 %\n";
-    text += row("order", "speed", [](int direction) { return direction < 0 ? "backward" : "forward"; });
-    text += row("", "deg/s", [](int) { return "Nm"; });
+    if (!found.ripple.empty()) {
+        text += row("order", "speed", [](int direction) { return direction < 0 ? "backward" : "forward"; });
+        text += row("", "deg/s", [](int) { return "Nm"; });
+    }
     const auto& all = found.ripple;
     for (std::size_t i = 0; i < all.size();) {
         std::size_t end = i + 1;
