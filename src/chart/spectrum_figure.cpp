@@ -111,7 +111,7 @@ std::string name_of(const Line& line) {
     if (line.kind == LineKind::tone && line.hz) return fmt::format("tone {:.4g} Hz", *line.hz);
     const std::string what =
         line.kind == LineKind::order ? "" : std::string(line_kind_name(line.kind)) + ": ";
-    if (line.order) return fmt::format("{}order {}", what, shortest(*line.order));
+    if (line.order) return fmt::format("{}order {:.4g}", what, *line.order);
     if (line.order_output) return fmt::format("{}{:.5g} per output turn", what, *line.order_output);
     return line.hz ? fmt::format("{}{:.4g} Hz", what, *line.hz) : "line";
 }
@@ -146,7 +146,7 @@ Panel frequency_panel(const Identification& found) {
         if (line.kind == LineKind::tone && line.hz) {
             panel.lines.push_back({name_of(line), NamedLine::Run::at_y, *line.hz, ink_of(line)});
         } else if (line.kind == LineKind::order && found.gear_ratio.value && line.order) {
-            panel.lines.push_back({fmt::format("order {}", shortest(*line.order)), NamedLine::Run::ray,
+            panel.lines.push_back({fmt::format("order {:.4g}", *line.order), NamedLine::Run::ray,
                                    *line.order * *found.gear_ratio.value / 360.0, ink_of(line)});
         } else if (line.kind == LineKind::order && line.order_output) {
             panel.lines.push_back({fmt::format("{:.5g} v / 360", *line.order_output), NamedLine::Run::ray,
@@ -211,6 +211,11 @@ Panel amplitude_panel(const std::vector<RippleAtSpeed>& ripple) {
         ribbon.x.push_back(at.speed_deg_s);
         ribbon.low.push_back(std::max(0.0, at.ripple.amplitude_nm - half));
         ribbon.high.push_back(at.ripple.amplitude_nm + half);
+    }
+    // One speed makes no line.
+    for (Curve& curve : panel.curves) {
+        if (curve.x.size() > 1) continue;
+        curve.style = curve.style == CurveStyle::line ? CurveStyle::points : other_mark(CurveStyle::points);
     }
     return panel;
 }

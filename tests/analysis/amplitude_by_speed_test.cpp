@@ -188,7 +188,7 @@ TEST_CASE("one speed gives no statement on speed, and too little motion gives it
     CHECK(found.ripple.size() == 4);
     CHECK_FALSE(found.changes[1].speed_chance);
     CHECK(found.changes[1].direction_chance);
-    plant.seconds = 3.0;
+    plant.seconds = 1.0;  // 17 motor turns
     found = found_in(plant);
     CHECK(found.ripple.empty());
     CHECK_THAT(found.changes[1].sentence, Catch::Contains("too little motion"));

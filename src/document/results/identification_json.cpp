@@ -116,7 +116,10 @@ template <class Archive>
 void describe(Archive& archive, Is<RippleAtSpeed> auto& at) {
     auto& ripple = at.ripple;
     archive("order", ripple.order);
-    archive("direction", at.direction);
+    if constexpr (Archive::reading)
+        at.direction = archive.number("direction") < 0.0 ? -1 : 1;
+    else
+        archive("direction", at.direction);
     archive("speed_deg_s", at.speed_deg_s);
     archive("speed_range_deg_s", std::tie(at.speed_from_deg_s, at.speed_to_deg_s));
     archive("segments", ripple.segments);
