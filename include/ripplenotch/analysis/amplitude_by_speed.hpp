@@ -40,8 +40,8 @@ struct AmplitudeBySpeed {
 };
 
 /// The segments of estimate_ripple() by their mean speed and direction, at most six ranges of speed, each
-/// with the estimate that estimate_ripple() makes of all. A change is tested on the squares of the amplitudes
-/// with their standard errors: with speed by a weighted trend over both directions and by Welch's analysis of
+/// with the estimate that estimate_ripple() makes of all. A change is tested with the standard errors of
+/// the amplitudes: with speed by a weighted trend over both directions and by Welch's analysis of
 /// variance of each direction (1951), with direction by the weighted mean difference at the same speeds.
 [[nodiscard]] AmplitudeBySpeed amplitude_by_speed(std::span<const TraceView> logs, GearRatio ratio,
                                                   std::span<const Order> orders);

@@ -23,6 +23,8 @@ constexpr std::size_t most_bins = 6;  // chosen, not derived: a course with a ma
 constexpr std::size_t fewest_segments = 6;
 // Speeds this close are one stated speed, which the noise of the velocity must not cut in two.
 constexpr double same_speed = 1.05;
+// Speeds this far from the next are stated ones, which have a range each where there are few.
+constexpr double other_speed = 1.1;
 
 /// Segments of one range of |speed|: forward, backward.
 using SpeedBin = std::array<OrderSegments, 2>;
@@ -40,8 +42,8 @@ void append(SpeedBin& bin, const SegmentAmplitude& segment) {
     bin[segment.place.mean_deg_s < 0.0 ? 1 : 0].segments.push_back(segment);
 }
 
-/// Ranges of equal numbers of segments, the same in both directions, so that these are compared at the same
-/// speeds.
+/// A range for each speed where few are stated, else about equal numbers of segments in each; the same in
+/// both directions, so that these are compared at the same speeds.
 std::vector<SpeedBin> speed_bins(const OrderSegments& order) {
     std::vector<const SegmentAmplitude*> sorted;
     std::array<std::size_t, 2> of_direction{};
@@ -53,21 +55,28 @@ std::vector<SpeedBin> speed_bins(const OrderSegments& order) {
     std::stable_sort(sorted.begin(), sorted.end(),
                      [&](const auto* a, const auto* b) { return speed(a) < speed(b); });
     const std::size_t fewest = fewest_segments * (of_direction[0] > 0 && of_direction[1] > 0 ? 2 : 1);
+    std::size_t stated = 1;
+    for (std::size_t i = 1; i < sorted.size(); ++i)
+        if (speed(sorted[i]) > other_speed * speed(sorted[i - 1])) ++stated;
     std::vector<SpeedBin> bins;
-    std::size_t left = sorted.size(), wanted = 0;
+    std::size_t wanted = 0;
     double slowest_alike = 0.0;
-    for (const SegmentAmplitude* one : sorted) {
-        const bool other_speed = speed(one) > same_speed * slowest_alike;
-        if (other_speed) slowest_alike = speed(one);
-        // A direction that is rarer than the other is waited for, but not for long.
-        const bool full = !bins.empty() && segments_in(bins.back()) >= wanted &&
-                          (is_usable(bins.back()) || segments_in(bins.back()) >= 2 * wanted);
-        if (bins.empty() || (full && other_speed && bins.size() < most_bins)) {
-            wanted = std::max(fewest, left / (most_bins - bins.size()));
+    for (std::size_t i = 0; i < sorted.size(); ++i) {
+        const double now = speed(sorted[i]);
+        const bool differs = now > same_speed * slowest_alike;
+        if (differs) slowest_alike = now;
+        const auto ends = [&](const SpeedBin& bin) {
+            const std::size_t in = segments_in(bin);
+            if (stated <= most_bins && now > other_speed * speed(sorted[i - 1]))
+                return in >= fewest_segments && is_usable(bin);
+            // A direction that is rarer than the other is waited for, but not for long.
+            return differs && in >= wanted && (is_usable(bin) || in >= 2 * wanted);
+        };
+        if (bins.empty() || (bins.size() < most_bins && ends(bins.back()))) {
+            wanted = std::max(fewest, (sorted.size() - i) / (most_bins - bins.size()));
             bins.emplace_back();
         }
-        append(bins.back(), *one);
-        --left;
+        append(bins.back(), *sorted[i]);
     }
     while (bins.size() > 1 && !is_usable(bins.back())) {
         for (const OrderSegments& direction : bins.back())
@@ -95,37 +104,37 @@ void set_speeds(RippleAtSpeed& at, const OrderSegments& segments, const SpeedBin
 
 // The test of a change.
 
-/// The square of an amplitude, which is about normal where the amplitude is not: near 0.
-struct Square {
+/// One amplitude with its error.
+struct Value {
     const RippleAtSpeed* at = nullptr;
-    double value = 0.0, error = 0.0;
+    double nm = 0.0, error = 0.0;
     double freedom = 1.0;  ///< of the error
 
     [[nodiscard]] double weight() const { return 1.0 / (error * error); }
 };
 
-std::vector<Square> squares_of(std::span<const RippleAtSpeed> rows) {
-    std::vector<Square> squares;
+std::vector<Value> values_of(std::span<const RippleAtSpeed> rows) {
+    std::vector<Value> values;
     for (const RippleAtSpeed& row : rows) {
-        const double nm = row.ripple.amplitude_nm, above = nm + row.ripple.standard_error_nm;
         // Without any noise the error is that of rounding.
-        constexpr double rounding = 1e-9;
-        const double error = std::max({above * above - nm * nm, rounding * nm * nm, 1e-100});
-        squares.push_back({&row, nm * nm, error, static_cast<double>(row.ripple.segments - 1)});
+        constexpr double rounding = 1e-9, least_nm = 1e-100;
+        const double nm = row.ripple.amplitude_nm;
+        values.push_back({&row, nm, std::max({row.ripple.standard_error_nm, rounding * nm, least_nm}),
+                          static_cast<double>(row.ripple.segments - 1)});
     }
-    return squares;
+    return values;
 }
 
-/// A weighted sum of squares of amplitudes whose mean is 0 where they do not differ.
+/// A weighted sum of amplitudes whose mean is 0 where they do not differ.
 struct Contrast {
     double size = 0.0, variance = 0.0;
     double slack = 0.0;  ///< sum of (share of the variance)^2 / degrees of freedom
 
-    void add(double coefficient, const Square& square) {
-        size += coefficient * square.value;
-        const double part = coefficient * coefficient * square.error * square.error;
+    void add(double coefficient, const Value& value) {
+        size += coefficient * value.nm;
+        const double part = coefficient * coefficient * value.error * value.error;
         variance += part;
-        slack += part * part / square.freedom;
+        slack += part * part / value.freedom;
     }
     /// By Satterthwaite (1946).
     [[nodiscard]] double freedom() const { return variance * variance / slack; }
@@ -142,38 +151,38 @@ struct Contrast {
 };
 
 /// Slope over speed, with a mean of its own in each direction; empty at one speed.
-std::optional<Contrast> trend_of(std::span<const Square> squares) {
+std::optional<Contrast> trend_of(std::span<const Value> values) {
     std::array<double, 2> weight{}, speed{};
-    const auto side = [](const Square& one) -> std::size_t { return one.at->direction < 0 ? 1 : 0; };
-    for (const Square& one : squares) {
+    const auto side = [](const Value& one) -> std::size_t { return one.at->direction < 0 ? 1 : 0; };
+    for (const Value& one : values) {
         weight[side(one)] += one.weight();
         speed[side(one)] += one.weight() * one.at->speed_deg_s;
     }
     double spread = 0.0;
-    const auto apart = [&](const Square& one) {
+    const auto apart = [&](const Value& one) {
         return one.at->speed_deg_s - speed[side(one)] / weight[side(one)];
     };
-    for (const Square& one : squares) spread += one.weight() * apart(one) * apart(one);
+    for (const Value& one : values) spread += one.weight() * apart(one) * apart(one);
     std::array<std::size_t, 2> count{};
-    for (const Square& one : squares) ++count[side(one)];
+    for (const Value& one : values) ++count[side(one)];
     if ((count[0] < 2 && count[1] < 2) || !(spread > 0.0)) return std::nullopt;
     Contrast slope;
-    for (const Square& one : squares) slope.add(one.weight() * apart(one) / spread, one);
+    for (const Value& one : values) slope.add(one.weight() * apart(one) / spread, one);
     return slope;
 }
 
 /// Forward and backward at the same speeds, of which the difference has this weight.
 struct Pair {
-    const Square *forward = nullptr, *backward = nullptr;
+    const Value *forward = nullptr, *backward = nullptr;
 
     [[nodiscard]] double weight() const { return 1.0 / (1.0 / forward->weight() + 1.0 / backward->weight()); }
 };
 
-std::vector<Pair> pairs_of(std::span<const Square> squares) {
+std::vector<Pair> pairs_of(std::span<const Value> values) {
     std::vector<Pair> pairs;
-    for (std::size_t i = 1; i < squares.size(); ++i) {
-        if (squares[i].at->speed_from_deg_s == squares[i - 1].at->speed_from_deg_s)
-            pairs.push_back({&squares[i - 1], &squares[i]});
+    for (std::size_t i = 1; i < values.size(); ++i) {
+        if (values[i].at->speed_from_deg_s == values[i - 1].at->speed_from_deg_s)
+            pairs.push_back({&values[i - 1], &values[i]});
     }
     return pairs;
 }
@@ -192,16 +201,16 @@ std::optional<Contrast> difference_of(const std::vector<Pair>& pairs) {
 }
 
 /// That the speeds of one direction differ by chance, whatever the course over speed.
-double welch_chance(std::span<const Square> squares) {
-    const auto k = static_cast<double>(squares.size());
+double welch_chance(std::span<const Value> values) {
+    const auto k = static_cast<double>(values.size());
     double weight = 0.0, mean = 0.0, scatter = 0.0, slack = 0.0;
-    for (const Square& one : squares) {
+    for (const Value& one : values) {
         weight += one.weight();
-        mean += one.weight() * one.value;
+        mean += one.weight() * one.nm;
     }
     mean /= weight;
-    for (const Square& one : squares) {
-        scatter += one.weight() * (one.value - mean) * (one.value - mean);
+    for (const Value& one : values) {
+        scatter += one.weight() * (one.nm - mean) * (one.nm - mean);
         slack += (1.0 - one.weight() / weight) * (1.0 - one.weight() / weight) / one.freedom;
     }
     const double ratio = scatter / (k - 1.0) / (1.0 + 2.0 * (k - 2.0) / (k * k - 1.0) * slack);
@@ -209,14 +218,14 @@ double welch_chance(std::span<const Square> squares) {
     return exceedance({.ratio = ratio, .averages = averages, .cells = knowledge / averages});
 }
 
-/// Root of the weighted mean of some squares.
-double mean_amplitude(std::span<const Square> squares) {
+/// Weighted mean.
+double mean_amplitude(std::span<const Value> values) {
     double sum = 0.0, weight = 0.0;
-    for (const Square& one : squares) {
-        sum += one.weight() * one.value;
+    for (const Value& one : values) {
+        sum += one.weight() * one.nm;
         weight += one.weight();
     }
-    return std::sqrt(sum / weight);
+    return sum / weight;
 }
 
 std::string chance_text(double chance) {
@@ -230,20 +239,20 @@ struct AtSpeed {
     double speed_deg_s = 0.0, nm = 0.0, error_nm = 0.0;
 };
 
-std::vector<AtSpeed> course_of(std::span<const Square> squares) {
+std::vector<AtSpeed> course_of(std::span<const Value> values) {
     std::vector<AtSpeed> course;
-    for (std::size_t i = 0; i < squares.size();) {
+    for (std::size_t i = 0; i < values.size();) {
         std::size_t end = i + 1;
-        while (end < squares.size() && squares[end].at->speed_from_deg_s == squares[i].at->speed_from_deg_s)
+        while (end < values.size() && values[end].at->speed_from_deg_s == values[i].at->speed_from_deg_s)
             ++end;
-        const auto same = squares.subspan(i, end - i);
+        const auto same = values.subspan(i, end - i);
         double weight = 0.0, speed = 0.0;
-        for (const Square& one : same) {
+        for (const Value& one : same) {
             weight += one.weight();
             speed += one.weight() * one.at->speed_deg_s;
         }
         const double nm = mean_amplitude(same);
-        course.push_back({speed / weight, nm, std::sqrt(nm * nm + std::sqrt(1.0 / weight)) - nm});
+        course.push_back({speed / weight, nm, std::sqrt(1.0 / weight)});
         i = end;
     }
     return course;
@@ -278,21 +287,21 @@ std::string_view direction_name(int direction) { return direction < 0 ? "backwar
 class ChangeTest {
   public:
     explicit ChangeTest(std::span<const RippleAtSpeed> rows)
-        : squares_(squares_of(rows)),
-          trend_(trend_of(squares_)),
-          pairs_(pairs_of(squares_)),
+        : values_(values_of(rows)),
+          trend_(trend_of(values_)),
+          pairs_(pairs_of(values_)),
           difference_(difference_of(pairs_)) {
         for (const int direction : {1, -1}) {
-            std::vector<Square> one;
-            for (const Square& square : squares_)
-                if (square.at->direction == direction) one.push_back(square);
+            std::vector<Value> one;
+            for (const Value& value : values_)
+                if (value.at->direction == direction) one.push_back(value);
             if (one.size() > 1) by_direction_.push_back(std::move(one));
         }
     }
 
     [[nodiscard]] AmplitudeChange result() const {
         AmplitudeChange found;
-        found.order = squares_.front().at->ripple.order;
+        found.order = values_.front().at->ripple.order;
         if (trend_) found.speed_chance = speed_chance();
         if (difference_) found.direction_chance = difference_->chance();
         found.sentence = fmt::format("order {:.4g}", found.order) + text(found);
@@ -310,11 +319,11 @@ class ChangeTest {
 
     [[nodiscard]] std::string speed_text() const {
         if (tries() * trend_->chance() <= change_false_alarm)
-            return course_text(course_of(squares_), true, "");
+            return course_text(course_of(values_), true, "");
         const auto& one =
             *std::min_element(by_direction_.begin(), by_direction_.end(),
                               [](const auto& a, const auto& b) { return welch_chance(a) < welch_chance(b); });
-        const bool both = one.size() < squares_.size();
+        const bool both = one.size() < values_.size();
         return course_text(course_of(one), false,
                            both ? fmt::format(" {}", direction_name(one.front().at->direction)) : "");
     }
@@ -323,33 +332,35 @@ class ChangeTest {
         double weights = 0.0, forward = 0.0, backward = 0.0;
         for (const Pair& pair : pairs_) {
             weights += pair.weight();
-            forward += pair.weight() * pair.forward->value;
-            backward += pair.weight() * pair.backward->value;
+            forward += pair.weight() * pair.forward->nm;
+            backward += pair.weight() * pair.backward->nm;
         }
-        return fmt::format("differs by direction: {:.2g} Nm forward, {:.2g} Nm backward",
-                           std::sqrt(forward / weights), std::sqrt(backward / weights));
+        return fmt::format("differs by direction: {:.2g} Nm forward, {:.2g} Nm backward", forward / weights,
+                           backward / weights);
     }
 
     /// The change that would have been found, as a share of the amplitude: over the range of speed, and
     /// between the directions.
     [[nodiscard]] double speed_bound() const {
         const auto [slow, fast] = std::minmax_element(
-            squares_.begin(), squares_.end(),
-            [](const Square& a, const Square& b) { return a.at->speed_deg_s < b.at->speed_deg_s; });
+            values_.begin(), values_.end(),
+            [](const Value& a, const Value& b) { return a.at->speed_deg_s < b.at->speed_deg_s; });
         return share(trend_->detectable(change_false_alarm / tries()) *
                      (fast->at->speed_deg_s - slow->at->speed_deg_s));
     }
     [[nodiscard]] double direction_bound() const {
         return share(difference_->detectable(change_false_alarm));
     }
-    [[nodiscard]] double share(double of_square) const {
-        const double nm = mean_amplitude(squares_);
-        return of_square / (2.0 * nm * nm);
+    [[nodiscard]] double share(double change_nm) const {
+        // Of the mean of all alike: weights would prefer the smallest, whose errors are.
+        double sum = 0.0;
+        for (const Value& one : values_) sum += one.nm;
+        return change_nm * static_cast<double>(values_.size()) / sum;
     }
 
     [[nodiscard]] std::string text(const AmplitudeChange& found) const {
-        if (std::none_of(squares_.begin(), squares_.end(),
-                         [](const Square& one) { return one.at->ripple.present(); }))
+        if (std::none_of(values_.begin(), values_.end(),
+                         [](const Value& one) { return one.at->ripple.present(); }))
             return ": no ripple found at any speed";
         const bool by_speed = found.speed_chance && *found.speed_chance <= change_false_alarm;
         const bool by_direction = found.direction_chance && *found.direction_chance <= change_false_alarm;
@@ -380,11 +391,11 @@ class ChangeTest {
         return changes + (changes.empty() ? ": " : "; ") + within;
     }
 
-    std::vector<Square> squares_;
+    std::vector<Value> values_;
     std::optional<Contrast> trend_;
     std::vector<Pair> pairs_;
     std::optional<Contrast> difference_;
-    std::vector<std::vector<Square>> by_direction_;  ///< with more than one speed
+    std::vector<std::vector<Value>> by_direction_;  ///< with more than one speed
 };
 
 std::string too_short(Order order, std::size_t segments) {
