@@ -152,15 +152,16 @@ TEST_CASE("95 % intervals cover, and a change is found with its size, in white a
 
 TEST_CASE("a constant amplitude is not claimed to change") {
     for (const auto& motion : {sweeping_deg_s, stepping_deg_s}) {
-        for (const double noise_nm : {0.2, 3.0}) {
+        for (const double noise_nm : {0.0, 0.2, 3.0}) {
             PlantedLog plant;
             plant.speed = motion;
             plant.seconds = 30.0;
             plant.noise_nm = noise_nm;
             plant.memory = noise_nm < 1.0 ? 0.9 : 0.0;
-            const Tally tally = tally_of(plant, 50);
-            CHECK(tally.by_speed <= 2);
-            CHECK(tally.by_direction <= 2);
+            const Tally tally = tally_of(plant, noise_nm > 0.0 ? 50 : 1);
+            INFO("noise " << noise_nm << " Nm");
+            CHECK(tally.by_speed * 25 <= tally.logs);
+            CHECK(tally.by_direction * 25 <= tally.logs);
         }
     }
 }

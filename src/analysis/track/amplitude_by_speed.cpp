@@ -116,10 +116,10 @@ struct Value {
 std::vector<Value> values_of(std::span<const RippleAtSpeed> rows) {
     std::vector<Value> values;
     for (const RippleAtSpeed& row : rows) {
-        // Without any noise the error is that of rounding.
-        constexpr double rounding = 1e-9, least_nm = 1e-100;
+        // Without any noise the error is that of the fit: what trend and neighbours leave of it.
+        constexpr double of_fit = 1e-3, least_nm = 1e-100;  // chosen, not derived
         const double nm = row.ripple.amplitude_nm;
-        values.push_back({&row, nm, std::max({row.ripple.standard_error_nm, rounding * nm, least_nm}),
+        values.push_back({&row, nm, std::max({row.ripple.standard_error_nm, of_fit * nm, least_nm}),
                           static_cast<double>(row.ripple.segments - 1)});
     }
     return values;
