@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/matrices/least_squares.hpp"
 #include "ripplenotch/chart/spectrum_figure.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/figure/min_max.hpp"
@@ -110,7 +111,7 @@ std::string name_of(const Line& line) {
     if (line.kind == LineKind::tone && line.hz) return fmt::format("tone {:.4g} Hz", *line.hz);
     const std::string what =
         line.kind == LineKind::order ? "" : std::string(line_kind_name(line.kind)) + ": ";
-    if (line.order) return fmt::format("{}order {}", what, shortest(*line.order));
+    if (line.order) return fmt::format("{}order {:.4g}", what, *line.order);
     if (line.order_output) return fmt::format("{}{:.5g} per output turn", what, *line.order_output);
     return line.hz ? fmt::format("{}{:.4g} Hz", what, *line.hz) : "line";
 }
@@ -145,7 +146,7 @@ Panel frequency_panel(const Identification& found) {
         if (line.kind == LineKind::tone && line.hz) {
             panel.lines.push_back({name_of(line), NamedLine::Run::at_y, *line.hz, ink_of(line)});
         } else if (line.kind == LineKind::order && found.gear_ratio.value && line.order) {
-            panel.lines.push_back({fmt::format("order {}", shortest(*line.order)), NamedLine::Run::ray,
+            panel.lines.push_back({fmt::format("order {:.4g}", *line.order), NamedLine::Run::ray,
                                    *line.order * *found.gear_ratio.value / 360.0, ink_of(line)});
         } else if (line.kind == LineKind::order && line.order_output) {
             panel.lines.push_back({fmt::format("{:.5g} v / 360", *line.order_output), NamedLine::Run::ray,
@@ -171,6 +172,54 @@ Panel residual_panel(const GearRatioFit& fit) {
     return panel;
 }
 
+Panel empty_amplitude_panel(std::string title) {
+    Panel panel{.title = std::move(title),
+                .x = {"joint speed", "deg/s"},
+                .y = {"amplitude, zero to peak", "Nm"},
+                .height = 0.6};
+    panel.x.from = panel.y.from = 0.0;
+    return panel;
+}
+
+Panel amplitude_panel(const std::vector<Line>& lines) {
+    Panel panel = empty_amplitude_panel("Amplitude of each line against joint speed");
+    panel.legend = false;
+    for (const Line& line : lines) panel.curves.push_back(points(line, &AmplitudeAtSpeed::amplitude_nm));
+    return panel;
+}
+
+/// With 95 % intervals; backward has the colour of its order and the other mark, as in a ripple map.
+Panel amplitude_panel(const std::vector<RippleAtSpeed>& ripple) {
+    Panel panel =
+        empty_amplitude_panel("Amplitude of each order by speed and direction, with 95 % intervals");
+    for (const RippleAtSpeed& at : ripple) {
+        const double order = at.ripple.order;
+        const CurveStyle style = order_style(order, CurveStyle::line);
+        const std::string name =
+            fmt::format("order {:.4g} {}", order, at.direction < 0 ? "backward" : "forward");
+        auto curve = std::find_if(panel.curves.begin(), panel.curves.end(),
+                                  [&](const Curve& one) { return one.name == name; });
+        if (curve == panel.curves.end()) {
+            panel.ribbons.push_back({"", order_ink(order), {}, {}, {}});
+            curve = panel.curves.insert(
+                curve, {name, order_ink(order), at.direction < 0 ? other_mark(style) : style, {}, {}});
+        }
+        Ribbon& ribbon = panel.ribbons[static_cast<std::size_t>(curve - panel.curves.begin())];
+        const double half = normal_95_errors * at.ripple.standard_error_nm;
+        curve->x.push_back(at.speed_deg_s);
+        curve->y.push_back(at.ripple.amplitude_nm);
+        ribbon.x.push_back(at.speed_deg_s);
+        ribbon.low.push_back(std::max(0.0, at.ripple.amplitude_nm - half));
+        ribbon.high.push_back(at.ripple.amplitude_nm + half);
+    }
+    // One speed makes no line.
+    for (Curve& curve : panel.curves) {
+        if (curve.x.size() > 1) continue;
+        curve.style = curve.style == CurveStyle::line ? CurveStyle::points : other_mark(CurveStyle::points);
+    }
+    return panel;
+}
+
 }  // namespace
 
 Figure identification_figure(const std::string& source, const Identification& found) {
@@ -180,15 +229,10 @@ Figure identification_figure(const std::string& source, const Identification& fo
         found.verdict,
         {frequency_panel(found)}};
     if (!found.gear_ratio.residuals.empty()) figure.panels.push_back(residual_panel(found.gear_ratio));
-    Panel amplitude{.title = "Amplitude of each line against joint speed",
-                    .x = {"joint speed", "deg/s"},
-                    .y = {"amplitude, zero to peak", "Nm"},
-                    .height = 0.6};
-    amplitude.x.from = amplitude.y.from = 0.0;
-    amplitude.legend = false;
-    for (const Line& line : found.lines)
-        amplitude.curves.push_back(points(line, &AmplitudeAtSpeed::amplitude_nm));
-    if (!found.lines.empty()) figure.panels.push_back(std::move(amplitude));
+    if (!found.by_speed.ripple.empty())
+        figure.panels.push_back(amplitude_panel(found.by_speed.ripple));
+    else if (!found.lines.empty())
+        figure.panels.push_back(amplitude_panel(found.lines));
     return figure;
 }
 

@@ -73,6 +73,8 @@ class EachAsAlone(SharedCase):
                     alone = {"joint": one["joint"], **json.loads(self.alone(name, one["joint"], "--json"))}
                     found, expected = (json.dumps(without_head(each), sort_keys=True) for each in (one, alone))
                     self.assertEqual(found, expected)
+                    if name == "identify":
+                        self.assertTrue(one["amplitude_by_speed_and_direction"])
 
     def test_rows(self):
         for name, more in CSV.items():

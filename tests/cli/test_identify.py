@@ -51,6 +51,36 @@ class ThePapersLogs(Case):
             for at in line["amplitude_by_speed"]:
                 self.assertAlmostEqual(at["hz"], line["order"] * 100 * at["speed_deg_s"] / 360, delta=0.02)
 
+    def test_amplitude_by_speed_and_direction(self):
+        found = identified(*PAPER)
+        rows = found["amplitude_by_speed_and_direction"]
+        self.assertEqual([(row["order"], round(row["speed_deg_s"]), row["direction"]) for row in rows],
+                         [(n, speed, 1) for n in (1, 2) for speed in (60, 120, 180)])
+        for row in rows:
+            low, high = row["ci95_nm"]
+            planted = {1: 0.8, 2: 0.5}[row["order"]]  # within three standard errors: one of six is outside two, at times
+            self.assertAlmostEqual(row["amplitude_nm"], planted, delta=0.77 * (high - low))
+            self.assertGreaterEqual(row["segments"], 6)
+            self.assertLess(row["false_alarm"], 1e-6)
+        for change in found["amplitude_changes"]:
+            self.assertGreater(change["speed_chance"], 0.01)
+            self.assertIsNone(change["direction_chance"])
+            self.assertRegex(change["sentence"], r"^order [12]: no change with speed found: within [0-9.]+ %$")
+        text = run("identify", *PAPER).stdout
+        self.assertIn("amplitude by speed and direction", text)
+        self.assertIn(found["amplitude_changes"][1]["sentence"], text)
+        self.assertEqual(identified(PAPER[0])["amplitude_by_speed_and_direction"], [])
+
+    def test_a_stated_ratio_without_lines_gives_what_would_have_been_found(self):
+        with tempfile.TemporaryDirectory() as folder:
+            log = pathlib.Path(folder) / "flat.csv"
+            log.write_text(log_text(60, 0.0))
+            found = identified(str(log), "--gear-ratio", "100")
+            self.assertIsNone(found["gear_ratio"]["value"])
+            self.assertEqual({row["order"] for row in found["amplitude_by_speed_and_direction"]}, {1, 2})
+            self.assertIn("order 1: no ripple found at any speed", [one["sentence"] for one in found["amplitude_changes"]])
+            self.assertIn("none above", run("identify", log, "--gear-ratio", "100").stdout)
+
     def test_rest_alone_cannot_tell(self):
         found = identified(PAPER[0])
         self.assertIsNone(found["gear_ratio"]["value"])

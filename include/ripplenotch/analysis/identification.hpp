@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "ripplenotch/analysis/amplitude_by_speed.hpp"
 #include "ripplenotch/analysis/velocity_error.hpp"
 #include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/core/quantity.hpp"
@@ -190,6 +191,7 @@ struct Identification {
     std::vector<ToneFamily> families;
     std::vector<Hum> hums;  ///< most torque first
     std::vector<Disagreement> disagreements;
+    AmplitudeBySpeed by_speed;               ///< of a known ratio; not from identify() itself
     std::optional<SearchedOrders> searched;  ///< empty where the motion allows no search
     /// Of each other joint of the logs whose gear ratio is known. What was found of them, without a doubt,
     /// was taken from the torque before the lines were searched.

@@ -16,7 +16,8 @@
 
 namespace ripplenotch {
 
-/// Line frequency against speed with the fitted ratio, the residual of the fit, and amplitude against speed.
+/// Line frequency against speed with the fitted ratio, the residual of the fit, and amplitude against speed:
+/// of the orders by direction with 95 % intervals, without a ratio of the lines.
 [[nodiscard]] Figure identification_figure(const std::string& source, const Identification& identification);
 
 struct ShownSpectrum {

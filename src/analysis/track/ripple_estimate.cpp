@@ -161,15 +161,18 @@ void RippleSegments::measure(const Part& part, const SampleRun& window, std::siz
     SegmentPlace place{0.0, length, part.rows.time_s[window.end - 1] - part.rows.time_s[window.first],
                        std::numeric_limits<double>::max(), 0.0};
     std::vector<double> root_weight;
+    double weighted_speed = 0.0;
     for (std::size_t k = 0; k < window.size(); ++k) {
         const double u = std::clamp(std::abs(turns[k] - turns.front()) / length, 0.0, 1.0);
         const double speed = std::abs(speeds[k]);  // angle per sample, up to a factor
         root_weight.push_back(std::sqrt(speed) * portable::sin(std::numbers::pi * u));
         place.slowest_deg_s = std::min(place.slowest_deg_s, speed);
         place.fastest_deg_s = std::max(place.fastest_deg_s, speed);
+        weighted_speed += root_weight.back() * root_weight.back() * speeds[k];
     }
     WindowFit fit(turns, root_weight, length / ratio_, lines, 0);
     place.weight = fit.weight();
+    place.mean_deg_s = weighted_speed / place.weight;
     const std::size_t from = shared ? skipped : last;
     if (!fit.has_enough_samples()) {
         for (std::size_t i = from; i <= last; ++i) gathered_[i].few_samples = true;
@@ -253,8 +256,7 @@ std::vector<double> RippleSegments::expected_gains(const Part& part, const Sampl
 
 namespace {
 
-constexpr double least_range_share = 1e-4;  // as MotionLinesOptions::least_share
-constexpr double agreeing_share = 0.5;      // share of the power that segments have in common, for a phase
+constexpr double agreeing_share = 0.5;  // share of the power that segments have in common, for a phase
 constexpr double normal_99 = 2.3263478740408408;  // one-sided quantile of 0.99
 constexpr double independent_spacing = 1.5;       // in bins under a Hann window
 // Efficiency of a median relative to a mean, as in exceedance().
@@ -322,7 +324,10 @@ double threshold(double averages, double bins, double false_alarm) {
     return high;
 }
 
-RippleEstimate estimate_of(double value, const OrderSegments& order, std::size_t orders, double least_nm) {
+}  // namespace
+
+RippleEstimate estimate_of(double value, const OrderSegments& order, std::size_t tries_of_all,
+                           double least_nm) {
     RippleEstimate found;
     found.order = value;
     found.segments = order.segments.size();
@@ -359,7 +364,7 @@ RippleEstimate estimate_of(double value, const OrderSegments& order, std::size_t
         noise.power * noise.power / (averages * noise.bins);
     found.amplitude_nm = std::sqrt(square);
     found.standard_error_nm = std::sqrt(square + std::sqrt(std::max(variance, scatter))) - found.amplitude_nm;
-    const double tries = static_cast<double>(orders);
+    const double tries = static_cast<double>(tries_of_all);
     found.false_alarm = noise.power > 0.0
                             ? std::min(1.0, tries * exceedance({.ratio = power / noise.along_slope,
                                                                 .averages = averages,
@@ -384,6 +389,8 @@ RippleEstimate estimate_of(double value, const OrderSegments& order, std::size_t
     }
     return found;
 }
+
+namespace {
 
 std::string why_none(const RippleSegments& all, Order order) {
     const OrderSegments& segments = all.of(order);

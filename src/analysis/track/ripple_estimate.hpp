@@ -24,6 +24,7 @@ struct SegmentPlace {
     double weight = 0.0;  ///< angle under the window, up to a factor that all rows of a log share
     double turns = 0.0, seconds = 0.0;
     double slowest_deg_s = 0.0, fastest_deg_s = 0.0;
+    double mean_deg_s = 0.0;  ///< as the window weighs its rows; signed
 };
 
 /// What one segment has at one order.
@@ -106,5 +107,14 @@ class RippleSegments {
     std::size_t stride_ = 1, seen_ = 0, samples_ = 0, rows_ = 0, too_few_samples_ = 0;
     double fastest_deg_s_ = 0.0, rate_turns_deg_s_ = std::numeric_limits<double>::max();
 };
+
+/// The ripple in these segments, which are at least one. `tries`: estimates of which none may be a false
+/// alarm.
+[[nodiscard]] RippleEstimate estimate_of(double order, const OrderSegments& segments, std::size_t tries,
+                                         double least_nm);
+
+/// Amplitude below which a ripple does not count, as a share of the torque's range; as
+/// MotionLinesOptions::least_share.
+inline constexpr double least_range_share = 1e-4;
 
 }  // namespace ripplenotch

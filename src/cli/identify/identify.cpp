@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "cli/command.hpp"
+#include "cli/identify/amplitude_table.hpp"
 #include "cli/options/joint_runs.hpp"
 #include "cli/options/plot_request.hpp"
 #include "cli/options/verdict_options.hpp"
@@ -179,6 +180,7 @@ std::string identification_report(const CommonOptions& common, const Identificat
     if (ratio.second_comb)
         text += fmt::format("second comb: {:.4f} turns of the wave generator against the other spline\n",
                             *ratio.second_comb);
+    text += amplitude_table(found.by_speed);
     if (ratio.candidates.size() > (ratio.value ? 1U : 0U)) {
         text += ratio.value ? "\nrival ratios\n" : "\npossible ratios\n";
         for (std::size_t i = ratio.value ? 1 : 0; i < ratio.candidates.size(); ++i) {
@@ -294,10 +296,13 @@ Identification identified_joint(const Joint& joint, const IdentifyRequest& reque
         }
     }
     Identification found = identify_readings(joint.logs, request.identify);
+    add_amplitudes(found, joint.logs, request.identify.hint);
     found.joint = joint.name;
     const std::string& unit = joint.logs.front().recording.torque_unit;
     found.verdict = in_torque_unit(found.verdict, unit);
     for (std::string& note : found.notes) note = in_torque_unit(note, unit);
+    for (AmplitudeChange& change : found.by_speed.changes)
+        change.sentence = in_torque_unit(change.sentence, unit);
     found.sample_rate = controller_rate(joint);
     return found;
 }

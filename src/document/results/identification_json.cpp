@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "ripplenotch/document/identification_json.hpp"
 
+#include <algorithm>
+
+#include "core/matrices/least_squares.hpp"
 #include "document/fields/fields.hpp"
 #include "document/fields/result_fields.hpp"
 #include "ripplenotch/core/files.hpp"
@@ -124,6 +127,34 @@ void describe(auto& archive, Is<Disagreement> auto& one) {
     archive("values", one.values);
 }
 
+template <class Archive>
+void describe(Archive& archive, Is<RippleAtSpeed> auto& at) {
+    auto& ripple = at.ripple;
+    archive("order", ripple.order);
+    if constexpr (Archive::reading)
+        at.direction = archive.number("direction") < 0.0 ? -1 : 1;
+    else
+        archive("direction", at.direction);
+    archive("speed_deg_s", at.speed_deg_s);
+    archive("speed_range_deg_s", std::tie(at.speed_from_deg_s, at.speed_to_deg_s));
+    archive("segments", ripple.segments);
+    archive("amplitude_nm", ripple.amplitude_nm);
+    const double half = normal_95_errors * ripple.standard_error_nm;
+    double low = std::max(0.0, ripple.amplitude_nm - half), high = ripple.amplitude_nm + half;
+    archive("ci95_nm", std::tie(low, high));
+    if constexpr (Archive::reading)
+        ripple.standard_error_nm = (high - ripple.amplitude_nm) / normal_95_errors;
+    archive("detectable_nm", ripple.detectable_nm);
+    archive("false_alarm", ripple.false_alarm);
+}
+
+void describe(auto& archive, Is<AmplitudeChange> auto& change) {
+    archive("order", change.order);
+    archive("speed_chance", change.speed_chance);
+    archive("direction_chance", change.direction_chance);
+    archive("sentence", change.sentence);
+}
+
 // Older files tell the finding in words alone, and nothing of what is read only if it is there.
 void describe(auto& archive, Is<Identification> auto& found) {
     archive("verdict", found.verdict);
@@ -146,6 +177,8 @@ void describe(auto& archive, Is<Identification> auto& found) {
         archive("other_motors", found.other_motors);
         archive("other_motors_not_known", found.other_motors_not_known);
     }
+    archive("amplitude_by_speed_and_direction", found.by_speed.ripple, if_there);
+    archive("amplitude_changes", found.by_speed.changes, if_there);
     archive("notes", found.notes);
 }
 
