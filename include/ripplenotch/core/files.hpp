@@ -141,7 +141,8 @@ class Sha256 {
 class Spool {
   public:
     /// A regular file is opened and stays where it is; standard input ("-"), a named pipe or a device is read
-    /// to its end into a file without a name in the folder for temporary files (TMPDIR). Throws FileError.
+    /// to its end into a file without a name in the folder for temporary files (TMPDIR); standard input once,
+    /// for all that read it. Throws FileError.
     explicit Spool(const std::string& path);
     ~Spool();
     Spool(const Spool&) = delete;

@@ -23,7 +23,7 @@ struct JointLogs {
 };
 
 /// The other joints of the logs at `paths`, of which `own` was read by these options, that have a position of
-/// their own at the same rows. None for standard input and for logs of one joint.
+/// their own at the same rows. None for logs of one joint.
 [[nodiscard]] std::vector<JointLogs> read_other_joints(std::span<const std::string> paths,
                                                        std::span<const Log> own, const ReadOptions& options,
                                                        std::size_t most_rows);

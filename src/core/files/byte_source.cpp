@@ -105,7 +105,26 @@ void copy_to(ByteSource& source, int descriptor, const std::string& folder) {
 
 }  // namespace
 
+namespace {
+
+/// Standard input as it was read first, which no second reading would give.
+struct KeptInput {
+    std::string name;
+    std::shared_ptr<const OpenFile> file;
+};
+KeptInput& kept_standard_input() {
+    static KeptInput kept;
+    return kept;
+}
+
+}  // namespace
+
 Spool::Spool(const std::string& path) : path_(path) {
+    if (path == "-" && kept_standard_input().file) {
+        name_ = kept_standard_input().name;
+        file_ = kept_standard_input().file;
+        return;
+    }
     const auto file = std::make_shared<const OpenFile>(path);
     if (file->by_place()) {
         file_ = file;
@@ -120,6 +139,7 @@ Spool::Spool(const std::string& path) : path_(path) {
     try {
         copy_to(source, descriptor, folder);
         file_ = std::make_shared<const OpenFile>("", descriptor);
+        if (path == "-") kept_standard_input() = {name_, file_};
     } catch (...) {
         ::close(descriptor);
         throw;

@@ -65,9 +65,7 @@ std::optional<GearAccount> gear_of_motor(const Identification& found, const Stat
 std::vector<JointLogs> read_other_joints(std::span<const std::string> paths, std::span<const Log> own,
                                          const ReadOptions& options, std::size_t most_rows) {
     std::vector<JointLogs> joints;
-    if (own.empty() || own.front().layout.joints.size() < 2 ||
-        std::find(paths.begin(), paths.end(), "-") != paths.end())
-        return joints;
+    if (own.empty() || own.front().layout.joints.size() < 2) return joints;
     for (std::size_t l = 0; l < paths.size(); ++l) {
         std::vector<Log> all;
         try {
