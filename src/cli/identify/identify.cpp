@@ -142,12 +142,20 @@ std::string motor_cell(const Identification& found, const std::string& motor) {
 
 /// Which motor is in which torque, the largest amplitude of its orders; of the joints that were looked at.
 std::string motor_matrix(const std::vector<Identification>& found) {
-    std::vector<std::string> motors;
-    for (const Identification& one : found) {
-        for (const OtherMotorRipple& motor : one.other_motors)
-            if (std::find(motors.begin(), motors.end(), motor.joint) == motors.end())
-                motors.push_back(motor.joint);
-    }
+    std::vector<std::string> motors;  // of the joints in their order, then of those that were not asked for
+    const auto add = [&motors](const std::string& joint) {
+        if (std::find(motors.begin(), motors.end(), joint) == motors.end()) motors.push_back(joint);
+    };
+    const auto looked_for = [&found](const std::string& joint) {
+        return std::any_of(found.begin(), found.end(), [&](const Identification& one) {
+            return std::any_of(one.other_motors.begin(), one.other_motors.end(),
+                               [&](const OtherMotorRipple& motor) { return motor.joint == joint; });
+        });
+    };
+    for (const Identification& one : found)
+        if (looked_for(one.joint)) add(one.joint);
+    for (const Identification& one : found)
+        for (const OtherMotorRipple& motor : one.other_motors) add(motor.joint);
     if (motors.empty() || found.size() < 2) return "";
     std::vector<std::vector<std::string>> rows = {{"torque of"}};
     for (const std::string& motor : motors) rows.front().push_back(motor);
@@ -379,25 +387,24 @@ void look_for_other_motors(const IdentifyRequest& request, std::span<const Joint
     read.gear_ratio = request.gear.ratio;
     read.takes_motor_units = true;
     const std::size_t most_rows = std::max(fewest_rows_held, most_rows_held / request.logs.size());
-    const std::vector<JointLogs> others =
-        read_other_joints(request.logs, joints.front().logs, read, most_rows);
-    if (others.empty()) return;
+    const std::vector<JointLogs> arm =
+        read_arm(request.logs, joints.front().logs.front().layout, read, most_rows);
+    if (arm.empty()) return;
     StatedMotors stated;
     if (request.gear.ratio) stated.ratio = GearRatio(*request.gear.ratio);
     std::map<std::string, std::optional<GearAccount>> gears;
     for (std::size_t i = 0; i < joints.size(); ++i) gears[joints[i].name] = gear_of_motor(found[i], stated);
-    for (const JointLogs& joint : others)
+    const auto gear_of = [&](const JointLogs& joint) {
         if (!gears.contains(joint.joint))
             gears[joint.joint] = gear_of_motor(identify_readings(joint.logs, request.identify), stated);
+        return gears[joint.joint];
+    };
     Progress::current().begin("looking for the ripple of other joints' motors", "joints",
                               joints.size() > 1 ? joints.size() : 0);
     for (std::size_t i = 0; i < joints.size(); ++i) {
-        std::vector<JointLogs> motors =
-            i == 0 ? others : read_other_joints(request.logs, joints[i].logs, read, most_rows);
-        std::vector<std::optional<GearAccount>> of_motors;
-        for (const JointLogs& joint : motors) of_motors.push_back(gears[joint.joint]);
         const Identification alone = found[i];
-        found[i] = identify_among(joints[i].logs, alone, motors_of(motors, of_motors), request.identify);
+        found[i] =
+            identify_among(joints[i].logs, alone, motors_of(arm, joints[i].logs, gear_of), request.identify);
         found[i].sample_rate = alone.sample_rate;
         const std::string& unit = joints[i].logs.front().recording.torque_unit;
         found[i].verdict = in_torque_unit(found[i].verdict, unit);

@@ -175,27 +175,27 @@ Read read_map_logs(const MapRequest& request, const GearAccount& gear, Provenanc
     return read;
 }
 
-// The gears of other joints: from their files where --joint-file names one each, else as --gear-ratio has it.
-StatedMotors stated_motors(const MapRequest& request, Provenance& provenance) {
-    StatedMotors stated;
+// The gear of another joint: from its file where --joint-file names one each, else identified, or as
+// --gear-ratio has it.
+std::optional<GearAccount> gear_of_other(const MapRequest& request, const JointLogs& joint,
+                                         Provenance& provenance) {
     if (request.joint_files) {
-        stated.of_file = [&request, &provenance](const std::string& joint) -> std::optional<GearAccount> {
-            GearOptions gear = request.gear;
-            gear.joint_file = with_joint(*request.joint_files, joint);
-            std::error_code failed;
-            if (!std::filesystem::exists(*gear.joint_file, failed)) return std::nullopt;
+        GearOptions gear = request.gear;
+        gear.joint_file = with_joint(*request.joint_files, joint.joint);
+        std::error_code failed;
+        if (std::filesystem::exists(*gear.joint_file, failed)) {
             try {
                 const auto found = GearChoice(gear).of();
                 provenance.inputs.push_back(input_record(*gear.joint_file));
                 return found;
-            } catch (const DataError&) {
-                return std::nullopt;  // a joint of which identify found no gear
+            } catch (const DataError& error) {
+                say(request.common, error.what());  // identify found no gear
             }
-        };
+        }
     }
+    StatedMotors stated{std::nullopt, sorted_orders(request.gear.orders)};
     if (request.gear.ratio) stated.ratio = GearRatio(*request.gear.ratio);
-    stated.orders = sorted_orders(request.gear.orders);
-    return stated;
+    return gear_of_motor(identify_readings(joint.logs, {}), stated);
 }
 
 ExitCode run_map_once(const MapRequest& request, const std::string& command_line) {
@@ -208,9 +208,10 @@ ExitCode run_map_once(const MapRequest& request, const std::string& command_line
     say(request.common, gear_in_words(*gear));
     const Read read = read_map_logs(request, *gear, provenance);
     if (choice.joint()) provenance.inputs.push_back(input_record(choice.joint()->path));
-    const std::vector<JointLogs> joints =
-        read_other_joints(request.logs, read.logs, read_options(request.log, gear), rows_of_each(request));
-    const OtherMotors others = motors_of(joints, stated_motors(request, provenance));
+    const std::vector<JointLogs> arm = read_arm(request.logs, read.logs.front().layout,
+                                                read_options(request.log, gear), rows_of_each(request));
+    const OtherMotors others = motors_of(
+        arm, read.logs, [&](const JointLogs& joint) { return gear_of_other(request, joint, provenance); });
     for (const std::string& joint : others.not_known)
         say(request.common,
             fmt::format("joint {}: its gear ratio is not known, so its motor is not looked for in "

@@ -62,10 +62,10 @@ std::optional<GearAccount> gear_of_motor(const Identification& found, const Stat
     return gear;
 }
 
-std::vector<JointLogs> read_other_joints(std::span<const std::string> paths, std::span<const Log> own,
-                                         const ReadOptions& options, std::size_t most_rows) {
+std::vector<JointLogs> read_arm(std::span<const std::string> paths, const Layout& layout,
+                                const ReadOptions& options, std::size_t most_rows) {
     std::vector<JointLogs> joints;
-    if (own.empty() || own.front().layout.joints.size() < 2) return joints;
+    if (layout.joints.size() < 2) return joints;
     for (std::size_t l = 0; l < paths.size(); ++l) {
         std::vector<Log> all;
         try {
@@ -74,9 +74,7 @@ std::vector<JointLogs> read_other_joints(std::span<const std::string> paths, std
             return {};  // the joint that is looked at could be read, and its answer does not need the others
         }
         for (Log& log : all) {
-            if (log.trace.joint == own[l].trace.joint || !log.trace.view().has_position() ||
-                !same_rows(log, own[l]))
-                continue;
+            if (!log.trace.view().has_position()) continue;
             const auto same = std::find_if(joints.begin(), joints.end(), [&](const JointLogs& one) {
                 return one.joint == log.trace.joint;
             });
@@ -90,34 +88,22 @@ std::vector<JointLogs> read_other_joints(std::span<const std::string> paths, std
     return joints;
 }
 
-OtherMotors motors_of(std::span<const JointLogs> joints, std::span<const std::optional<GearAccount>> gears) {
+OtherMotors motors_of(std::span<const JointLogs> arm, std::span<const Log> own, const GearOfJoint& gear_of) {
     OtherMotors others;
-    others.pairs = std::max<std::size_t>(joints.size() * (joints.size() + 1), 1);
-    for (std::size_t j = 0; j < joints.size(); ++j) {
-        if (!gears[j]) {
-            others.not_known.push_back(joints[j].joint);
+    for (const JointLogs& joint : arm) {
+        if (joint.joint == own.front().trace.joint || joint.logs.size() != own.size() ||
+            !std::equal(own.begin(), own.end(), joint.logs.begin(), same_rows))
+            continue;
+        ++others.looked_at;
+        const std::optional<GearAccount> gear = gear_of(joint);
+        if (!gear) {
+            others.not_known.push_back(joint.joint);
             continue;
         }
-        OtherMotor& motor = others.motors.emplace_back(OtherMotor{joints[j].joint, *gears[j], {}});
-        for (const Log& log : joints[j].logs) motor.motion.push_back(log.trace.view());
+        OtherMotor& motor = others.motors.emplace_back(OtherMotor{joint.joint, *gear, {}});
+        for (const Log& log : joint.logs) motor.motion.push_back(log.trace.view());
     }
     return others;
-}
-
-namespace {
-
-std::optional<GearAccount> gear_of(const JointLogs& joint, const StatedMotors& stated) {
-    if (stated.of_file)
-        if (auto of_file = stated.of_file(joint.joint)) return of_file;
-    return gear_of_motor(identify_readings(joint.logs, {}), stated);
-}
-
-}  // namespace
-
-OtherMotors motors_of(std::span<const JointLogs> joints, const StatedMotors& stated) {
-    std::vector<std::optional<GearAccount>> gears;
-    for (const JointLogs& joint : joints) gears.push_back(gear_of(joint, stated));
-    return motors_of(joints, gears);
 }
 
 }  // namespace ripplenotch

@@ -50,7 +50,7 @@ Identification identify_among(std::span<const Log> logs, Identification alone, c
     std::vector<TraceView> views;
     for (const Log& log : logs) views.push_back(log.trace.view());
     const std::optional<GearAccount> own = found_gear(alone);
-    const MapFit fit = fit_joint_map(views, own ? &*own : nullptr, others.motors, others.pairs);
+    const MapFit fit = fit_joint_map(views, own ? &*own : nullptr, others.motors, others.pairs());
     Identification found = std::move(alone);
     if (!fit.map.others.empty()) {
         std::vector<Log> less(logs.begin(), logs.end());

@@ -342,7 +342,7 @@ MapFit map_readings(std::span<const Log> logs, const GearAccount& gear, Degrees 
         if (others.motors.empty()) return fit;
         std::vector<TraceView> views;
         for (const Log& log : logs) views.push_back(log.trace.view());
-        return fit_joint_map(views, &gear, others.motors, others.pairs, zero.value(), temperatures_degc);
+        return fit_joint_map(views, &gear, others.motors, others.pairs(), zero.value(), temperatures_degc);
     }
     fit.doubt = fmt::format("Cannot tell: {}. {}:", doubt, assumed_reading(logs));
     fit.conclusive = false;
