@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -351,6 +352,53 @@ Figure order_spectrum_figure(const std::string& source, const Stack& stack, cons
             fmt::format("Order spectrum of the torque: {}", source),
             fmt::format("{} over {:.3g} output turns.", lines_in_words(lines.lines.size()), lines.turns),
             {std::move(panel)}};
+}
+
+namespace {
+
+std::vector<double> edges_of(std::size_t cells) {
+    std::vector<double> edges;
+    for (std::size_t k = 0; k <= cells; ++k) edges.push_back(static_cast<double>(k) + 0.5);
+    return edges;
+}
+
+std::string numbered(const std::vector<std::string>& names) {
+    std::vector<std::string> all;
+    for (std::size_t k = 0; k < names.size(); ++k) all.push_back(fmt::format("{} {}", k + 1, names[k]));
+    return fmt::format("{}", fmt::join(all, ", "));
+}
+
+}  // namespace
+
+Figure motor_matrix_figure(const std::string& source, std::span<const Identification> joints) {
+    const std::vector<std::string> motors = motors_in_matrix(joints);
+    std::vector<std::string> torques;
+    HeatMap heat{"amplitude, zero to peak", "Nm"};
+    heat.x_edges = edges_of(motors.size());
+    heat.y_edges = edges_of(joints.size());
+    heat.highest = 0.0;
+    for (const Identification& one : joints) {
+        torques.push_back(one.joint);
+        for (const std::string& motor : motors) {
+            const auto amplitude = motor_amplitude(one, motor);
+            heat.cells.push_back(amplitude.value_or(not_a_number));
+            heat.highest = std::max(heat.highest, amplitude.value_or(0.0));
+        }
+    }
+    if (!(heat.highest > 0.0)) heat.highest = 1.0;
+    Panel panel{
+        .title = "", .x = {"motor", "number", PlotScale::whole}, .y = {"torque", "number", PlotScale::whole}};
+    panel.x.from = panel.y.from = 0.5;
+    panel.x.to = heat.x_edges.back();
+    panel.y.to = heat.y_edges.back();
+    panel.map = std::move(heat);
+    Figure figure{
+        "motor-matrix",
+        fmt::format("Ripple of each motor in each torque: {}", source),
+        fmt::format("Motors: {}. Torques: {}. Empty: not found.", numbered(motors), numbered(torques)),
+        {}};
+    figure.panels.push_back(std::move(panel));
+    return figure;
 }
 
 }  // namespace ripplenotch

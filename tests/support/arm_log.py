@@ -65,8 +65,15 @@ def write_arm_log(path, seed, joints=7, seconds=20.0, rate=500.0, own_nm=0.3, ot
             for sensor, motor, amplitude, order in others:
                 angle = math.radians(order * arm[motor - 1].ratio * motion[motor - 1][0])
                 torques[sensor - 1] += amplitude * math.cos(angle + 1.0)
-            cells = [f"{t:.6f}"]
+            cells = [f"{t:.4f}"]
             for (position, velocity), torque in zip(motion, torques):
-                cells += [f"{position:.6f}", f"{velocity:.6f}", f"{torque:.6f}"]
+                cells += [f"{position:.4f}", f"{velocity:.4f}", f"{torque:.4f}"]
             out.write(",".join(cells) + "\n")
     return [joint.ratio for joint in arm]
+
+
+if __name__ == "__main__":
+    # data/arm/three_joints.csv: made by `python3 tests/support/arm_log.py data/arm/three_joints.csv`.
+    import sys
+
+    write_arm_log(sys.argv[1], 4, joints=3, seconds=10.0, rate=200.0, own_nm=0.3, others=[(3, 1, 0.25, 2), (1, 3, 0.15, 2)], ratios=[100, 80, 50])

@@ -20,6 +20,10 @@ namespace ripplenotch {
 /// of the orders by direction with 95 % intervals, without a ratio of the lines.
 [[nodiscard]] Figure identification_figure(const std::string& source, const Identification& identification);
 
+/// The largest amplitude of each motor (along x) in each torque (along y), by the numbers of the joints;
+/// cells where nothing was found are empty.
+[[nodiscard]] Figure motor_matrix_figure(const std::string& source, std::span<const Identification> joints);
+
 struct ShownSpectrum {
     std::string name;  ///< "stretch 2, 60 deg/s"; empty for the whole log
     const Spectrum* spectrum = nullptr;

@@ -121,20 +121,13 @@ std::string other_motors_table(const Identification& found) {
 }
 
 std::string motor_cell(const Identification& found, const std::string& motor) {
-    double largest = 0.0, bound = 0.0;
-    if (found.joint == motor) {
-        for (const Line& line : found.lines)
-            if (motor_order(line)) largest = std::max(largest, line.amplitude_nm);
-        return largest > 0.0 ? fmt::format("{:.3g}", largest) : "-";
-    }
+    if (const auto amplitude = motor_amplitude(found, motor)) return fmt::format("{:.3g}", *amplitude);
+    double bound = 0.0;
     for (const OtherMotorRipple& other : found.other_motors) {
         if (other.joint != motor) continue;
         if (!other.doubt.empty()) return "?";
-        for (const OtherMotorRipple::AtOrder& at : other.orders) {
-            largest = std::max(largest, at.amplitude_nm);
+        for (const OtherMotorRipple::AtOrder& at : other.orders)
             bound = std::max(bound, at.detectable_nm.value_or(std::numeric_limits<double>::infinity()));
-        }
-        if (other.found()) return fmt::format("{:.3g}", largest);
         return std::isfinite(bound) ? fmt::format("<{:.2g}", bound) : "?";
     }
     return "-";
@@ -142,21 +135,8 @@ std::string motor_cell(const Identification& found, const std::string& motor) {
 
 /// Which motor is in which torque, the largest amplitude of its orders; of the joints that were looked at.
 std::string motor_matrix(const std::vector<Identification>& found) {
-    std::vector<std::string> motors;  // of the joints in their order, then of those that were not asked for
-    const auto add = [&motors](const std::string& joint) {
-        if (std::find(motors.begin(), motors.end(), joint) == motors.end()) motors.push_back(joint);
-    };
-    const auto looked_for = [&found](const std::string& joint) {
-        return std::any_of(found.begin(), found.end(), [&](const Identification& one) {
-            return std::any_of(one.other_motors.begin(), one.other_motors.end(),
-                               [&](const OtherMotorRipple& motor) { return motor.joint == joint; });
-        });
-    };
-    for (const Identification& one : found)
-        if (looked_for(one.joint)) add(one.joint);
-    for (const Identification& one : found)
-        for (const OtherMotorRipple& motor : one.other_motors) add(motor.joint);
-    if (motors.empty() || found.size() < 2) return "";
+    const std::vector<std::string> motors = motors_in_matrix(found);
+    if (motors.empty()) return "";
     std::vector<std::vector<std::string>> rows = {{"torque of"}};
     for (const std::string& motor : motors) rows.front().push_back(motor);
     for (const Identification& one : found) {
@@ -419,13 +399,14 @@ ExitCode run_identify(IdentifyRequest& request, const std::string& command_line)
     Provenance provenance{{}, command_line};
     CommonOptions common = request.common;
     std::vector<Joint> joints = read_all_joints(request, common, provenance);
-    if (joints.size() > 1 && request.plot.path && !names_joint(*request.plot.path))
+    std::vector<Identification> found = identified_joints(request, common, joints);
+    look_for_other_motors(request, joints, found);
+    if (found.size() > 1 && motors_in_matrix(found).empty() && request.plot.path &&
+        !names_joint(*request.plot.path))
         raise<UsageError>(
             "--plot {}: a picture shows one joint, and the log has {}; select one with --joint, or put {} "
             "into the name",
             *request.plot.path, joints.size(), joint_mark);
-    std::vector<Identification> found = identified_joints(request, common, joints);
-    look_for_other_motors(request, joints, found);
     std::string text;
     for (std::size_t i = 0; i < found.size(); ++i)
         text += (text.empty() ? "" : "\n") +
@@ -445,11 +426,16 @@ ExitCode run_identify(IdentifyRequest& request, const std::string& command_line)
         };
         write_result(request.common, json, text);
     }
-    for (const Identification& one : found) {
-        PlotRequest plot = request.plot;
-        if (plot.path && names_joint(*plot.path)) plot.path = with_joint(*plot.path, one.joint);
-        draw_plot(plot, request.common, provenance,
-                  [&] { return identification_figure(logs_in_words(request.logs), one); });
+    if (found.size() > 1 && request.plot.wanted() && !names_joint(request.plot.path.value_or(""))) {
+        draw_plot(request.plot, request.common, provenance,
+                  [&] { return motor_matrix_figure(logs_in_words(request.logs), found); });
+    } else {
+        for (const Identification& one : found) {
+            PlotRequest plot = request.plot;
+            if (plot.path && names_joint(*plot.path)) plot.path = with_joint(*plot.path, one.joint);
+            draw_plot(plot, request.common, provenance,
+                      [&] { return identification_figure(logs_in_words(request.logs), one); });
+        }
     }
     const bool conclusive =
         std::all_of(found.begin(), found.end(), [](const Identification& one) { return one.conclusive; });
