@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "ripplenotch/verdict/other_ripple.hpp"
 
+#include <stdio.h>
+
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
@@ -8,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/files/byte_sink.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/visible_text.hpp"
@@ -71,7 +74,9 @@ class SumOfJoints final : public LogWriter {
 
 OtherRipple::OtherRipple(std::span<const RippleMap> maps, const Spool& log, const ReadOptions& options,
                          double gap_steps)
-    : file_(std::tmpfile()) {
+    : file_(::fdopen(
+          TemporaryFile(temporary_folder() + "/ripplenotch-ripple", std::nullopt).release_without_name(),
+          "w+b")) {
     if (file_ == nullptr)
         raise<FileError>("cannot make a temporary file for the other joints' ripple: {}",
                          std::strerror(errno));
