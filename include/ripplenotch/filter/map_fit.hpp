@@ -60,11 +60,8 @@ struct MapFit {
     std::vector<MapFit> others;      ///< of the motors of other joints (fit_joint_map), named by map.joint
 };
 
-/// How a map is looked for.
-struct MapTest {
-    double false_alarm = 0.01;  ///< probability that a log without ripple has a map
-    bool bounds = true;  ///< amplitudes that would have been found are wanted, which take the most time
-};
+/// Probability that a log without ripple has a map.
+inline constexpr double map_false_alarm = 0.01;
 
 /// Windows of fewer motor turns, or fewer windows, are not enough to leave some out.
 inline constexpr std::size_t fewest_map_windows = 12;
@@ -79,7 +76,7 @@ inline constexpr std::size_t fewest_map_windows = 12;
 [[nodiscard]] MapFit fit_ripple_map(std::span<const TraceView> logs, const GearAccount& gear,
                                     double zero_deg = 0.0,
                                     std::span<const std::vector<double>> temperatures_degc = {},
-                                    const MapTest& looking = {});
+                                    double false_alarm = map_false_alarm);
 
 /// Another joint of the same arm, whose motor may put ripple into this joint's torque.
 struct OtherMotor {

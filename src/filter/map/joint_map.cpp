@@ -24,7 +24,6 @@ namespace ripplenotch {
 
 namespace {
 
-constexpr double any_pair_false_alarm = 0.01;
 // Chosen, not derived: with two motors of a robot in one torque the explained share stays after the second.
 constexpr std::size_t most_rounds = 4;
 // Share of the power of one motor's lines that the other motor's angle explains from which on they are not
@@ -47,19 +46,17 @@ class Backfitting {
     Backfitting(std::span<const TraceView> logs, std::vector<Source> sources, std::size_t pairs)
         : logs_(logs),
           sources_(std::move(sources)),
-          pair_false_alarm_(any_pair_false_alarm / static_cast<double>(std::max<std::size_t>(pairs, 1))) {}
+          pair_false_alarm_(map_false_alarm / static_cast<double>(std::max<std::size_t>(pairs, 1))) {}
 
     void run(double zero_deg, std::span<const std::vector<double>> temperatures_degc) {
         for (std::size_t round = 1; round <= most_rounds; ++round) {
             const std::vector<bool> before = which_mapped();
-            for (Source& source : sources_) fit(source, zero_deg, temperatures_degc, false);
+            for (Source& source : sources_) fit(source, zero_deg, temperatures_degc);
             const bool own_alone = std::none_of(sources_.begin(), sources_.end(), [](const Source& one) {
                 return !one.is_own && one.mapped();
             });
             if (own_alone || (round > 1 && which_mapped() == before)) break;
         }
-        for (Source& source : sources_)
-            if (!source.mapped()) fit(source, zero_deg, temperatures_degc, true);
     }
     [[nodiscard]] std::vector<Source>& sources() { return sources_; }
 
@@ -70,8 +67,7 @@ class Backfitting {
         return mapped;
     }
 
-    void fit(Source& source, double zero_deg, std::span<const std::vector<double>> temperatures_degc,
-             bool bounds) const {
+    void fit(Source& source, double zero_deg, std::span<const std::vector<double>> temperatures_degc) const {
         std::vector<std::vector<double>> torques;
         std::vector<TraceView> views;
         for (std::size_t l = 0; l < logs_.size(); ++l) {
@@ -85,10 +81,8 @@ class Backfitting {
             views.push_back(source.motion[l]);
             views.back().torque_nm = torques[l];
         }
-        source.fit = source.is_own
-                         ? fit_ripple_map(views, source.gear, zero_deg, temperatures_degc, {.bounds = bounds})
-                         : fit_ripple_map(views, source.gear, 0.0, {},
-                                          {.false_alarm = pair_false_alarm_, .bounds = bounds});
+        source.fit = source.is_own ? fit_ripple_map(views, source.gear, zero_deg, temperatures_degc)
+                                   : fit_ripple_map(views, source.gear, 0.0, {}, pair_false_alarm_);
         source.ripple.clear();
         if (!source.mapped()) return;
         for (const TraceView& view : views) source.ripple.push_back(map_along(source.fit.map, view));

@@ -300,7 +300,7 @@ std::size_t smallest_good(const std::vector<MatrixXd>& residuals, Eigen::Index l
 
 }  // namespace
 
-void choose_map(const MapData& data, double level, bool bounds, MapFit& fit) {
+void choose_map(const MapData& data, double level, MapFit& fit) {
     const RotationTest test(data, fit.anchored, level);
     const auto blocks = static_cast<Eigen::Index>(data.blocks);
     const std::size_t orders = data.frame.orders.size();
@@ -370,7 +370,7 @@ void choose_map(const MapData& data, double level, bool bounds, MapFit& fit) {
     for (std::size_t i = 0; i < orders; ++i) {
         MapOrderScore& score = fit.scores[i];
         score.in_map = mapped && better[i] > 0.0 && score.false_alarm <= other_order_false_alarm;
-        if (score.in_map || !bounds) continue;
+        if (score.in_map) continue;
         const MapRegression alike(data, test.forms().front(), i);
         score.detectable_nm = detectable_amplitude(data, alike, test, i);
         // A ripple in the log itself that the test did not find gives no bound.

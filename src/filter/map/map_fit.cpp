@@ -222,7 +222,7 @@ std::string bound_of(const MapOrderScore& score) {
 }  // namespace
 
 MapFit fit_ripple_map(std::span<const TraceView> logs, const GearAccount& gear, double zero_deg,
-                      std::span<const std::vector<double>> temperatures_degc, const MapTest& looking) {
+                      std::span<const std::vector<double>> temperatures_degc, double false_alarm) {
     if (logs.empty()) raise<UsageError>("a map needs a log");
     MapFit fit;
     fit.anchored =
@@ -240,7 +240,7 @@ MapFit fit_ripple_map(std::span<const TraceView> logs, const GearAccount& gear, 
         for (const Order order : gear.orders) fit.scores.push_back({order.value()});
         return fit;
     }
-    choose_map(data, looking.false_alarm, looking.bounds, fit);
+    choose_map(data, false_alarm, fit);
     const MapForm form = fit.map.form;
     if (fit.finding == MapFinding::mapped) fill_map(data, form, fit);
     hold_logs_together(data, form, logs.size(), fit);

@@ -35,9 +35,9 @@ struct MapData {
 [[nodiscard]] MapData map_data(std::span<const TraceView> logs, const GearAccount& gear, double zero_deg,
                                std::span<const std::vector<double>> temperatures_degc);
 
-/// Finding, scores, notes and the form of the map, of data that have a window; amplitudes that would have
-/// been found only with `bounds`. `false_alarm`: probability that a log without ripple has a map. Where `fit`
-/// is not anchored the joint's own angle is not known, and a second comb means nothing.
-void choose_map(const MapData& data, double false_alarm, bool bounds, MapFit& fit);
+/// Finding, scores, notes and the form of the map, of data that have a window. `false_alarm`: probability
+/// that a log without ripple has a map. Where `fit` is not anchored the joint's own angle is not known, and a
+/// second comb means nothing.
+void choose_map(const MapData& data, double false_alarm, MapFit& fit);
 
 }  // namespace ripplenotch
