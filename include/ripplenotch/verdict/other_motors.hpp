@@ -39,12 +39,12 @@ struct StatedMotors {
 [[nodiscard]] std::optional<GearAccount> gear_of_motor(const Identification& found,
                                                        const StatedMotors& stated);
 
-/// Empty where nobody knows it.
+/// Empty where it is not known.
 using GearOfJoint = std::function<std::optional<GearAccount>(const JointLogs& joint)>;
 
 struct OtherMotors {
     std::vector<OtherMotor> motors;      ///< views of the logs of the joints
-    std::vector<std::string> not_known;  ///< joints whose gear ratio nobody knows
+    std::vector<std::string> not_known;  ///< joints whose gear ratio is not known
     std::size_t looked_at = 0;           ///< all of these
 
     /// Of a torque and another motor that the logs have.

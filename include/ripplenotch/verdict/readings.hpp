@@ -35,6 +35,10 @@ namespace ripplenotch {
 [[nodiscard]] Identification identify_among(std::span<const Log> logs, Identification alone,
                                             const OtherMotors& others, const IdentifyOptions& options);
 
+/// Adds the amplitudes by speed and direction at the ripple orders that were found; without a ratio in the
+/// lines, with the one stated, at those that gears have. Nothing where the lines are doubted.
+void add_amplitudes(Identification& found, std::span<const Log> logs, std::optional<GearRatio> stated);
+
 /// diagnose(); `undecided`, with nothing named and the model as given, where another reading of the log that
 /// is as possible would name something else.
 [[nodiscard]] Diagnosis diagnose_readings(const Model& model, const Log& log, const Log* validation,

@@ -14,21 +14,6 @@ namespace ripplenotch {
 
 namespace {
 
-// Both splines give lines one output order apart, which segments of eight motor turns cannot separate: they
-// are one ripple here, at the order of the stronger one.
-std::vector<Order> separable_orders(const Identification& found) {
-    std::vector<Order> orders;  // of the strongest line first
-    for (const Line& line : found.lines) {
-        const auto order = motor_order(line);
-        const auto is_near = [&](Order other) {
-            return std::abs(other.value() - *order) < ripple_resolution_orders;
-        };
-        if (order && std::none_of(orders.begin(), orders.end(), is_near)) orders.emplace_back(*order);
-    }
-    std::sort(orders.begin(), orders.end());
-    return orders;
-}
-
 std::string amplitude_cell(const RippleAtSpeed& at) {
     const RippleEstimate& ripple = at.ripple;
     return ripple.present() ? fmt::format("{:.3g} +/- {:.1g}", ripple.amplitude_nm,
@@ -43,16 +28,6 @@ std::string speed_cell(const RippleAtSpeed& at) {
 }
 
 }  // namespace
-
-void add_amplitudes(Identification& found, std::span<const Log> logs, std::optional<GearRatio> stated) {
-    const bool known = found.gear_ratio.value.has_value();
-    if (!found.doubts.empty() || (!known && !stated)) return;
-    std::vector<TraceView> views;
-    for (const Log& log : logs) views.push_back(log.trace.view());
-    found.by_speed =
-        known ? amplitude_by_speed(views, GearRatio(*found.gear_ratio.value), separable_orders(found))
-              : amplitude_by_speed(views, *stated, default_orders());
-}
 
 std::string amplitude_table(const AmplitudeBySpeed& found) {
     const auto goes = [&](int direction) {

@@ -128,14 +128,30 @@ bool same_angle(const Source& one, const Source& other) {
     return false;
 }
 
+/// Whether the angle of a mapped motor follows from the position of the joint that the torque is of: then its
+/// lines may be of that joint's own motor, whose gear is not known.
+bool follows_own(const Source& one, std::span<const TraceView> own) {
+    double products = 0.0, squares = 0.0;
+    for (std::size_t l = 0; l < own.size(); ++l) {
+        for (std::size_t k = 1; k < own[l].size(); ++k) {
+            const double step = own[l].position_deg[k] - own[l].position_deg[k - 1];
+            products += step * (one.motion[l].position_deg[k] - one.motion[l].position_deg[k - 1]);
+            squares += step * step;
+        }
+    }
+    if (!(squares > 0.0)) return false;
+    const Source joint{{}, {own.begin(), own.end()}};
+    const double slope = products / squares, ratio = one.fit.map.gear_ratio.value();
+    return std::any_of(one.fit.map.orders.begin(), one.fit.map.orders.end(), [&](Order order) {
+        const double n = order.value() * ratio;
+        return shared_power(one, n, joint, n * slope) > same_angle_share;
+    });
+}
+
 bool has_positions(const Source& source) {
     return std::all_of(source.motion.begin(), source.motion.end(),
                        [](const TraceView& log) { return log.has_position(); });
 }
-
-}  // namespace
-
-namespace {
 
 class MapPrediction final : public CausalFilter {
   public:
@@ -201,11 +217,21 @@ MapFit fit_joint_map(std::span<const TraceView> logs, const GearAccount* own,
             if (i == j || !has_positions(all[i]) || !same_angle(one, all[i])) continue;
             one.fit.doubt = fmt::format(
                 "Cannot tell the ripple of the motor of {} from that of {}: in this log one of their angles "
-                "follows "
-                "from the other.",
+                "follows from the other.",
                 one.fit.map.joint, all[i].is_own ? "the joint itself" : all[i].fit.map.joint);
             one.fit.conclusive = false;
         }
+    }
+    const bool own_positions =
+        std::all_of(logs.begin(), logs.end(), [](const TraceView& log) { return log.has_position(); });
+    for (Source& one : all) {
+        if (own != nullptr || !own_positions || !one.mapped() || !follows_own(one, logs)) continue;
+        one.fit.doubt = fmt::format(
+            "Cannot tell the ripple of the motor of {} from that of the joint itself, whose gear ratio is "
+            "not known: "
+            "in this log one of their angles follows from the other.",
+            one.fit.map.joint);
+        one.fit.conclusive = false;
     }
     MapFit fit = own != nullptr ? std::move(all.front().fit) : MapFit{};
     for (std::size_t j = first; j < all.size(); ++j) {

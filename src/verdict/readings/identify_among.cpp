@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "ripplenotch/analysis/amplitude_by_speed.hpp"
 #include "ripplenotch/analysis/ripple_estimate.hpp"
 #include "ripplenotch/verdict/other_motors.hpp"
 #include "ripplenotch/verdict/readings.hpp"
@@ -39,7 +40,32 @@ OtherMotorRipple other_ripple(const MapFit& fit, const OtherMotor& motor,
     return ripple;
 }
 
+// Both splines give lines one output order apart, which segments of eight motor turns cannot separate: they
+// are one ripple here, at the order of the stronger one.
+std::vector<Order> separable_orders(const Identification& found) {
+    std::vector<Order> orders;  // of the strongest line first
+    for (const Line& line : found.lines) {
+        const auto order = motor_order(line);
+        const auto is_near = [&](Order other) {
+            return std::abs(other.value() - *order) < ripple_resolution_orders;
+        };
+        if (order && std::none_of(orders.begin(), orders.end(), is_near)) orders.emplace_back(*order);
+    }
+    std::sort(orders.begin(), orders.end());
+    return orders;
+}
+
 }  // namespace
+
+void add_amplitudes(Identification& found, std::span<const Log> logs, std::optional<GearRatio> stated) {
+    const bool known = found.gear_ratio.value.has_value();
+    if (!found.doubts.empty() || (!known && !stated)) return;
+    std::vector<TraceView> views;
+    for (const Log& log : logs) views.push_back(log.trace.view());
+    found.by_speed =
+        known ? amplitude_by_speed(views, GearRatio(*found.gear_ratio.value), separable_orders(found))
+              : amplitude_by_speed(views, *stated, default_orders());
+}
 
 Identification identify_among(std::span<const Log> logs, Identification alone, const OtherMotors& others,
                               const IdentifyOptions& options) {
@@ -58,6 +84,7 @@ Identification identify_among(std::span<const Log> logs, Identification alone, c
         for (std::size_t l = 0; l < less.size(); ++l) less[l].trace.torque_nm = std::move(torques[l]);
         std::string joint = std::move(found.joint);
         found = identify_readings(less, options);
+        add_amplitudes(found, less, options.hint);
         found.joint = std::move(joint);
     }
     for (std::size_t j = 0; j < others.motors.size(); ++j) {
