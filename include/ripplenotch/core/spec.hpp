@@ -68,7 +68,7 @@ class Settings {
                                                       std::span<const std::string> known);
 
 /// " (did you mean lowpass?)" where `nearest_name` has an answer, else nothing: to be put behind the wrong
-/// name.
+/// name. A name of removed_names.def is answered with " any more; instead: <what to use now>".
 [[nodiscard]] std::string did_you_mean(std::string_view text, std::span<const std::string> known);
 
 /// Throws the UsageError of find_entry.

@@ -81,7 +81,23 @@ std::optional<std::string> nearest_name(std::string_view text, std::span<const s
     return best;
 }
 
+namespace {
+
+struct RemovedName {
+    std::string_view name, instead;
+};
+
+constexpr RemovedName removed_names[] = {
+#define REMOVED(name, instead) {name, instead},
+#include "core/text/removed_names.def"
+#undef REMOVED
+};
+
+}  // namespace
+
 std::string did_you_mean(std::string_view text, std::span<const std::string> known) {
+    for (const RemovedName& removed : removed_names)
+        if (removed.name == text) return fmt::format(" any more; instead: {}", removed.instead);
     const auto near = nearest_name(text, known);
     return near ? fmt::format(" (did you mean {}?)", *near) : "";
 }
