@@ -5,7 +5,6 @@
 #include <fstream>
 #include <regex>
 #include <set>
-#include <sstream>
 
 #include "effects_fixture.hpp"
 #include "ripplenotch/core/error.hpp"
@@ -37,13 +36,6 @@ std::vector<double> measured(const Model& model, const Motion& motion = rich_mot
 
 std::vector<double> measured(const Effect& effect, const std::vector<double>& values) {
     return measured(with(base_model(), effect, values));
-}
-
-std::string page_of(const Effect& effect) {
-    std::ifstream file(fmt::format("{}/docs/effects/{}.md", source_folder(), effect.name));
-    std::stringstream text;
-    text << file.rdbuf();
-    return text.str();
 }
 
 }  // namespace
@@ -313,22 +305,13 @@ TEST_CASE("what is expected holds no chance, and what is chance goes with its se
     }
 }
 
-TEST_CASE("every effect has a page that agrees with its record") {
+TEST_CASE("the page of effects lists the catalogue, in its order and with its sides") {
+    std::ifstream file(fmt::format("{}/docs/effects/README.md", source_folder()));
+    std::string page((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+    std::size_t at = 0;
     for (const Effect* effect : catalogue()) {
         CAPTURE(effect->name);
-        const std::string page = page_of(*effect);
-        REQUIRE(!page.empty());
-        for (const auto text : {effect->summary, effect->equation, effect->symptom, effect->source}) {
-            CHECK_THAT(page, Contains(std::string(text)));
-        }
-        for (const LookAlike& other : effect->look_alikes) {
-            CHECK_THAT(page, Contains(fmt::format("| {} | {} |", other.when, other.told_by)));
-        }
-        for (const Parameter& p : effect->parameters) {
-            CHECK_THAT(page, Contains(fmt::format("| `{}` | {} | {} | {} | {} to {} | {} | {} |", p.name,
-                                                  p.unit.empty() ? "-" : p.unit, shortest(p.neutral),
-                                                  shortest(p.start), shortest(p.lower), shortest(p.upper),
-                                                  p.linear ? "yes" : "no", p.help)));
-        }
+        at = page.find(fmt::format("| `{}` | {} | ", effect->name, side_name(effect->side)), at);
+        REQUIRE(at != std::string::npos);
     }
 }
