@@ -240,7 +240,7 @@ class Content(Case):
     def test_a_table_may_come_through_a_pipe(self):
         name = self.table()
         text = (self.folder / name).read_bytes()
-        self.assertIn(b"set rpm_filter_q = 25", self.good("export", "-", "--to", "betaflight,limits=none", stdin=text).stdout)
+        self.assertIn(b"#define RIPPLENOTCH_BANDS 9", self.good("export", "-", "--to", "c-header", stdin=text).stdout)
 
 
 class Verify(Case):

@@ -10,9 +10,8 @@ import commands
 from commands import COMPILER, FILTER, SELF_TEST
 
 FULL_SCALE_NM = 50.0
-# Largest difference from `filter`, Nm. Of fixed point a share of a blend has 15 bits; of q15 the word's last place is 1.5 mNm, and
-# coefficients have 15 bits.
-BOUNDS_NM = {"double": 1e-9, "float": 2e-4, "q31": 1e-4, "q15": 5e-3}
+# Largest difference from `filter`, Nm. Of fixed point a share of a blend has 15 bits.
+BOUNDS_NM = {"double": 1e-9, "float": 2e-4, "q31": 1e-4}
 TRANSITIONS = {"keep-state-variable": ("svf",), "keep": ("df1",), "parallel": ("svf", "df1", "df2t"),
                "crossfade": ("svf", "df1", "df2t")}
 FIXED = """
@@ -68,7 +67,7 @@ class PreviewIsExport(commands.Case):
         # The test vector holds to the last bit where nothing is contracted, in fixed point always.
         tolerance = ("GOLDEN_TOLERANCE_NM", "GOLDEN_TOLERANCE") if fixed else ("", "")
         self.assertEqual(float(self.compiled(SELF_TEST.replace(*tolerance), "-O2", "-ffp-contract=off")), 0.0, (method, target))
-        source = FIXED.replace("WORDS", "32768.0" if "q15" in target else "2147483648.0") if fixed else FILTER
+        source = FIXED.replace("WORDS", "2147483648.0") if fixed else FILTER
         text = "".join(f"{v * speed!r} {t}\n" for v, t in self.rows)
         return [float(line) for line in self.compiled(source, "-O2", stdin=text).split()]
 

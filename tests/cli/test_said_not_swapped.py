@@ -63,9 +63,8 @@ class NamesOfOtherKinds(Told):
                     ["track", MOVE, "--gear-ratio", 100], ["track", MOVE, "--gear-ratio", 100, "--json"],
                     ["filter", MOVE, *LOW], self.SIMULATE, ["report", "t.json"],
                     ["diagnose", MOVE, "--model", DATA / "paper_model.json"])
-        for target in ("c-header", "cmsis-dsp", "scipy", "matlab", "ros-filters", "servo-drive", "betaflight", "ardupilot", "json"):
-            depth = "" if target == "betaflight" else ",depth=40dB"  # it knows full nulls alone
-            yield ["export", "--method", f"fixed,centers=60Hz,q=1{depth}", "--sample-rate", "1kHz", "--to", target]
+        for target in ("c-header", "cmsis-dsp", "scipy", "matlab", "ros-filters", "servo-drive", "json"):
+            yield ["export", "--method", f"fixed,centers=60Hz,q=1,depth=40dB", "--sample-rate", "1kHz", "--to", target]
 
     def kind_of(self, path):
         """The endings that what a file holds may have."""

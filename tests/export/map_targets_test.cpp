@@ -105,7 +105,7 @@ TEST_CASE("what holds the whole map loses nothing of it, and what holds harmonic
         CHECK(whole.written.warnings.empty());
     }
     CHECK(through("c-header", rich()).check.largest_error_nm < 1e-5);
-    for (const std::string text : {"beckhoff-ax8000", "lut", "moteus,kt=0.1", "mjcf"}) {
+    for (const std::string text : {"beckhoff-ax8000", "lut", "moteus,kt=0.1"}) {
         INFO(text);
         const Through part = through(text, rich());
         CHECK(part.check.not_held_nm > 0.05);
@@ -131,7 +131,7 @@ TEST_CASE("the second comb comes through where the whole map is held, and the ot
             CHECK(whole.written.warnings.empty());
         }
         CHECK(through("c-header", map).check.largest_error_nm < 1e-4);
-        for (const std::string text : {"beckhoff-ax8000", "lut", "moteus,kt=0.1", "mjcf"}) {
+        for (const std::string text : {"beckhoff-ax8000", "lut", "moteus,kt=0.1"}) {
             INFO(text);
             const auto warnings = through(text, map).written.warnings;
             CHECK(std::any_of(warnings.begin(), warnings.end(), [](const std::string& warning) {
@@ -149,7 +149,7 @@ TEST_CASE("a map by temperature comes through where it is held, and the others s
         CHECK(whole.written.warnings.empty());
     }
     CHECK(through("c-header", warm()).check.largest_error_nm < 1e-5);
-    for (const std::string text : {"beckhoff-ax8000", "lut", "moteus,kt=0.1", "mjcf"}) {
+    for (const std::string text : {"beckhoff-ax8000", "lut", "moteus,kt=0.1"}) {
         INFO(text);
         const auto cold = through(text + ",temperature=18", warm()),
                    hot = through(text + ",temperature=41", warm());
@@ -180,10 +180,6 @@ TEST_CASE("a table is wrong by no more than it says, a byte's step included") {
     CHECK(through("lut,entries=4096,form=c", flat({1.0, 2.0})).check.largest_error_nm < 1e-5);
     // 1.1 Nm at most over 127 steps, half a step of error, and what interpolation adds.
     CHECK(through("moteus,kt=0.1", flat({1.0, 2.0})).check.largest_error_nm < 0.5 * 1.1 / 127.0 + 1e-4);
-}
-
-TEST_CASE("MuJoCo's cogging is the closed form to rounding") {
-    CHECK(through("mjcf", flat({1.0, 2.0})).check.largest_error_nm < 1e-11);
 }
 
 TEST_CASE("a file that was changed is refused with its name") {

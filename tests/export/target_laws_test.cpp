@@ -50,7 +50,7 @@ Settings settings_of(const Target& target) {
     return Settings("target", spec, target.keys);
 }
 
-// Filters that this target takes: betaflight has no finite depth without a table, some do not follow speed.
+// Filters that this target takes: some do not follow speed.
 std::vector<FilterSet> filters_for(const Target& target) {
     std::vector<FilterSet> taken;
     for (const FilterSet& filters : {two_notches(), two_full_nulls(), small_table()}) {

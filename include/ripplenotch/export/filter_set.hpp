@@ -61,11 +61,9 @@ enum class Form {
     df2t,  ///< transposed direct form II: two sums
     svf,   ///< state-variable filter of two trapezoidal integrators
 };
-/// q31 and q15: torques and coefficients of 32 and of 16 bits, sums and memories of 64.
-enum class Precision { float32, float64, q31, q15 };
-[[nodiscard]] constexpr bool is_fixed(Precision precision) {
-    return precision == Precision::q31 || precision == Precision::q15;
-}
+/// q31: torques and coefficients of 32 bits, sums and memories of 64.
+enum class Precision { float32, float64, q31 };
+[[nodiscard]] constexpr bool is_fixed(Precision precision) { return precision == Precision::q31; }
 
 struct Arithmetic {
     Form form = Form::df2t;

@@ -505,7 +505,7 @@ const Command commands::export_ = {
     .description =
         "Writes a table of design, or one filter, in the form that a target takes: a C header, CMSIS-DSP, "
         "SciPy, "
-        "MATLAB,\nROS, servo drives, Betaflight- and ArduPilot-style parameters, JSON. With --verify the "
+        "MATLAB,\nROS, servo drives, JSON. With --verify the "
         "written "
         "file is read again,\nrun in the target's arithmetic, and measured.\n"
         "ripplenotch export table.json --to c-header -o notch.h --verify --min-depth-db 60",

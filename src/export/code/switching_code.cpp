@@ -46,13 +46,13 @@ std::string SwitchingCode::declarations() const {
 
 #include <stdint.h>
 
-typedef @word@ @name@_real;
+typedef int32_t @name@_real;
 typedef int64_t @name@_signal; /* a word of torque times 2^@NAME@_FRACTION */
-#define @NAME@_FRACTION (@fraction@ - @NAME@_HEADROOM)
+#define @NAME@_FRACTION (16 - @NAME@_HEADROOM)
 
 /* mantissa / 2^shift. Signals are shifted to the right as two's complement, as compilers do it. */
 typedef struct {
-    @mantissa@ mantissa;
+    int32_t mantissa;
     int16_t shift;
 } @name@_coefficient;
 
@@ -330,7 +330,7 @@ std::string SwitchingCode::step_function() const {
 static inline @name@_real @name@_word(@name@_signal x)
 {
     const @name@_signal word = (x + ((@name@_signal)1 << (@NAME@_FRACTION - 1))) >> @NAME@_FRACTION;
-    return (@name@_real)(word > @largest@ ? @largest@ : word < -@largest@ - 1 ? -@largest@ - 1 : word);
+    return (@name@_real)(word > 2147483647 ? 2147483647 : word < -2147483647 - 1 ? -2147483647 - 1 : word);
 }
 
 )";

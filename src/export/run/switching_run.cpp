@@ -16,6 +16,8 @@ namespace ripplenotch {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double full_scale = 2147483648.0;  // one more than the largest word
+constexpr std::int64_t largest_word = 2147483647;
 constexpr std::size_t samples_a_region = 6;
 constexpr std::size_t most_regions_visited = 24;
 
@@ -69,21 +71,20 @@ struct Fixed {
     [[nodiscard]] double out(Signal torque) const {
         const int bits = fraction_bits(arithmetic_);
         const std::int64_t word = (torque + (std::int64_t{1} << (bits - 1))) >> bits;
-        const std::int64_t most = arithmetic_.precision == Precision::q15 ? 32767 : 2147483647;
-        return fixed_torque_nm(std::clamp(word, -most - 1, most), arithmetic_);
+        return fixed_torque_nm(std::clamp(word, -largest_word - 1, largest_word), arithmetic_);
     }
     [[nodiscard]] static Speed speed(double deg_s) {
         return std::isinf(deg_s) ? 0 : std::llround(deg_s * fixed_speed_steps);
     }
     [[nodiscard]] static std::array<Coefficient, 6> coefficients(const LoadedSection& section) {
         std::array<Coefficient, 6> found{};
-        const auto values = fixed_coefficients(section.svf, section.arithmetic.precision);
+        const auto values = fixed_coefficients(section.svf);
         std::copy(values.begin(), values.end(), found.begin());
         return found;
     }
     [[nodiscard]] static Signal product(const Coefficient& c, Signal x) {
-        const int shift = c.shift - c.unused_bits;
-        return (c.mantissa * (x >> c.unused_bits) + (std::int64_t{1} << (shift - 1))) >> shift;
+        const int shift = c.shift - unused_bits;
+        return (c.mantissa * (x >> unused_bits) + (std::int64_t{1} << (shift - 1))) >> shift;
     }
     [[nodiscard]] static Share share(Speed speed, Speed full, Speed none) {
         const std::int64_t share = (speed - none) * 32768 / (full - none);
@@ -352,9 +353,9 @@ std::vector<SwitchingRegion> switching_regions(const FilterSet& filters) {
     return regions;
 }
 
-FixedCoefficient FixedCoefficient::of(double value, Precision precision) {
-    const int bits = precision == Precision::q15 ? 15 : 31, unused = unused_bits_of(precision);
-    if (value == 0.0) return {0, bits + unused, unused};
+FixedCoefficient FixedCoefficient::of(double value) {
+    constexpr int bits = 31;
+    if (value == 0.0) return {0, bits + unused_bits};
     int exponent = 0;
     const double fraction = std::frexp(value, &exponent);  // 0.5 <= |fraction| < 1
     double mantissa = std::nearbyint(std::ldexp(fraction, bits));
@@ -362,31 +363,27 @@ FixedCoefficient FixedCoefficient::of(double value, Precision precision) {
         mantissa /= 2.0;
         ++exponent;
     }
-    return {static_cast<std::int32_t>(mantissa), bits - exponent, unused};
+    return {static_cast<std::int32_t>(mantissa), bits - exponent};
 }
 
 double FixedCoefficient::value() const { return std::ldexp(static_cast<double>(mantissa), -shift); }
 
-std::vector<FixedCoefficient> fixed_coefficients(const SvfSection& s, Precision precision) {
+std::vector<FixedCoefficient> fixed_coefficients(const SvfSection& s) {
     std::vector<FixedCoefficient> found;
     for (const double value : {s.a1, s.a2, s.a3, s.m0 - 1.0, s.m1, s.m2})
-        found.push_back(FixedCoefficient::of(value, precision));
+        found.push_back(FixedCoefficient::of(value));
     return found;
 }
 
-int fraction_bits(const Arithmetic& arithmetic) {
-    return (arithmetic.precision == Precision::q15 ? 32 : 16) - arithmetic.headroom_bits;
-}
+int fraction_bits(const Arithmetic& arithmetic) { return 16 - arithmetic.headroom_bits; }
 
 std::int64_t fixed_word(double torque_nm, const Arithmetic& arithmetic) {
-    const double most = arithmetic.precision == Precision::q15 ? 32768.0 : 2147483648.0;
-    return static_cast<std::int64_t>(
-        std::clamp(std::nearbyint(torque_nm / arithmetic.full_scale_nm * most), -most, most - 1.0));
+    return static_cast<std::int64_t>(std::clamp(
+        std::nearbyint(torque_nm / arithmetic.full_scale_nm * full_scale), -full_scale, full_scale - 1.0));
 }
 
 double fixed_torque_nm(std::int64_t word, const Arithmetic& arithmetic) {
-    const double most = arithmetic.precision == Precision::q15 ? 32768.0 : 2147483648.0;
-    return static_cast<double>(word) / most * arithmetic.full_scale_nm;
+    return static_cast<double>(word) / full_scale * arithmetic.full_scale_nm;
 }
 
 int headroom_bits(const FilterSet& filters) {

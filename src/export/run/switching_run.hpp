@@ -26,26 +26,23 @@ struct SwitchingRegion {
 /// The same regions as the method `switching` runs (docs/methods/switching.md), slowest first.
 [[nodiscard]] std::vector<SwitchingRegion> switching_regions(const FilterSet& filters);
 
-/// A product has 64 bits: 31 of a coefficient and the upper 32 of a signal, or 15 and all of its 48.
-[[nodiscard]] constexpr int unused_bits_of(Precision precision) {
-    return precision == Precision::q15 ? 0 : 16;
-}
+/// Last bits of a signal that its product does without: it has 64 bits, 31 of a coefficient and the upper 32
+/// of a signal.
+inline constexpr int unused_bits = 16;
 
 /// Whether every band runs all the time, not only the one in force.
 [[nodiscard]] bool runs_all_bands(const SwitchingDesign& design);
 
-/// In fixed point a coefficient is mantissa / 2^shift, its mantissa as long as the word: 31 or 15 bits.
+/// In fixed point a coefficient is mantissa / 2^shift, its mantissa as long as the word: 31 bits.
 struct FixedCoefficient {
     std::int32_t mantissa = 0;
     int shift = 31;
-    int unused_bits = 16;  ///< last bits of a signal that its product does without
 
-    [[nodiscard]] static FixedCoefficient of(double value, Precision precision);
+    [[nodiscard]] static FixedCoefficient of(double value);
     [[nodiscard]] double value() const;
 };
 /// What a section has beyond x itself: a1, a2, a3, m0 - 1, m1, m2. So a notch passes a constant bit for bit.
-[[nodiscard]] std::vector<FixedCoefficient> fixed_coefficients(const SvfSection& section,
-                                                               Precision precision);
+[[nodiscard]] std::vector<FixedCoefficient> fixed_coefficients(const SvfSection& section);
 
 /// Speeds are whole thousandths of their unit.
 inline constexpr double fixed_speed_steps = 1000.0;

@@ -169,7 +169,7 @@ std::string arithmetic_name(Arithmetic arithmetic) {
     const std::string_view form = arithmetic.form == Form::df1    ? "direct form I"
                                   : arithmetic.form == Form::df2t ? "transposed direct form II"
                                                                   : "state-variable form";
-    constexpr std::string_view names[] = {"float32", "float64", "Q31", "Q15"};
+    constexpr std::string_view names[] = {"float32", "float64", "Q31"};
     return fmt::format("{}, {}", names[static_cast<std::size_t>(arithmetic.precision)], form);
 }
 

@@ -18,14 +18,14 @@
 namespace ripplenotch {
 namespace {
 
-constexpr std::array<std::string_view, 4> precisions = {"float", "double", "q31", "q15"};
+constexpr std::array<std::string_view, 3> precisions = {"float", "double", "q31"};
 constexpr std::array<std::string_view, 3> forms = {"svf", "df1", "df2t"};
 constexpr std::array keys = {
     Key{.name = "precision",
         .kind = KeyKind::choice,
         .default_text = "float",
         .choices = precisions,
-        .help = "type of every number: float, double, or fixed point of 32 or 16 bits"},
+        .help = "type of every number: float, double, or fixed point of 32 bits"},
     Key{.name = "range",
         .dimension = Dimension::torque,
         .above = 0.0,
@@ -68,11 +68,9 @@ Arithmetic arithmetic_of(const FilterSet& filters, const Settings& settings) {
     const std::string precision = settings.text("precision");
     Arithmetic found{form_of(filters, settings), precision == "float"    ? Precision::float32
                                                  : precision == "double" ? Precision::float64
-                                                 : precision == "q31"    ? Precision::q31
-                                                                         : Precision::q15};
+                                                                         : Precision::q31};
     if (!is_fixed(found.precision)) {
-        if (settings.has("range"))
-            raise<UsageError>("target c-header: range is for precision=q31 and precision=q15");
+        if (settings.has("range")) raise<UsageError>("target c-header: range is for precision=q31");
         return found;
     }
     if (!settings.has("range"))
@@ -129,7 +127,7 @@ LoadedSection section_from_fixed(const std::vector<double>& words, Arithmetic ar
     std::vector<double> values;
     for (std::size_t i = 0; i + 1 < words.size(); i += 2)
         values.push_back(
-            FixedCoefficient{static_cast<std::int32_t>(words[i]), static_cast<int>(words[i + 1]), 0}.value());
+            FixedCoefficient{static_cast<std::int32_t>(words[i]), static_cast<int>(words[i + 1])}.value());
     values[3] += 1.0;
     return section_from(values, arithmetic);
 }
@@ -156,8 +154,7 @@ std::string bands_text(const FilterSet& filters, const Writer& writer, Arithmeti
             if (is_fixed(arithmetic.precision)) {
                 std::vector<double> words;
                 literals.clear();
-                for (const FixedCoefficient& c :
-                     fixed_coefficients(sections.back().svf, arithmetic.precision)) {
+                for (const FixedCoefficient& c : fixed_coefficients(sections.back().svf)) {
                     literals +=
                         fmt::format("{}{{{}, {}}}", literals.empty() ? "" : ", ", c.mantissa, c.shift);
                     words.insert(words.end(),
@@ -232,7 +229,7 @@ std::string about(const FilterSet& filters, const Arithmetic& arithmetic, const 
 Written write(const FilterSet& filters, const Settings& settings, std::span<const std::string> heading) {
     const CodeStyle style = style_of(settings);
     const Arithmetic arithmetic = arithmetic_of(filters, settings);
-    const bool fixed = is_fixed(arithmetic.precision), wide = arithmetic.precision == Precision::q31;
+    const bool fixed = is_fixed(arithmetic.precision);
     const CodeSpeed speed = speed_of(filters, settings);
     const FilterSet scaled = in_unit(filters, speed.per_deg_s);
     const Writer& writer = style.is_float ? in_float : in_double;
@@ -261,11 +258,7 @@ Written write(const FilterSet& filters, const Settings& settings, std::span<cons
                          {"@crossfade@", std::to_string(filters.switching.crossfade_samples)},
                          {"@full-scale@", shortest(arithmetic.full_scale_nm)},
                          {"@headroom@", std::to_string(arithmetic.headroom_bits)},
-                         {"@fraction@", wide ? "16" : "32"},
-                         {"@word@", wide ? "int32_t" : "int16_t"},
-                         {"@mantissa@", wide ? "int32_t" : "int16_t"},
-                         {"@unused@", std::to_string(unused_bits_of(arithmetic.precision))},
-                         {"@largest@", wide ? "2147483647" : "32767"},
+                         {"@unused@", std::to_string(unused_bits)},
                          {"@golden-type@", fixed            ? "int64_t"
                                            : style.is_float ? "float"
                                                             : "double"},
@@ -288,10 +281,9 @@ Arithmetic arithmetic_in(std::string_view bytes, TextReader& reader) {
     Arithmetic found{has(svf_fields)   ? Form::svf
                      : has(df1_memory) ? Form::df1
                                        : Form::df2t,
-                     has("typedef float ")     ? Precision::float32
-                     : has("typedef double ")  ? Precision::float64
-                     : has("typedef int16_t ") ? Precision::q15
-                                               : Precision::q31};
+                     has("typedef float ")    ? Precision::float32
+                     : has("typedef double ") ? Precision::float64
+                                              : Precision::q31};
     if (!is_fixed(found.precision)) return found;
     reader.expect("_FULL_SCALE_NM ");
     found.full_scale_nm = reader.number();

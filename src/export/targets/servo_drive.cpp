@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Servo drives of the Panasonic MINAS and Omron G5 kind: whole hertz, a width code, a depth code.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <array>
 #include <cmath>
@@ -14,7 +15,14 @@
 namespace ripplenotch {
 namespace {
 
-constexpr std::array keys = {limits_key};
+// Whether the ranges of the drive's own parameters are kept.
+constexpr std::array<std::string_view, 2> limit_choices = {"firmware", "none"};
+constexpr std::array keys = {Key{.name = "limits",
+                                 .kind = KeyKind::choice,
+                                 .default_text = "firmware",
+                                 .choices = limit_choices,
+                                 .help = "firmware: refuse what its own parameters cannot hold; none: for "
+                                         "other firmware in this style"}};
 
 // Width over centre is 0.5 * 2^(code / 4), code 0 to 20: from Q 2 down to Q 1/16. Depth code d is a gain of d
 // per cent at the centre; 0 is a complete null.
@@ -43,8 +51,46 @@ int width_code(double q) {
     return static_cast<int>(std::round(code));
 }
 
+// The common shape of all notches: the drive has one width and one depth for all.
+struct SharedShape {
+    double q = 1.0;
+    double gain = 0.0;  ///< at the centre; 0 for a full null
+};
+
+// Throws UsageError for low-passes, for Q or depth that differ, and for the digital width rule, whose notches
+// are no analogue prototypes.
+SharedShape shared_shape(const FilterSet& filters) {
+    std::optional<NotchSpec> first;
+    for (const ExportBand& band : filters.bands) {
+        for (const ExportSection& section : band.sections) {
+            if (!section.notch) {
+                const auto both = targets_that(&Target::notches_only, false);
+                const auto last = both.end() - 1;
+                raise<UsageError>(
+                    "target servo-drive holds notches only, not a low-pass; {} and {} hold both",
+                    fmt::join(both.begin(), last, ", "), *last);
+            }
+            const NotchSpec& notch = *section.notch;
+            if (notch.width == WidthRule::digital) {
+                raise<UsageError>(
+                    "target servo-drive makes the analogue prototype's Q, and these notches have the "
+                    "digital width rule; design them with width analog");
+            }
+            if (!first) first = notch;
+            if (notch.q != first->q || notch.depth_db != first->depth_db) {
+                raise<UsageError>(
+                    "target servo-drive has one width and one depth for all notches, and these differ: "
+                    "Q {} and {}; export json or c-header instead",
+                    shortest(first->q), shortest(notch.q));
+            }
+        }
+    }
+    return {first->q,
+            first->depth_db >= infinite_depth_db ? 0.0 : portable::pow(10.0, -first->depth_db / 20.0)};
+}
+
 Written write(const FilterSet& filters, const Settings& settings, std::span<const std::string> heading) {
-    const SharedShape shape = shared_shape(filters, "servo-drive");
+    const SharedShape shape = shared_shape(filters);
     const int width = width_code(shape.q);
     const int depth = static_cast<int>(std::round(100.0 * shape.gain));
     Written written;
@@ -60,9 +106,13 @@ Written write(const FilterSet& filters, const Settings& settings, std::span<cons
     for (const ExportBand& band : filters.bands) {
         for (std::size_t i = 0; i < band.sections.size(); ++i) {
             const double center = band.sections[i].center.value();
-            check_range(settings,
-                        fmt::format("the drive's notch frequency of {}", describe(band.sections[i])), center,
-                        lowest_hz, highest_hz, "filter this line outside the drive");
+            if (settings.text("limits") != "none" && !(center >= lowest_hz && center <= highest_hz)) {
+                raise<UsageError>(
+                    "the drive's notch frequency of {} would be {:.4g}, and the firmware takes {} to {}; "
+                    "filter "
+                    "this line outside the drive, or use limits=none for other firmware in this style",
+                    describe(band.sections[i]), center, shortest(lowest_hz), shortest(highest_hz));
+            }
             const double whole = std::max(1.0, std::round(center));
             if (whole != center) {
                 written.warnings.push_back(fmt::format("{}: {} Hz is {} Hz in the drive", describe(band),
