@@ -313,7 +313,7 @@ class Shards(Case):
         merged = run("merge", "shards", cwd=self.folder)
         self.assertEqual((merged.returncode, merged.stdout, done), (0, whole, kills))
         there = {path.name: path.read_bytes() for path in (self.folder / "shards").iterdir()}
-        # In the moment in which a file is replaced a kill may leave the new one, whole (docs/durability.md).
+        # In the moment in which a file is replaced a kill may leave the new one, whole (docs/reliability.md).
         for name in [name for name in there if ".part-" in name]:
             self.assertEqual(there.pop(name), there[name.partition(".part-")[0]])
         self.assertEqual(sorted(there), sorted(f"shard-{i:06}-of-000004{end}" for i in range(1, 5) for end in (".ndjson", ".done.json")))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What becomes of files: docs/durability.md."""
+"""What becomes of files: docs/reliability.md."""
 
 import hashlib
 import json

@@ -11,7 +11,7 @@
 namespace ripplenotch {
 namespace {
 
-constexpr std::size_t deepest = 100, most_elements = 200'000;  // chosen, not derived: docs/security.md
+constexpr std::size_t deepest = 100, most_elements = 200'000;  // chosen, not derived: docs/reliability.md
 
 class Lines {
   public:

@@ -35,7 +35,7 @@ using Json = nlohmann::ordered_json;
 [[nodiscard]] Json six_digits(double value);
 
 // What a document may be at most: far above what the commands write, and so little that reading it takes less
-// than two seconds. docs/security.md has the same table.
+// than two seconds. docs/reliability.md has the same table.
 
 constexpr std::size_t most_json_bytes = 32U << 20U;  ///< of the text
 
