@@ -1,86 +1,103 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// The declarations of every effect's record, and what their files share; seen by the effects' own files and
-// by the catalogue alone.
+// The declarations of every effect's record, and what the families of effects share; seen by them and by the
+// catalogue alone.
 
 #include "ripplenotch/model/effect.hpp"
 
 namespace ripplenotch {
 
+// What the functions of a record are given.
+using Values = std::span<const double>;
+using Torques = std::span<double>;
+using Gains = std::span<std::complex<double>>;
+
+// Rows of the table of an effect's parameters: name, unit, help, numbers, where a screening begins, hint.
+
+struct Range {
+    double start, lower, upper, neutral = 0.0;
+};
+
+inline Parameter plain(std::string_view name, std::string_view unit, std::string_view help, Range range,
+                       std::vector<double> tried = {}, Hint hint = Hint::none) {
+    return {.name = name,
+            .unit = unit,
+            .help = help,
+            .neutral = range.neutral,
+            .start = range.start,
+            .lower = range.lower,
+            .upper = range.upper,
+            .tried = std::move(tried),
+            .hint = hint};
+}
+
+/// The torque is an affine function of it.
+inline Parameter linear(std::string_view name, std::string_view unit, std::string_view help, Range range) {
+    Parameter row = plain(name, unit, help, range);
+    row.linear = true;
+    return row;
+}
+
+/// A search moves in its logarithm.
+inline Parameter logarithmic(std::string_view name, std::string_view unit, std::string_view help, Range range,
+                             std::vector<double> tried = {}) {
+    Parameter row = plain(name, unit, help, range, std::move(tried));
+    row.logarithmic = true;
+    return row;
+}
+
+inline Parameter assumed(Parameter row) {
+    row.left_out = LeftOut::assumed;
+    return row;
+}
+
 // Parameters that several effects have, with one meaning and one set of bounds.
 
 /// Width of the step that a friction makes at standstill.
-inline constexpr Parameter width_parameter = {.name = "width_deg_s",
-                                              .unit = "deg/s",
-                                              .help = "speed at which 76 % of it has built up",
-                                              .neutral = 0.2,
-                                              .start = 0.2,
-                                              .lower = 0.001,
-                                              .upper = 100.0,
-                                              .logarithmic = true,
-                                              .left_out = LeftOut::assumed};
-
-/// Cycles per turn and phase of a cosine of an angle; a screening begins at `tried`.
-constexpr Parameter cycles_parameter(std::string_view name, std::string_view help, double start, double upper,
-                                     std::span<const double> tried) {
-    return {.name = name,
-            .unit = "",
-            .help = help,
-            .neutral = start,
-            .start = start,
-            .lower = 0.01,
-            .upper = upper,
-            .left_out = LeftOut::refused,
-            .tried = tried};
+inline Parameter width_parameter() {
+    return assumed(logarithmic("width_deg_s", "deg/s", "speed at which 76 % of it has built up",
+                               {0.2, 0.001, 100.0, 0.2}));
 }
-inline constexpr Parameter cosine_amplitude_parameter = {
-    .name = "amplitude_nm", .unit = "Nm", .help = "zero to peak", .start = 0.5, .upper = 1e5, .linear = true};
-inline constexpr Parameter cosine_phase_parameter = {
-    .name = "phase_deg",
-    .unit = "deg",
-    .help = "phase of the cosine where the position of the joint is zero",
-    .lower = -360.0,
-    .upper = 360.0};
+
+/// Cycles per turn, amplitude and phase of a cosine of an angle.
+inline Parameter cycles_parameter(std::string_view name, std::string_view help, double start, double upper,
+                                  std::vector<double> tried) {
+    Parameter row = plain(name, "", help, {start, 0.01, upper, start}, std::move(tried));
+    row.left_out = LeftOut::refused;
+    return row;
+}
+inline Parameter cosine_amplitude_parameter() {
+    return linear("amplitude_nm", "Nm", "zero to peak", {0.5, 0.0, 1e5});
+}
+inline Parameter cosine_phase_parameter() {
+    return plain("phase_deg", "deg", "phase of the cosine where the position of the joint is zero",
+                 {0.0, -360.0, 360.0});
+}
 
 /// State of what remembers the last reversal.
-inline constexpr Parameter initial_state_parameter = {.name = "initial_state",
-                                                      .unit = "",
-                                                      .help = "state at the start of the log, -1 to 1",
-                                                      .lower = -1.0,
-                                                      .upper = 1.0,
-                                                      .left_out = LeftOut::assumed};
-constexpr Parameter reversal_width_parameter(std::string_view help, std::span<const double> tried) {
-    return {.name = "width_deg",
-            .unit = "deg",
-            .help = help,
-            .neutral = 1.0,
-            .start = 1.0,
-            .lower = 0.001,
-            .upper = 1000.0,
-            .logarithmic = true,
-            .tried = tried};
+inline Parameter initial_state_parameter() {
+    return assumed(plain("initial_state", "", "state at the start of the log, -1 to 1", {0.0, -1.0, 1.0}));
+}
+inline Parameter reversal_width_parameter(std::string_view help, std::vector<double> tried) {
+    return logarithmic("width_deg", "deg", help, {1.0, 0.001, 1000.0, 1.0}, std::move(tried));
 }
 
 /// Which ripple terms an effect changes.
-inline constexpr Parameter ripple_order_parameter = {
-    .name = "order",
-    .unit = "",
-    .help = "of the ripple that it changes, in cycles per motor revolution; 0 is every order",
-    .upper = 1000.0,
-    .left_out = LeftOut::assumed,
-    .hint = Hint::ripple_orders};
+inline Parameter ripple_order_parameter() {
+    return assumed(plain("order", "",
+                         "of the ripple that it changes, in cycles per motor revolution; 0 is every order",
+                         {0.0, 0.0, 1000.0}, {}, Hint::ripple_orders));
+}
 [[nodiscard]] inline bool concerns(Order order, double parameter) {
     return parameter == 0.0 || parameter == order.value();
 }
 
 /// Which run of chance; a whole number.
-inline constexpr Parameter seed_parameter = {.name = "seed",
-                                             .unit = "",
-                                             .help = "which of the possible logs; its whole part counts",
-                                             .neutral = 1.0,
-                                             .start = 1.0,
-                                             .upper = 2147483647.0,
-                                             .left_out = LeftOut::assumed};
+inline constexpr double first_seed = 1.0;
+inline Parameter seed_parameter() {
+    return assumed(plain("seed", "", "which of the possible logs; its whole part counts",
+                         {first_seed, 0.0, 2147483647.0, first_seed}));
+}
 
 namespace effects {
 #define EFFECT(name) extern const Effect name;

@@ -13,7 +13,7 @@
 #include "ripplenotch/diagnose/setup.hpp"
 #include "ripplenotch/model/fit.hpp"
 #include "ripplenotch/model/model.hpp"
-#include "ripplenotch/model/motion.hpp"
+#include "ripplenotch/model/motions.hpp"
 
 namespace ripplenotch::fixture {
 

@@ -10,7 +10,7 @@
 #include "filter/tables.hpp"
 #include "ripplenotch/model/fit.hpp"
 #include "ripplenotch/model/model.hpp"
-#include "ripplenotch/model/motion.hpp"
+#include "ripplenotch/model/motions.hpp"
 
 namespace ripplenotch::testing {
 

@@ -8,21 +8,21 @@ from commands import COMMANDS, SOURCE, run
 from commands import SOURCE, run
 
 
-# kind, which is its folder of docs -> (the list, its word)
+# kind, which is its folder of docs -> (the list, the pattern of its lines)
 REGISTRIES = {
-    "commands": ("src/cli/commands.def", "COMMAND"),
-    "methods": ("src/filter/methods/methods.def", "METHOD"),
-    "formats": ("src/log/formats/formats.def", "FORMAT"),
-    "effects": ("src/model/effects/effects.def", "EFFECT"),
-    "motions": ("src/model/motions/motions.def", "MOTION"),
-    "export": ("src/export/targets/targets.def", "TARGET"),
+    "commands": ("src/cli/commands.def", r"COMMAND\((\w+)\)"),
+    "methods": ("src/filter/methods/methods.def", r"METHOD\((\w+)\)"),
+    "formats": ("src/log/formats/formats.def", r"FORMAT\((\w+)\)"),
+    "effects": ("src/model/effects/effects.def", r"EFFECT\((\w+)\)"),
+    "motions": ("src/model/motions.cpp", r"const MotionKind (\w+)_motion\{"),
+    "export": ("src/export/targets/targets.def", r"TARGET\((\w+)\)"),
 }
 
 
 def listed(kind):
-    path, word = REGISTRIES[kind]
+    path, pattern = REGISTRIES[kind]
     text = (SOURCE / path).read_text()
-    return [name.rstrip("_").replace("_", "-") for name in re.findall(rf"^{word}\((\w+)\)", text, re.M)]
+    return [name.rstrip("_").replace("_", "-") for name in re.findall(rf"^{pattern}", text, re.M)]
 
 
 def named(kind, but=()):

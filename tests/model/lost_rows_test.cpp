@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "model/motion/motion.hpp"
+#include "model/motion/lost_rows.hpp"
 
 #include <cmath>
 #include <numbers>
 #include <random>
 
-#include "ripplenotch/model/motion.hpp"
+#include "ripplenotch/model/motions.hpp"
 #include "ripplenotch/model/prediction.hpp"
 #include "support/catch.hpp"
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "ripplenotch/model/model.hpp"
-#include "ripplenotch/model/motion.hpp"
+#include "ripplenotch/model/motions.hpp"
 #include "support/catch.hpp"
 
 using namespace ripplenotch;

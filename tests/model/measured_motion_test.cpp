@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "ripplenotch/model/motion.hpp"
+#include "ripplenotch/model/motions.hpp"
 
 #include <cmath>
 #include <random>

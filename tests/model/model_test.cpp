@@ -7,7 +7,7 @@
 
 #include "model/effects_fixture.hpp"
 #include "ripplenotch/core/error.hpp"
-#include "ripplenotch/model/motion.hpp"
+#include "ripplenotch/model/motions.hpp"
 #include "support/catch.hpp"
 
 using namespace ripplenotch;

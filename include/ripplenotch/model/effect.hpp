@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// An effect of the joint or of its sensor is a record of pure functions: one file in src/model/effects, one
-// line in effects.def. Law tests run over the whole list.
+// An effect of the joint or of its sensor is a record of pure functions, beside its family in
+// src/model/effects, and one line in effects.def. Law tests run over the whole list.
 
 #include <complex>
 #include <cstddef>
@@ -57,8 +57,8 @@ struct Parameter {
     bool linear = false;              ///< the torque is an affine function of this parameter
     bool logarithmic = false;         ///< a search moves in its logarithm; lower is above 0
     LeftOut left_out = LeftOut::fitted;
-    std::span<const double> tried = {};  ///< where a screening begins; `start` when there are none
-    Hint hint = Hint::none;              ///< further places to begin at
+    std::vector<double> tried = {};  ///< where a screening begins; `start` when there are none
+    Hint hint = Hint::none;          ///< further places to begin at
 };
 
 /// The dimension whose base unit is the parameter's unit, so that values can be typed with any unit of it.
@@ -111,11 +111,11 @@ struct Effect {
     std::string_view summary;   ///< one line
     std::string_view equation;  ///< with the parameters' names, q position in deg, v speed in deg/s
     std::string_view symptom;   ///< the residual of a model without it
-    std::span<const LookAlike> look_alikes;
+    std::vector<LookAlike> look_alikes;
     std::string_view source;  ///< who described it
     Side side = Side::joint;
     Domain domain = Domain::time;
-    std::span<const Parameter> parameters;
+    std::vector<Parameter> parameters;
     std::optional<Polar> polar = std::nullopt;
     bool bears_load = false;  ///< joint: its torque is part of the load that gear and bearings carry
     bool uses_load = false;   ///< it uses Situation::load_nm

@@ -28,6 +28,7 @@
 #include "ripplenotch/log/log.hpp"
 #include "ripplenotch/model/fit.hpp"
 #include "ripplenotch/model/motion.hpp"
+#include "ripplenotch/model/motions.hpp"
 #include "ripplenotch/verdict/gear_choice.hpp"
 #include "ripplenotch/verdict/given_terms.hpp"
 

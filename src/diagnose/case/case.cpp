@@ -14,6 +14,7 @@
 #include "ripplenotch/model/fit.hpp"
 #include "ripplenotch/model/model.hpp"
 #include "ripplenotch/model/motion.hpp"
+#include "ripplenotch/model/motions.hpp"
 
 namespace ripplenotch {
 

@@ -23,7 +23,7 @@
 #include "ripplenotch/diagnose/plan.hpp"
 #include "ripplenotch/model/fit.hpp"
 #include "ripplenotch/model/model.hpp"
-#include "ripplenotch/model/motion.hpp"
+#include "ripplenotch/model/motions.hpp"
 #include "ripplenotch/model/prediction.hpp"
 
 namespace ripplenotch {

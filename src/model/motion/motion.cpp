@@ -1,277 +1,183 @@
 // SPDX-License-Identifier: MIT
-#include "model/motion/motion.hpp"
-
-#include <fmt/ranges.h>
+#include "ripplenotch/model/motion.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
-#include <numbers>
+#include <utility>
 #include <vector>
 
-#include "model/motions.hpp"
+#include "model/motion/local_motion.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
-#include "ripplenotch/core/spec.hpp"
-#include "ripplenotch/model/motion.hpp"
 
 namespace ripplenotch {
-
 namespace {
 
-// A step longer than this part of the usual one may hold a lost row; one longer than so many is a gap.
-constexpr double may_be_lost = 1.5, is_gap = 6.0;
-// Fewer lost rows than this part of all are not worth another clock.
-constexpr double worth_it = 1e-3;
+// Standstill: speeds within so many standard deviations of their noise, for so many smoothing windows. A
+// joint that moves faster than the last of these is not at standstill, however noisy the log.
+constexpr double rest_deviations = 4.5, rest_windows = 3.0, most_at_rest_deg_s = 0.5;
 
-// Median of steps at intervals along the log, which gaps do not change.
-double middle_step_s(std::span<const double> time_s) {
-    constexpr std::size_t looks = 200;  // chosen, not derived: bounds the time
-    std::vector<double> steps;
-    for (std::size_t k = 1; k < time_s.size(); k += std::max<std::size_t>(1, time_s.size() / looks))
-        steps.push_back(time_s[k] - time_s[k - 1]);
-    return median_in(steps);
-}
+// Position and speed show the same motion when they differ by no more than this multiple of the difference
+// expected from noise; estimated from the size that a fifth of the differences exceed, which kinks and gaps
+// do not change.
+constexpr double most_disagreement = 1.5, quantile = 0.8, deviations_at_quantile = 1.2816;
+// A position cannot be trusted more than this relative to a speed, or rounding would count.
+constexpr double least_noise_steps = 1e-3;
 
-// Steps that may hold more than one sample. Most logs lost none, and every delay calls this.
-std::size_t long_steps(std::span<const double> time_s, double middle_s) {
-    std::size_t found = 0;
-    for (std::size_t k = 1; k < time_s.size(); ++k) {
-        const double here = time_s[k] - time_s[k - 1];
-        found += static_cast<std::size_t>((here > may_be_lost * middle_s) & (here < is_gap * middle_s));
+void check(const TraceView& log) {
+    if (log.size() < LocalFit::fewest_samples) {
+        raise<DataError>("the log has {} rows; a motion is measured from at least {}", log.size(),
+                         LocalFit::fewest_samples);
     }
-    return found;
-}
-
-// The clock common to the stamps: the mean of the steps that hold one sample; 0 where too few hold more.
-double single_step_s(std::span<const double> time_s, double middle_s) {
-    if (!(static_cast<double>(long_steps(time_s, middle_s)) > worth_it * static_cast<double>(time_s.size())))
-        return 0.0;
-    double single = 0.0, sum_s = 0.0;
-    for (std::size_t k = 1; k < time_s.size(); ++k) {
-        const double here = time_s[k] - time_s[k - 1];
-        if (here > may_be_lost * middle_s) continue;
-        single += 1.0;
-        sum_s += here;
+    if (!std::isfinite(log.time_s.front())) raise<DataError>("the log has no time; give its --sample-rate");
+    for (std::size_t k = 1; k < log.size(); ++k) {
+        if (log.time_s[k] > log.time_s[k - 1]) continue;
+        raise<DataError>("time goes from {} to {} s after row {}; a motion needs times that increase",
+                         shortest(log.time_s[k - 1]), shortest(log.time_s[k]), k);
     }
-    return sum_s / single;
 }
 
-// Mean delay of the stamps after the first stamp relative to it, in steps from -0.5 to 0.5: the first may
-// itself be early or late by nearly half a step.
-double first_lateness(std::span<const double> time_s, double step_s) {
-    constexpr std::size_t looks = 50;  // chosen, not derived: bounds the time
-    std::complex<double> sum{0.0, 0.0};
-    for (std::size_t k = 0; k < std::min(looks, time_s.size()); ++k) {
-        if (k > 0 && time_s[k] - time_s[k - 1] >= is_gap * step_s) break;
-        sum += portable::polar(1.0, 2.0 * std::numbers::pi * (time_s[k] - time_s[0]) / step_s);
+std::vector<double> integrated(const TraceView& log) {
+    std::vector<double> position_deg(log.size(), 0.0);
+    for (std::size_t k = 1; k < log.size(); ++k) {
+        position_deg[k] = position_deg[k - 1] + 0.5 * (log.time_s[k] - log.time_s[k - 1]) *
+                                                    (log.velocity_deg_s[k] + log.velocity_deg_s[k - 1]);
     }
-    return portable::arg(sum) / (2.0 * std::numbers::pi);
+    return position_deg;
 }
 
-// As std::round, which is a call on most builds; of so few steps there is always a long.
-double nearest(double steps) {
-    return static_cast<double>(static_cast<long>(steps < 0.0 ? steps - 0.5 : steps + 0.5));
-}
+// The window of each sample in turn.
+class Windows {
+  public:
+    Windows(const TraceView& log, Seconds smoothing)
+        : time_s_(log.time_s),
+          // A millionth of a sample wider, so that rounding of the times does not decide which samples are
+          // in.
+          half_s_(0.5 * smoothing.value() + 1e-6 / log.sample_rate.value()) {}
 
-std::vector<std::size_t> places_on(std::span<const double> time_s, double step_s) {
-    // Delay of each stamp, and its moving average, in steps.
-    constexpr double followed = 0.02;
-    double late = 0.0, mean_late = first_lateness(time_s, step_s);
-    std::vector<std::size_t> places{0};
-    for (std::size_t k = 1; k < time_s.size(); ++k) {
-        const double steps = (time_s[k] - time_s[k - 1]) / step_s;
-        double whole = 1.0;
-        if (steps < is_gap) {
-            late += steps;
-            whole = nearest(late - mean_late);
-            if (whole < 1.0 && k > 1 && places[k - 1] - places[k - 2] > 1) {
-                // The stamp before was later than a stamp may be: nothing is missing before it.
-                --places[k - 1];
-                whole += 1.0;
-                late += 1.0;
-                mean_late += followed;
-            }
-            whole = std::max(1.0, whole);
-            late -= whole;
-            mean_late += followed * (late - mean_late);
-        }
-        places.push_back(places.back() + static_cast<std::size_t>(whole));
+    SampleWindow about(std::size_t k) {
+        while (time_s_[k] - time_s_[first_] > half_s_) ++first_;
+        while (end_ < time_s_.size() && time_s_[end_] - time_s_[k] <= half_s_) ++end_;
+        if (end_ - first_ >= LocalFit::fewest_samples) return {first_, end_};
+        constexpr std::size_t fewest = LocalFit::fewest_samples;
+        const std::size_t first = std::min(k - std::min(k, fewest / 2), time_s_.size() - fewest);
+        return {first, first + fewest};
     }
-    return places;
-}
 
-// The step by which all stamps together go from place to place.
-double step_over(std::span<const double> time_s, std::span<const std::size_t> places, double step_s) {
-    double passed_s = 0.0, passed = 0.0;
-    for (std::size_t k = 1; k < time_s.size(); ++k) {
-        const double here = time_s[k] - time_s[k - 1];
-        if (here >= is_gap * step_s) continue;
-        passed_s += here;
-        passed += static_cast<double>(places[k] - places[k - 1]);
-    }
-    return passed_s / passed;
-}
+  private:
+    std::span<const double> time_s_;
+    double half_s_;
+    std::size_t first_ = 0, end_ = 0;
+};
 
-std::vector<std::size_t> places_found(std::span<const double> time_s, double& step_s) {
-    step_s = single_step_s(time_s, middle_step_s(time_s));
-    if (step_s == 0.0) return {};
-    // With jittered stamps the longest single steps look like lost rows, so the mean of the others is too
-    // short.
-    constexpr int passes = 2;
-    for (int pass = 0; pass < passes; ++pass) step_s = step_over(time_s, places_on(time_s, step_s), step_s);
-    return places_on(time_s, step_s);
-}
-
-}  // namespace
-
-std::vector<std::size_t> places_of_rows(std::span<const double> time_s, double& step_s) {
-    if (time_s.size() < 8) return {};
-    // A diagnosis needs the positions of one clock a thousand times.
-    struct Asked {
-        std::vector<double> time_s;
-        std::vector<std::size_t> places;
-        double step_s = 0.0;
-    };
-    thread_local Asked last;
-    if (!std::ranges::equal(last.time_s, time_s)) {
-        last.time_s.assign(time_s.begin(), time_s.end());
-        last.places = places_found(time_s, last.step_s);
-    }
-    step_s = last.step_s;
-    return last.places;
-}
-
-std::vector<double> with_lost_rows(std::span<const double> values, std::span<const std::size_t> places) {
-    std::vector<double> whole(places.back() + 1, 0.0);
-    for (std::size_t k = 0; k < values.size(); ++k) whole[places[k]] = values[k];
+// The smallest step of a signal, which is that of its encoder or of its decimals where it has one.
+double resolution(std::span<const double> values) {
+    double least = 0.0;
     for (std::size_t k = 1; k < values.size(); ++k) {
-        // The four samples about the gap, fewer at the ends.
-        const std::size_t first = k > 1 ? k - 2 : 0, end = std::min(k + 2, values.size());
-        for (std::size_t place = places[k - 1] + 1; place < places[k]; ++place) {
-            double value = 0.0;
-            for (std::size_t i = first; i < end; ++i) {
-                double weight = 1.0;
-                for (std::size_t j = first; j < end; ++j) {
-                    if (j == i) continue;
-                    weight *= (static_cast<double>(place) - static_cast<double>(places[j])) /
-                              (static_cast<double>(places[i]) - static_cast<double>(places[j]));
-                }
-                value += weight * values[i];
-            }
-            whole[place] = value;
+        const double step = std::abs(values[k] - values[k - 1]);
+        if (step > 0.0 && (least == 0.0 || step < least)) least = step;
+    }
+    return least;
+}
+
+bool tell_the_same(const TraceView& log, Seconds smoothing, MotionNoise noise) {
+    LocalFit by_velocity(log, {noise.velocity_deg_s, 0.0});
+    // A velocity of next to no weight.
+    LocalFit by_position(log, {1e6 * noise.velocity_deg_s, noise.position_deg});
+    Windows windows(log, smoothing);
+    std::vector<double> differences;
+    for (std::size_t k = 0; k < log.size(); ++k) {
+        const SampleWindow window = windows.about(k);
+        if (k % std::max<std::size_t>(1, (window.end - window.first) / 4) != 0) continue;
+        const double off =
+            by_velocity.at(k, window).velocity_deg_s - by_position.at(k, window).velocity_deg_s;
+        const double usual =
+            portable::hypot(by_velocity.velocity_error(k, window), by_position.velocity_error(k, window));
+        differences.push_back(std::abs(off) / usual);
+    }
+    const auto place = static_cast<std::ptrdiff_t>(quantile * static_cast<double>(differences.size() - 1));
+    std::nth_element(differences.begin(), differences.begin() + place, differences.end());
+    return differences[static_cast<std::size_t>(place)] <= most_disagreement * deviations_at_quantile;
+}
+
+// How far each signal is to be trusted. A position is of use where it has less noise than the speed's
+// integral and shows the same motion: neither delayed nor from the other side of the gear.
+MotionNoise noise_of(const TraceView& log, Seconds smoothing) {
+    const double velocity_deg_s = sample_noise(log.velocity_deg_s);
+    const MotionNoise alone{velocity_deg_s > 0.0 ? velocity_deg_s : 1.0, 0.0};
+    if (!log.has_position() || velocity_deg_s == 0.0) return alone;
+    const double position_deg =
+        std::max({sample_noise(log.position_deg), resolution(log.position_deg) / std::sqrt(12.0),
+                  least_noise_steps * velocity_deg_s / log.sample_rate.value()});
+    const MotionNoise both{velocity_deg_s, position_deg};
+    return tell_the_same(log, smoothing, both) ? both : alone;
+}
+
+// Ratio of the velocity's noise to the estimate from its fourth differences: coloured noise.
+double slower_noise(const TraceView& log, const Motion& motion, MotionNoise noise) {
+    double squares = 0.0;
+    for (std::size_t k = 0; k < log.size(); ++k) {
+        const double off = log.velocity_deg_s[k] - motion.velocity_deg_s[k];
+        squares += off * off;
+    }
+    return std::sqrt(squares / static_cast<double>(log.size())) / noise.velocity_deg_s;
+}
+
+// Speeds up to these cannot be distinguished from zero. `error_deg_s`: rms error of each due to noise.
+std::vector<double> still_speeds(const TraceView& log, Seconds smoothing, const Motion& motion,
+                                 std::vector<double> error_deg_s, MotionNoise noise) {
+    const bool both = noise.position_deg > 0.0;
+    const double scale = rest_deviations * (both ? 1.0 : slower_noise(log, motion, noise));
+    // A step of the encoder within the window, wherever it falls, looks like a speed of up to twice that.
+    const double window_s =
+        std::max(smoothing.value(), static_cast<double>(LocalFit::fewest_samples) / log.sample_rate.value());
+    const double step_deg_s = both ? 2.0 * resolution(log.position_deg) / window_s : 0.0;
+    for (double& error : error_deg_s)
+        error = std::min(std::max(scale * error, step_deg_s), most_at_rest_deg_s);
+    return error_deg_s;
+}
+
+// Speeds that cannot be distinguished from zero for long enough are standstill: there the joint has neither
+// speed nor acceleration, and noise must not look like a motion back and forth.
+void hold_rests(const TraceView& log, Seconds smoothing, const std::vector<double>& still_deg_s,
+                Motion& motion) {
+    for (std::size_t first = 0; first < log.size();) {
+        std::size_t end = first;
+        while (end < log.size() && std::abs(motion.velocity_deg_s[end]) <= still_deg_s[end]) ++end;
+        if (end > first && log.time_s[end - 1] - log.time_s[first] >= rest_windows * smoothing.value()) {
+            const auto from = static_cast<std::ptrdiff_t>(first),
+                       count = static_cast<std::ptrdiff_t>(end - first);
+            std::fill_n(motion.velocity_deg_s.begin() + from, count, 0.0);
+            std::fill_n(motion.acceleration_deg_s2.begin() + from, count, 0.0);
         }
-    }
-    return whole;
-}
-
-namespace {
-
-constexpr const MotionKind* const all_motions[] = {
-#define MOTION(name) &motions::name,
-#include "model/motions/motions.def"
-#undef MOTION
-};
-
-// Two pieces are joined when their positions agree within this: far below any encoder, far above rounding.
-constexpr double joined_deg = 1e-6;
-
-// A piece whose start falls within this many samples after a sample starts at that sample: the rounding of a
-// sum of durations must not move it.
-constexpr double same_sample = 1e-6;
-
-struct Placed {
-    MotionPiece piece;
-    Seconds start;
-    std::size_t first_sample;
-};
-
-std::size_t first_sample_at(Seconds time, Hertz sample_rate) {
-    const double samples = std::ceil(time.value() * sample_rate.value() - same_sample);
-    if (samples > static_cast<double>(most_samples)) {
-        raise<UsageError>(
-            "--motion: {} s at {} Hz are more than {} samples; shorten it or lower the sample rate",
-            shortest(time.value()), shortest(sample_rate.value()), most_samples);
-    }
-    return static_cast<std::size_t>(std::max(samples, 0.0));
-}
-
-MotionPiece make_piece(const std::string& text, const std::optional<MotionState>& before) {
-    const Spec spec = parse_spec(text);
-    const MotionKind& kind = find_motion_kind(spec.name);
-    return kind.make(Settings(fmt::format("motion {}", kind.name), spec, kind.keys), before);
-}
-
-void sample(const Placed& placed, std::size_t end, Motion& motion) {
-    for (std::size_t k = placed.first_sample; k < end; ++k) {
-        const double time_s = static_cast<double>(k) / motion.sample_rate.value();
-        const double elapsed_s =
-            std::clamp(time_s - placed.start.value(), 0.0, placed.piece.duration.value());
-        const MotionState state = placed.piece.at(Seconds(elapsed_s));
-        motion.time_s.push_back(time_s);
-        motion.position_deg.push_back(state.position_deg);
-        motion.velocity_deg_s.push_back(state.velocity_deg_s);
-        motion.acceleration_deg_s2.push_back(state.acceleration_deg_s2);
+        first = std::max(end, first + 1);
     }
 }
 
 }  // namespace
 
-std::span<const MotionKind* const> motion_kinds() { return all_motions; }
-
-const MotionKind& find_motion_kind(std::string_view name) {
-    return find_entry(motion_kinds(), "motion", "motions", name);
-}
-
-double start_position_deg(std::string_view kind, const Settings& settings,
-                          const std::optional<MotionState>& before) {
-    const double natural_deg = before ? before->position_deg : 0.0;
-    if (!settings.has("from")) return natural_deg;
-    const double from_deg = settings.number("from");
-    if (before && std::abs(from_deg - natural_deg) > joined_deg) {
-        raise<UsageError>(
-            "motion {}: from={}deg, but the motion before it ends at {}deg; leave from= out, or move "
-            "there first",
-            kind, shortest(from_deg), shortest(natural_deg));
+Motion motion_along(const TraceView& log, Seconds smoothing) {
+    check(log);
+    Motion motion{.sample_rate = log.sample_rate,
+                  .time_s = {log.time_s.begin(), log.time_s.end()},
+                  .position_deg = {log.position_deg.begin(), log.position_deg.end()},
+                  .velocity_deg_s = std::vector<double>(log.size()),
+                  .acceleration_deg_s2 = std::vector<double>(log.size())};
+    if (!log.has_position()) motion.position_deg = integrated(log);
+    const MotionNoise noise = noise_of(log, smoothing);
+    LocalFit fit(log, noise);
+    Windows windows(log, smoothing);
+    std::vector<double> error_deg_s(log.size());
+    for (std::size_t k = 0; k < log.size(); ++k) {
+        const SampleWindow window = windows.about(k);
+        const LocalMotion here = fit.at(k, window);
+        motion.velocity_deg_s[k] = here.velocity_deg_s;
+        motion.acceleration_deg_s2[k] = here.acceleration_deg_s2;
+        error_deg_s[k] = fit.velocity_error(k, window);
     }
-    return from_deg;
-}
-
-Motion make_motion(std::span<const std::string> specs, Hertz sample_rate) {
-    if (specs.empty())
-        raise<UsageError>("no motion is given, for example --motion constant,speed=60deg/s,duration=5s");
-    if (!(sample_rate.value() > 0.0) || !std::isfinite(sample_rate.value())) {
-        raise<UsageError>("--sample-rate: {} Hz is not above 0", shortest(sample_rate.value()));
-    }
-    std::vector<Placed> pieces;
-    std::optional<MotionState> before;
-    Seconds end;
-    for (const std::string& spec : specs) {
-        Placed placed{make_piece(spec, before), end, first_sample_at(end, sample_rate)};
-        end = end + placed.piece.duration;
-        before = placed.piece.at(placed.piece.duration);
-        pieces.push_back(std::move(placed));
-    }
-    Motion motion{.sample_rate = sample_rate,
-                  .time_s = {},
-                  .position_deg = {},
-                  .velocity_deg_s = {},
-                  .acceleration_deg_s2 = {}};
-    const std::size_t count = first_sample_at(end, sample_rate);
-    for (auto* column :
-         {&motion.time_s, &motion.position_deg, &motion.velocity_deg_s, &motion.acceleration_deg_s2}) {
-        column->reserve(count);
-    }
-    for (std::size_t i = 0; i < pieces.size(); ++i) {
-        sample(pieces[i], i + 1 < pieces.size() ? pieces[i + 1].first_sample : count, motion);
-    }
+    hold_rests(log, smoothing, still_speeds(log, smoothing, motion, std::move(error_deg_s), noise), motion);
     return motion;
-}
-
-Motion make_motion(std::string_view spec, Hertz sample_rate) {
-    const std::string only[] = {std::string(spec)};
-    return make_motion(only, sample_rate);
 }
 
 }  // namespace ripplenotch
