@@ -23,7 +23,7 @@ TARGETS = {
     "mcap": ("MCAP recordings", "the same"),
     "rosbag2": ("recordings in SQLite", "the same"),
     "raw": ("raw dumps, read with --layout", "the same"),
-    "packed": ("gzip, zstd, lz4, xz", "same bytes or same message at once and in pieces; sanitizers"),
+    "packed": ("gzip, zstd, lz4", "same bytes or same message at once and in pieces; sanitizers"),
     "documents": ("tables, models, joints, figures, diagnoses, pages", "an answer or a page, read again; sanitizers"),
     "arms": ("URDF, MuJoCo, Denavit-Hartenberg, axes", "an answer; sanitizers"),
     "texts": ("quantities, methods, numbers, visible names", "bounds, written and read again; sanitizers"),

@@ -7,11 +7,9 @@
 #include <exception>
 #include <new>
 
-#include "cli/out_of_memory.hpp"
 #include "cli/run.hpp"
 #include "cli/talk.hpp"
 #include "core/files/byte_sink.hpp"
-#include "core/process/memory.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -23,8 +21,8 @@ ExitCode run(const CommandWords& words) {
     } catch (const Error& error) {
         return complain(error.code(), running, error.what());
     } catch (const std::bad_alloc&) {
-        say_out_of_memory(running);
-        return ExitCode::memory;
+        return complain(ExitCode::memory, running,
+                        "out of memory; take a part of the log with --from and --to");
     } catch (const std::exception& error) {
         return complain(ExitCode::internal, running, fmt::format("internal fault: {}", error.what()));
     }
@@ -34,16 +32,9 @@ ExitCode run(const CommandWords& words) {
 }  // namespace ripplenotch
 
 int main(int argc, char** argv) {
-    ripplenotch::keep_what_is_freed();
     // "| head" must end us quietly even where the parent process has SIGPIPE ignored.
     std::signal(SIGPIPE, SIG_DFL);
     ripplenotch::hold_closed_streams();
     ripplenotch::remove_unfinished_files_on_signals();
-    ripplenotch::end_where_nothing_may_throw();
-    try {
-        return static_cast<int>(ripplenotch::run({argv + 1, argv + argc}));
-    } catch (const std::bad_alloc&) {  // not even for the words of the command line, or for a message
-        ripplenotch::say_out_of_memory("");
-        return static_cast<int>(ripplenotch::ExitCode::memory);
-    }
+    return static_cast<int>(ripplenotch::run({argv + 1, argv + argc}));
 }

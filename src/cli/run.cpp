@@ -269,7 +269,7 @@ ExitCode parse_and_work(CLI::App& app, CommandWords words, std::string& running,
     }
     check_environment();
     watch_inputs(true);
-    hash_inputs(Hashing::here);
+    hash_inputs(true);
     if (within_another) return declared.work();
     const ProgressBar bar(words);  // gone before a complaint is printed
     return declared.work();

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <array>
-#include <filesystem>
 #include <utility>
 
 #include "core/text/lower_case.hpp"
@@ -80,6 +79,9 @@ constexpr std::array strangers = {
              "convert it: duckdb -c \"copy (from '{}') to 'run.csv' (format csv)\""},
     Stranger{"#ROSBAG", "a ROS 1 bag", "convert it: rosbags-convert --src {} --dst run"},
     Stranger{"BZh", "a bzip2 file", "unpack it: bzcat {} | ripplenotch ... -"},
+    Stranger{"\xfd"
+             "7zXZ",
+             "an xz file", "unpack it: xzcat {} | ripplenotch ... -"},
     Stranger{"PK\x03\x04", "a ZIP archive (or .xlsx)",
              "unpack it, or convert a workbook: libreoffice --headless --convert-to csv {}"},
 };
@@ -206,10 +208,6 @@ std::unique_ptr<LogReader> open_log(std::unique_ptr<ByteSource> source, const Re
         raise<UsageError>(
             "--constant-speed: read {} speeds for {}, expected one; identify takes several logs",
             options.constant_speeds.size(), source->name());
-    if (options.join == "rows")
-        raise<UsageError>(
-            "--join rows: makes one log of several files, which identify takes; use nearest, hold or linear "
-            "for signals of one file");
     std::string first_bytes = first_bytes_of(*source);
     if (const Packing* const packing = packing_of(first_bytes)) {
         source = unpack(std::move(source), std::move(first_bytes), *packing);
@@ -240,16 +238,6 @@ std::unique_ptr<LogReader> open_log(std::unique_ptr<ByteSource> source, const Re
 
 std::unique_ptr<LogReader> open_log(const std::string& path, const ReadOptions& options) {
     return open_log(std::make_unique<ByteSource>(path), options);
-}
-
-std::optional<double> estimated_rows(const std::string& path, const ReadOptions& options) {
-    std::error_code failed;
-    if (options.range.given() || !std::filesystem::is_regular_file(path, failed)) return std::nullopt;
-    const auto size = static_cast<double>(std::filesystem::file_size(path, failed));
-    const auto reader = open_log(path, options);
-    RowBlock block;
-    if (failed || !reader->next(block) || block.size() == 0) return std::nullopt;
-    return size / (static_cast<double>(block.bytes.size()) / static_cast<double>(block.size()));
 }
 
 std::unique_ptr<LogWriter> rewrite_log(const std::string& path, const LogReader& reader,

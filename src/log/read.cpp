@@ -4,15 +4,12 @@
 #include "log/read.hpp"
 
 #include <fmt/format.h>
-#include <sys/mman.h>
 
 #include <algorithm>
 #include <array>
 #include <limits>
-#include <new>
 #include <utility>
 
-#include "core/process/memory.hpp"
 #include "log/account/account.hpp"
 #include "log/clock/clock_check.hpp"
 
@@ -29,12 +26,6 @@ std::size_t read_on(ByteSource& source, std::string& bytes, std::size_t have, st
 
 namespace {
 
-/// Gives mapped memory back.
-struct Unmapped {
-    std::size_t bytes = 0;
-    void operator()(double* numbers) const { ::munmap(numbers, bytes); }
-};
-
 /// The rows of a pass, kept for the next one as long as they are not too many.
 class KeptParts {
   public:
@@ -45,11 +36,10 @@ class KeptParts {
         numbers_ += 4 * rows.size();
         if (numbers_ > most_numbers_) {
             parts_.clear();
-            room_.reset();
             return;
         }
-        parts_.push_back({kept(rows.time_s), kept(rows.velocity_deg_s), kept(rows.torque_nm),
-                          kept(rows.position_deg), !rows.run_starts.empty()});
+        parts_.push_back({copy_of(rows.time_s), copy_of(rows.velocity_deg_s), copy_of(rows.torque_nm),
+                          copy_of(rows.position_deg), !rows.run_starts.empty()});
     }
 
     [[nodiscard]] bool whole() const { return numbers_ <= most_numbers_ && !parts_.empty(); }
@@ -67,29 +57,15 @@ class KeptParts {
 
   private:
     struct Part {
-        std::span<const double> time_s, velocity_deg_s, torque_nm, position_deg;
+        std::vector<double> time_s, velocity_deg_s, torque_nm, position_deg;
         bool begins_run;
     };
-    /// A copy that stays where it is.
-    [[nodiscard]] std::span<const double> kept(std::span<const double> numbers) {
-        if (room_ == nullptr) {
-            const std::size_t bytes = most_numbers_ * sizeof(double);
-            void* const mapped = ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE,
-                                        MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-            if (mapped == MAP_FAILED) throw std::bad_alloc();
-            ask_for_large_pages(mapped, bytes);
-            room_ = std::unique_ptr<double, Unmapped>(static_cast<double*>(mapped), Unmapped{bytes});
-        }
-        double* const to = room_.get() + used_;
-        std::copy(numbers.begin(), numbers.end(), to);
-        used_ += numbers.size();
-        return {to, numbers.size()};
+    static std::vector<double> copy_of(std::span<const double> numbers) {
+        return {numbers.begin(), numbers.end()};
     }
 
     std::size_t most_numbers_, numbers_ = 0;
     std::vector<Part> parts_;
-    std::unique_ptr<double, Unmapped> room_;  ///< for all that may be kept, made when it is needed
-    std::size_t used_ = 0;
 };
 
 // Few and long: half a minute at 1 kHz, in which a slow joint still turns and lines stand apart.
@@ -145,7 +121,6 @@ class PieceTaker {
 
 std::optional<Log> read_pieces(const std::shared_ptr<const Spool>& log, const ReadOptions& options,
                                std::size_t most_rows, std::size_t joint) {
-    grow_heap_in_large_pages();
     LogPasses passes(log, options, joint);
     passes.keep_rows(most_bytes_kept);
     passes.first([](const TraceView&) {});

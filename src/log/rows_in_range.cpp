@@ -173,12 +173,11 @@ class LinesInRange final : public RowsInRange {
     bool add_lines() {
         if (!whole_->fetch(block_)) return false;
         const std::string_view bytes = block_.bytes;
-        const char line_end = whole_->dialect().line_end;
         for (std::size_t begin = 0, end = 0; begin < bytes.size(); begin = end) {
-            end = std::min(bytes.find(line_end, begin), bytes.size() - 1) + 1;
+            end = std::min(bytes.find('\n', begin), bytes.size() - 1) + 1;
             const std::string_view line = bytes.substr(begin, end - begin);
             // What is longer than any line comes in pieces, which go where its beginning goes.
-            const bool goes_on = std::exchange(unended_, line.back() != line_end);
+            const bool goes_on = std::exchange(unended_, line.back() != '\n');
             if (goes_on ? inside() : keeps_text(line.substr(0, line.size() - (unended_ ? 0 : 1))))
                 lines_ += line;
         }

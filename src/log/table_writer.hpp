@@ -25,8 +25,7 @@ class RowSink {
         block.joints.resize(plan.joints());
         // As many rows as the first one's length lets expect, and some.
         const std::size_t left = block.bytes.size() - begin;
-        const std::size_t length =
-            std::min(block.bytes.find(plan.line_end, begin), block.bytes.size()) - begin;
+        const std::size_t length = std::min(block.bytes.find('\n', begin), block.bytes.size()) - begin;
         reserve(block.size() + left / (length + 1) + left / (16 * (length + 1)) + 16);
     }
 

@@ -5,7 +5,6 @@ import hashlib
 import json
 import os
 import pathlib
-import resource
 import shutil
 import signal
 import stat
@@ -14,7 +13,7 @@ import threading
 import time
 import unittest
 
-from commands import DATA, TOOL, Case, sanitized
+from commands import DATA, TOOL, Case
 
 
 LOWPASS = ("--method", "lowpass,cutoff=13rad/s,order=1")
@@ -257,27 +256,7 @@ class Places(InFolder):
                 self.assertNotIn("fsync", calls)
 
 
-class Memory(InFolder):
-    @unittest.skipIf(sanitized(TOOL), "sanitizers need address space of their own")
-    def test_out_of_memory_is_said_once_with_size_and_remedy(self):
-        simulated = self.run_tool("simulate", *GEAR[:2], "--inertia", "0.4", "--motion",
-                                  "constant,speed=90deg/s,duration=400s", "--sample-rate", "1kHz", "-o", "long.npy")
-        self.assertEqual(simulated.returncode, 0, simulated.stderr)
-
-        def limited_to(size):
-            return lambda: resource.setrlimit(resource.RLIMIT_AS, (size, size))
-        # A program with shared libraries needs more before it begins.
-        start = next(size << 20 for size in range(4, 1024, 4)
-                     if self.run_tool("--version", preexec_fn=limited_to(size << 20)).returncode == 0)
-        limit = limited_to(start + (12 << 20))
-        for words in (("spectrum", "long.npy", "-o", "out.csv"), ("track", "long.npy", *GEAR, "-o", "out.csv")):
-            done = self.run_tool(*words, preexec_fn=limit)
-            self.assertEqual(done.returncode, 6, f"{words}: {done.returncode} {done.stderr}")
-            self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
-            self.assertIn("MiB", done.stderr)
-            self.assertIn("--from", done.stderr)
-            self.assertFalse((self.folder / "out.csv").exists())
-
+class Numbers(InFolder):
     def test_numbers_beyond_reason_are_a_mistake_in_the_command(self):
         for ratio in ("1e308", "1e30", "0", "-1"):
             done = self.run_tool("track", "log.csv", "--gear-ratio", ratio)

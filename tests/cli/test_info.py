@@ -151,7 +151,6 @@ class RealLogs(unittest.TestCase):
             "ur3e_rad_L1L2_j345.csv": (65, 25.0, 3), "gpl3/panda_gaz_j1.csv": (20544, 978.28, 1),
             "gpl3/panda_gaz_j4.csv": (20544, 978.28, 1), "raw/neura_lara8_0.5_original.csv": (216, 486.487, 6),
             "raw/neura_lara8_validate_original.csv": (1832, 249.064, 6),
-            "raw/ur3e_rad_L1L2_original_CR_line_ends.csv": (65, 25.0, 6),
         }
         for name, (rows, rate, joints) in expected.items():
             with self.subTest(name):
@@ -167,6 +166,3 @@ class RealLogs(unittest.TestCase):
         lara = info(LOGS / "raw/neura_lara8_validate_original.csv")
         self.assertIn("rad/s", " ".join(one["assumed"] for one in lara["recordings"][0]["assumptions"]))
         self.assertIn("no unit is stated", " ".join(lara["warnings"]))
-        ur3e = info(LOGS / "raw/ur3e_rad_L1L2_original_CR_line_ends.csv")
-        self.assertIn("UR RTDE", " ".join(one["reason"] for one in ur3e["recordings"][0]["inferences"]))
-        self.assertEqual(ur3e["recordings"][0]["assumptions"], [])

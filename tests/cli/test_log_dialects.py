@@ -525,15 +525,6 @@ class OtherShapes(Case):
         self.assertTrue(done.stdout.startswith("Cannot tell: if "), done.stdout)
         self.assertIn("--unit velocity=deg/s --side joint", done.stdout)
 
-    def test_files_of_one_signal_each_are_one_log_of_identify(self):
-        for name, of in (("velocity", lambda r: r.velocity), ("torque", lambda r: r.torque)):
-            (self.folder / f"run_{name}.csv").write_text("".join(f"{of(r):.6f}\n" for r in ROWS))
-        files = ["run_velocity.csv", "run_torque.csv", "--join", "rows", "--sample-rate", "500Hz", "--unit", "velocity=deg/s,torque=Nm"]
-        done = self.run_tool("identify", *files, "--json", "-q")
-        self.assertAlmostEqual(json.loads(done.stdout)["gear_ratio"]["value"], RATIO, delta=0.5)
-        done = self.run_tool("info", "run_velocity.csv", "--join", "rows")
-        self.assertEqual((done.returncode, "identify takes" in done.stderr), (2, True), done.stderr)
-
     def test_joints_paired_one_off_are_refused_and_listed_by_info(self):
         header = "time_s," + ",".join(f"q{k}" for k in range(3)) + "," + ",".join(f"tau{k + 1}" for k in range(3))
         rows = "".join(f"{r.t:.4f}," + ",".join([f"{r.position * DEG:.6f}"] * 3 + [f"{r.torque:.4f}"] * 3) + "\n" for r in ROWS)

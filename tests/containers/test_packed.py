@@ -4,7 +4,6 @@
 import bz2
 import gzip
 import json
-import lzma
 import os
 import re
 import shutil
@@ -28,7 +27,7 @@ def lz4(data):
     return lz4.frame.compress(data, content_checksum=True)
 
 
-PACKED = {"gz": gzip.compress, "xz": lzma.compress, "zst": zstd, "lz4": lz4}
+PACKED = {"gz": gzip.compress, "zst": zstd, "lz4": lz4}
 MODULES = {"zst": "zstandard", "lz4": "lz4"}
 
 
@@ -76,9 +75,10 @@ class Compressed(Case):
     def test_what_is_packed_twice_or_otherwise_names_the_program(self):
         self.assertIn("zcat", self.refusal(self.write("two.gz", gzip.compress(gzip.compress(LOG.read_bytes())))))
         self.assertIn("bzcat", self.refusal(self.write("run.bz2", bz2.compress(LOG.read_bytes()))))
+        self.assertIn("xzcat", self.refusal(self.write("run.xz", b"\xfd7zXZ\0")))
 
     def test_a_bomb_stays_small(self):
-        path = self.write("bomb.csv.xz", lzma.compress(b"velocity_deg_s,torque_nm\n" + b"90,1.5\n" * 12_000_000, preset=0))
+        path = self.write("bomb.csv.gz", gzip.compress(b"velocity_deg_s,torque_nm\n" + b"90,1.5\n" * 12_000_000))
         self.assertLess(path.stat().st_size, 100_000)
         said = self.refusal(path, "--sample-rate", "1kHz", "--method", "none", "-q", "-o", "out.csv", command="filter")
         self.assertIn("times smaller", said)

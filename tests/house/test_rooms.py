@@ -47,7 +47,6 @@ DOORS = {
     r"zlib\.h": {"src/log/unpack/unpackers.cpp"},
     r"zstd\.h": {"src/log/unpack/unpackers.cpp"},
     r"lz4": {"src/log/unpack/unpackers.cpp"},
-    r"lzma\.h": {"src/log/unpack/unpackers.cpp"},
     r"hdf5\.h": {"src/log/containers/hdf5.cpp"},
     r"sqlite3": {"src/log/messages/rosbag2_messages.cpp"},
     r"pybind11": {"src/python/module.cpp"},

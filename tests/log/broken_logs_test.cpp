@@ -71,6 +71,8 @@ TEST_CASE("a broken file is refused with one sentence", "[log]") {
     CHECK_THAT(complaint(std::string("time_s,velocity_deg_s,torque_nm\n0,10,\0\n", 39)),
                Contains("log.csv:2:6: read the byte 0x00"));
     CHECK_THAT(complaint("\xff\xfet\0i\0m\0e\0"), Contains("UTF-16") && Contains("iconv"));
+    CHECK_THAT(complaint("time_s,velocity_deg_s,torque_nm\r0,1,2\r1,1,2\r"),
+               Contains("CR alone") && Contains("tr '"));
     CHECK_THAT(complaint("PK\x03\x04"), Contains("ZIP"));
     CHECK_THAT(complaint("time_s,velocity_deg_s,torque_nm\n0,1,2\n1,2\n"), Contains("cells, expected"));
     CHECK_THAT(complaint("a sentence, that is no log\nand another one here\nand one more\n"),

@@ -104,26 +104,6 @@ TEST_CASE("a title over two columns makes no trace of them", "[log]") {
     CHECK(read_text(text, options).trace.size() == 9);
 }
 
-TEST_CASE("files of one signal each are one log, row by row", "[log]") {
-    const TemporaryPath folder("");
-    std::filesystem::create_directory(folder.string());
-    const auto write = [&](const std::string& name, const std::string& text) {
-        std::ofstream(folder.string() + name) << text;
-        return folder.string() + name;
-    };
-    const std::string velocity = write("/run3_velocity.csv", "10,20\n11,21\n12,22\n13,23\n");
-    const std::string torque = write("/run3_torque.csv", "1,2\n3,4\n5,6\n7,8\n");
-    const std::string cut = write("/run4_torque.csv", "1,2\n");
-    ReadOptions options;
-    options.sample_rate = Hertz(100.0);
-    options.joint = "2";
-    const Log log = read_files_as_one({velocity, torque}, options);
-    CHECK(log.trace.torque_nm == std::vector<double>{2, 4, 6, 8});
-    CHECK(log.trace.velocity_deg_s == std::vector<double>{20, 21, 22, 23});
-    CHECK_THROWS_WITH(read_files_as_one({velocity, cut}, options), Contains("read 1 rows, expected 4"));
-    std::filesystem::remove_all(folder.string());
-}
-
 TEST_CASE("joints numbered from 0 and from 1 beside each other are asked about", "[log]") {
     const std::string rows = "\n0,10,11,1,2\n0.01,12,13,2,3\n0.02,14,15,3,4\n";
     const std::string mixed = "t,dq0,dq1,tau1,tau2" + rows;

@@ -122,22 +122,3 @@ TEST_CASE("real: the same sweep raw and prepared is the same torque", "[log][rea
     CHECK_THAT(original.trace.sample_rate.value(), WithinAbs(log.trace.sample_rate.value(), 1e-4));
     CHECK_THAT(original.trace.time_s[0], WithinAbs(92125.37781627101, 1e-9));
 }
-
-TEST_CASE("real: line ends of CR alone, a row counter called time, motor current", "[log][real]") {
-    const std::string raw = "raw/ur3e_rad_L1L2_original_CR_line_ends.csv",
-                      prepared = "ur3e_rad_L1L2_j345.csv";
-    if (absent(raw) || absent(prepared)) return;
-    const Log original = read_log(folder + "/" + raw, joint("2"));
-    const Log log = read_log(folder + "/" + prepared, joint("j3"));
-    CHECK(original.layout.columns.size() == 175);
-    CHECK(original.layout.columns[original.layout.chosen.time.value()].name == "timestamp");
-    CHECK_THAT(original.layout.warnings.at(0).text, Contains("'time' (column 1) only counts rows"));
-    CHECK(original.layout.columns[original.layout.chosen.torque.value()].name == "actual_current_2");
-    CHECK(original.layout.columns[original.layout.chosen.torque.value()].unit == "A");
-    REQUIRE(original.trace.size() == 65);
-    CHECK_THAT(original.trace.sample_rate.value(), WithinAbs(25.0, 1e-6));
-    for (std::size_t i = 0; i < 65; ++i)
-        CHECK_THAT(original.trace.torque_nm[i], WithinAbs(log.trace.torque_nm[i], 1e-8));
-    const std::string bytes = file_bytes(folder + "/" + raw);
-    CHECK(rewritten(bytes, identity, {}, joint("2")) == bytes);
-}

@@ -50,12 +50,6 @@ class FileError : public Error {
     explicit FileError(const std::string& message) : Error(ExitCode::file, message) {}
 };
 
-/// What was asked for takes more memory than there is. The message names size and remedy.
-class MemoryError : public Error {
-  public:
-    explicit MemoryError(const std::string& message) : Error(ExitCode::memory, message) {}
-};
-
 /// raise<DataError>("{}:{}: ...", file, line) formats and throws.
 template <class E, class... Args>
 [[noreturn]] void raise(fmt::format_string<Args...> format, Args&&... args) {

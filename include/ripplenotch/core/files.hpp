@@ -15,7 +15,7 @@
 namespace ripplenotch {
 
 class OpenFile;
-class HashBeside;
+class Sha256;
 class TemporaryFile;
 
 /// A source of bytes: a file, or standard input when the path is "-".
@@ -64,7 +64,7 @@ class ByteSource {
     std::string name_;
     std::shared_ptr<const OpenFile> file_;
     std::shared_ptr<const std::string> bytes_;
-    std::unique_ptr<HashBeside> hash_;
+    std::unique_ptr<Sha256> hash_;
     std::size_t piece_size_ = 0;
     std::uint64_t size_ = 0, at_ = 0;
     bool ended_ = false;
@@ -174,22 +174,13 @@ void check_output_name(std::string_view path, std::string_view what, std::string
 /// all.
 void watch_inputs(bool wanted);
 
-/// Whether what is read is hashed: not at all, by the thread that reads, or of long files by one beside it.
-enum class Hashing { none, here, beside };
-
 /// Of the files watched: from now on every ByteSource hashes what it reads, or none does any longer. It takes
 /// about a second for a gigabyte on a processor with instructions for it, five without: only for runs that
 /// tell.
-void hash_inputs(Hashing how);
+void hash_inputs(bool wanted);
 
 /// Of the bytes of `path` as they were first read to their end. Where nobody has read it, it is read now.
 /// Empty where inputs are watched and not hashed, for then nothing tells it. Throws FileError.
 [[nodiscard]] std::string sha256_as_read(const std::string& path);
-
-// How much memory a run may still take: asked before work that holds a whole log.
-
-/// In bytes: the least of what the system has left, of the limit of the process (ulimit -v) and of that of
-/// its control group (containers). Empty where nobody says any of them.
-[[nodiscard]] std::optional<std::uint64_t> memory_to_be_had();
 
 }  // namespace ripplenotch

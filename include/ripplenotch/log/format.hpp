@@ -154,7 +154,7 @@ struct LogFormat {
 
 /// All formats, in the order of formats.def.
 [[nodiscard]] std::span<const LogFormat* const> log_formats();
-/// What this build cannot read for want of a library: "hdf5 (libhdf5)", "xz (liblzma)". Mostly none.
+/// What this build cannot read for want of a library: "hdf5 (libhdf5)", "lz4 (liblz4)". Mostly none.
 [[nodiscard]] std::vector<std::string> formats_not_built();
 /// Throws UsageError that lists the known names.
 [[nodiscard]] const LogFormat& find_log_format(std::string_view name);

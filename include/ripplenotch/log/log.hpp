@@ -95,10 +95,6 @@ struct Log {
     std::optional<std::pair<double, double>> position_range_deg;
 };
 
-/// About how many rows a file has, by its size and the size of its first rows; empty for pipes, and for a
-/// part of a log. Throws what open_log throws.
-[[nodiscard]] std::optional<double> estimated_rows(const std::string& path, const ReadOptions& options);
-
 /// Rows that commands hold which look at pieces of a log anyway.
 inline constexpr std::size_t most_rows_held = 320'000;
 /// No limit: the log is held whole.
@@ -127,10 +123,6 @@ struct AskedJoints {
 [[nodiscard]] Log read_log(const std::string& path, const ReadOptions& options);
 [[nodiscard]] Log read_log(std::unique_ptr<ByteSource> source, const ReadOptions& options);
 [[nodiscard]] Log read_log(LogReader& reader, const ReadOptions& options);
-/// Text files of one signal or more each, whose rows belong together one by one, as one log. Columns without
-/// a name are named after their files. Throws DataError where their rows are not as many, or their times
-/// differ.
-[[nodiscard]] Log read_files_as_one(const std::vector<std::string>& paths, const ReadOptions& options);
 
 /// The same for all joints that have a velocity or position and a torque (options.torque_of_each), in one
 /// pass: their rows are the same. The torque of a joint without one is not a number. What is told of the

@@ -414,22 +414,6 @@ std::size_t most_rows(const GivenOptions& options, const ModelWithGiven& model) 
     return options.arm || model.arm ? most_rows_with_arm : most_rows_diagnosed;
 }
 
-// Of a log that is held with its simulation and all that is made of them, four findings among it; measured.
-constexpr double bytes_a_row_held = 300.0;
-
-void require_memory(const DiagnoseRequest& request, const ReadOptions& reading) {
-    double rows = estimated_rows(request.path, reading).value_or(0.0);
-    if (request.validate) rows += estimated_rows(*request.validate, reading).value_or(0.0);
-    const auto left = memory_to_be_had();
-    const double bytes = rows * bytes_a_row_held;
-    if (!left || bytes <= static_cast<double>(*left)) return;
-    constexpr double mebibyte = 1024.0 * 1024.0;
-    raise<MemoryError>(
-        "{}: with a simulation the whole log is held in memory, which needs about {:.3g} MiB for some {:.3g} "
-        "rows, and {:.3g} MiB are available; take a part of the log with --from and --to",
-        request.path, bytes / mebibyte, rows, static_cast<double>(*left) / mebibyte);
-}
-
 Log read(const DiagnoseRequest& request, std::size_t most_rows, const ReadOptions& reading,
          const std::string& path, Provenance& provenance) {
     // A pipe that is held needs no second pass.
@@ -550,7 +534,6 @@ JointDiagnosis diagnosed_joint(const DiagnoseRequest& request, const std::option
     say(request.common, gear_in_words(one.gear));
     reading = read_options(reading, one.gear);
     const std::size_t most = most_rows(request.given, model);
-    if (most == all_rows) require_memory(request, reading);
     one.log = read(request, most, reading, request.path, one.provenance);
     one.joint = one.log.trace.joint;
     std::optional<Log> other;

@@ -142,15 +142,11 @@ std::vector<FeatureLine> feature_lines(const ManifestEntry& entry, const Feature
             for (const LogWarning& warning : log.recording.warnings) say(work.common, warning.text);
             try {
                 lines.push_back(line_of(log, entry, work, line));
-            } catch (const MemoryError&) {
-                throw;
             } catch (const Error& error) {
                 lines.push_back(failed_line(line, error));
             }
         }
         if (logs.empty()) raise<DataError>("{}: no joint has a motion and a torque", entry.log);
-    } catch (const MemoryError&) {
-        throw;
     } catch (const Error& error) {
         lines.push_back(failed_line(head, error));
     }

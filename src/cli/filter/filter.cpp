@@ -336,8 +336,7 @@ ExitCode run_filter(FilterRequest& request, const std::string& command_line) {
     check_filter(request);
     if (request.how.method.empty()) request.how.method = "switching";
     request.how.needs_gear = request.gates.min_attenuation_db.has_value();
-    const bool told = request.metrics || request.common.json || request.plot.wanted();
-    hash_inputs(told ? Hashing::here : Hashing::none);  // threads are the pipeline's, which --threads counts
+    hash_inputs(request.metrics || request.common.json || request.plot.wanted());
     JointMethods methods(request.how);
     bool within = true;
     for (const FilterJob& job : jobs_of(request)) {

@@ -227,20 +227,10 @@ std::vector<Joint> read_all_joints(const IdentifyRequest& request, CommonOptions
     if (!speeds.empty() && speeds.size() != request.logs.size())
         raise<UsageError>("--constant-speed: read {} speeds for {} logs; state one for all, or one for each",
                           speeds.size(), request.logs.size());
-    const bool as_one = std::exchange(read.join, read.join == "rows" ? std::nullopt : read.join) == "rows";
-    if (as_one && (asks_for_several(request.logs.front(), read) || request.residual.any()))
-        raise<UsageError>(
-            "--join rows: takes one joint and its logged torque; name it with --joint, and leave "
-            "out the simulation");
     for (std::size_t i = 0; i < request.logs.size(); ++i) {
         const std::string& path = request.logs[i];
         if (!speeds.empty()) read.constant_speed = speeds[i];
-        std::vector<Log> logs;
-        if (as_one) {
-            if (i == 0) logs.push_back(read_files_as_one(request.logs, read));
-        } else {
-            logs = read_joints_in_part(path, read, most_rows);
-        }
+        std::vector<Log> logs = read_joints_in_part(path, read, most_rows);
         if (i == 0 && logs.size() > 1) {
             each = true;
             common.messages = std::make_shared<JointMessages>();
@@ -248,10 +238,9 @@ std::vector<Joint> read_all_joints(const IdentifyRequest& request, CommonOptions
         if (!each && logs.size() > 1)
             raise<DataError>("{}: read {} joints, and {} has one; select one with --joint", path, logs.size(),
                              request.logs.front());
-        if (!logs.empty()) say_left_out(request.common, logs.front().layout.left_out);
+        say_left_out(request.common, logs.front().layout.left_out);
         provenance.inputs.push_back(
-            {path, path == "-" ? "" : sha256_as_read(path),
-             logs.empty() ? std::nullopt : std::optional(logs.front().recording.rows())});
+            {path, path == "-" ? "" : sha256_as_read(path), logs.front().recording.rows()});
         for (Log& log : logs) {
             const CommonOptions of_joint = about(common, log.trace.joint);
             say_layout(of_joint, log.layout);
@@ -361,8 +350,7 @@ std::vector<Identification> identified_joints(const IdentifyRequest& request, co
 // asked for, so that one joint alone gets the answer that it gets among all.
 void look_for_other_motors(const IdentifyRequest& request, std::span<const Joint> joints,
                            std::vector<Identification>& found) {
-    if (joints.empty() || request.log.join == "rows" || joints.front().logs.size() != request.logs.size())
-        return;
+    if (joints.empty() || joints.front().logs.size() != request.logs.size()) return;
     ReadOptions read = request.log;
     read.gear_ratio = request.gear.ratio;
     read.takes_motor_units = true;

@@ -253,8 +253,6 @@ void check_each(const MapRequest& request) {
 ExitCode run_or_complain(const MapRequest& request, const std::string& command_line) {
     try {
         return run_map_once(request, command_line);
-    } catch (const MemoryError&) {
-        throw;
     } catch (const Error& error) {
         talk(fmt::format("{} map: joint {}: {}", tool_name, *request.log.joint, error.what()));
         return error.code();

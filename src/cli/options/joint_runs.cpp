@@ -121,8 +121,6 @@ JointResults go_over(const JointRuns& runs, const std::vector<std::string>& join
         try {
             all.results.push_back(one(joint, common));
             all.joints.push_back(joint);
-        } catch (const MemoryError&) {
-            throw;
         } catch (const Error& error) {
             if (!all.first_error) all.first_error = std::current_exception();
             all.left_out.push_back({joint, error.what()});

@@ -584,11 +584,9 @@ void attach_log_columns(Options& options, ReadOptions& log) {
     options.parsed(
         "--join",
         [&log](Text text) {
-            log.join = one_of({"nearest", "hold", "linear", "rows"}, text, "--join");
+            log.join = one_of({"nearest", "hold", "linear"}, text, "--join");
         },
-        "HOW",
-        "of signals with times of their own: linear (the default), hold or nearest; rows makes one log of "
-        "several files, row by row");
+        "HOW", "of signals with times of their own: linear (the default), hold or nearest");
     options.parsed(
         "--kt",
         [&log](std::string text) {

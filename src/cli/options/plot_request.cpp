@@ -73,8 +73,7 @@ void check_plot(const PlotRequest& request, const CommonOptions& common) {
 }
 
 void hash_where_told(const CommonOptions& common, const PlotRequest& plot) {
-    const bool told = common.json || ends_with_json(common.output) || plot.wanted();
-    hash_inputs(told ? Hashing::beside : Hashing::none);
+    hash_inputs(common.json || ends_with_json(common.output) || plot.wanted());
 }
 
 void draw_plot(const PlotRequest& request, const CommonOptions& common, const Provenance& provenance,

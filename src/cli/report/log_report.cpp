@@ -88,8 +88,6 @@ class Run {
     std::optional<Json> try_step(const Words& words, const Words& options, const std::string& file) {
         try {
             command(words + Words{"--json", "-o", workspace_.path(file)}, options, true);
-        } catch (const MemoryError&) {
-            throw;
         } catch (const Error& error) {
             PageSection section;
             section.title = fmt::format("{}: {}", words.front(), report_.log);
@@ -112,8 +110,6 @@ class Run {
         try {
             command(words + Words{"--plot", workspace_.path(file)}, options, true);
             take(file);
-        } catch (const MemoryError&) {
-            throw;
         } catch (const Error&) {
             return;
         }

@@ -497,23 +497,6 @@ Made piecewise_result(const SpectrumRequest& request, const std::string& command
     return {frequency_result(request, {spectrum}, log.layout().chosen.joint, provenance), provenance};
 }
 
-// Of a log that is held with all that is made of it; measured.
-constexpr double bytes_a_row_by_frequency = 144.0, bytes_a_row_by_order = 88.0;
-
-void require_memory_for_spectrum(const SpectrumRequest& request, const ReadOptions& read) {
-    const auto rows = estimated_rows(request.path, read);
-    const auto left = memory_to_be_had();
-    if (!rows || !left) return;
-    const bool by_order = request.domain == "order" || request.map.map;
-    const double bytes = *rows * (by_order ? bytes_a_row_by_order : bytes_a_row_by_frequency);
-    if (bytes <= static_cast<double>(*left)) return;
-    constexpr double mebibyte = 1024.0 * 1024.0;
-    raise<MemoryError>(
-        "{}: a spectrum of the whole log takes about {:.3g} MiB for some {:.3g} rows, and {:.3g} MiB are "
-        "available; take it in pieces with --segment, or a part of the log with --from and --to",
-        request.path, bytes / mebibyte, *rows, static_cast<double>(*left) / mebibyte);
-}
-
 Made whole_result(const SpectrumRequest& request, const std::string& command_line) {
     Provenance provenance{{}, command_line};
     const MapLines lines = request.map.map ? map_lines(request.map, provenance) : MapLines{};
@@ -522,7 +505,6 @@ Made whole_result(const SpectrumRequest& request, const std::string& command_lin
     take_joint_of(request.residual, reading.joint);
     reading.needs_velocity = request.needs_motion();
     reading.needs_torque = !request.response.signals || request.response.names("torque");
-    require_memory_for_spectrum(request, reading);
     Log log = read_log(request.path, reading);
     say_layout(request.common, log.layout);
     take_residual(request.residual, reading, 1, {request.path, log}, request.common, provenance);

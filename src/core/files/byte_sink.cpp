@@ -16,10 +16,18 @@
 #include <utility>
 
 #include "core/files/byte_source.hpp"
-#include "core/process/sanitized.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/files.hpp"
 #include "ripplenotch/core/progress.hpp"
+
+// Sanitizers have handlers of signals of their own.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define RIPPLENOTCH_SANITIZED 1
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+#define RIPPLENOTCH_SANITIZED 1
+#endif
+#endif
 
 namespace ripplenotch {
 

@@ -12,7 +12,6 @@
 
 #include "core/files/byte_sink.hpp"
 #include "core/files/inputs_read.hpp"
-#include "core/files/sha256.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/files.hpp"
 #include "ripplenotch/core/progress.hpp"
@@ -166,12 +165,7 @@ std::string shown_name(const std::string& path) {
 ByteSource::ByteSource(const std::string& path) : ByteSource(std::make_shared<const OpenFile>(path)) {}
 
 ByteSource::ByteSource(std::shared_ptr<const OpenFile> file) : ByteSource(file, shown_name(file->path())) {
-    const Hashing how = how_to_hash(*file_, name_);
-    if (how == Hashing::none) return;
-    // A thread may read it once more: end() notices what was written meanwhile, where the size is known.
-    hash_ = how == Hashing::beside && by_place() && size_
-                ? std::make_unique<HashBeside>(file_->descriptor(), at_)
-                : std::make_unique<HashBeside>();
+    if (to_be_hashed(*file_, name_)) hash_ = std::make_unique<Sha256>();
 }
 
 ByteSource::ByteSource(std::shared_ptr<const OpenFile> file, std::string name)

@@ -10,9 +10,9 @@
 
 namespace ripplenotch {
 
-/// How a source of this file hashes its bytes: as wanted, and `none` where the hash is known. Throws
+/// Whether a source of this file hashes its bytes: as wanted, and not where the hash is known. Throws
 /// FileError when the file is not what it was when it was first opened.
-[[nodiscard]] Hashing how_to_hash(const OpenFile& file, std::string_view name);
+[[nodiscard]] bool to_be_hashed(const OpenFile& file, std::string_view name);
 /// The file was read to its end; or, with an empty hash, is read at places and hashed when somebody asks.
 void note_hash(const OpenFile& file, const std::string& sha256);
 

@@ -299,8 +299,6 @@ class Decision {
         try {
             options_.check_joint(joint);
             return true;
-        } catch (const MemoryError&) {
-            throw;
         } catch (const Error& error) {
             if (!refusal_) refusal_ = std::current_exception();
             layout_.left_out.push_back({joint, error.what()});

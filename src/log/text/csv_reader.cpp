@@ -28,8 +28,7 @@ bool read_up_to(ByteSource& source, std::string& bytes, std::size_t size) {
 }
 
 std::size_t line_ends(std::string_view bytes) {
-    return static_cast<std::size_t>(
-        std::count_if(bytes.begin(), bytes.end(), [](char c) { return c == '\n' || c == '\r'; }));
+    return static_cast<std::size_t>(std::count(bytes.begin(), bytes.end(), '\n'));
 }
 
 }  // namespace
@@ -122,7 +121,7 @@ void CsvReader::plan_columns() {
     std::sort(wanted_.begin(), wanted_.end(),
               [](const auto& a, const auto& b) { return a.column < b.column; });
     stamp_ = stamp_rule(layout_, dialect_.rules.decimal_mark);
-    quick_.emplace(RowPlan{dialect_.rules, dialect_.line_end, dialect_.columns, wanted_, factors_, stamp_});
+    quick_.emplace(RowPlan{dialect_.rules, dialect_.columns, wanted_, factors_, stamp_});
 }
 
 bool CsvReader::next(RowBlock& block) {
@@ -147,7 +146,7 @@ bool CsvReader::fetch(RowBlock& block) {
     std::copy(carry_.begin(), carry_.end(), bytes.begin());
     carry_.clear();
     const auto whole_lines = [&] {
-        return std::string_view(bytes.data(), have).rfind(dialect_.line_end) + 1;  // npos + 1 is 0
+        return std::string_view(bytes.data(), have).rfind('\n') + 1;  // npos + 1 is 0
     };
     std::size_t lines = whole_lines();
     for (; lines == 0 && !at_end_ && have <= longest_line; lines = whole_lines()) {
@@ -183,7 +182,7 @@ void CsvReader::accept(RowBlock& block) {
 
 // The line at `begin`, and what can be taken at once behind it; returns where the next line begins.
 std::size_t CsvReader::accept_from(RowBlock& block, std::size_t begin) {
-    const std::size_t found = block.bytes.find(dialect_.line_end, begin);
+    const std::size_t found = block.bytes.find('\n', begin);
     last_line_complete_ = found != std::string::npos;
     const std::size_t end = last_line_complete_ ? found : block.bytes.size();
     if (end - begin > longest_line) {
@@ -231,7 +230,7 @@ void CsvReader::note_quick_rows(RowBlock& block, std::size_t before) {
     line_ += count;
     bytes_without_row_ = 0;
     const std::string_view bytes(block.bytes.data(), block.row_end.back());
-    const std::size_t line_end = bytes.rfind(dialect_.line_end);
+    const std::size_t line_end = bytes.rfind('\n');
     if (quick_->parse(bytes.substr(line_end == std::string_view::npos ? 0 : line_end + 1), row_))
         std::swap(before_, row_);
 }

@@ -8,7 +8,6 @@
 #include <array>
 #include <cctype>
 #include <cmath>
-#include <filesystem>
 #include <map>
 #include <optional>
 #include <utility>
@@ -23,7 +22,6 @@
 #include "log/text/text_header.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
-#include "ripplenotch/log/log.hpp"
 
 namespace ripplenotch {
 
@@ -66,9 +64,9 @@ class Lines {
     Lines(std::string_view bytes, std::string source) : bytes_(bytes), source_(std::move(source)) {}
     bool next() {
         while (at_ < bytes_.size()) {
-            const std::size_t end = std::min(bytes_.find_first_of("\r\n", at_), bytes_.size());
-            line_ = bytes_.substr(at_, end - at_);
-            at_ = end + (bytes_.substr(end, 2) == "\r\n" ? 2 : 1);
+            const std::size_t end = std::min(bytes_.find('\n', at_), bytes_.size());
+            line_ = line_content(bytes_.substr(at_, end - at_));
+            at_ = end + 1;
             if (number_++ == 0 && line_.starts_with("\xef\xbb\xbf")) line_.remove_prefix(3);
             if (is_blank_line(line_) || is_comment_line(line_)) continue;
             return true;
@@ -438,92 +436,6 @@ std::unique_ptr<ByteSource> widened(std::unique_ptr<ByteSource> source, std::str
     if (const auto header = long_header(first_line_of(bytes)))
         return widened_tidy(name, bytes, *header, options);
     return widened_blocks(name, std::move(bytes), options);
-}
-
-namespace {
-
-// "velocity" of "run3_velocity", where all names begin with "run3_".
-std::vector<std::string> stems_of(const std::vector<std::string>& paths) {
-    std::vector<std::string> stems;
-    for (const std::string& path : paths) stems.push_back(std::filesystem::path(path).stem().string());
-    std::size_t common = stems.size() > 1 ? stems.front().find_last_of("_-. ") : std::string::npos;
-    while (
-        common != std::string::npos && !std::all_of(stems.begin(), stems.end(), [&](const std::string& stem) {
-            return stem.compare(0, common + 1, stems.front(), 0, common + 1) == 0 && stem.size() > common + 1;
-        }))
-        common = common == 0 ? std::string::npos : stems.front().find_last_of("_-. ", common - 1);
-    for (std::string& stem : stems) stem.erase(0, common == std::string::npos ? 0 : common + 1);
-    return stems;
-}
-
-}  // namespace
-
-Log read_files_as_one(const std::vector<std::string>& paths, const ReadOptions& options) {
-    std::vector<std::string> names;
-    std::vector<std::vector<double>> columns;
-    const std::vector<std::string> stems = stems_of(paths);
-    bool timed = false;
-    for (std::size_t p = 0; p < paths.size(); ++p) {
-        const std::string &path = paths[p], &stem = stems[p];
-        ByteSource source(path);
-        const std::string bytes = whole_text(source, {});
-        const TextDialect dialect = sniff_text(bytes, true, source, options);
-        std::vector<std::vector<double>> own(dialect.columns);
-        Lines lines(bytes, path);
-        while (lines.next()) {
-            if (lines.number() < dialect.data_line) continue;
-            const std::vector<std::string> cells = lines.cells(dialect.rules.delimiter);
-            for (std::size_t c = 0; c < dialect.columns; ++c) {
-                const auto number =
-                    c < cells.size() ? parse_number(cells[c], dialect.rules.decimal_mark) : std::nullopt;
-                if (!number)
-                    lines.complain(
-                        fmt::format("read '{}' in cell {}, expected a number; correct or remove the line",
-                                    c < cells.size() ? cells[c] : "", c + 1));
-                own[c].push_back(*number);
-            }
-        }
-        if (!columns.empty() && own.front().size() != columns.front().size())
-            raise<DataError>("{}: read {} rows, expected {} as in {}; rows are joined one by one", path,
-                             own.front().size(), columns.front().size(), paths.front());
-        for (std::size_t c = 0; c < dialect.columns; ++c) {
-            const std::string given = dialect.names.empty() ? "" : dialect.names[c];
-            const ColumnName read = read_column_name(given);
-            if (read.role == Role::time) {
-                if (timed && own[c] != columns.front())
-                    raise<DataError>(
-                        "{}: read other times in '{}' than in {}, expected the same; --join rows takes "
-                        "rows one by one",
-                        path, given, paths.front());
-                if (timed) continue;
-                names.insert(names.begin(), given);
-                columns.insert(columns.begin(), std::move(own[c]));
-                timed = true;
-                continue;
-            }
-            names.push_back(given.empty() ? dialect.columns == 1 ? stem : fmt::format("{}_{}", stem, c + 1)
-                            : read.role == Role::other ? fmt::format("{}_{}", stem, given)
-                                                       : given);
-            columns.push_back(std::move(own[c]));
-        }
-    }
-    std::string text;
-    for (const std::string& name : names) text += (text.empty() ? "" : ",") + quoted_name({name, "", {}, {}});
-    text += '\n';
-    for (std::size_t k = 0; k < columns.front().size(); ++k) {
-        for (std::size_t c = 0; c < columns.size(); ++c)
-            text += (c == 0 ? "" : ",") + shortest(columns[c][k]);
-        text += '\n';
-    }
-    return read_log(std::make_unique<ReshapedText>(
-                        fmt::format("{}", fmt::join(paths, "+")), std::move(text),
-                        Assumption{"shape",
-                                   fmt::format("the columns of {} files side by side", paths.size()),
-                                   "--join rows",
-                                   "",
-                                   {}},
-                        std::vector<LogWarning>{}),
-                    options);
 }
 
 }  // namespace ripplenotch

@@ -173,8 +173,8 @@ class Stretch {
         std::size_t regular = 0;
         // A little at first: where every other row needs care, there is a stretch for each of them.
         for (; regular == 0 && reach_ <= stretch_bytes; reach_ *= 4) {
-            find_edges(text_, std::min(reach_, bytes.size() - begin), separators(), edges_);
-            regular = regular_rows(text_, edges_, separators(), plan_.columns);
+            find_edges(text_, std::min(reach_, bytes.size() - begin), plan_.rules.delimiter, edges_);
+            regular = regular_rows(text_, edges_, plan_.rules.delimiter, plan_.columns);
         }
         reach_ = std::min(reach_, stretch_bytes);
         if (regular == 0) return begin;
@@ -190,7 +190,6 @@ class Stretch {
     }
 
   private:
-    [[nodiscard]] Separators separators() const { return {plan_.rules.delimiter, plan_.line_end}; }
     [[nodiscard]] std::int32_t edge(std::size_t number) const { return edges_.place[number]; }
     [[nodiscard]] std::size_t row_begin(std::size_t row) const {
         return static_cast<std::size_t>(edge(row * plan_.columns) + 1);
@@ -354,8 +353,7 @@ std::size_t QuickRows::read_by_parser(RowBlock& block, std::size_t begin, double
     ParsedRow row(plan_.joints());
     const bool timed = plan_.column_of(time_slot).has_value();
     while (begin < size) {
-        const auto* const found =
-            static_cast<const char*>(std::memchr(text + begin, plan_.line_end, size - begin));
+        const auto* const found = static_cast<const char*>(std::memchr(text + begin, '\n', size - begin));
         if (found == nullptr) break;
         const char* end = found;
         if (end > text + begin && end[-1] == '\r') --end;

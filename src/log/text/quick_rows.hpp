@@ -97,7 +97,6 @@ class RowParser {
 /// What rows look like and where their numbers go.
 struct RowPlan {
     CellRules rules;
-    char line_end = '\n';
     std::size_t columns = 0;
     std::vector<WantedColumn> wanted;  ///< sorted by column
     std::vector<double> factors =

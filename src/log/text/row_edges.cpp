@@ -9,28 +9,26 @@ namespace ripplenotch {
 namespace {
 
 /// How many rows from the first on end where they should.
-std::size_t ended_rows(const char* text, const Edges& edges, char line_end, std::size_t columns) {
+std::size_t ended_rows(const char* text, const Edges& edges, std::size_t columns) {
     const std::size_t most = edges.count / columns;
     const std::int32_t* edge = edges.place.data() + columns;
     for (std::size_t row = 0; row < most; ++row, edge += columns) {
-        if (text[*edge] != line_end) return row;
+        if (text[*edge] != '\n') return row;
     }
     return most;
 }
 
 // Adds the bytes from `at` on, one by one, behind those that the vectors have looked at.
-void find_last_edges(const char* text, std::size_t at, std::size_t size, Separators separators,
-                     Edges& found) {
+void find_last_edges(const char* text, std::size_t at, std::size_t size, char delimiter, Edges& found) {
     for (; at < size; ++at) {
-        const bool quote = text[at] == '"', line_end = text[at] == separators.line_end;
-        if (quote || line_end || text[at] == separators.delimiter)
+        const bool quote = text[at] == '"', line_end = text[at] == '\n';
+        if (quote || line_end || text[at] == delimiter)
             found.place[++found.count] = static_cast<std::int32_t>(at);
         found.quotes |= quote;
         found.returns |= text[at] == '\r';
         found.controls |= is_control(text[at]);
         found.line_ends += line_end ? 1 : 0;
     }
-    found.returns &= separators.line_end != '\r';
 }
 
 }  // namespace
@@ -41,14 +39,14 @@ std::int32_t longest_cell(const std::int32_t* place, std::size_t count) {
     return longest;
 }
 
-std::size_t regular_rows(const char* text, const Edges& edges, Separators separators, std::size_t columns) {
-    const std::size_t ended = ended_rows(text, edges, separators.line_end, columns);
+std::size_t regular_rows(const char* text, const Edges& edges, char delimiter, std::size_t columns) {
+    const std::size_t ended = ended_rows(text, edges, columns);
     // Then there is no line end but the last of each row.
     if (!edges.quotes && !edges.controls && ended == edges.line_ends) return ended;
     const std::int32_t* edge = edges.place.data() + 1;
     for (std::size_t row = 0; row < ended; ++row, edge += columns) {
         for (std::size_t c = 0; c + 1 < columns; ++c) {
-            if (text[edge[c]] != separators.delimiter) return row;
+            if (text[edge[c]] != delimiter) return row;
         }
         if (edges.controls && std::any_of(text + edge[-1] + 1, text + edge[columns - 1], is_control))
             return row;
@@ -70,8 +68,7 @@ struct EdgeBits {
 
 class EdgeFinder {
   public:
-    RIPPLENOTCH_WIDE explicit EdgeFinder(Separators separators)
-        : delimiters_(all(byte(separators.delimiter))), line_ends_(all(byte(separators.line_end))) {}
+    RIPPLENOTCH_WIDE explicit EdgeFinder(char delimiter) : delimiters_(all(byte(delimiter))) {}
 
     /// The separators among 64 bytes, a bit each.
     RIPPLENOTCH_WIDE EdgeBits look_at(const char* text) {
@@ -88,7 +85,7 @@ class EdgeFinder {
     RIPPLENOTCH_WIDE EdgeBits look_at_half(const char* text) {
         const Bytes bytes = load_bytes(text);
         const Bytes quote = as<std::uint8_t>(bytes == all(byte('"')));
-        const Bytes line_end = as<std::uint8_t>(bytes == line_ends_);
+        const Bytes line_end = as<std::uint8_t>(bytes == all(byte('\n')));
         const Bytes delimiter = as<std::uint8_t>(bytes == delimiters_);
         const Bytes carriage_return = as<std::uint8_t>(bytes == all(byte('\r')));
         quotes_ |= quote;
@@ -97,13 +94,13 @@ class EdgeFinder {
         return {bits_of(quote | delimiter | line_end), bits_of(line_end)};
     }
 
-    Bytes delimiters_, line_ends_, quotes_{}, returns_{}, controls_{};
+    Bytes delimiters_, quotes_{}, returns_{}, controls_{};
 };
 
 }  // namespace
 
-RIPPLENOTCH_WIDE void find_edges(const char* text, std::size_t size, Separators separators, Edges& found) {
-    EdgeFinder finder(separators);
+RIPPLENOTCH_WIDE void find_edges(const char* text, std::size_t size, char delimiter, Edges& found) {
+    EdgeFinder finder(delimiter);
     found.place[0] = -1;
     std::int32_t* const first = found.place.data() + 1;
     std::int32_t* into = first;
@@ -125,7 +122,7 @@ RIPPLENOTCH_WIDE void find_edges(const char* text, std::size_t size, Separators 
     found.quotes = finder.quotes();
     found.returns = finder.returns();
     found.controls = finder.controls();
-    find_last_edges(text, at, size, separators, found);
+    find_last_edges(text, at, size, delimiter, found);
 }
 
 }  // namespace ripplenotch

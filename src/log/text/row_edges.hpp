@@ -11,12 +11,8 @@ namespace ripplenotch {
 
 inline constexpr std::size_t stretch_bytes = 8192;
 
-struct Separators {
-    char delimiter, line_end;
-};
-
-/// The separators of a stretch of text: offsets of delimiters, line ends and quotes, behind one that stands
-/// before its first byte.
+/// What separates the cells of a stretch of text: offsets of delimiters, line ends and quotes, behind one
+/// that stands before its first byte.
 struct Edges {
     alignas(64) std::array<std::int32_t, stretch_bytes + 64> place;
     std::size_t count = 0;  ///< without the first
@@ -27,13 +23,13 @@ struct Edges {
 };
 
 /// Fills `found` from the first `size` (at most stretch_bytes) bytes of `text`.
-void find_edges(const char* text, std::size_t size, Separators separators, Edges& found);
+void find_edges(const char* text, std::size_t size, char delimiter, Edges& found);
 
 /// The length in bytes of the longest cell between `count` + 1 places.
 [[nodiscard]] std::int32_t longest_cell(const std::int32_t* place, std::size_t count);
 
 /// How many rows from the first on have each separator where it belongs.
-[[nodiscard]] std::size_t regular_rows(const char* text, const Edges& edges, Separators separators,
+[[nodiscard]] std::size_t regular_rows(const char* text, const Edges& edges, char delimiter,
                                        std::size_t columns);
 
 // Internal to the log room: what the vectors that read numbers need to know of each length and each place of

@@ -40,7 +40,7 @@ class Rows {
     /// False behind the last row.
     bool next() {
         while (at_ < text_.size()) {
-            const std::size_t found = std::min(text_.find(dialect_.line_end, at_), text_.size());
+            const std::size_t found = std::min(text_.find('\n', at_), text_.size());
             line_ = line_content(text_.substr(at_, found - at_));
             at_ = found + 1;
             ++number_;

@@ -144,10 +144,10 @@ std::string delimiter_name(char delimiter) {
     return std::string(1, delimiter);
 }
 
-TextPlace place_of(std::string_view bytes, std::size_t offset, char line_end) {
+TextPlace place_of(std::string_view bytes, std::size_t offset) {
     TextPlace place;
     for (std::size_t i = 0; i < offset && i < bytes.size(); ++i) {
-        if (bytes[i] == line_end) {
+        if (bytes[i] == '\n') {
             ++place.line;
             place.column = 1;
         } else {
@@ -161,7 +161,6 @@ TextDialect sniff_text(std::string_view bytes, bool whole, const ByteSource& sou
                        const ReadOptions& options) {
     TextLines lines = opening_lines(bytes, whole, source, options.skip_lines);
     TextDialect dialect;
-    dialect.line_end = lines.line_end;
     ReadOptions known = options;
     if (!known.delimiter) known.delimiter = lines.delimiter;
     std::optional<ScopeHeader> scope;
@@ -206,7 +205,7 @@ void refuse_binary(std::string_view bytes, const ByteSource& source) {
     for (std::size_t i = 0; i < bytes.size(); ++i) {
         if (!is_control(bytes[i])) continue;
         const auto byte = static_cast<unsigned char>(bytes[i]);
-        const TextPlace place = place_of(bytes, i, '\n');
+        const TextPlace place = place_of(bytes, i);
         raise<DataError>(
             "{}:{}:{}: read the byte 0x{:02x}, expected text; this is not a text log, state which format it "
             "has with --format, or export it as CSV",
@@ -215,12 +214,12 @@ void refuse_binary(std::string_view bytes, const ByteSource& source) {
 }
 
 // Complete lines; the last, unfinished one counts only when the file ends there.
-std::vector<TextLine> lines_of(std::string_view bytes, bool whole, char line_end, std::size_t from) {
+std::vector<TextLine> lines_of(std::string_view bytes, bool whole, std::size_t from) {
     std::vector<TextLine> lines;
     lines.reserve(std::min(bytes.size() / shortest_usual_line, most_usual_lines));
     std::size_t number = 1;
     for (std::size_t begin = from; begin < bytes.size(); ++number) {
-        const std::size_t at = bytes.find(line_end, begin);
+        const std::size_t at = bytes.find('\n', begin);
         if (at == std::string_view::npos && !whole) break;
         TextLine line{begin, at == std::string_view::npos ? bytes.size() : at, 0, number};
         line.next = at == std::string_view::npos ? bytes.size() : at + 1;
@@ -251,9 +250,13 @@ TextLines opening_lines(std::string_view bytes, bool whole, const ByteSource& so
     refuse_binary(bytes, source);
     const std::size_t start = bytes.substr(0, 3) == utf8_mark ? 3 : 0;
     TextLines opening;
-    const bool line_feeds = bytes.find('\n') != std::string_view::npos;
-    opening.line_end = !line_feeds && bytes.find('\r') != std::string_view::npos ? '\r' : '\n';
-    std::vector<TextLine> lines = lines_of(bytes, whole, opening.line_end, start);
+    if (bytes.find('\n') == std::string_view::npos && bytes.find('\r') != std::string_view::npos)
+        raise<DataError>(
+            "{}:1: read lines that end in CR alone, expected LF or CR LF; convert it: tr '\\r' '\\n' < FILE "
+            "| "
+            "ripplenotch ... -",
+            source.name());
+    std::vector<TextLine> lines = lines_of(bytes, whole, start);
     if (!whole && bytes.size() - (lines.empty() ? start : lines.back().next) > longest_line) {
         raise<DataError>(
             "{}:{}: read a line of more than 1 MiB, expected rows of numbers; check that this is a text log",
@@ -346,7 +349,7 @@ MotionSample text_motion_sample(std::string_view bytes, const TextDialect& diale
     double sum = 0.0;
     MotionSample sample;
     for (std::size_t begin = 0; begin < bytes.size();) {
-        const std::size_t found = bytes.find(dialect.line_end, begin);
+        const std::size_t found = bytes.find('\n', begin);
         if (found == std::string_view::npos) break;
         const std::string_view line = line_content(bytes.substr(begin, found - begin));
         begin = found + 1;

@@ -21,7 +21,6 @@ namespace ripplenotch {
 
 struct TextDialect {
     CellRules rules;
-    char line_end = '\n';  ///< '\r' for files of old Macintoshes
     bool has_header = false;
     bool header_in_comment = false;  ///< "# time velocity torque", as numpy.savetxt writes it
     bool quoted_names = false;
@@ -48,8 +47,8 @@ struct TextDialect {
 inline constexpr std::size_t longest_line = std::size_t{1} << 20;
 
 /// `first_bytes` is the opening of the file, all of it when `whole`. Throws DataError that begins with
-/// the name of `source`: for files that are empty, binary, UTF-16, only a header, or whose delimiter cannot
-/// be told.
+/// the name of `source`: for files that are empty, binary, UTF-16, without line feeds, only a header, or
+/// whose delimiter cannot be told.
 [[nodiscard]] TextDialect sniff_text(std::string_view first_bytes, bool whole, const ByteSource& source,
                                      const ReadOptions& options);
 
@@ -60,7 +59,7 @@ inline constexpr std::size_t longest_line = std::size_t{1} << 20;
 struct TextPlace {
     std::size_t line = 1, column = 1;
 };
-[[nodiscard]] TextPlace place_of(std::string_view bytes, std::size_t offset, char line_end);
+[[nodiscard]] TextPlace place_of(std::string_view bytes, std::size_t offset);
 
 // The opening of a text log as lines: comments apart from content, what is no text refused.
 
@@ -74,7 +73,6 @@ struct TextLine {
 };
 
 struct TextLines {
-    char line_end = '\n';            ///< '\r' for files of old Macintoshes
     std::vector<TextLine> comments;  ///< before the first content
     std::vector<TextLine> content;   ///< neither blank nor comment; never empty
     std::optional<char> delimiter;   ///< from a first line "sep=;", as Excel writes and reads it

@@ -15,7 +15,7 @@
 namespace ripplenotch {
 
 std::span<const Packing* const> all_packings() {
-    static constexpr std::array all = {&packings::gzip, &packings::zstd, &packings::lz4, &packings::xz};
+    static constexpr std::array all = {&packings::gzip, &packings::zstd, &packings::lz4};
     return all;
 }
 

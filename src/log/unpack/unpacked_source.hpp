@@ -14,7 +14,7 @@
 
 namespace ripplenotch {
 
-// Compressed bytes, unpacked a piece at a time: what the four kinds of compressed files have in common.
+// Compressed bytes, unpacked a piece at a time: what the kinds of compressed files have in common.
 
 /// Unpacks one stream of bytes; streams that follow each other are one, as their own programs have it.
 class Unpacker {
@@ -55,7 +55,7 @@ struct Packing {
 };
 
 namespace packings {
-extern const Packing gzip, zstd, lz4, xz;
+extern const Packing gzip, zstd, lz4;
 }
 
 /// All kinds.

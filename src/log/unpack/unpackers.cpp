@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The compressions, one library each: gzip (RFC 1952) and deflate by zlib, zstd (RFC 8878) by libzstd, lz4
-// frames by liblz4, xz by liblzma. A build without a library knows the files that need it, and refuses them.
+// frames by liblz4. A build without a library knows the files that need it, and refuses them.
 
 #include <fmt/format.h>
 
@@ -18,9 +18,6 @@
 #endif
 #if defined(RIPPLENOTCH_HAS_LZ4)
 #include <lz4frame.h>
-#endif
-#if defined(RIPPLENOTCH_HAS_LZMA)
-#include <lzma.h>
 #endif
 
 namespace ripplenotch {
@@ -180,54 +177,6 @@ class Lz4Unpacker final : public Unpacker {
 using Lz4Unpacker = void;
 #endif
 
-#if defined(RIPPLENOTCH_HAS_LZMA)
-class XzUnpacker final : public Unpacker {
-  public:
-    XzUnpacker() {
-        constexpr std::uint64_t most_memory = std::uint64_t{128} << 20;  // xz -9 needs 65 MiB
-        if (::lzma_stream_decoder(&stream_, most_memory, LZMA_CONCATENATED) != LZMA_OK)
-            raise<DataError>("no memory to unpack xz");
-    }
-    ~XzUnpacker() override { ::lzma_end(&stream_); }
-
-    Step step(std::string_view packed, std::span<char> into) override {
-        stream_.next_in = reinterpret_cast<const std::uint8_t*>(packed.data());
-        stream_.avail_in = packed.size();
-        stream_.next_out = reinterpret_cast<std::uint8_t*>(into.data());
-        stream_.avail_out = into.size();
-        // Streams may follow each other: only an empty piece says that all have come.
-        const lzma_ret result = ::lzma_code(&stream_, packed.empty() ? LZMA_FINISH : LZMA_RUN);
-        complete_ = result == LZMA_STREAM_END;
-        Step step{packed.size() - stream_.avail_in, into.size() - stream_.avail_out, {}};
-        if (result != LZMA_OK && result != LZMA_BUF_ERROR && !complete_)
-            step.damage = fmt::format("the xz data are damaged ({})", reason_of(result));
-        return step;
-    }
-    [[nodiscard]] bool complete() const override { return complete_; }
-
-  private:
-    static const char* reason_of(lzma_ret result) {
-        switch (result) {
-            case LZMA_MEMLIMIT_ERROR:
-                return "it asks for more than 128 MiB of memory";
-            case LZMA_FORMAT_ERROR:
-                return "what follows is no xz";
-            case LZMA_OPTIONS_ERROR:
-                return "it is packed in a way that liblzma does not know";
-            case LZMA_DATA_ERROR:
-                return "a checksum or a code does not fit";
-            default:
-                return "unknown reason";
-        }
-    }
-
-    lzma_stream stream_ = LZMA_STREAM_INIT;
-    bool complete_ = false;
-};
-#else
-using XzUnpacker = void;
-#endif
-
 /// `library`: the one behind `OneUnpacker`, which is void where this build lacks it.
 template <class OneUnpacker>
 constexpr Packing packing(std::string_view name, std::string_view magic, std::string_view program,
@@ -245,8 +194,6 @@ constexpr Packing packing(std::string_view name, std::string_view magic, std::st
 constexpr Packing packings::gzip = packing<GzipUnpacker>("gzip", "\x1f\x8b\x08", "zcat", "zlib");
 constexpr Packing packings::zstd = packing<ZstdUnpacker>("zstd", "\x28\xb5\x2f\xfd", "zstdcat", "libzstd");
 constexpr Packing packings::lz4 = packing<Lz4Unpacker>("lz4", "\x04\x22\x4d\x18", "lz4cat", "liblz4");
-constexpr Packing packings::xz =
-    packing<XzUnpacker>("xz", std::string_view("\xfd\x37zXZ\0", 6), "xzcat", "liblzma");
 
 #if defined(RIPPLENOTCH_HAS_ZLIB)
 std::unique_ptr<Unpacker> make_inflater(Deflate kind, const std::string& /*source*/) {

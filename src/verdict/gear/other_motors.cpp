@@ -70,8 +70,6 @@ std::vector<JointLogs> read_arm(std::span<const std::string> paths, const Layout
         std::vector<Log> all;
         try {
             all = read_joints_at_once_in_part(paths[l], options, most_rows);
-        } catch (const MemoryError&) {
-            throw;
         } catch (const Error&) {
             return {};  // the joint that is looked at could be read, and its answer does not need the others
         }

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <string_view>
+
+#include "log/messages/message_records.hpp"
+
+namespace ripplenotch {
+
+/// lay_out_message() of messages in JSON, an object each. Whether a schema says more about them makes no
+/// difference: numbers say that they are. They are 64-bit floats, but for whole ones beyond 2^53.
+[[nodiscard]] MessageLayout lay_out_json(std::string_view first);
+
+}  // namespace ripplenotch
