@@ -175,7 +175,7 @@ TEST_CASE("a delimiter within quotes is none, in columns that nobody reads as we
         RowBlock block;
         block.bytes = text;
         const QuickRows quick(
-            {{',', '.'}, '\n', 4, {{0, velocity_slot}, {3, torque_slot}}, std::vector<double>(4, 1.0)});
+            {{',', '.'}, 4, {{0, velocity_slot}, {3, torque_slot}}, std::vector<double>(4, 1.0)});
         CHECK(quick.read(block, 0, no_time) == end);
         CHECK(block.size() == 40);
     }
@@ -195,7 +195,7 @@ TEST_CASE("time that runs backward ends what is taken at once", "[log]") {
     for (const bool wide : widths()) {
         const Width here(wide);
         const QuickRows quick(
-            {{',', '.'}, '\n', 2, {{0, time_slot}, {1, torque_slot}}, std::vector<double>(4, 1.0)});
+            {{',', '.'}, 2, {{0, time_slot}, {1, torque_slot}}, std::vector<double>(4, 1.0)});
         RowBlock block;
         block.bytes = "1,5\n2,5\n2,6\n1.999,7\n3,8\n";
         CHECK(quick.read(block, 0, no_time) == 12);
