@@ -179,7 +179,6 @@ DIALECTS = {
                                    .replace("phi", "angle"), "t|deg/s|Nm|deg").decode().encode("latin-1"), None),
     "byte-order mark and CR LF": (b"\xef\xbb\xbf" + table("time_s|velocity_deg_s|torque_nm", "t|deg/s|Nm", end="\r\n"),
                                   None),
-    "CR line ends": (table("time_s|velocity_deg_s|torque_nm", "t|deg/s|Nm", end="\r"), None),
     "blanks": (table("time_s velocity_rad_s torque_Nm".split(), "t|rad/s|Nm", delimiter=" "), None),
     "savetxt comment": (table(None, "t|deg/s|Nm", delimiter=" ", head="# time_s velocity_deg_s torque_nm\n"), None),
     "no header": (table(None, "t|deg/s|Nm|deg"), ["--columns", "time,velocity,torque,position", "--unit", "velocity=deg/s,position=deg"]),

@@ -79,7 +79,7 @@ class Compressed(Case):
 
     def test_a_bomb_stays_small(self):
         path = self.write("bomb.csv.gz", gzip.compress(b"velocity_deg_s,torque_nm\n" + b"90,1.5\n" * 12_000_000))
-        self.assertLess(path.stat().st_size, 100_000)
+        self.assertLess(path.stat().st_size, 150_000)
         said = self.refusal(path, "--sample-rate", "1kHz", "--method", "none", "-q", "-o", "out.csv", command="filter")
         self.assertIn("times smaller", said)
         self.assertFalse((self.folder / "out.csv").exists())
