@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: MIT
+#include "diagnose/engine/baseline.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/functions/many_numbers.hpp"
+#include "core/vectors/dot.hpp"
+#include "diagnose/engine/gram.hpp"
+#include "diagnose/engine/terms.hpp"
+#include "ripplenotch/core/portable_math.hpp"
+
+namespace ripplenotch::engine {
+namespace {
+
+constexpr double friction_step_deg_s = 0.5;
+// Widths of a known Coulomb friction: its step over speed, and loops over the angle, because a stated
+// friction holds at standstill and how softly is not stated.
+constexpr double known_step_deg_s = 0.3;
+constexpr std::array known_loops_deg = {0.03, 0.12};
+// What the smoothing and the elasticity of a gear make of the inertia's torque, in shares of the inertia: its
+// first derivative in s and its second in s^2.
+constexpr double jerk_share_s = 0.005, snap_share_s2 = 3e-5;
+constexpr double known_scale_deviation = 0.02;    // a torque constant is known to two per cent
+constexpr double known_gravity_deviation = 0.04;  // of the simulation's own
+constexpr double least_gravity_nm = 1e-4;
+
+std::vector<double> step_of_direction(const Motion& motion, double width_deg_s) {
+    std::vector<double> step(motion.size());
+    for (std::size_t k = 0; k < step.size(); ++k) step[k] = motion.velocity_deg_s[k] / width_deg_s;
+    portable::tanh(step, step);
+    return step;
+}
+
+std::vector<std::vector<double>> cosine_and_sine(const std::vector<double>& angle_deg) {
+    std::vector<std::vector<double>> columns(2, std::vector<double>(angle_deg.size()));
+    portable::cos_degrees(angle_deg, columns[0]);
+    portable::sin_degrees(angle_deg, columns[1]);
+    return columns;
+}
+
+// Columns of a term of the user's model: its linear values are free, the others as stated or at their start.
+std::vector<std::vector<double>> term_columns(const Term& term, const Situation& situation) {
+    std::vector<double> values;
+    for (std::size_t p = 0; p < term.values.size(); ++p) {
+        const Parameter& parameter = term.effect->parameters[p];
+        const bool is_step = term.effect->name == "coulomb-friction" && parameter.name == "width_deg_s";
+        values.push_back(term.values[p].value_or(is_step ? known_step_deg_s : parameter.start));
+    }
+    return unit_columns(*term.effect, values, situation);
+}
+
+// Size of the gravity in a torque by its regression on the motion.
+double gravity_of(const std::vector<double>& torque_nm, const RecordedMotion& recorded,
+                  const std::vector<double>& direction) {
+    const Motion& motion = recorded.motion();
+    std::vector<std::vector<double>> columns = {motion.acceleration_deg_s2,
+                                                std::vector<double>(motion.size(), 1.0), direction,
+                                                motion.velocity_deg_s};
+    for (auto& column : cosine_and_sine(motion.position_deg)) columns.push_back(std::move(column));
+    const std::vector<double> factors = regress(columns, torque_nm, recorded.usable());
+    return portable::hypot(factors[4], factors[5]);
+}
+
+}  // namespace
+
+bool Baseline::has(std::string_view name) const {
+    return std::ranges::any_of(columns, [&](const BaseColumn& column) { return column.name == name; });
+}
+
+std::vector<std::vector<double>> ripple_columns(const Motion& motion, std::span<const double> orders,
+                                                GearRatio ratio) {
+    std::vector<std::vector<double>> columns;
+    std::vector<double> angle_deg(motion.size());
+    for (const double order : orders) {
+        for (std::size_t k = 0; k < angle_deg.size(); ++k)
+            angle_deg[k] = order * ratio.value() * motion.position_deg[k];
+        for (auto& column : cosine_and_sine(angle_deg)) columns.push_back(std::move(column));
+    }
+    return columns;
+}
+
+Baseline make_baseline(const RecordedMotion& recorded, const KnownSide& known,
+                       std::optional<double> inertia_nm_per_deg_s2) {
+    const Motion& motion = recorded.motion();
+    const Situation situation{.motion = motion, .ratio = known.model->gear_ratio};
+    Baseline base;
+    base.ratio = known.model->gear_ratio;
+    base.direction = step_of_direction(motion, friction_step_deg_s);
+    for (const Term& term : known.model->terms)
+        if (term.effect->ripple_order) base.orders.push_back(term.values[*term.effect->ripple_order].value());
+    if (known.is_simulated && !known.is_scale_known)
+        base.columns.push_back({.name = "simulated", .torque_nm = motion.known_nm, .bears_load = true});
+    base.inertia_place = base.columns.size();
+    base.columns.push_back({.name = "inertia", .torque_nm = motion.acceleration_deg_s2, .bears_load = true});
+    if (!known.is_simulated) {
+        for (const Term& term : known.model->terms) {
+            const Effect& effect = *term.effect;
+            if (effect.side != Side::joint || effect.ripple_order || effect.uses_load ||
+                effect.name == "inertia")
+                continue;
+            for (auto& column : term_columns(term, situation))
+                base.columns.push_back({.name = std::string(effect.name),
+                                        .torque_nm = std::move(column),
+                                        .bears_load = effect.bears_load});
+        }
+    }
+    if (base.has("coulomb-friction")) {
+        for (const double width_deg : known_loops_deg)
+            base.columns.push_back(
+                {.name = "nuisance", .torque_nm = friction_loop(motion.position_deg, width_deg)});
+    }
+    const auto share = [&](double of) {
+        return inertia_nm_per_deg_s2 ? std::abs(*inertia_nm_per_deg_s2) * of
+                                     : std::numeric_limits<double>::infinity();
+    };
+    std::vector<double> jerk = gradient(motion.acceleration_deg_s2, recorded.step_s());
+    std::vector<double> snap = gradient(jerk, recorded.step_s());
+    base.columns.push_back(
+        {.name = "nuisance", .torque_nm = std::move(jerk), .deviation = share(jerk_share_s)});
+    base.columns.push_back(
+        {.name = "nuisance", .torque_nm = std::move(snap), .deviation = share(snap_share_s2)});
+    if (known.is_simulated && known.is_scale_known) {
+        base.known_nm = motion.known_nm;
+        base.columns.push_back(
+            {.name = "nuisance", .torque_nm = motion.known_nm, .deviation = known_scale_deviation});
+    }
+    if (known.is_simulated) {
+        const double gravity_nm = gravity_of(motion.known_nm, recorded, base.direction);
+        for (auto& column : cosine_and_sine(motion.position_deg))
+            base.columns.push_back({.name = "nuisance",
+                                    .torque_nm = std::move(column),
+                                    .deviation = known_gravity_deviation * gravity_nm + least_gravity_nm});
+    }
+    for (const GivenTerm& given : known.given_terms) {
+        for (std::size_t value = 0; value < given.torque_nm.size(); ++value) {
+            std::vector<double> column = recorded.on_clock(given.torque_nm[value]);
+            if (given.mean[value] != 0.0) {
+                base.known_nm.resize(motion.size(), 0.0);
+                add_scaled(given.mean[value], column.data(), base.known_nm.data(), column.size());
+            }
+            if (given.deviation[value] > stated_deviation)
+                base.columns.push_back({.name = given.name,
+                                        .torque_nm = std::move(column),
+                                        .deviation = given.deviation[value],
+                                        .bears_load = true});
+        }
+    }
+    return base;
+}
+
+}  // namespace ripplenotch::engine

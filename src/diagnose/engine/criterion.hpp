@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// The one criterion: squares of the whitened residual in units of the noise, plus a penalty per fitted
+// number. Linear values are solved exactly in every evaluation; products of columns are kept by block of the
+// log, so that leaving blocks out costs next to nothing.
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <tuple>
+#include <unordered_map>
+#include <vector>
+
+#include "core/matrices/linear_algebra.hpp"
+#include "diagnose/engine/baseline.hpp"
+#include "diagnose/engine/saturated_fit.hpp"
+#include "diagnose/engine/terms.hpp"
+
+namespace ripplenotch::engine {
+
+/// The samples that count, in blocks.
+struct Blocks {
+    std::vector<std::size_t> sample;  ///< slots, ascending
+    std::vector<std::size_t> first;   ///< of each block in `sample`; one more for the end
+    [[nodiscard]] std::size_t count() const { return first.size() - 1; }
+};
+
+/// Columns behind one filter, and their products by block. A column is computed once and its products stay.
+class ColumnProducts {
+  public:
+    ColumnProducts(const Blocks& blocks, std::vector<double> filter, double unit_nm);
+
+    using Make = std::function<std::vector<std::vector<double>>()>;
+    struct Key {
+        SearchedTerm term;  ///< kind null: a group of the baseline
+        int group = 0;      ///< which, or another use of the term's columns
+        double ratio = 0.0;
+        SearchedTerms transforms;
+        auto operator<=>(const Key& other) const {
+            return std::tie(group, term.kind, term.values, ratio, transforms) <=>
+                   std::tie(other.group, other.term.kind, other.term.values, other.ratio, other.transforms);
+        }
+        bool operator==(const Key&) const = default;
+    };
+    /// Places of the columns of a key; `make` yields them, unfiltered and whole, when they are new.
+    const std::vector<int>& places(const Key& key, const Make& make);
+    /// Products of two columns, a sum per block.
+    std::span<const double> products(int a, int b);
+    [[nodiscard]] std::span<const double> column(int place);
+
+  private:
+    void pack(int place, std::vector<double> whole);
+    void release_old();
+
+    const Blocks& blocks_;
+    std::vector<double> filter_;
+    double unit_nm_;
+    std::map<Key, std::vector<int>> places_;
+    struct Kept {
+        std::vector<double> values;  ///< by Blocks::sample; empty once released
+        Make make;
+        std::size_t of_group = 0;
+        std::uint64_t last_use = 0;
+    };
+    std::vector<Kept> columns_;
+    std::size_t held_ = 0;
+    std::uint64_t uses_ = 0;
+    std::unordered_map<std::uint64_t, std::size_t> sums_place_;
+    std::vector<double> sums_;
+};
+
+/// A set of terms fitted by linear least squares.
+struct LinearFit {
+    bool is_physical = true;  ///< false: a friction would drive the joint
+    double squares = 0.0;     ///< of the residual, and of the priors' departures
+    Eigen::VectorXd factors;  ///< of Design::columns
+};
+
+struct BlockSquares {
+    std::vector<double> fitted, held_out;  ///< of each block, with it and without it in the fit
+};
+
+/// Which columns a set of terms has.
+struct Design {
+    std::vector<int> columns;
+    std::vector<double> deviation;           ///< of each column's prior; infinity: none
+    std::vector<std::size_t> first_of_term;  ///< place in `columns`, per term; of transforms the next term's
+    int target = 0;
+};
+
+class Criterion {
+  public:
+    Criterion(const RecordedMotion& recorded, const Baseline& base,
+              std::shared_ptr<const SaturatedFit> noise);
+
+    [[nodiscard]] const LinearFit& fit(const SearchedTerms& terms);
+    [[nodiscard]] const BlockSquares& block_squares(const SearchedTerms& terms);
+    /// Squares of the fit and the penalty of its numbers.
+    [[nodiscard]] double cost(const SearchedTerms& terms);
+
+    /// Squares of the residual in Nm^2 without nuisance columns, by block.
+    [[nodiscard]] const std::vector<double>& plain_block_squares(const SearchedTerms& terms);
+    /// Residual in Nm, 0 where samples do not count; without ripple, or without what changes it, on demand.
+    enum class Ripple { fitted, left };
+    [[nodiscard]] std::vector<double> residual_nm(const SearchedTerms& terms, Ripple ripple = Ripple::fitted);
+    /// rms of residual_nm over the samples that count.
+    [[nodiscard]] double rms_nm(const SearchedTerms& terms);
+
+    [[nodiscard]] const RecordedMotion& recorded() const { return recorded_; }
+    [[nodiscard]] const Baseline& base() const { return base_; }
+    [[nodiscard]] const SaturatedFit& noise() const { return *noise_; }
+    [[nodiscard]] const Blocks& blocks() const { return blocks_; }
+    [[nodiscard]] double samples() const { return static_cast<double>(blocks_.sample.size()); }
+    [[nodiscard]] std::size_t evaluations() const { return fits_.size(); }
+
+    /// Columns of the design along the whitened samples, for intervals.
+    [[nodiscard]] Design design(const SearchedTerms& terms) { return design(terms, white_, {}); }
+    [[nodiscard]] ColumnProducts& white() { return white_; }
+
+  private:
+    struct Parts {
+        bool nuisance = true;
+        Ripple ripple = Ripple::fitted;
+    };
+    Design design(const SearchedTerms& terms, ColumnProducts& columns, const Parts& parts);
+    std::vector<std::vector<double>> term_columns(const SearchedTerm& term, GearRatio ratio) const;
+    Eigen::MatrixXd gram(const Design& design, ColumnProducts& columns, std::vector<Eigen::MatrixXd>* blocks);
+    [[nodiscard]] std::vector<double> prior_weights(const Design& design, const Eigen::MatrixXd& gram,
+                                                    double noise_nm) const;
+
+    const RecordedMotion& recorded_;
+    const Baseline& base_;
+    std::shared_ptr<const SaturatedFit> noise_;
+    Blocks blocks_;
+    ColumnProducts white_, plain_;
+    std::map<SearchedTerms, LinearFit> fits_;
+    std::map<SearchedTerms, BlockSquares> block_squares_;
+    std::map<SearchedTerms, std::vector<double>> plain_squares_;
+};
+
+}  // namespace ripplenotch::engine

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: MIT
+#include "diagnose/engine/engine.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+#include "diagnose/engine/intervals.hpp"
+#include "diagnose/engine/search.hpp"
+#include "diagnose/engine/settings.hpp"
+
+namespace ripplenotch::engine {
+namespace {
+
+// Windows of the smoothing: the one that leaves least in the saturated regression, longer ones preferred.
+constexpr std::array windows_s = {0.008, 0.012, 0.017, 0.025, 0.035, 0.05};
+constexpr double first_window_s = 0.035;
+constexpr double longest_preference = 0.02;
+constexpr std::size_t exchange_finalists = 5;
+
+// The log as the search sees it: smoothed, with its faults excluded.
+struct Prepared {
+    Baseline base;
+    std::shared_ptr<const SaturatedFit> noise;
+};
+
+Prepared prepare(RecordedMotion& recorded, const KnownSide& known, std::vector<ConverterFault>& faults) {
+    std::optional<double> inertia;
+    Prepared now;
+    const auto measure = [&](double window_s) {
+        recorded.smooth(window_s);
+        now.base = make_baseline(recorded, known, inertia);
+        now.noise = std::make_shared<const SaturatedFit>(fit_saturated(recorded, now.base, {}, nullptr));
+        inertia = now.noise->inertia_nm_per_deg_s2;
+        return now.noise->noise_nm;
+    };
+    measure(first_window_s);
+    double best_s = first_window_s, least = std::numeric_limits<double>::infinity();
+    for (const double window_s : windows_s) {
+        const double left = measure(window_s) * (1.0 + longest_preference * window_s / windows_s.back());
+        if (left < least) least = left, best_s = window_s;
+    }
+    measure(best_s);
+    const std::vector<std::size_t> spikes = find_spikes(recorded, *now.noise);
+    if (!spikes.empty()) {
+        auto& fault = faults.emplace_back();
+        fault.effect = "spikes";
+        for (const std::size_t slot : spikes) {
+            recorded.exclude(slot - 1, 3);
+            fault.rows.push_back(recorded.row_of(slot));
+        }
+        measure(recorded.window_s());
+    }
+    return now;
+}
+
+std::vector<double> per_row(const RecordedMotion& recorded, const std::vector<double>& per_slot) {
+    std::vector<double> found;
+    for (const std::size_t slot : recorded.clock().slot_of) found.push_back(per_slot[slot]);
+    return found;
+}
+
+double sum(const std::vector<double>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
+
+// What speaks for one adopted term, and which others could stand in its place.
+AdoptedTerm judged(const Search& search, Criterion& criterion, const SearchedTerms& terms, std::size_t place,
+                   ValuedTerm valued) {
+    AdoptedTerm found;
+    found.term = std::move(valued.term);
+    found.values = std::move(valued.values);
+    SearchedTerms fewer = terms;
+    fewer.erase(fewer.begin() + static_cast<std::ptrdiff_t>(place));
+    const Admission admission = Search::admission(criterion, fewer, terms);
+    found.reduction = admission.reduction;
+    found.block_t = admission.block_t;
+    found.noise_share = admission.noise_share;
+    const double before = sum(criterion.plain_block_squares({}));
+    found.explained_share =
+        (sum(criterion.plain_block_squares(fewer)) - sum(criterion.plain_block_squares(terms))) / before;
+    for (const SearchedTerms& other : search.extensions(criterion, fewer, exchange_finalists)) {
+        const double margin = criterion.cost(other) - criterion.cost(terms);
+        if (other.back().kind == terms[place].kind || margin > tie_margin ||
+            !Search::admission(criterion, fewer, other).is_admissible)
+            continue;
+        found.rivals.push_back({valued_terms(criterion, other).back().term, margin});
+    }
+    return found;
+}
+
+}  // namespace
+
+Result find_missing_effects(const Input& input) {
+    Result result;
+    RecordedMotion recorded(input.log, input.simulation);
+    std::vector<unsigned char> good(input.log.size(), 1);
+    result.faults = find_converter_faults(input.log.torque_nm, good);
+    recorded.mark_spoiled_rows(good);
+    const KnownSide known{&input.model, input.given_terms, input.simulation.has_value(),
+                          input.simulation && input.simulation->is_scale_known};
+    const Prepared prepared = prepare(recorded, known, result.faults);
+    Search search(recorded, prepared.base, prepared.noise, {input.without.begin(), input.without.end()});
+    const SearchResult found = search.run();
+    Criterion& criterion = *found.best.criterion;
+    const SearchedTerms& terms = found.best.terms;
+    std::vector<ValuedTerm> valued = valued_terms(criterion, terms);
+    for (std::size_t i = 0; i < terms.size(); ++i) {
+        const bool is_silent = is_below_resolution(terms[i], recorded.step_s());
+        auto& list = is_silent ? result.corrections : result.terms;
+        list.push_back(judged(search, criterion, terms, i, std::move(valued[i])));
+    }
+    for (const RefusedTerm& refused : found.refused) {
+        SearchedTerms with = terms;
+        with.push_back(refused.term);
+        result.nearly_adopted.push_back({valued_terms(criterion, with).back().term,
+                                         refused.admission.reduction, refused.admission.reason});
+    }
+    result.rms_before_nm = criterion.rms_nm({});
+    result.rms_after_nm = criterion.rms_nm(terms);
+    result.noise_nm = criterion.noise().noise_nm;
+    result.residual_before_nm = per_row(recorded, criterion.residual_nm({}));
+    result.residual_after_nm = per_row(recorded, criterion.residual_nm(terms));
+    for (const std::size_t slot : recorded.clock().slot_of) result.is_used.push_back(recorded.usable()[slot]);
+    result.samples = criterion.blocks().sample.size();
+    result.smoothing_s = recorded.window_s();
+    result.is_position_integrated = recorded.is_position_integrated();
+    result.evaluations = found.evaluations;
+    return result;
+}
+
+}  // namespace ripplenotch::engine

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+
+#include "diagnose/engine/search.hpp"
+#include "ripplenotch/core/portable_math.hpp"
+
+namespace ripplenotch::engine {
+namespace {
+
+// Halvings, roughly, of a step of the coordinate search.
+constexpr double shrink = 0.55;
+constexpr double straight_drift_s = 1e3;  // from here on a drift is a line, whatever its time constant
+
+// Steps of both signs about the best value so far, each series shorter than the last.
+struct StepSearch {
+    Criterion& criterion;
+    SearchedTerms& terms;
+    std::size_t place, value;
+    double best;
+
+    template <class Moved>
+    void run(int passes, double step, double shrunk, Moved moved) {
+        for (int pass = 0; pass < passes; ++pass, step *= shrunk) {
+            for (const double signed_step : {-step, step}) {
+                SearchedTerms tried = terms;
+                const auto next = moved(terms[place].values[value], signed_step);
+                if (!next) continue;
+                tried[place].values[value] = *next;
+                const double squares = criterion.fit(tried).squares;
+                if (squares >= best) continue;
+                best = squares;
+                terms = std::move(tried);
+            }
+        }
+    }
+};
+
+}  // namespace
+
+SearchedTerms refined(Criterion& criterion, SearchedTerms terms, std::size_t place) {
+    const TermKind& kind = *terms[place].kind;
+    if (!kind.is_refined) return terms;
+    StepSearch search{criterion, terms, place, 0, criterion.fit(terms).squares};
+    if (kind.role == Role::ratio) {
+        const std::vector<double>& orders = criterion.base().orders;
+        const double turns = std::max(criterion.recorded().travel_deg() / 360.0, 0.05);
+        const double step = 0.2 / (*std::max_element(orders.begin(), orders.end()) * turns);
+        search.run(7, step, 0.5,
+                   [](double ratio, double by) { return std::optional(rounded(ratio + by, 7)); });
+        return terms;
+    }
+    const bool is_delay = kind.searched[0].lower < 0.0;
+    const int sweeps = kind.searched.size() > 1 ? 2 : 1;
+    for (int sweep = 0; sweep < sweeps; ++sweep) {
+        for (std::size_t value = 0; value < kind.searched.size(); ++value) {
+            const SearchedValue& bounds = kind.searched[value];
+            search.value = value;
+            if (is_delay) {
+                search.run(7, 0.002, shrink, [&](double delay_s, double by) -> std::optional<double> {
+                    const double next = std::nearbyint((delay_s + by) * 1e6) * 1e-6;
+                    if (next < bounds.lower || next > bounds.upper) return std::nullopt;
+                    return next;
+                });
+                continue;
+            }
+            if (kind.effect->name == "drift" && terms[place].values[0] > straight_drift_s) continue;
+            search.run(5, 0.35, shrink, [&](double from, double by) {
+                return std::optional(
+                    rounded(std::clamp(from * portable::exp(by), bounds.lower, bounds.upper), 5));
+            });
+        }
+    }
+    return terms;
+}
+
+}  // namespace ripplenotch::engine

@@ -1,0 +1,398 @@
+// SPDX-License-Identifier: MIT
+#include "diagnose/engine/search.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+#include "diagnose/engine/settings.hpp"
+#include "ripplenotch/core/portable_math.hpp"
+
+namespace ripplenotch::engine {
+namespace {
+
+constexpr int most_rounds = 6, most_exchanges = 5;  // a search that goes on beyond them goes in circles
+constexpr std::size_t tried_of_finalists = 3;
+constexpr std::size_t exchange_finalists = 5;
+constexpr std::size_t rival_paths = 2;
+constexpr double much_left = 1.5;          // squares over those of the noise from which other paths compete
+constexpr double smallest_delay_s = 1e-4;  // the valley of a delay may be narrower than any grid
+constexpr double least_gap = 0.02;         // of the squares of the noise: a gap is no smaller
+constexpr double best_block_share = 0.15;  // of the blocks, which a dominant term must not depend on
+constexpr double least_spread = 100.0;     // reduction without them
+
+// Of two terms that say nearly the same the plainer is preferred.
+struct Plainer {
+    std::string_view plain, other;
+    double share;
+};
+constexpr std::array plainer_pairs = {
+    Plainer{"delay", "lag", plain_delay_share},
+    Plainer{"delay", "sensor-lowpass", plain_delay_share},
+    Plainer{"delay", "resonance", plain_delay_share},
+    Plainer{"coulomb-friction", "hysteresis", plain_friction_share},
+    Plainer{"coulomb-friction", "stribeck-friction", plain_friction_share},
+    Plainer{"hysteresis", "stribeck-friction", plain_friction_share},
+};
+const Plainer* plainer_than(const SearchedTerm& plain, const SearchedTerm& other) {
+    const auto found = std::ranges::find_if(
+        plainer_pairs, [&](const Plainer& pair) { return plain.is(pair.plain) && other.is(pair.other); });
+    return found == plainer_pairs.end() ? nullptr : &*found;
+}
+
+double sum(const std::vector<double>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
+
+std::vector<double> difference(const std::vector<double>& a, const std::vector<double>& b) {
+    std::vector<double> found(a.size());
+    for (std::size_t k = 0; k < a.size(); ++k) found[k] = a[k] - b[k];
+    return found;
+}
+
+// Mean over its standard error.
+double t_value(const std::vector<double>& values) {
+    const double count = static_cast<double>(values.size()), mean = sum(values) / count;
+    double squares = 0.0;
+    for (const double value : values) squares += (value - mean) * (value - mean);
+    return sum(values) / (std::sqrt(squares / std::max(count - 1.0, 1.0) * count) + 1e-300);
+}
+
+// A transform, a ratio or a ripple changes what the saturated regression can explain.
+bool changes_noise(const SearchedTerm& term) {
+    return term.is_transform() || term.kind->role == Role::ratio || term.is("ripple");
+}
+
+bool has_sensor(const SearchedTerms& terms) {
+    return std::ranges::any_of(terms, [](const SearchedTerm& t) { return t.kind->role == Role::sensor; });
+}
+
+bool is_at_bound(const SearchedTerm& term) {
+    if (term.kind->may_be_at_bound || !term.kind->is_refined || term.kind->role == Role::ratio) return false;
+    for (std::size_t i = 0; i < term.kind->searched.size(); ++i) {
+        const double size = std::abs(term.values[i]);
+        if (size <= term.kind->searched[i].lower * 1.02 || size >= term.kind->searched[i].upper * 0.98)
+            return true;
+    }
+    return false;
+}
+
+SearchedTerms with(SearchedTerms terms, const SearchedTerm& more) {
+    terms.push_back(more);
+    return terms;
+}
+
+SearchedTerms without_place(SearchedTerms terms, std::size_t place) {
+    terms.erase(terms.begin() + static_cast<std::ptrdiff_t>(place));
+    return terms;
+}
+
+}  // namespace
+
+bool is_below_resolution(const SearchedTerm& term, double step_s) {
+    const double value = std::abs(term.values[0]);
+    if (term.is("delay") || term.is("lag")) return value < 1.5 * step_s;
+    return term.is("sensor-lowpass") && value > 0.1 / step_s;
+}
+
+Search::Search(const RecordedMotion& recorded, const Baseline& base,
+               std::shared_ptr<const SaturatedFit> noise, std::vector<std::string> without)
+    : recorded_(recorded), base_(base), noise_(std::move(noise)), without_(std::move(without)) {}
+
+Admission Search::admission(Criterion& criterion, const SearchedTerms& shorter, const SearchedTerms& longer) {
+    Admission found;
+    const double noise_nm = criterion.noise().noise_nm, samples = criterion.samples();
+    const double least_squares = least_gap * samples;
+    const double before = criterion.fit(shorter).squares;
+    found.reduction = criterion.cost(shorter) - criterion.cost(longer);
+    if (!criterion.fit(longer).is_physical) {
+        found.reason = "its size is that of a drive, not of a friction";
+        return found;
+    }
+    const BlockSquares &fit_before = criterion.block_squares(shorter),
+                       &fit_after = criterion.block_squares(longer);
+    const std::vector<double> plain =
+        difference(criterion.plain_block_squares(shorter), criterion.plain_block_squares(longer));
+    std::vector<double> by_block = difference(fit_before.fitted, fit_after.fitted);
+    found.block_t = std::max(t_value(by_block), t_value(plain));
+    found.noise_share = std::sqrt(std::max(sum(plain), 0.0) / samples) / noise_nm;
+    found.gap_share = found.reduction / std::max(before - samples, least_squares);
+    const double whole_share = found.reduction / std::max(criterion.fit({}).squares - samples, least_squares);
+    std::vector<double> held_out = difference(fit_before.held_out, fit_after.held_out);
+    std::sort(held_out.begin(), held_out.end());
+    double held_out_sum = sum(held_out);
+    if (held_out.size() > 8) held_out_sum -= held_out.front() + held_out.back();
+    std::sort(by_block.begin(), by_block.end());
+    const auto best = std::max<std::size_t>(
+        2, static_cast<std::size_t>(best_block_share * static_cast<double>(by_block.size())));
+    by_block.resize(by_block.size() - std::min(best, by_block.size()));
+    const bool is_dominant =
+        std::min(found.gap_share, whole_share) > dominant_gap_share && sum(by_block) > least_spread;
+    const auto added = std::ranges::find_if(
+        longer, [&](const SearchedTerm& term) { return std::ranges::find(shorter, term) == shorter.end(); });
+    const bool is_silent =
+        added != longer.end() && is_below_resolution(*added, criterion.recorded().step_s());
+    if (found.reduction <= least_reduction)
+        found.reason = "it reduces the residual no more than chance";
+    else if (found.block_t <= least_block_t && !is_dominant)
+        found.reason = "few stretches of the log carry it";
+    else if (held_out_sum <= 0.0)
+        found.reason = "it does not predict stretches that were left out";
+    else if (!is_silent && found.noise_share <= least_noise_share)
+        found.reason = "its torque is far below the noise";
+    else if (!is_silent && found.gap_share <= least_gap_share)
+        found.reason = "it explains a small part of what is unexplained";
+    else if (!is_silent && added != longer.end() && is_at_bound(*added))
+        found.reason = "its best value is a bound";
+    found.is_admissible = found.reason.empty();
+    return found;
+}
+
+// Orders and tones at lines of the residual, and ratios that put the model's ripple on lines.
+void Search::add_lines(Criterion& criterion, const SearchedTerms& terms,
+                       std::vector<SearchedTerm>& found) const {
+    const std::vector<double> residual = criterion.residual_nm(terms);
+    const double turns_per_s = recorded_.fastest_deg_s() / 360.0;
+    const double highest = 0.45 / recorded_.step_s() / turns_per_s;
+    const double ratio = ratio_of(terms, base_.ratio).value();
+    const auto median_of = [](std::vector<double> values) {
+        const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+        std::nth_element(values.begin(), middle, values.end());
+        return *middle;
+    };
+    if (ratio > 0.0) {
+        const AngleSpectrum lines =
+            angle_spectrum(recorded_, residual, 0.4 * ratio, std::min(13.0 * ratio, highest));
+        const double usual = lines.power.empty() ? 0.0 : median_of(lines.power);
+        for (int half = 1; half < 26 && !lines.power.empty(); ++half) {
+            const double order = 0.5 * half;
+            const bool is_there = std::ranges::find(base_.orders, order) != base_.orders.end() ||
+                                  std::ranges::any_of(terms, [&](const SearchedTerm& t) {
+                                      return t.is("ripple") && t.values[0] == order;
+                                  });
+            if (is_there || order * ratio > lines.cycles_per_turn.back()) continue;
+            double power = 0.0;
+            for (std::size_t k = 0; k < lines.power.size(); ++k)
+                if (std::abs(lines.cycles_per_turn[k] - order * ratio) < 0.6 / lines.turns)
+                    power = std::max(power, lines.power[k]);
+            if (power > 6.0 * usual) found.push_back({&term_kind("ripple"), {order, 0.0}});
+        }
+    }
+    if (!contains(terms, "tone"))
+        if (const auto tone_hz = find_tone(recorded_, residual))
+            found.push_back({&term_kind("tone"), {*tone_hz, 0.0}});
+    if (base_.orders.empty() || contains(terms, "gear-ratio") ||
+        std::ranges::any_of(terms, [](const SearchedTerm& term) { return term.changes_ripple(); }))
+        return;
+    const std::vector<double> with_ripple = criterion.residual_nm(terms, Criterion::Ripple::left);
+    const double known = base_.ratio.value();
+    const double largest_order = *std::max_element(base_.orders.begin(), base_.orders.end());
+    const AngleSpectrum lines = angle_spectrum(recorded_, with_ripple, 0.4 * known,
+                                               std::min(1.6 * largest_order * known, highest), 0.12);
+    if (lines.power.empty()) return;
+    const double usual = median_of(lines.power),
+                 spacing = lines.cycles_per_turn[1] - lines.cycles_per_turn[0];
+    const auto power_at = [&](double cycles) {
+        const double place = (cycles - lines.cycles_per_turn.front()) / spacing;
+        if (place < 0.0 || place > static_cast<double>(lines.power.size() - 1)) return 0.0;
+        const auto below = std::min(static_cast<std::size_t>(place), lines.power.size() - 2);
+        const double share = place - static_cast<double>(below);
+        return (lines.power[below] + share * (lines.power[below + 1] - lines.power[below])) / usual;
+    };
+    const double step = 0.1 / (lines.turns * largest_order * known);
+    std::vector<double> factors, powers;
+    for (std::size_t k = 0; 0.7 + step * static_cast<double>(k) < 1.4; ++k) {
+        factors.push_back(0.7 + step * static_cast<double>(k));
+        powers.push_back(0.0);
+        for (const double order : base_.orders) powers.back() += power_at(order * known * factors.back());
+    }
+    for (int peak = 0; peak < 2; ++peak) {
+        const auto top =
+            static_cast<std::size_t>(std::max_element(powers.begin(), powers.end()) - powers.begin());
+        if (std::abs(factors[top] - 1.0) * known * lines.turns > 0.05)
+            found.push_back({&term_kind("gear-ratio"), {known * factors[top], 0.0}});
+        for (std::size_t k = 0; k < powers.size(); ++k)
+            if (std::abs(factors[k] - factors[top]) * known * lines.turns < 1.5) powers[k] = 0.0;
+    }
+}
+
+std::vector<SearchedTerm> Search::starts(Criterion& criterion, const SearchedTerms& terms) const {
+    std::vector<SearchedTerm> found;
+    const bool sensor_is_there = has_sensor(terms);
+    for (const TermKind& kind : term_kinds()) {
+        const std::string_view name = kind.effect->name;
+        const bool needs_ripple = kind.role == Role::ripple_change;
+        if (base_.has(name) || (name == "hysteresis" && base_.has("coulomb-friction")) ||
+            (contains(terms, name) && !kind.may_occur_twice) || (needs_ripple && base_.orders.empty()) ||
+            (kind.role == Role::sensor && sensor_is_there))
+            continue;
+        if (kind.searched.empty()) {
+            found.push_back({&kind, {}});
+            continue;
+        }
+        for (const double first : kind.searched[0].grid) {
+            if (kind.searched.size() == 1) {
+                const SearchedTerm term{&kind, {first, 0.0}};
+                if (std::ranges::find(terms, term) == terms.end()) found.push_back(term);
+                continue;
+            }
+            for (const double second : kind.searched[1].grid) found.push_back({&kind, {first, second}});
+        }
+    }
+    add_lines(criterion, terms, found);
+    std::erase_if(found, [&](const SearchedTerm& term) {
+        return std::ranges::find(without_, term.kind->effect->name) != without_.end();
+    });
+    return found;
+}
+
+// Starts in order of what each reduces, the best of each kind.
+std::vector<Search::Candidate> Search::ranked(Criterion& criterion, const SearchedTerms& terms) const {
+    const double before = criterion.fit(terms).squares;
+    std::vector<Candidate> scored;
+    for (const SearchedTerm& term : starts(criterion, terms))
+        scored.push_back({term, before - criterion.fit(with(terms, term)).squares});
+    std::ranges::stable_sort(
+        scored, [](const Candidate& a, const Candidate& b) { return a.reduction > b.reduction; });
+    std::vector<Candidate> best;
+    for (const Candidate& one : scored) {
+        const bool is_seen = std::ranges::any_of(best, [&](const Candidate& other) {
+            const SearchedTerm &a = one.term, &b = other.term;
+            if (a.kind != b.kind) return false;
+            if (a.is("delay")) return (a.values[0] > 0.0) == (b.values[0] > 0.0);
+            // Lines at different frequencies are different candidates.
+            const bool is_line = a.kind->effect->ripple_order || a.is("output-ripple") ||
+                                 a.is("ripple-modulation") || a.is("gear-ratio");
+            return !is_line || a.values[0] == b.values[0];
+        });
+        if (!is_seen) best.push_back(one);
+    }
+    return best;
+}
+
+std::vector<SearchedTerms> Search::extensions(Criterion& criterion, const SearchedTerms& terms,
+                                              std::size_t finalists) const {
+    std::vector<Candidate> candidates = ranked(criterion, terms);
+    candidates.resize(std::min(candidates.size(), finalists));
+    const bool may_delay =
+        !has_sensor(terms) && std::ranges::find(without_, "delay") == without_.end() &&
+        std::ranges::none_of(candidates, [](const Candidate& c) { return c.term.is("delay"); });
+    if (may_delay) candidates.push_back({{&term_kind("delay"), {smallest_delay_s, 0.0}}, 0.0});
+    std::vector<SearchedTerms> found;
+    for (const Candidate& candidate : candidates)
+        found.push_back(refined(criterion, with(terms, candidate.term), terms.size()));
+    std::ranges::stable_sort(found, [&](const SearchedTerms& a, const SearchedTerms& b) {
+        return criterion.cost(a) < criterion.cost(b);
+    });
+    for (std::size_t i = 1; i < found.size(); ++i) {
+        const Plainer* pair = plainer_than(found[i].back(), found[0].back());
+        const double before = criterion.cost(terms);
+        if (!pair || before - criterion.cost(found[i]) <= pair->share * (before - criterion.cost(found[0])))
+            continue;
+        const auto place = found.begin() + static_cast<std::ptrdiff_t>(i);
+        std::rotate(found.begin(), place, place + 1);
+        break;
+    }
+    return found;
+}
+
+SearchState Search::with_new_noise(const SearchState& state) const {
+    auto noise = std::make_shared<const SaturatedFit>(
+        fit_saturated(recorded_, base_, state.terms, &state.criterion->noise()));
+    return {state.terms, std::make_shared<Criterion>(recorded_, base_, std::move(noise))};
+}
+
+// What is needless goes, what is better comes in its place.
+void Search::exchange(SearchState& state, std::vector<SearchedTerms>& seen) const {
+    Criterion& criterion = *state.criterion;
+    for (int pass = 0; pass < most_exchanges; ++pass) {
+        SearchedTerms& terms = state.terms;
+        SearchedTerms sorted = terms;
+        std::sort(sorted.begin(), sorted.end());
+        if (std::ranges::find(seen, sorted) != seen.end()) return;
+        seen.push_back(sorted);
+        std::optional<SearchedTerms> best;
+        const auto offer = [&](const SearchedTerms& other) {
+            if (!best || criterion.cost(other) < criterion.cost(*best)) best = other;
+        };
+        for (std::size_t i = 0; i + 1 < terms.size(); ++i) {
+            const SearchedTerms fewer = without_place(terms, i);
+            if (!admission(criterion, fewer, terms).is_admissible) offer(fewer);
+        }
+        const bool is_all_needed = !best;
+        for (std::size_t i = 0; i < terms.size() && is_all_needed; ++i) {
+            const SearchedTerms fewer = without_place(terms, i);
+            auto rivals = extensions(criterion, fewer, exchange_finalists);
+            rivals.resize(std::min(rivals.size(), tried_of_finalists));
+            for (const SearchedTerms& rival : rivals) {
+                if (rival.back().kind == terms[i].kind ||
+                    criterion.cost(rival) >= criterion.cost(terms) - clearly_better ||
+                    !admission(criterion, fewer, rival).is_admissible)
+                    continue;
+                const Plainer* pair = plainer_than(terms[i], rival.back());
+                const double before = criterion.cost(fewer);
+                if (pair && before - criterion.cost(terms) > pair->share * (before - criterion.cost(rival)))
+                    continue;
+                offer(rival);
+            }
+        }
+        if (!best) return;
+        terms = *best;
+    }
+}
+
+SearchState Search::path(SearchState state, std::vector<RefusedTerm>& refused) const {
+    std::vector<SearchedTerms> seen;
+    if (!state.terms.empty() && changes_noise(state.terms.back())) state = with_new_noise(state);
+    for (int round = 0; round < most_rounds; ++round) {
+        auto longer = extensions(*state.criterion, state.terms, finalist_count);
+        longer.resize(std::min(longer.size(), tried_of_finalists));
+        refused.clear();
+        bool has_grown = false;
+        for (const SearchedTerms& one : longer) {
+            Admission admitted = admission(*state.criterion, state.terms, one);
+            if (admitted.is_admissible) {
+                state.terms = one;
+                has_grown = true;
+                break;
+            }
+            refused.push_back({one.back(), std::move(admitted)});
+        }
+        if (!has_grown) break;
+        if (changes_noise(state.terms.back())) state = with_new_noise(state);
+        exchange(state, seen);
+    }
+    return state;
+}
+
+SearchResult Search::run() {
+    const auto first = std::make_shared<Criterion>(recorded_, base_, noise_);
+    SearchResult result;
+    result.best = path({{}, first}, result.refused);
+    result.evaluations =
+        first->evaluations() + (result.best.criterion != first ? result.best.criterion->evaluations() : 0);
+    const auto left = [](const SearchState& state) {
+        return state.criterion->fit(state.terms).squares / state.criterion->samples();
+    };
+    if (left(result.best) < much_left) return result;
+    // Where much is left, paths that begin with the next best terms compete with it.
+    const SearchedTerms winner = result.best.terms;
+    std::size_t tried = 0;
+    std::vector<SearchState> rivals;
+    std::vector<std::vector<RefusedTerm>> rival_refused;
+    for (const SearchedTerms& begin : extensions(*first, {}, finalist_count)) {
+        if (tried == rival_paths) break;
+        if (contains(winner, begin.back().kind->effect->name) || !admission(*first, {}, begin).is_admissible)
+            continue;
+        ++tried;
+        rivals.push_back(path({begin, first}, rival_refused.emplace_back()));
+    }
+    for (std::size_t i = 0; i < rivals.size(); ++i) {
+        Criterion& criterion = *result.best.criterion;
+        if (criterion.cost(rivals[i].terms) >= criterion.cost(result.best.terms) - clearly_better) continue;
+        result.best = rivals[i];
+        result.refused = rival_refused[i];
+    }
+    return result;
+}
+
+}  // namespace ripplenotch::engine

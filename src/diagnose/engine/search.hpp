@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// The one search: the best of a few refined candidates is added as long as it is admissible, needless terms
+// are dropped, and each term is exchanged against every rival.
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "diagnose/engine/criterion.hpp"
+
+namespace ripplenotch::engine {
+
+/// What speaks for a longer model against a shorter one.
+struct Admission {
+    bool is_admissible = false;
+    double reduction = 0.0;    ///< of the criterion
+    double block_t = 0.0;      ///< mean reduction of a block over its standard error
+    double noise_share = 0.0;  ///< rms torque explained, in units of the noise
+    double gap_share = 0.0;    ///< of the squares still to be explained
+    std::string reason;        ///< why not; empty where it is admissible
+};
+
+/// A set of terms with the criterion that they were chosen by: the noise is measured anew when a transform, a
+/// ratio or a ripple is adopted.
+struct SearchState {
+    SearchedTerms terms;  ///< in order of adoption
+    std::shared_ptr<Criterion> criterion;
+};
+
+struct RefusedTerm {
+    SearchedTerm term;
+    Admission admission;
+};
+
+struct SearchResult {
+    SearchState best;
+    std::vector<RefusedTerm> refused;  ///< the best candidates of the last step
+    std::size_t evaluations = 0;
+};
+
+class Search {
+  public:
+    /// `without`: names of effects that are not tried.
+    Search(const RecordedMotion& recorded, const Baseline& base, std::shared_ptr<const SaturatedFit> noise,
+           std::vector<std::string> without);
+
+    [[nodiscard]] SearchResult run();
+
+    /// Models with one more term, refined, best first.
+    [[nodiscard]] std::vector<SearchedTerms> extensions(Criterion& criterion, const SearchedTerms& terms,
+                                                        std::size_t finalists) const;
+    [[nodiscard]] static Admission admission(Criterion& criterion, const SearchedTerms& shorter,
+                                             const SearchedTerms& longer);
+
+  private:
+    struct Candidate {
+        SearchedTerm term;
+        double reduction = 0.0;
+    };
+    std::vector<SearchedTerm> starts(Criterion& criterion, const SearchedTerms& terms) const;
+    void add_lines(Criterion& criterion, const SearchedTerms& terms, std::vector<SearchedTerm>& found) const;
+    std::vector<Candidate> ranked(Criterion& criterion, const SearchedTerms& terms) const;
+    SearchState path(SearchState state, std::vector<RefusedTerm>& refused) const;
+    void exchange(SearchState& state, std::vector<SearchedTerms>& seen) const;
+    [[nodiscard]] SearchState with_new_noise(const SearchState& state) const;
+
+    const RecordedMotion& recorded_;
+    const Baseline& base_;
+    std::shared_ptr<const SaturatedFit> noise_;
+    std::vector<std::string> without_;
+};
+
+/// True of every log and therefore corrected without being named: less than one and a half samples.
+[[nodiscard]] bool is_below_resolution(const SearchedTerm& term, double step_s);
+
+/// Searches the values of one term, the others fixed.
+[[nodiscard]] SearchedTerms refined(Criterion& criterion, SearchedTerms terms, std::size_t place);
+
+}  // namespace ripplenotch::engine

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// The candidates of the search: effects of the catalogue as columns of torque, as transforms of all columns
+// before them, or as another gear ratio. Linear values have a column each; the others are searched.
+
+#include <array>
+#include <compare>
+#include <cstddef>
+#include <span>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "ripplenotch/model/effect.hpp"
+#include "ripplenotch/model/model.hpp"
+
+namespace ripplenotch::engine {
+
+/// How an effect enters the model.
+enum class Role {
+    joint_torque,   ///< a column per linear value, through elastic joint and sensor
+    sensor_torque,  ///< the same, added behind both: it arises in the sensor
+    ripple_change,  ///< ripple columns, each multiplied by the change
+    elastic_joint,  ///< a transform of every torque before the sensor
+    sensor,         ///< a transform of everything before it
+    ratio,          ///< the gear ratio of every ripple
+};
+
+/// A value of an effect that is not linear.
+struct SearchedValue {
+    std::size_t parameter = 0;  ///< place in Effect::parameters
+    double lower = 0.0, upper = 0.0;
+    std::vector<double> grid;  ///< where the search begins; empty: at lines of the residual
+};
+
+struct TermKind {
+    const Effect* effect = nullptr;
+    Role role = Role::joint_torque;
+    std::vector<SearchedValue> searched;                  ///< at most two
+    std::vector<std::pair<std::size_t, double>> assumed;  ///< other parameters that differ from their start
+    bool is_refined = false;                              ///< searched between the grid's values
+    bool may_be_at_bound = false;                         ///< a bound is as good a value as any
+    bool may_occur_twice = false;
+    std::size_t place = 0;  ///< in term_kinds()
+};
+
+/// Every kind of candidate, in a fixed order.
+[[nodiscard]] std::span<const TermKind> term_kinds();
+/// The kind of an effect of that name.
+[[nodiscard]] const TermKind& term_kind(std::string_view effect);
+
+/// A kind with its searched values. The gear ratio has the ratio itself as its value.
+struct SearchedTerm {
+    const TermKind* kind = nullptr;
+    std::array<double, 2> values{};
+    bool operator==(const SearchedTerm&) const = default;
+    std::weak_ordering operator<=>(const SearchedTerm& other) const {
+        if (const auto order = kind->place <=> other.kind->place; order != 0) return order;
+        if (values < other.values) return std::weak_ordering::less;
+        return other.values < values ? std::weak_ordering::greater : std::weak_ordering::equivalent;
+    }
+    [[nodiscard]] bool is(std::string_view effect) const { return kind->effect->name == effect; }
+    [[nodiscard]] bool is_transform() const {
+        return kind->role == Role::sensor || kind->role == Role::elastic_joint;
+    }
+    [[nodiscard]] bool changes_ripple() const { return kind->role == Role::ripple_change; }
+};
+using SearchedTerms = std::vector<SearchedTerm>;
+
+[[nodiscard]] bool contains(const SearchedTerms& terms, std::string_view effect);
+
+/// Values of every parameter: searched, assumed, linear ones of 1 (a polar pair of size 1 and phase 0).
+[[nodiscard]] std::vector<double> unit_values(const SearchedTerm& term);
+/// The torque of an effect of size 1 along a motion, a column per linear value. `values` has one entry per
+/// parameter; the linear ones are replaced.
+[[nodiscard]] std::vector<std::vector<double>> unit_columns(const Effect& effect, std::vector<double> values,
+                                                            const Situation& situation);
+/// Factors of the ripple by an effect that changes it, at 100 % and less the unchanged ripple; two for a
+/// polar pair.
+[[nodiscard]] std::vector<std::vector<double>> ripple_factors(const SearchedTerm& term,
+                                                              const Situation& situation);
+
+/// The transforms of a set of terms: first the elastic joint, then the sensor.
+struct Transforms {
+    SearchedTerms elastic_joint, sensor;
+    explicit Transforms(const SearchedTerms& terms);
+    [[nodiscard]] SearchedTerms all() const;
+};
+/// A torque behind these transforms, in their order. One entry per sample of the motion.
+[[nodiscard]] std::vector<double> transformed(std::vector<double> torque_nm, const SearchedTerms& transforms,
+                                              const Motion& motion);
+
+/// Numbers that a term fits, with so many ripple orders in the model.
+[[nodiscard]] std::size_t fitted_values(const SearchedTerm& term, std::size_t ripple_orders);
+
+}  // namespace ripplenotch::engine
