@@ -41,7 +41,7 @@ def make(tool, source, folder):
         "diagnosis": ("diagnose", "log.csv", "--model", "base.json", "--improved-model", "model.json", "--json"),
         "info": ("info", "log.csv", "--json", "-o"),
         "spectrum": ("spectrum", "log.csv", "--json", "-o"),
-        "track": ("track", "log.csv", "--gear-ratio", "100", "--orders", "1,2", "--json", "-o"),
+        "track": ("spectrum", "log.csv", "--track", "--gear-ratio", "100", "--orders", "1,2", "--json", "-o"),
         "comparison": ("compare", "--step", "10Nm", "--speed", "90deg/s", "--sample-rate", "1kHz", "--gear-ratio", "100",
                        "--orders", "1,2", "--method", "lowpass,cutoff=13Hz,order=1", "--json", "-o"),
         "effects": ("effects", "--json", "-o"),

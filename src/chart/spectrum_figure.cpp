@@ -230,8 +230,8 @@ Figure identification_figure(const std::string& source, const Identification& fo
         found.verdict,
         {frequency_panel(found)}};
     if (!found.gear_ratio.residuals.empty()) figure.panels.push_back(residual_panel(found.gear_ratio));
-    if (!found.by_speed.ripple.empty())
-        figure.panels.push_back(amplitude_panel(found.by_speed.ripple));
+    if (!found.by_speed.empty())
+        figure.panels.push_back(amplitude_panel(found.by_speed));
     else if (!found.lines.empty())
         figure.panels.push_back(amplitude_panel(found.lines));
     return figure;
@@ -270,11 +270,9 @@ PlotAxis amplitude_axis(const std::vector<double>& amplitude_nm, const std::vect
     return axis;
 }
 
-Panel spectrum_panel(const ShownSpectrum& shown) {
-    const Spectrum& spectrum = *shown.spectrum;
-    Panel panel{.title = shown.name,
-                .x = {"frequency", "Hz"},
-                .y = amplitude_axis(spectrum.amplitude_nm, spectrum.floor_nm)};
+Panel spectrum_panel(const Spectrum& spectrum) {
+    Panel panel{
+        .title = "", .x = {"frequency", "Hz"}, .y = amplitude_axis(spectrum.amplitude_nm, spectrum.floor_nm)};
     panel.curves.push_back(
         thinned({"torque", Ink::blue, CurveStyle::line, spectrum.hz, spectrum.amplitude_nm}));
     panel.curves.push_back(thinned(
@@ -293,38 +291,14 @@ std::string lines_in_words(std::size_t count) {
                         : fmt::format("{} lines rise above the noise", count);
 }
 
-/// "; 2 humps do, the strongest from 59 to 61 Hz with 0.6 Nm rms"
-std::string humps_in_words(std::span<const ShownSpectrum> spectra) {
-    std::size_t count = 0;
-    const SpectralHump* strongest = nullptr;
-    for (const ShownSpectrum& shown : spectra) {
-        for (const SpectralHump& hump : shown.spectrum->humps) {
-            ++count;
-            if (strongest == nullptr || hump.rms_nm > strongest->rms_nm) strongest = &hump;
-        }
-    }
-    if (count == 0) return "";
-    return fmt::format("; {} from {:.3g} to {:.3g} Hz with {:.2g} Nm rms",
-                       count == 1 ? "a hump does," : fmt::format("{} humps do, the strongest", count),
-                       strongest->from_hz, strongest->to_hz, strongest->rms_nm);
-}
-
 }  // namespace
 
-Figure spectrum_figure(const std::string& source, std::span<const ShownSpectrum> spectra) {
-    Figure figure{"spectrum", fmt::format("Spectrum of the torque: {}", source), "", {}};
-    std::size_t lines = 0;
-    for (const ShownSpectrum& shown : spectra) {
-        lines += shown.spectrum->peaks.size();
-        if (figure.panels.size() < most_spectrum_panels) figure.panels.push_back(spectrum_panel(shown));
-    }
-    figure.sentence = lines_in_words(lines);
-    if (spectra.size() > 1) figure.sentence += fmt::format(" of {} stretches", spectra.size());
-    if (spectra.size() > most_spectrum_panels)
-        figure.sentence += fmt::format(", of which the first {} are shown", most_spectrum_panels);
-    figure.sentence += humps_in_words(spectra);
-    figure.sentence += ".";
-    if (std::any_of(spectra.begin(), spectra.end(), [](const ShownSpectrum& s) { return s.smears_orders; }))
+Figure spectrum_figure(const std::string& source, const Spectrum& spectrum, bool smears_orders) {
+    Figure figure{"spectrum",
+                  fmt::format("Spectrum of the torque: {}", source),
+                  lines_in_words(spectrum.peaks.size()) + ".",
+                  {spectrum_panel(spectrum)}};
+    if (smears_orders)
         figure.sentence +=
             " The speed changes: what turns with the joint is a line by order (--domain order), not here.";
     return figure;

@@ -207,8 +207,8 @@ struct TrackPanels {
     Panel amplitude, phase;
 };
 
-TrackPanels panels_over(const PlotAxis& x, const TrackScale& scale) {
-    TrackPanels panels{{.title = "Amplitude", .x = x, .y = {scale.label, "Nm"}},
+TrackPanels panels_over(const PlotAxis& x) {
+    TrackPanels panels{{.title = "Amplitude", .x = x, .y = {"amplitude, zero to peak", "Nm"}},
                        {.title = "Phase against the angle of the shaft",
                         .x = x,
                         .y = {"phase", "deg"},
@@ -246,21 +246,19 @@ std::vector<Ribbon> parts_of(const Ribbon& whole, const std::vector<std::size_t>
 }
 
 void add_line(TrackPanels& panels, const TrackName& line, const std::vector<double>& x,
-              std::vector<double> amplitude_nm, const std::vector<double>& half_width_nm,
-              const std::vector<double>& phase_deg, const std::vector<std::size_t>& breaks,
-              const TrackScale& scale) {
+              const std::vector<double>& amplitude_nm, const std::vector<double>& half_width_nm,
+              const std::vector<double>& phase_deg, const std::vector<std::size_t>& breaks) {
     const Ink ink = track_ink(line);
     Ribbon ribbon{"", ink, x, {}, {}};
     for (std::size_t i = 0; i < x.size(); ++i) {
-        amplitude_nm[i] *= scale.factor;
-        ribbon.low.push_back(std::max(0.0, amplitude_nm[i] - scale.factor * half_width_nm[i]));
-        ribbon.high.push_back(amplitude_nm[i] + scale.factor * half_width_nm[i]);
+        ribbon.low.push_back(std::max(0.0, amplitude_nm[i] - half_width_nm[i]));
+        ribbon.high.push_back(amplitude_nm[i] + half_width_nm[i]);
     }
     // A ribbon of more rows than a picture has columns would be a blur.
     if (x.size() <= most_ribbon_rows) {
         for (Ribbon& part : parts_of(ribbon, breaks)) panels.amplitude.ribbons.push_back(std::move(part));
     }
-    Curve amplitude{line.words, ink, track_style(line, CurveStyle::line), x, std::move(amplitude_nm)};
+    Curve amplitude{line.words, ink, track_style(line, CurveStyle::line), x, amplitude_nm};
     break_at(breaks, amplitude);
     panels.amplitude.curves.push_back(thinned(amplitude));
     panels.phase.curves.push_back(
@@ -276,26 +274,24 @@ Figure figure_of(const std::string& source, TrackPanels panels) {
 
 }  // namespace
 
-Figure track_figure(const std::string& source, const OrderTracks& tracks, std::span<const TrackName> names,
-                    const TrackScale& scale) {
-    TrackPanels panels = panels_over({"time", "s"}, scale);
+Figure track_figure(const std::string& source, const OrderTracks& tracks, std::span<const TrackName> names) {
+    TrackPanels panels = panels_over({"time", "s"});
     const std::vector<std::size_t> breaks = track_breaks(tracks);
     for (std::size_t i = 0; i < tracks.lines.size(); ++i) {
         std::vector<double> twice = tracks.lines[i].standard_error_nm;
         for (double& error : twice) error *= 2.0;
         add_line(panels, names[i], tracks.time_s, tracks.lines[i].amplitude_nm, twice,
-                 tracks.lines[i].phase_deg, breaks, scale);
+                 tracks.lines[i].phase_deg, breaks);
     }
     return figure_of(source, std::move(panels));
 }
 
-Figure track_figure(const std::string& source, const SpeedTrack& tracks, std::span<const TrackName> names,
-                    const TrackScale& scale) {
-    TrackPanels panels = panels_over({"joint speed", "deg/s"}, scale);
+Figure track_figure(const std::string& source, const SpeedTrack& tracks, std::span<const TrackName> names) {
+    TrackPanels panels = panels_over({"joint speed", "deg/s"});
     const std::vector<std::size_t> breaks = track_breaks(tracks);
     for (std::size_t i = 0; i < tracks.lines.size(); ++i) {
         add_line(panels, names[i], tracks.speed_deg_s, tracks.lines[i].amplitude_nm,
-                 tracks.lines[i].spread_nm, tracks.lines[i].phase_deg, breaks, scale);
+                 tracks.lines[i].spread_nm, tracks.lines[i].phase_deg, breaks);
     }
     return figure_of(source, std::move(panels));
 }

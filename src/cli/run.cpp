@@ -144,7 +144,7 @@ constexpr std::string_view whole_help = "--help-all";
 
 // By what they are for, as `--help` lists them; commands.def has them in this order.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 5> command_groups = {
-    {{"track", "Look at a log"},
+    {{"identify", "Look at a log"},
      {"export", "Filter it"},
      {"effects", "Model the joint"},
      {"trend", "Fleets"},

@@ -465,18 +465,6 @@ void of_recommendation(const Json& json, Numbers& numbers) {
     }
 }
 
-// The widest range, and what the estimate is made of.
-void of_response(const Json& json, Numbers& numbers) {
-    std::optional<std::pair<double, double>> widest;
-    for (const Json& range : list_at(json, "ranges")) {
-        const auto from = number_under(range, "/from_hz"), to = number_under(range, "/to_hz");
-        if (from && to && (!widest || *to - *from > widest->second - widest->first)) widest = {*from, *to};
-    }
-    if (widest) numbers.add_text("known", from_to(*widest), "Hz");
-    numbers.add("resolution", "/resolution_hz", "Hz");
-    numbers.add("segments", "/segments", "");
-}
-
 void of_trend(const Json& json, Numbers& numbers) {
     numbers.add_text("alerts", std::to_string(list_at(json, "alerts").size()), "");
     numbers.add_text("joints", std::to_string(list_at(json, "joints").size()), "");
@@ -495,10 +483,9 @@ struct Kind {
     const char *name, *heading;
     void (*numbers)(const Json&, Numbers&);
 };
-constexpr std::array<Kind, 14> kinds = {{{"info", "The log", of_any},
+constexpr std::array<Kind, 13> kinds = {{{"info", "The log", of_any},
                                          {"joint", "Ripple lines and gear ratio", of_joint},
                                          {"spectrum", "Spectrum of the torque", of_any},
-                                         {"response", "Frequency response", of_response},
                                          {"track", "Orders over time", of_any},
                                          {"map", "Ripple map", of_map},
                                          {"recommendation", "Recommended method", of_recommendation},
@@ -605,12 +592,17 @@ bool is_ledger(const std::string& kind, const std::string& name) {
     struct Shown {
         std::string_view kind, name;
     };
-    constexpr std::array shown = {Shown{"joint", "lines"},           Shown{"joint", "amplitude_changes"},
-                                  Shown{"table", "bands"},           Shown{"metrics", "orders"},
-                                  Shown{"metrics", "switches"},      Shown{"comparison", "methods"},
-                                  Shown{"diagnosis", "rounds"},      Shown{"diagnosis", "faults"},
-                                  Shown{"diagnosis", "ambiguous"},   Shown{"diagnosis", "unexplained"},
-                                  Shown{"diagnosis", "undecidable"}, Shown{"trend", "odd"}};
+    constexpr std::array shown = {Shown{"joint", "lines"},
+                                  Shown{"table", "bands"},
+                                  Shown{"metrics", "orders"},
+                                  Shown{"metrics", "switches"},
+                                  Shown{"comparison", "methods"},
+                                  Shown{"diagnosis", "rounds"},
+                                  Shown{"diagnosis", "faults"},
+                                  Shown{"diagnosis", "ambiguous"},
+                                  Shown{"diagnosis", "unexplained"},
+                                  Shown{"diagnosis", "undecidable"},
+                                  Shown{"trend", "odd"}};
     const bool chosen =
         std::any_of(shown.begin(), shown.end(), [&](const Shown& s) { return s.kind == kind; });
     return chosen && std::none_of(shown.begin(), shown.end(),
@@ -737,11 +729,10 @@ PageSection section_of_result(const std::string& text, const std::string& source
 std::vector<PageSection> sections_of_result(const std::string& text, const std::string& source) {
     const auto [kind, whole] = parse_any_document(text, source);
     // Lists of what a command gives of each joint of a log, and what each entry is.
-    static constexpr std::array<std::pair<std::string_view, std::string_view>, 7> lists = {
+    static constexpr std::array<std::pair<std::string_view, std::string_view>, 6> lists = {
         {{"joints", "joint"},
          {"diagnoses", "diagnosis"},
          {"spectra", "spectrum"},
-         {"responses", "response"},
          {"tracks", "track"},
          {"comparisons", "comparison"},
          {"recommendations", "recommendation"}}};

@@ -11,7 +11,7 @@
 #include <span>
 #include <utility>
 
-#include "ripplenotch/analysis/steady.hpp"
+#include "ripplenotch/analysis/stretches.hpp"
 #include "ripplenotch/log/log.hpp"
 #include "ripplenotch/survey/survey.hpp"
 
@@ -159,7 +159,7 @@ std::vector<SteadyStretch> stretches_of(const Log& log) {
                         std::isfinite(log.trace.velocity_deg_s.front()) &&
                         std::isfinite(log.trace.time_s.front());
     if (!usable) return stretches;
-    for (const Stretch& stretch : steady_stretches(log.trace.view(), SteadyRule{})) {
+    for (const Stretch& stretch : steady_stretches(log.trace.view())) {
         stretches.push_back(
             {log.trace.time_s[stretch.first], stretch.duration.value(), stretch.speed.value(), stretch.rest});
     }

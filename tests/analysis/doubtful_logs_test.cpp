@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Logs that a verdict must not be sure of: tones that look like orders, clocks that are wrong, joints that
-// change from log to log, joints so slow that everything about them is.
+// change from log to log.
 #include <algorithm>
 
 #include "analysis/traces.hpp"
 #include "ripplenotch/analysis/identification.hpp"
-#include "ripplenotch/analysis/steady.hpp"
 #include "support/catch.hpp"
 
 using namespace ripplenotch;
@@ -17,7 +16,7 @@ using tests::identify_all;
 
 namespace {
 
-const std::vector<tests::Tone> family{
+const std::vector<tests::Tone> multiples{
     {20.04, 0.3, 0.1}, {30.06, 0.25, 1.0}, {40.08, 0.4, 2.0}, {50.10, 0.2, 3.0}};
 
 Trace at_speed(double speed, std::vector<tests::Ripple> ripple, std::vector<tests::Tone> tones,
@@ -49,12 +48,12 @@ Trace there_and_back(double ripple_nm, std::uint32_t seed) {
 
 }  // namespace
 
-TEST_CASE("tones that are multiples of one frequency are told as a family, at whatever pair of speeds") {
-    // Speeds of 3 : 4, 2 : 3, 4 : 5, 1 : 2: two tones of the family share an order exactly.
+TEST_CASE("tones that are multiples of one frequency are no orders, at whatever pair of speeds") {
+    // Speeds of 3 : 4, 2 : 3, 4 : 5, 1 : 2: two of the tones share an order exactly.
     const double share = GENERATE(4.0 / 3.0, 1.5, 1.25, 2.0);
     const bool position = GENERATE(true, false);
     const Identification found = identify_all(
-        {at_speed(36.0, {}, family, 1, position), at_speed(36.0 * share, {}, family, 2, position)});
+        {at_speed(36.0, {}, multiples, 1, position), at_speed(36.0 * share, {}, multiples, 2, position)});
     INFO(found.verdict);
     CHECK(count_of(found, LineKind::order) == 0);
     CHECK_FALSE(found.gear_ratio.value.has_value());
@@ -64,26 +63,21 @@ TEST_CASE("tones that are multiples of one frequency are told as a family, at wh
         return;
     }
     CHECK(count_of(found, LineKind::tone) == 4);
-    REQUIRE(found.families.size() == 1);
-    CHECK_THAT(found.families[0].hz, WithinAbs(10.02, 0.01));
-    CHECK(found.families[0].multiples == std::vector<int>{2, 3, 4, 5});
-    CHECK_THAT(found.verdict, Contains("multiples 2 to 5 of 10.02 Hz"));
 }
 
-TEST_CASE("orders stay orders beside a family of tones, and at speeds that share a divisor") {
+TEST_CASE("orders stay orders beside such tones, and at speeds that share a divisor") {
     const std::vector<tests::Ripple> ripple{{100.0, 0.8, 0.3}, {200.0, 0.5, 1.1}};
     const bool with_tones = GENERATE(false, true);
     std::vector<Trace> logs;
     // With the tones at speeds where no order meets one of them, without at those that share a divisor.
     for (const double speed : with_tones ? std::vector{37.0, 47.0, 67.0} : std::vector{36.0, 48.0, 72.0})
-        logs.push_back(at_speed(speed, ripple, with_tones ? family : std::vector<tests::Tone>{},
+        logs.push_back(at_speed(speed, ripple, with_tones ? multiples : std::vector<tests::Tone>{},
                                 static_cast<std::uint32_t>(speed)));
     const Identification found = identify_all(logs);
     INFO(found.verdict);
     REQUIRE(found.gear_ratio.value.has_value());
     CHECK_THAT(*found.gear_ratio.value, WithinAbs(100.0, 0.3));
     CHECK(found.conclusive);
-    CHECK(found.families.size() == (with_tones ? 1 : 0));
 }
 
 TEST_CASE("two lone lines whose speeds are known badly share no order") {
@@ -158,71 +152,4 @@ TEST_CASE("recordings of two joints of different ratios are no one ratio") {
     const Identification found = identify_all(logs);
     INFO(found.verdict);
     CHECK_FALSE(found.conclusive);
-}
-
-TEST_CASE("a hum that outdoes the ripple is told with its band, at steady speeds and in motion") {
-    const bool steady = GENERATE(true, false);
-    // At 63 deg/s the hum is where twice order 2 would be, and yet no line is so wide.
-    const std::vector<double> speeds = GENERATE(std::vector{40.0, 65.0}, std::vector{63.0, 63.0});
-    std::vector<Trace> logs;
-    double hum_square = 0.0;
-    for (const double speed : speeds) {
-        const auto motion = [=](double t) { return steady ? speed : speed * std::sin(1.3 * t); };
-        Trace log = tests::make_trace({.rate_hz = 500.0,
-                                       .seconds = 15.0,
-                                       .speed_deg_s = motion,
-                                       .ripple = {{100.0, 0.2, 0.3}, {200.0, 0.2, 0.0}},
-                                       .noise_nm = 0.02,
-                                       .seed = static_cast<std::uint32_t>(speed)});
-        // Noise through a resonance at 70 Hz, 3 Hz wide; sweeps are shorter, and tell one of 12 Hz from
-        // lines.
-        tests::Noise noise(static_cast<std::uint32_t>(speed) + 7);
-        const double pole =
-            std::exp(-std::numbers::pi * (steady && speeds[0] != speeds[1] ? 3.0 : 12.0) / 500.0);
-        double last = 0.0, before = 0.0;
-        const double samples = 2.0 * static_cast<double>(log.size());
-        for (double& torque : log.torque_nm) {
-            const double now = 2.0 * pole * std::cos(2.0 * std::numbers::pi * 70.0 / 500.0) * last -
-                               pole * pole * before + 0.15 * noise();
-            before = last;
-            last = now;
-            torque += now;
-            hum_square += now * now / samples;
-        }
-        logs.push_back(std::move(log));
-    }
-    const Identification found = identify_all(logs);
-    INFO(found.verdict);
-    REQUIRE(found.hums.size() == 1);
-    CHECK(found.hums[0].from_hz < 70.0);
-    CHECK(found.hums[0].to_hz > 70.0);
-    CHECK(std::sqrt(2.0) * found.hums[0].rms_nm > 0.2);
-    CHECK_THAT(found.hums[0].rms_nm, WithinRel(std::sqrt(hum_square), 0.15));
-    CHECK_THAT(found.verdict, Contains("narrow-band noise stronger than the ripple: "));
-}
-
-TEST_CASE("a slow joint is judged by its own speeds: a ramp to 2 deg/s is not steady, 0.4 deg/s is no rest") {
-    const auto ramp = tests::make_trace(
-        {.rate_hz = 200.0, .seconds = 20.0, .speed_deg_s = [](double t) { return 0.1 * t; }});
-    for (const Stretch& stretch : steady_stretches(ramp.view(), {})) {
-        CHECK_FALSE(stretch.rest);
-        CHECK(0.1 * stretch.duration.value() < 0.12 * std::abs(stretch.speed.value()));
-    }
-    const bool position = GENERATE(true, false);
-    const auto slow = tests::make_trace(
-        {.rate_hz = 200.0, .seconds = 20.0, .speed_deg_s = [](double) { return 0.4; }, .position = position});
-    const auto found = steady_stretches(slow.view(), {});
-    REQUIRE(found.size() == 1);
-    CHECK_FALSE(found[0].rest);
-    CHECK_THAT(found[0].speed.value(), WithinAbs(0.4, 1e-6));
-}
-
-TEST_CASE("a joint at rest is at rest, however its velocity trembles") {
-    Trace still = tests::make_trace({.rate_hz = 500.0, .seconds = 10.0, .position = GENERATE(true, false)});
-    tests::Noise noise(5);
-    const double trembling = GENERATE(0.0, 0.05, 1.0);
-    for (double& v : still.velocity_deg_s) v += trembling * noise();
-    const auto found = steady_stretches(still.view(), {});
-    REQUIRE_FALSE(found.empty());
-    for (const Stretch& stretch : found) CHECK(stretch.rest);
 }

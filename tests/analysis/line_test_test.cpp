@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
+// The test of a spectral line against its noise, and the running median behind it.
+#include <algorithm>
 #include <cmath>
 
+#include "analysis/spectrum/running_median.hpp"
 #include "analysis/traces.hpp"
 #include "ripplenotch/analysis/line_test.hpp"
 #include "support/catch.hpp"
@@ -128,4 +131,23 @@ TEST_CASE("near the low end a spectrum that falls by the fourth power of the fre
             lines += power[bin] > line_threshold(spectrum, floor, bin, 0.01).line ? 1 : 0;
     }
     CHECK(lines <= 4);  // 1 % of 200 logs, and as much again
+}
+
+TEST_CASE("a running median is the median of each window, whatever way the window goes") {
+    tests::Noise noise(5);
+    std::vector<double> signal(3000);
+    for (double& value : signal) value = std::round(20.0 * noise()) / 20.0;  // many equal values
+    RunningMedian running(signal);
+    std::mt19937 engine(7);
+    std::size_t first = 0, count = 121;
+    for (int step = 0; step < 2000; ++step) {
+        // Forward by a little, with windows that grow and shrink; at times somewhere else entirely.
+        first += engine() % 9;
+        count = std::clamp<std::size_t>(count + engine() % 5 - engine() % 5, 1, 200);
+        if (first + count > signal.size() || engine() % 50 == 0) first = engine() % (signal.size() - count);
+        std::vector<double> window(signal.begin() + static_cast<std::ptrdiff_t>(first),
+                                   signal.begin() + static_cast<std::ptrdiff_t>(first + count));
+        std::sort(window.begin(), window.end());
+        REQUIRE(running.at(first, count) == window[count / 2]);
+    }
 }

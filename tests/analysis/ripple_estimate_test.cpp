@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-// The ripple at stated orders: planted amplitudes, and what is claimed of errors and bounds.
-
-#include "ripplenotch/analysis/ripple_estimate.hpp"
-
+// The ripple at stated orders, of a log and by speed and direction.
 #include <array>
 #include <cmath>
 #include <functional>
 #include <numbers>
 #include <random>
+#include <vector>
 
+#include "ripplenotch/analysis/amplitude_by_speed.hpp"
+#include "ripplenotch/analysis/ripple_estimate.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "support/catch.hpp"
 
@@ -169,4 +169,129 @@ TEST_CASE("an order that passes half the sample rate is measured where it is slo
     CHECK(found[1].amplitude_nm == Approx(0.5).epsilon(0.01));
     CHECK(found[1].fastest_deg_s < 90.0);
     CHECK(found[0].fastest_deg_s > 110.0);
+}
+
+namespace {
+
+/// Amplitude of order 2 at a signed speed and an angle of the joint; order 1 has always 0.8 Nm.
+using Law = std::function<double(double speed_deg_s, double angle_deg)>;
+
+struct LogByLaw {
+    Law law = [](double, double) { return 0.5; };
+    std::function<double(double)> speed;  ///< deg/s at a time
+    double seconds = 60.0, noise_nm = 0.2;
+    double memory = 0.0;  ///< of the noise from sample to sample: 0 is white
+    unsigned seed = 1;
+};
+
+std::vector<RippleAtSpeed> found_in(const LogByLaw& plant) {
+    constexpr double ratio = 100.0, rate_hz = 500.0;
+    Trace trace;
+    trace.sample_rate = Hertz(rate_hz);
+    std::mt19937 engine(plant.seed);
+    std::normal_distribution<double> normal;
+    double angle_deg = 0.0, noise = 0.0;
+    for (std::size_t k = 0; static_cast<double>(k) < plant.seconds * rate_hz; ++k) {
+        const double t = static_cast<double>(k) / rate_hz, v = plant.speed(t);
+        if (k > 0) angle_deg += 0.5 * (v + trace.velocity_deg_s.back()) / rate_hz;
+        noise = plant.memory * noise + std::sqrt(1.0 - plant.memory * plant.memory) * normal(engine);
+        const double motor = ratio * angle_deg * std::numbers::pi / 180.0;
+        trace.time_s.push_back(t);
+        trace.velocity_deg_s.push_back(v);
+        trace.position_deg.push_back(angle_deg);
+        trace.torque_nm.push_back(0.8 * std::cos(motor + 0.5) +
+                                  plant.law(v, angle_deg) * std::cos(2.0 * motor - 1.2) +
+                                  plant.noise_nm * noise + (v > 0.0 ? 3.0 : -3.0));
+    }
+    const TraceView view = trace.view();
+    return amplitude_by_speed({&view, 1}, GearRatio(ratio), two_orders);
+}
+
+/// Back and forth, with speeds from 0 to 90 deg/s.
+double sweeping_deg_s(double t) { return 90.0 * std::sin(0.8 * t); }
+
+/// Back and forth at five speeds, each over the same 120 degrees.
+double stepping_deg_s(double t) {
+    constexpr std::array speeds = {30.0, 45.0, 60.0, 90.0, 120.0};
+    double left = std::fmod(t, 2.0 * (4.0 + 8.0 / 3.0 + 2.0 + 4.0 / 3.0 + 1.0));
+    for (const double speed : speeds) {
+        if (left < 240.0 / speed) return left < 120.0 / speed ? speed : -speed;
+        left -= 240.0 / speed;
+    }
+    return speeds.back();
+}
+
+/// What a number of seeds give of order 2.
+struct Tally {
+    int rows = 0, inside = 0;
+};
+
+// An interval is of the log's own amplitude in that range of speed: that of the same motion without noise.
+Tally tally_of(LogByLaw plant, int seeds) {
+    Tally tally;
+    LogByLaw silent = plant;
+    silent.noise_nm = 0.0;
+    const std::vector<RippleAtSpeed> truth = found_in(silent);
+    for (int seed = 0; seed < seeds; ++seed) {
+        plant.seed = static_cast<unsigned>(100 + seed);
+        const std::vector<RippleAtSpeed> found = found_in(plant);
+        REQUIRE(found.size() == truth.size());
+        for (std::size_t i = 0; i < found.size(); ++i) {
+            const RippleEstimate &one = found[i].ripple, &planted = truth[i].ripple;
+            if (one.order != 2.0) continue;
+            ++tally.rows;
+            const double off = std::abs(one.amplitude_nm - planted.amplitude_nm);
+            tally.inside += off <= 1.96 * one.standard_error_nm ? 1 : 0;
+        }
+    }
+    return tally;
+}
+
+double growing_nm(double speed_deg_s, double /*angle_deg*/) {
+    return (speed_deg_s > 0.0 ? 1.2 : 1.0) * (0.3 + 0.003 * std::abs(speed_deg_s));
+}
+
+}  // namespace
+
+TEST_CASE("a planted law of speed and direction comes back, at constant speeds and in sweeps") {
+    for (const auto& motion : {sweeping_deg_s, stepping_deg_s}) {
+        LogByLaw plant;
+        plant.law = growing_nm;
+        plant.speed = motion;
+        plant.noise_nm = 0.0;
+        const std::vector<RippleAtSpeed> found = found_in(plant);
+        CHECK(found.size() >= 16);  // two orders, two directions, four ranges
+        for (const RippleAtSpeed& at : found) {
+            const double expected =
+                at.ripple.order == 1.0 ? 0.8 : growing_nm(at.direction * at.speed_deg_s, 0.0);
+            CHECK(at.ripple.present());
+            CHECK(at.ripple.amplitude_nm == Approx(expected).epsilon(0.01));
+            CHECK(at.speed_from_deg_s <= at.speed_deg_s * 1.0001);
+            CHECK(at.speed_deg_s <= at.speed_to_deg_s * 1.0001);
+        }
+    }
+}
+
+TEST_CASE("95 % intervals cover, in white and coloured noise") {
+    for (const auto& motion : {sweeping_deg_s, stepping_deg_s}) {
+        for (const double memory : {0.0, 0.9}) {
+            LogByLaw plant;
+            plant.law = growing_nm;
+            plant.speed = motion;
+            plant.noise_nm = 0.5;
+            plant.memory = memory;
+            const Tally tally = tally_of(plant, 25);
+            INFO(tally.inside << " of " << tally.rows << " intervals, memory " << memory);
+            CHECK(tally.inside >= 0.90 * tally.rows);
+            CHECK(tally.inside <= 0.99 * tally.rows);
+        }
+    }
+}
+
+TEST_CASE("one speed has a row a direction, and too little motion none") {
+    LogByLaw plant;
+    plant.speed = [](double t) { return std::fmod(t, 4.0) < 2.0 ? 60.0 : -60.0; };
+    CHECK(found_in(plant).size() == 4);
+    plant.seconds = 1.0;  // 17 motor turns
+    CHECK(found_in(plant).empty());
 }

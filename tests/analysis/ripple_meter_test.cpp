@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "ripplenotch/analysis/ripple_estimate.hpp"
+#include "ripplenotch/analysis/ripple_meter.hpp"
 
 #include <array>
 #include <cmath>

@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: MIT
+// Spectra of whole logs, of pieces, and over speed.
 #include <algorithm>
 
+#include "analysis/order_signals.hpp"
+#include "analysis/spectrum/line_meter.hpp"
+#include "analysis/spectrum/pieces.hpp"
 #include "analysis/traces.hpp"
+#include "ripplenotch/analysis/order_map.hpp"
 #include "ripplenotch/analysis/spectrum.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "support/catch.hpp"
@@ -98,4 +103,232 @@ TEST_CASE("too few samples are refused with the number needed") {
     const Trace trace = tests::make_trace({.seconds = 0.05});
     CHECK_THROWS_WITH(torque_spectrum(trace.view(), {}),
                       Catch::Contains("at least 64 samples, there are 50"));
+}
+
+namespace {
+
+constexpr double tau = 2.0 * std::numbers::pi;
+
+std::vector<double> noise_of(std::size_t n, std::uint32_t seed) {
+    tests::Noise noise(seed);
+    std::vector<double> values(n);
+    for (double& value : values) value = noise();
+    return values;
+}
+
+}  // namespace
+
+TEST_CASE("the line through a piece leaves neither a mean nor a slope, whatever the length") {
+    const std::size_t n = GENERATE(1U, 2U, 15U, 16U, 17U, 64U, 95U);
+    std::vector<double> values = noise_of(n, 3), window(n, 1.0), left(n);
+    for (std::size_t k = 0; k < n; ++k) values[k] += 7.0 - 0.3 * static_cast<double>(k);
+    const std::span<const double> all(values);
+    subtract_line_and_window(values, even_line(look_at_even(all, all, 1.0)), window, left);
+    double sum = 0.0, tilt = 0.0;
+    for (std::size_t k = 0; k < n; ++k) {
+        sum += left[k];
+        tilt += left[k] * static_cast<double>(k);
+    }
+    CHECK_THAT(sum, WithinAbs(0.0, 1e-11));
+    CHECK_THAT(tilt, WithinAbs(0.0, 1e-9));
+}
+
+TEST_CASE("the distance from an even grid is that of the worst sample, early or late") {
+    const std::size_t n = GENERATE(1U, 16U, 17U, 70U);
+    const std::size_t worst = GENERATE(0U, 1U, 2U) * (n - 1) / 2;
+    const double by = GENERATE(-0.25, 0.125);
+    std::vector<double> time(n);
+    for (std::size_t k = 0; k < n; ++k) time[k] = 5.0 + 0.5 * static_cast<double>(k);
+    if (worst == 0) return;  // the first sample is where the grid begins
+    time[worst] += by;
+    CHECK(look_at_even(time, time, 0.5).worst == std::abs(by));
+}
+
+TEST_CASE("two parts of a piece tell together what a look at all of it tells") {
+    const std::size_t n = GENERATE(2U, 33U, 64U, 95U), cut = GENERATE(1U, 16U, 20U) * n / 33;
+    const std::vector<double> values = noise_of(n, 4);
+    std::vector<double> time(n);
+    for (std::size_t k = 0; k < n; ++k) time[k] = 5.0 + 0.5 * static_cast<double>(k);
+    time[n - 1] += 0.125;
+    const std::span<const double> t(time), x(values);
+    const EvenPart whole = look_at_even(t, x, 0.5);
+    const EvenPart both =
+        together(look_at_even(t.first(cut), x.first(cut), 0.5), look_at_even(t, x, 0.5, cut));
+    CHECK(both.count == n);
+    CHECK(both.worst == 0.125);
+    CHECK_THAT(both.sum, WithinAbs(whole.sum, 1e-12));
+    CHECK_THAT(both.tilt, WithinAbs(whole.tilt, 1e-10));
+}
+
+TEST_CASE("an even piece is detrended, windowed and transformed as an uneven one") {
+    const std::size_t n = GENERATE(256U, 255U);
+    const double rate = 1000.0;
+    std::vector<double> even(n), torque = noise_of(n, 11);
+    for (std::size_t k = 0; k < n; ++k) {
+        even[k] = 3.0 + static_cast<double>(k) / rate;
+        torque[k] += 40.0 + 0.1 * static_cast<double>(k);
+    }
+    // Off the grid by too much to count as even, by too little to matter.
+    std::vector<double> uneven = even;
+    uneven[n / 2] += 2e-3 / rate;
+    PieceMaker maker(n, Hertz(rate)), other(n, Hertz(rate));
+    Piece a, b;
+    std::vector<double> power(n / 2 + 1, 0.0), likewise(n / 2 + 1, 0.0);
+    CHECK(maker.for_each(even, torque, [&](const Piece& piece) { a = piece; }) == n / 2);
+    CHECK(other.for_each(uneven, torque, [&](const Piece& piece) { b = piece; }) == n / 2);
+    REQUIRE(a.even);
+    REQUIRE_FALSE(b.even);
+    CHECK_THAT(a.window_sum, WithinAbs(b.window_sum, 1e-4));
+    maker.add_power(1.0, power);
+    other.add_power(1.0, likewise);
+    for (std::size_t k = 0; k < power.size(); ++k)
+        CHECK_THAT(std::sqrt(power[k]), WithinAbs(std::sqrt(likewise[k]), 0.02));
+}
+
+TEST_CASE("pieces have the same bits however many samples are handed over at once") {
+    const std::size_t n = GENERATE(64U, 65U), part = GENERATE(1U, 70U, 333U);
+    std::vector<double> time(2000), torque = noise_of(2000, 12);
+    for (std::size_t k = 0; k < time.size(); ++k) time[k] = 0.001 * static_cast<double>(k);
+    time[900] += 1e-4;  // one piece or two are uneven
+    const auto pieces_of = [&](std::size_t at_once) {
+        PieceMaker maker(n, Hertz(1000.0));
+        std::vector<double> values;
+        std::size_t first = 0;
+        for (std::size_t end = 0; end < time.size();) {
+            end = std::min(end + at_once, time.size());
+            first += maker.for_each(std::span(time).subspan(first, end - first),
+                                    std::span(torque).subspan(first, end - first), [&](const Piece& piece) {
+                                        values.insert(values.end(), piece.value.begin(), piece.value.end());
+                                        values.push_back(piece.middle_s);
+                                    });
+        }
+        return values;
+    };
+    const std::vector<double> whole = pieces_of(time.size());
+    CHECK(whole.size() > 50 * n);
+    CHECK(pieces_of(part) == whole);
+}
+
+TEST_CASE("a sample off the clock makes every piece that holds it uneven, and no other") {
+    const std::size_t n = 64, hop = 32;
+    const std::size_t off = GENERATE(0U, 1U, 40U, 100U, 159U);
+    std::vector<double> time(160), torque(160, 1.0);
+    for (std::size_t k = 0; k < time.size(); ++k) time[k] = 0.001 * static_cast<double>(k);
+    time[off] += 1e-4;
+    PieceMaker maker(n, Hertz(1000.0));
+    std::size_t first = 0;
+    maker.for_each(time, torque, [&](const Piece& piece) {
+        CHECK(piece.even == (off < first || off >= first + n));
+        first += hop;
+    });
+    CHECK(first == 4 * hop);
+}
+
+TEST_CASE("a line's maximum from moments is the one that Newton's method finds on the samples") {
+    const std::size_t n = 512;
+    const double rate = 1000.0, bin = rate / static_cast<double>(n);
+    const double offset = GENERATE(0.0, 0.1, 0.4, 0.7, -0.45);  // bins from where the search begins
+    const double start = 40.3 * bin;
+    PieceMaker maker(n, Hertz(rate));
+    LineMeter by_moments(start, bin), by_samples(start, bin);
+    by_moments.expect_even_pieces(maker.even_time_s());
+    for (std::uint32_t piece = 0; piece < 5; ++piece) {
+        std::vector<double> time(n), torque = noise_of(n, 20 + piece);
+        for (std::size_t k = 0; k < n; ++k) {
+            time[k] = piece + static_cast<double>(k) / rate;
+            torque[k] = 0.1 * torque[k] + std::cos(tau * (start + offset * bin) * time[k] + piece);
+        }
+        maker.for_each(time, torque, [&](const Piece& made) {
+            by_moments.add(made);
+            by_samples.add(made);
+        });
+        maker.begin_again();
+    }
+    CHECK_THAT(by_moments.hz(), WithinAbs(by_samples.hz(), 1e-5 * bin));
+    CHECK_THAT(by_moments.amplitude_nm(), WithinAbs(by_samples.amplitude_nm(), 1e-5));
+    CHECK_THAT(std::remainder(by_moments.phase_rad() - by_samples.phase_rad(), tau), WithinAbs(0.0, 1e-3));
+}
+
+namespace {
+
+/// Nearest bin of the axis.
+double amplitude_at(const SpeedMap& map, std::size_t row, double where) {
+    return map.amplitude_nm[row][static_cast<std::size_t>(std::lround(where / map.spacing))];
+}
+
+}  // namespace
+
+TEST_CASE("in an order map of a run-up each order stays in its column with its amplitude") {
+    const auto signal = tests::run_up();
+    const SpeedMap map = speed_map(signal.view(), signal.turns, signal.speed_deg_s,
+                                   {.axis = Axis::angle, .resolution = 0.075, .highest = 7.5});
+    CHECK_THAT(map.resolution, WithinRel(0.075, 1e-6));
+    REQUIRE(map.speed_deg_s.size() > 5);
+    CHECK(std::is_sorted(map.speed_deg_s.begin(), map.speed_deg_s.end()));
+    for (std::size_t row = 0; row < map.speed_deg_s.size(); ++row) {
+        for (std::size_t i = 0; i < 4; ++i) {
+            // Orders fall on bins (spacing 0.025); half a percent is leakage between lines 20 cells apart and
+            // samples of unequal weight.
+            CHECK_THAT(amplitude_at(map, row, tests::run_up_orders[i]),
+                       WithinRel(tests::run_up_amplitudes[i], 0.005));
+        }
+        CHECK(amplitude_at(map, row, 2.5) < 0.01);
+    }
+}
+
+TEST_CASE("the highest order that a map shows by default is the alias-free one at the highest speed") {
+    const auto signal = tests::run_up();
+    const SpeedMap map = speed_map(signal.view(), signal.turns, signal.speed_deg_s, {});
+    // 300 Hz over 40 turns a second; the fastest window lies a little below that speed.
+    CHECK_THAT(map.axis.back(), WithinAbs(7.5, 0.6));
+    CHECK(map.axis.back() >= 7.4);
+}
+
+TEST_CASE("a Campbell diagram puts an order on a slope and a tone on a level") {
+    auto signal = tests::shaft(tests::straight(20.0, 60.0, 40000), 1000.0);
+    tests::add_line(signal, {1.0, 0.8, 0.3});
+    for (std::size_t k = 0; k < signal.time_s.size(); ++k) {
+        signal.torque_nm[k] += 12.0 + 0.5 * std::cos(2.0 * std::numbers::pi * 150.0 * signal.time_s[k]);
+    }
+    const SpeedMap map = speed_map(signal.view(), signal.turns, signal.speed_deg_s,
+                                   {.axis = Axis::time, .resolution = 3.0, .highest = std::nullopt});
+    CHECK_THAT(map.resolution, WithinRel(3.0, 0.01));
+    for (std::size_t row = 0; row < map.speed_deg_s.size(); ++row) {
+        CHECK_THAT(amplitude_at(map, row, 150.0), WithinRel(0.5, 0.01));
+        const auto& values = map.amplitude_nm[row];
+        const auto limit = values.begin() + static_cast<std::ptrdiff_t>(100.0 / map.spacing);
+        const double peak =
+            map.spacing * static_cast<double>(std::max_element(values.begin() + 5, limit) - values.begin());
+        // A speed's range is two turns a second wide at most, and so is the ridge.
+        CHECK_THAT(peak, WithinAbs(map.speed_deg_s[row] / 360.0, map.speed_step_deg_s / 720.0 + map.spacing));
+    }
+    CHECK_THAT(map.axis.back(), WithinAbs(500.0, map.spacing));
+}
+
+TEST_CASE("a log at one speed is a map of one row, without a division by zero") {
+    auto signal = tests::shaft(tests::straight(25.0, 25.0, 5000), 1000.0);
+    tests::add_line(signal, {1.0, 0.8, 0.3});
+    for (const Axis axis : {Axis::angle, Axis::time}) {
+        const SpeedMap map = speed_map(signal.view(), signal.turns, signal.speed_deg_s, {.axis = axis});
+        REQUIRE(map.speed_deg_s.size() == 1);
+        CHECK_THAT(map.speed_deg_s[0], WithinRel(9000.0, 1e-9));
+        for (const double value : map.amplitude_nm[0]) CHECK(std::isfinite(value));
+        const auto& row = map.amplitude_nm[0];
+        const auto highest = std::max_element(row.begin(), row.end());
+        const double line = axis == Axis::angle ? 1.0 : 25.0;
+        CHECK_THAT(map.axis[static_cast<std::size_t>(highest - row.begin())], WithinAbs(line, map.spacing));
+        // A line between two bins of a Hann window is seen by up to 1.4 dB too low.
+        CHECK(*highest < 0.81);
+        CHECK(*highest > 0.67);
+    }
+    const auto rest = tests::shaft(tests::straight(0.0, 0.0, 5000), 1000.0);
+    CHECK_THROWS_AS(speed_map(rest.view(), rest.turns, rest.speed_deg_s, {}), DataError);
+}
+
+TEST_CASE("a resolution that no run can give is not pretended") {
+    const auto signal = tests::run_up();  // 125 turns
+    const SpeedMap map = speed_map(signal.view(), signal.turns, signal.speed_deg_s,
+                                   {.axis = Axis::angle, .resolution = 0.001, .highest = 7.5});
+    CHECK_THAT(map.resolution, WithinRel(1.5 / 125.0, 1e-6));
+    CHECK(map.speed_deg_s.size() == 1);
 }

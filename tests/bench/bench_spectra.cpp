@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "benchmark.hpp"
+#include "ripplenotch/analysis/fourier.hpp"
 #include "ripplenotch/analysis/line_test.hpp"
 #include "ripplenotch/analysis/spectrum.hpp"
 

@@ -39,8 +39,7 @@ CASES = {
     # Through a pipe, whose bytes are not hashed: valgrind knows no instructions for SHA-256, so hashing would be most of it.
     # No line in either log: the short one has two by chance, and what it costs to measure them is no cost of a row.
     "spectrum, npy, segments of 4096": ["spectrum", "-", "--segment", "2.048s", "--false-alarm", "1e-6", "-o", "{out}.csv"],
-    "track, npy, least squares": ["track", "-", "--orders", "1,2", "--gear-ratio", "40", "-o", "{out}.csv"],
-    "track, npy, Vold-Kalman": ["track", "-", "--orders", "1,2", "--gear-ratio", "40", "--method", "vold-kalman", "-o", "{out}.csv"],
+    "track, npy, least squares": ["spectrum", "-", "--track", "--orders", "1,2", "--gear-ratio", "40", "-o", "{out}.csv"],
     "identify, CSV with 6 decimals": ["identify", "{log}.csv", "-o", "{out}.txt"],
     "spectrum against order, npy": ["spectrum", "-", "--domain", "order", "-o", "{out}.csv"],
 }

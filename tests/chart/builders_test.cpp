@@ -49,8 +49,7 @@ Trace at_speed(double speed_deg_s, double seconds = 4.0) {
 TEST_CASE("a spectrum's figure names its peaks and keeps their height, even of a long log") {
     const Trace trace = at_speed(90.0, 60.0);
     const Spectrum spectrum = torque_spectrum(trace.view(), {});
-    const ShownSpectrum shown{"", &spectrum};
-    const Figure figure = spectrum_figure("log.csv", {&shown, 1});
+    const Figure figure = spectrum_figure("log.csv", spectrum, false);
     check_figure(figure);
     const Panel& panel = figure.panels.front();
     REQUIRE(panel.lines.size() == 2);
@@ -61,17 +60,7 @@ TEST_CASE("a spectrum's figure names its peaks and keeps their height, even of a
     CHECK(top_of(panel.curves[0]).y == *highest);
     CHECK(axis_text(panel.x) == "frequency, Hz");
     CHECK_THAT(figure.sentence, Contains("2 lines") && !Contains("--domain order"));
-    const ShownSpectrum smeared{"", &spectrum, true};
-    CHECK_THAT(spectrum_figure("log.csv", {&smeared, 1}).sentence, Contains("--domain order"));
-}
-
-TEST_CASE("more steady stretches than panels are counted, not hidden") {
-    const Trace trace = at_speed(90.0);
-    const Spectrum spectrum = torque_spectrum(trace.view(), {});
-    const std::vector<ShownSpectrum> shown(20, {"stretch", &spectrum});
-    const Figure figure = spectrum_figure("log.csv", shown);
-    CHECK(figure.panels.size() == most_spectrum_panels);
-    CHECK_THAT(figure.sentence, Contains("20 stretches, of which the first 8 are shown"));
+    CHECK_THAT(spectrum_figure("log.csv", spectrum, true).sentence, Contains("--domain order"));
 }
 
 TEST_CASE("order lines run through the ridges of a Campbell diagram and of an order map") {

@@ -64,7 +64,7 @@ TEST_CASE("a track's line breaks where the joint turns round or rests, its ribbo
     tracks.lines = {{ones, ones, ones, ones}};
     CHECK(track_breaks(tracks) == std::vector<std::size_t>{2, 4});
     const std::vector<TrackName> names{{"order 2", 2.0}};
-    const Figure figure = track_figure("log.csv", tracks, names, {});
+    const Figure figure = track_figure("log.csv", tracks, names);
     check_figure(figure);
     const Curve& line = figure.panels.front().curves[0];
     REQUIRE(line.y.size() == 9);

@@ -71,18 +71,18 @@ TEST_CASE("a joint that keeps its speed still has a map") {
     CHECK(figure.panels[1].map->highest == Approx(0.3));
 }
 
-TEST_CASE("a track's ribbon is twice its standard error, in the kind of amplitude asked for") {
+TEST_CASE("a track's ribbon is twice its standard error") {
     OrderTracks tracks;
     tracks.time_s = {0.0, 1.0};
     tracks.speed_deg_s = {10.0, 20.0};
     tracks.lines = {{{1.0, 2.0}, {0.1, 0.2}, {30.0, 40.0}, {5.0, 6.0}}};
     const std::vector<TrackName> names{{"order 1", 1.0}};
-    const Figure figure = track_figure("log.csv", tracks, names, {2.0, "peak to peak"});
+    const Figure figure = track_figure("log.csv", tracks, names);
     check_figure(figure);
     const Panel& panel = figure.panels.front();
-    CHECK(panel.curves[0].y == std::vector<double>{2.0, 4.0});
-    CHECK(panel.ribbons[0].low == std::vector<double>{1.6, 3.2});
-    CHECK(panel.ribbons[0].high == std::vector<double>{2.4, 4.8});
+    CHECK(panel.curves[0].y == std::vector<double>{1.0, 2.0});
+    CHECK(panel.ribbons[0].low == std::vector<double>{0.8, 1.6});
+    CHECK(panel.ribbons[0].high == std::vector<double>{1.2, 2.4});
     CHECK(figure.panels[1].curves[0].y == std::vector<double>{30.0, 40.0});
 }
 
@@ -94,7 +94,7 @@ TEST_CASE("an order has one colour in every figure, and a tone and a line that n
     // Order 2 alone, first of the list, has the colour that it has beside order 1.
     const std::vector<TrackName> names{
         {"order 2", 2.0}, {"60 Hz", {}, true}, {"output order 3", {}, false}, {"order 8", 8.0}};
-    const Figure figure = track_figure("log.csv", tracks, names, {});
+    const Figure figure = track_figure("log.csv", tracks, names);
     const auto& curves = figure.panels.front().curves;
     CHECK(curves[0].ink == order_ink(2.0));
     CHECK(curves[1].ink == Ink::black);

@@ -51,7 +51,7 @@ ANSWERS = [
     ("diagnose sine", f"diagnose {{d}}/sim_2.csv --model {MODEL} --json"),
     ("diagnose effects", f"diagnose {{d}}/effects.csv --model {MODEL} --without gravity --json"),
     ("spectrum", f"spectrum {STEADY} --json"),
-    ("track", f"track {STEADY} {GEAR} --json"),
+    ("track", f"spectrum {STEADY} --track {GEAR} --json"),
     ("effects", "effects --json"),
 ]
 

@@ -170,7 +170,7 @@ void check_same(const std::string& path, const ReadOptions& options, double segm
     const SpectrumOptions spectrum{.segment = Seconds(segment_s)};
     LogPasses log(path, options);
     int told = 0;
-    const StretchSpectrum streamed = streamed_spectrum(log, spectrum, [&] {
+    const LogSpectrum streamed = streamed_spectrum(log, spectrum, [&] {
         ++told;
         CHECK(log.layout().warnings == whole.layout.warnings);
         CHECK(log.layout().options == whole.layout.options);

@@ -12,10 +12,10 @@ from commands import COMMANDS, GEAR, OF_A_LOG, Case, SharedCase, asked
 # Those that take several joints, with what each gives: a document with `joints`, or CSV with a column `joint`.
 LISTS = {
     "compare": "comparisons", "spectrum": "spectra", "spectrum --segment": "spectra", "spectrum --domain order": "spectra",
-    "spectrum --map campbell": "spectra", "spectrum --map order": "spectra", "spectrum --response": "responses",
-    "identify": "joints", "track": "tracks", "recommend": "recommendations",
+    "spectrum --map campbell": "spectra", "spectrum --map order": "spectra", "spectrum --track": "tracks",
+    "identify": "joints", "recommend": "recommendations",
 }
-CSV = {"spectrum": ["--bins"], "spectrum --segment": ["--bins"], "spectrum --domain order": ["--bins"], "spectrum --map campbell": [], "track": []}
+CSV = {"spectrum": ["--bins"], "spectrum --segment": ["--bins"], "spectrum --domain order": ["--bins"], "spectrum --map campbell": [], "spectrum --track": []}
 HEAD = ("schema", "tool", "version", "command", "inputs", "recording", "recordings")
 
 
@@ -154,7 +154,7 @@ class Selection(Case):
         self.write("wide.csv", wide_log(rows=300))
         for words, said in ((["j1,j7"], "no joint 'j7'"), (["j7"], "no joint 'j7'"), (["j1-j7"], "no joint 'j1-j7'"), (["j1,,j2"], "no joint ''"),
                             (["j3-j1"], "runs backwards"), (["j1", "--joint", "elbow"], "no joint 'elbow'")):
-            for command in ("info", "spectrum", "identify", "filter", "map", "diagnose", "compare", "track", "recommend"):
+            for command in ("info", "spectrum", "identify", "filter", "map", "diagnose", "compare", "spectrum --track", "recommend"):
                 with self.subTest(words=words, command=command):
                     done = self.run_tool(*asked(command, "wide.csv"), "--joint", *words)
                     self.assertEqual(done.returncode, 2, done.stderr)
@@ -163,7 +163,7 @@ class Selection(Case):
 
     def test_what_is_of_one_joint_says_so(self):
         self.write("wide.csv", wide_log(rows=1500))
-        for command in ("spectrum", "track", "compare", "identify"):
+        for command in ("spectrum", "spectrum --track", "compare", "identify"):
             with self.subTest(command):
                 if command == "identify":  # draws which motor is in which torque
                     self.good(*asked(command, "wide.csv"), "--plot", "a.json")
@@ -174,10 +174,10 @@ class Selection(Case):
                     self.assertIn("a picture shows one joint", done.stderr)
                 self.good(*asked(command, "wide.csv"), "--plot", f"{command}_{{joint}}.json")
                 self.assertTrue((self.folder / f"{command}_j2.json").exists())
-        done = self.run_tool(*asked("track", "wide.csv"), "-o", "a.npy")
+        done = self.run_tool(*asked("spectrum --track", "wide.csv"), "-o", "a.npy")
         self.assertEqual(done.returncode, 2)
         self.assertIn("put {joint} into the name", done.stderr)
-        self.good(*asked("track", "wide.csv"), "-o", "a_{joint}.npy")
+        self.good(*asked("spectrum --track", "wide.csv"), "-o", "a_{joint}.npy")
         self.assertTrue((self.folder / "a_j3.npy").exists())
 
 
@@ -189,7 +189,7 @@ class LeftOut(Case):
         (self.folder / "wide.csv").write_text(wide_log(without=("j2_torque_nm",)))
 
     def test_no_torque(self):
-        for command in ("spectrum", "track", "compare", "identify", "recommend", "filter"):
+        for command in ("spectrum", "spectrum --track", "compare", "identify", "recommend", "filter"):
             for words in (["--joint", "all"], ["--joint", "j1-j3"]):
                 with self.subTest(command=command, words=words):
                     done = self.good(*asked(command, "wide.csv"), *words)
@@ -210,12 +210,12 @@ class LeftOut(Case):
         self.assertEqual(self.run_tool(*words, "-o", "none.csv").returncode, 4)
         self.assertFalse((self.folder / "none.csv").exists())
         self.good("identify", "wide.csv", "--joint", "j1", "-o", "found_j1.json")
-        done = self.good("track", "wide.csv", "--joint-file", "found_{joint}.json", "-o", "track.csv")
+        done = self.good("spectrum", "wide.csv", "--track", "--joint-file", "found_{joint}.json", "-o", "track.csv")
         self.assertIn("joint j3 is left out: found_j3.json", done.stderr)
         self.assertEqual({row[0] for row in rows_of((self.folder / "track.csv").read_text())}, {"joint", "j1"})
 
     def test_nothing_is_left(self):
-        done = self.run_tool("track", "wide.csv", "--joint-file", "found_{joint}.json")
+        done = self.run_tool("spectrum", "wide.csv", "--track", "--joint-file", "found_{joint}.json")
         self.assertEqual(done.returncode, 4, done.stderr)
         self.assertEqual(done.stdout, "")
 
@@ -232,7 +232,7 @@ class SaidOnce(Case):
 
     def test_of_some_joints_with_their_names(self):
         (self.folder / "wide.csv").write_text(wide_log(rows=1500, without=("j1_position_deg", "j3_position_deg")))
-        done = self.good("track", "wide.csv", *GEAR, "-o", "track.csv")
+        done = self.good("spectrum", "wide.csv", "--track", *GEAR, "-o", "track.csv")
         self.assertEqual([line for line in done.stderr.splitlines() if "no usable position" in line],
                          ["ripplenotch: warning: joints j1, j3: no usable position: the angle is integrated velocity, and phases "
                           "count from the first sample"])

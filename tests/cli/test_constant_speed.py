@@ -35,7 +35,7 @@ class TorqueOnly(Case):
         self.assertEqual((header, first.split(",")[0]), ("time_s,torque_Nm", "0.000"))
 
     def test_what_needs_motion_names_the_option(self):
-        for words in (["identify"], ["track", "--gear-ratio", 100], ["spectrum", "--domain", "order"], ["spectrum", "--stretch", "all"],
+        for words in (["identify"], ["spectrum", "--track", "--gear-ratio", 100], ["spectrum", "--domain", "order"],
                       ["filter", "--method", "tracking,gear-ratio=100"], ["map", "--gear-ratio", 100]):
             done = self.run_tool(words[0], "bench.csv", *words[1:])
             self.assertEqual(done.returncode, 3, words)
@@ -48,7 +48,7 @@ class TorqueOnly(Case):
         self.assertAlmostEqual(found["lines"][0]["order_output"], 100, delta=0.1)
         said = found["recording"]["inferences"][0]
         self.assertEqual((said["about"], said["assumed"]), ("velocity", "60 deg/s throughout"))
-        line = self.json_of("track", "bench.csv", *STATED, "--gear-ratio", 100, "--orders", 1)["lines"][0]
+        line = self.json_of("spectrum", "bench.csv", "--track", *STATED, "--gear-ratio", 100, "--orders", 1)["lines"][0]
         self.assertAlmostEqual(line["ripple"]["amplitude_nm"], 0.8, delta=0.01)
         told = self.json_of("recommend", "bench.csv", *STATED, "--gear-ratio", 100, "--orders", 1)
         self.assertEqual(told["finding"], "recommended")
@@ -58,7 +58,7 @@ class TorqueOnly(Case):
 
     def test_of_the_motor_it_is_divided_by_the_ratio(self):
         motor = ["--constant-speed", "1000rpm", "--side", "motor"]
-        line = self.json_of("track", "bench.csv", *motor, "--gear-ratio", 100, "--orders", 1)["lines"][0]
+        line = self.json_of("spectrum", "bench.csv", "--track", *motor, "--gear-ratio", 100, "--orders", 1)["lines"][0]
         self.assertAlmostEqual(line["ripple"]["amplitude_nm"], 0.8, delta=0.01)
         done = self.run_tool("identify", "bench.csv", *motor)
         self.assertEqual((done.returncode, "needs --gear-ratio" in done.stderr), (2, True), done.stderr)

@@ -195,8 +195,6 @@ class ManyLogs(Case):
         row, = csv.DictReader(io.StringIO(run("features", path, *GEAR, "--csv").stdout))
         self.assertEqual(float(row["coulomb_friction_nm"]), line["coulomb_friction_nm"])
         self.assertEqual(float(row["coulomb_friction_ci95_nm_high"]), line["coulomb_friction_ci95_nm"][1])
-        self.assertEqual(row["resonance_hz"], "")
-        self.assertIn("resonance_hz: ", row["not_told"])
 
     def test_fields_of_a_list_are_those_of_the_lines(self):
         self.log()

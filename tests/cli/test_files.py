@@ -42,7 +42,7 @@ class Hashes(InFolder):
 
     def test_every_command_that_names_a_hash_names_the_right_one(self):
         raw = self.hash_of("log.csv")
-        for words in (("identify", "log.csv"), ("info", "log.csv"), ("spectrum", "log.csv"), ("track", "log.csv", *GEAR),
+        for words in (("identify", "log.csv"), ("info", "log.csv"), ("spectrum", "log.csv"), ("spectrum", "log.csv", "--track", *GEAR),
                       ("spectrum", "log.csv", "--segment", "1s"), ("compare", "log.csv", *GEAR, *LOWPASS)):
             with self.subTest(words[0]):
                 done = self.run_tool(*words, "--json")
@@ -50,7 +50,7 @@ class Hashes(InFolder):
 
     def test_a_result_that_tells_a_hash_has_it_whichever_way_it_is_asked_for(self):
         raw = self.hash_of("log.csv")
-        for command in (("identify",), ("track", *GEAR), ("spectrum",), ("map", *GEAR), ("compare", *GEAR, *LOWPASS)):
+        for command in (("identify",), ("spectrum", "--track", *GEAR), ("spectrum",), ("map", *GEAR), ("compare", *GEAR, *LOWPASS)):
             for number, output in enumerate((("--json",), ("-o", "NAME"), ("--plot", "NAME"))):
                 name = f"{command[0]}_{number}.json"
                 done = self.run_tool(command[0], "log.csv", *command[1:], *(w.replace("NAME", name) for w in output))
@@ -198,7 +198,7 @@ class Collisions(InFolder):
                       ("filter", "log.csv", *LOWPASS, "-o", "out.csv", "--metrics", "log.csv"),
                       ("filter", "log.csv", *LOWPASS, "--in-place", "--metrics", "log.csv"),
                       ("spectrum", "log.csv", "-o", "log.csv"),
-                      ("track", "log.csv", *GEAR, "-o", "log.csv"),
+                      ("spectrum", "log.csv", "--track", *GEAR, "-o", "log.csv"),
                       ("export", "table.json", "--to", "scipy", "-o", "table.json"),
                       ("compare", "log.csv", *GEAR, "--json", "-o", "table.json", "--method", "switching,table=table.json"),
                       ("report", "table.json", "-o", "table.json")):
@@ -259,5 +259,5 @@ class Places(InFolder):
 class Numbers(InFolder):
     def test_numbers_beyond_reason_are_a_mistake_in_the_command(self):
         for ratio in ("1e308", "1e30", "0", "-1"):
-            done = self.run_tool("track", "log.csv", "--gear-ratio", ratio)
+            done = self.run_tool("spectrum", "log.csv", "--track", "--gear-ratio", ratio)
             self.assertEqual(done.returncode, 2, done.stderr)

@@ -7,7 +7,7 @@ from commands import Case, asked_for_json, run
 from commands import Case, run
 
 HEAD = b"time_s,velocity_deg_s,torque_nm,note\n"
-COMMANDS = [asked_for_json(name, "log.csv") for name in ("info", "spectrum", "identify", "track", "filter", "compare")]
+COMMANDS = [asked_for_json(name, "log.csv") for name in ("info", "spectrum", "identify", "spectrum --track", "filter", "compare")]
 
 
 def rows(count, note=b"abc", torque=b"%.2f"):

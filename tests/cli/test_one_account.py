@@ -48,7 +48,7 @@ class Account(SharedCase):
                 result = json.loads(done.stdout)
                 self.assertIn("recording", result, f"{name} of {log}")
                 found[name] = result["recording"]
-                if name in ("filter", "compare", "track"):
+                if name in ("filter", "compare", "spectrum --track"):
                     gears.append((result["gear"]["ratio"], result["gear"]["orders"]))
             else:
                 self.assertEqual(done.returncode, 3, f"{name} of {log}: {done.stderr}")

@@ -72,7 +72,7 @@ class SameSources(Commands):
                 (["--joint-file", "joint.json"], "joint.json"),
                 (["--joint-file", "joint.json", "--orders", "1"], "joint.json, orders from --orders"),
                 (["--gear-ratio", 50, "--joint-file", "joint.json"], "--gear-ratio, orders from joint.json")):
-            self.assertEqual(self.json_said("track", words)[1]()["source"], source)
+            self.assertEqual(self.json_said("spectrum --track", words)[1]()["source"], source)
         _, gear = self.filtered_by("tracking,gear-ratio=100", ["--joint-file", "joint.json"])
         self.assertEqual(gear()["source"], "method tracking, orders from joint.json")
 
@@ -88,7 +88,7 @@ class SameSources(Commands):
         self.assertIsNone(self.json_said("spectrum --map order", [])[1]())
 
     def test_every_command_has_all_three_options_and_tells_the_default(self):
-        for command in ("filter", "compare", "track", "spectrum", "design"):
+        for command in ("filter", "compare", "spectrum", "design"):
             text = " ".join(self.good(command, "--help").stdout.split())
             for piece in ("--gear-ratio NUMBER", "--orders NUMBER,...", "--joint-file FILE", "(default:"):
                 self.assertIn(piece, text, command)
@@ -238,7 +238,7 @@ class BeforeTheGear(Commands):
         """Each command with each source of the ratio."""
         out = ["-o", "out.csv", "--json", "--force"]
         for source in (["--gear-ratio", ratio], ["--joint-file", f"joint_{ratio}.json"]):
-            yield ["track", log, *source, "--json"]
+            yield ["spectrum", log, "--track", *source, "--json"]
             yield ["spectrum", log, "--map", "campbell", *source, "--json"]
             yield ["compare", log, "--method", "lowpass,cutoff=5Hz", *source, "--json"]
             yield ["filter", log, "--method", "lowpass,cutoff=5Hz", *source, *out]

@@ -84,7 +84,7 @@ class Law(Case):
                     self.assertLess(least, bound_at(searched, order * ratio), f"identify says that there is none at order {order}")
 
     def tracked(self, where, stated):
-        done = self.run_tool("track", *where, *stated, "--json")
+        done = self.run_tool("spectrum", "--track", *where, *stated, "--json")
         if done.returncode == 3:  # no row could be measured
             return {}
         self.assertEqual(done.returncode, 0, done.stderr)

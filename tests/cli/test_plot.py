@@ -27,7 +27,7 @@ COMMANDS = {
     "order-map": ["spectrum", MOVE, "--map", "order", "--gear-ratio", "100", "--highest", "6"],
     "line-frequency": ["identify", *(str(DATA / f"paper_{v}deg_s.csv") for v in (60, 90, 120, 180))],
     "motor-matrix": ["identify", str(DATA / "arm/three_joints.csv")],
-    "track": ["track", MOVE, "--orders", "1,2", "--gear-ratio", "100"],
+    "track": ["spectrum", MOVE, "--track", "--orders", "1,2", "--gear-ratio", "100"],
     "ripple-map": ["map", MOVE, "--orders", "1,2", "--gear-ratio", "100"],
     "candidate-table": ["design", *TABLE],
     "torque": ["filter", LOG, "--method", "lowpass,cutoff=13rad/s,order=1"],

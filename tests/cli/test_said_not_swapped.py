@@ -59,8 +59,8 @@ class NamesOfOtherKinds(Told):
         self.good(*self.DESIGN, "-o", "t.json", "--json")
         yield from (["info", MOVE], ["effects"], ["identify", PAPER_90], ["compare", MOVE, *LOW], self.DESIGN,
                     [*self.DESIGN[:-1], "18:90", "--frontier"], ["spectrum", PAPER_90],
-                    ["spectrum", PAPER_90, "--peaks"], ["spectrum", PAPER_90, "--bins"], ["spectrum", MOVE, "--map", "order"],
-                    ["track", MOVE, "--gear-ratio", 100], ["track", MOVE, "--gear-ratio", 100, "--json"],
+                    ["spectrum", PAPER_90, "--bins"], ["spectrum", MOVE, "--map", "order"],
+                    ["spectrum", MOVE, "--track", "--gear-ratio", 100], ["spectrum", MOVE, "--track", "--gear-ratio", 100, "--json"],
                     ["filter", MOVE, *LOW], self.SIMULATE, ["report", "t.json"],
                     ["diagnose", MOVE, "--model", DATA / "paper_model.json"])
         for target in ("c-header", "cmsis-dsp", "scipy", "matlab", "ros-filters", "servo-drive", "json"):
@@ -136,16 +136,16 @@ class Lists(Told):
     def test_a_list_with_other_marks_is_refused_with_the_list_as_it_should_be(self):
         for words, hint in ((["1", "2"], "--orders 1,2"), (["1,", "2"], "--orders 1,2"), (["1 2"], "--orders 1,2"),
                             (["1:2"], "--orders 1,2"), (["1;2;4"], "--orders 1,2,4"), (["1, 2"], "--orders 1,2")):
-            for command in (["track", MOVE], ["filter", MOVE, *LOW], ["compare", MOVE, *LOW],
+            for command in (["spectrum", MOVE, "--track"], ["filter", MOVE, *LOW], ["compare", MOVE, *LOW],
                             ["design", "--sample-rate", "1kHz", "--speed", "18:90:18"]):
                 with self.subTest(command=command[0], words=words):
                     self.refused([*command, "--gear-ratio", "100", "--orders", *words],
                                  "a list is written with commas and without spaces", hint)
-        self.refused(["track", MOVE, "--tones", "25Hz", "50Hz"], "--tones 25Hz,50Hz")
+        self.refused(["spectrum", MOVE, "--track", "--tones", "25Hz", "50Hz"], "--tones 25Hz,50Hz")
 
     def test_a_log_whose_name_is_a_number_is_a_log(self):
         (self.folder / "2").write_bytes(MOVE.read_bytes())
-        self.good("track", "--gear-ratio", "100", "--orders", "1", "2")
+        self.good("spectrum", "--track", "--gear-ratio", "100", "--orders", "1", "2")
 
     def test_a_list_inside_a_method_has_colons(self):
         self.refused(["filter", MOVE, "--method", "fixed,centers=25Hz,50Hz"],
@@ -236,10 +236,9 @@ class RawLogs(Told):
 
 class Segments(Told):
     def test_a_segment_longer_than_the_log_is_told(self):
-        for words in ([], ["--stretch", "all"]):
-            done = self.good("spectrum", PAPER_90, "--segment", "60s", *words, "-o", "s.csv", "--force")
-            self.assertIn("--segment 60 s:", done.stderr)
-            self.assertIn("s long, so all of it is one piece", done.stderr)
+        done = self.good("spectrum", PAPER_90, "--segment", "60s", "-o", "s.csv", "--force")
+        self.assertIn("--segment 60 s:", done.stderr)
+        self.assertIn("s long, so all of it is one piece", done.stderr)
         self.assertEqual(self.good("spectrum", PAPER_90, "--segment", "1s", "-o", "s.csv", "--force").stderr, "")
 
 

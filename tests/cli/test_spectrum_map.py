@@ -84,11 +84,11 @@ class Maps(Case):
         self.assertIn("expected schema \"ripplenotch/joint/1\"", done.stderr)
         done = spectrum(MOVE, "--joint-file", "joint.json")
         self.assertEqual(done.returncode, 2)
-        self.assertIn("belong to --map", done.stderr)
+        self.assertIn("belong to --map and --track", done.stderr)
 
     def test_requests_that_make_no_sense_are_refused(self):
         for words, part in ((["--resolution", "1"], "--map"), (["--map", "waterfall"], "campbell"),
-                            (["--map", "order", "--peaks"], "--peaks"),
+                            (["--map", "order", "--bins"], "--bins"),
                             (["--map", "order", "--resolution", "0"], "above 0")):
             done = spectrum(MOVE, *words)
             self.assertEqual((done.returncode, done.stdout), (2, ""), done.stderr)

@@ -19,7 +19,7 @@ class Streams(Case):
         ((), 2),
         (("info", "missing.csv"), 4),
         (("info", "broken.csv"), 3),
-        (("track", "log.csv", "--gear-ratio", "100", "--orders", "1", "-o", "-"), 0),
+        (("spectrum", "log.csv", "--track", "--gear-ratio", "100", "--orders", "1", "-o", "-"), 0),
         (("filter", "log.csv", "--method", "lowpass,cutoff=13Hz,order=1", "-v", "-o", "-"), 0),
         (("export", "--method", "lowpass,cutoff=13Hz,order=1", "--sample-rate", "1kHz", "--to", "c-header", "--verify", "-o", "-"), 0),
     )
@@ -122,7 +122,7 @@ class Visible(Case):
         rows = "".join(f"{k / 1000},60,{math.cos(2 * math.pi * 16.7 * k / 1000)}\n" for k in range(2000))
         self.write("log.csv", "time_s,velocity_deg_s,torque_nm\n" + rows)
         for words in (("spectrum", "log.csv", "-v", "--bins"), ("spectrum", "log.csv", "-v", "--bins", "--segment", "1s"),
-                      ("track", "log.csv", "--gear-ratio", "100", "--orders", "1", "-v")):
+                      ("spectrum", "log.csv", "--track", "--gear-ratio", "100", "--orders", "1", "-v")):
             done = self.shown(*words)
             self.assertGreater(done.stderr.count(b"\n"), 1)
             self.assertNotIn(b"\\n", done.stderr)

@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""ripplenotch track as users meet it: columns, kinds of amplitude, speed, Vold-Kalman, refusals."""
+"""ripplenotch spectrum --track as users meet it: columns, speed, refusals."""
 
 import csv
 import io
 import json
-import math
 import pathlib
 import unittest
 
@@ -21,34 +20,23 @@ def rows_of(text):
 
 class Track(Case):
     def track(self, *words, **more):
-        done = run("track", *words, **more)
+        done = run("spectrum", "--track", *words, **more)
         self.assertEqual(done.returncode, 0, done.stderr)
         return rows_of(done.stdout)
 
 
 class Columns(Track):
-    def test_both_methods_find_the_amplitudes_that_the_move_was_made_with(self):
-        for words, names in ((), "ls"), (("--method", "vold-kalman", "--bandwidth", "3Hz"), "vold-kalman"):
-            header, rows = self.track(MOVE, *ORDERS, *words)
-            self.assertEqual(header, ["time_s", "speed_deg_s",
-                                      "order_1_amplitude_nm", "order_1_phase_deg", "order_1_standard_error_nm",
-                                      "order_2_amplitude_nm", "order_2_phase_deg", "order_2_standard_error_nm"])
-            self.assertGreater(len(rows), 15, names)
-            for row in rows:
-                for column, truth in (2, 0.8), (5, 0.5):
-                    if not math.isnan(row[column]):
-                        # 4 standard errors of up to 0.007 Nm
-                        self.assertAlmostEqual(row[column], truth, delta=0.028, msg=f"{names} {row}")
-                        self.assertAlmostEqual(row[column + 1], 0.0, delta=4.0)
-
-    def test_rms_and_peak_to_peak_are_the_peak_times_their_factor_and_named_so(self):
-        _, peak = self.track(MOVE, *ORDERS)
-        for kind, name, factor in ("rms", "order_1_rms_nm", math.sqrt(0.5)), ("peak-to-peak",
-                                                                            "order_1_peak_to_peak_nm", 2.0):
-            header, rows = self.track(MOVE, *ORDERS, "--amplitude", kind)
-            self.assertEqual(header[2], name)
-            for a, b in zip(peak, rows):
-                self.assertAlmostEqual(a[2] * factor, b[2], delta=1e-5)
+    def test_the_amplitudes_are_those_that_the_move_was_made_with(self):
+        header, rows = self.track(MOVE, *ORDERS)
+        self.assertEqual(header, ["time_s", "speed_deg_s",
+                                  "order_1_amplitude_nm", "order_1_phase_deg", "order_1_standard_error_nm",
+                                  "order_2_amplitude_nm", "order_2_phase_deg", "order_2_standard_error_nm"])
+        self.assertGreater(len(rows), 15)
+        for row in rows:
+            for column, truth in (2, 0.8), (5, 0.5):
+                # 4 standard errors of up to 0.007 Nm
+                self.assertAlmostEqual(row[column], truth, delta=0.028, msg=f"{row}")
+                self.assertAlmostEqual(row[column + 1], 0.0, delta=4.0)
 
     def test_against_speed_has_one_row_a_range_slowest_first(self):
         header, rows = self.track(MOVE, *ORDERS, "--against", "speed")
@@ -83,17 +71,17 @@ class Columns(Track):
             self.assertLess(row[8], 0.03)
 
     def test_the_same_bytes_twice_from_a_file_and_from_a_pipe_and_as_npy(self):
-        first = run("track", MOVE, *ORDERS).stdout
-        self.assertEqual(first, run("track", "-", *ORDERS, stdin=pathlib.Path(MOVE).read_text()).stdout)
+        first = run("spectrum", "--track", MOVE, *ORDERS).stdout
+        self.assertEqual(first, run("spectrum", "--track", "-", *ORDERS, stdin=pathlib.Path(MOVE).read_text()).stdout)
         path = self.folder / "track.npy"
-        done = run("track", MOVE, *ORDERS, "-o", str(path))
+        done = run("spectrum", "--track", MOVE, *ORDERS, "-o", str(path))
         self.assertEqual((done.returncode, done.stdout), (0, ""), done.stderr)
         self.assertEqual(path.read_bytes()[:6], b"\x93NUMPY")
 
     def test_without_position_amplitudes_stand_and_a_warning_says_what_phases_mean(self):
         lines = pathlib.Path(MOVE).read_text().splitlines()
         text = "\n".join(line.rsplit(",", 1)[0] for line in lines) + "\n"
-        done = run("track", "-", *ORDERS, stdin=text)
+        done = run("spectrum", "--track", "-", *ORDERS, stdin=text)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("count from the first sample", done.stderr)
         for row in rows_of(done.stdout)[1]:
@@ -102,7 +90,7 @@ class Columns(Track):
 
 class Json(Case):
     def test_the_verdict_and_the_columns_agree(self):
-        done = run("track", MOVE, *ORDERS, "--json", "--method", "vold-kalman", "--bandwidth", "2Hz")
+        done = run("spectrum", "--track", MOVE, *ORDERS, "--json")
         self.assertEqual(done.returncode, 0, done.stderr)
         result = json.loads(done.stdout)
         self.assertEqual(result["schema"], "ripplenotch/track/1")
@@ -110,45 +98,36 @@ class Json(Case):
         ripple = result["lines"][0]["ripple"]
         self.assertTrue(ripple["present"])
         self.assertLess(abs(result["lines"][0]["median_nm"] - ripple["amplitude_nm"]), 3 * ripple["standard_error_nm"])
-        # A run of 3 s is six times 1/bandwidth: the middle has the bandwidth asked for within a few per cent.
-        self.assertAlmostEqual(result["bandwidth_obtained_hz"], 2.0, delta=0.06)
         measured = [x for x in result["columns"]["order_1_amplitude_nm"] if x is not None]
         self.assertEqual(result["lines"][0]["rows_measured"], len(measured))
-        # Within 1/bandwidth of an end an envelope rests on one side alone: those rows are in the columns, and no extreme.
-        time_s, ends_s = result["columns"]["time_s"], 1 / result["bandwidth_obtained_hz"]
-        settled = [x for t, x in zip(time_s, result["columns"]["order_1_amplitude_nm"])
-                   if x is not None and time_s[0] + ends_s <= t <= time_s[-1] - ends_s]
-        self.assertLess(len(settled), len(measured))
-        self.assertAlmostEqual(result["lines"][0]["greatest_nm"], max(settled), delta=1e-5)
+        self.assertAlmostEqual(result["lines"][0]["greatest_nm"], max(measured), delta=1e-5)
 
     def test_a_joint_file_says_ratio_and_orders(self):
         joint = run("identify", str(DATA / "paper_60deg_s.csv"), str(DATA / "paper_120deg_s.csv"), "--json")
         self.assertEqual(joint.returncode, 0, joint.stderr)
         path = self.folder / "joint.json"
         path.write_text(joint.stdout)
-        done = run("track", MOVE, "--joint-file", str(path), "--json")
+        done = run("spectrum", "--track", MOVE, "--joint-file", str(path), "--json")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual([line["order"] for line in json.loads(done.stdout)["lines"]], [1.0, 2.0])
 
 
 class RealLogs(unittest.TestCase):
-    def test_the_panda_s_second_order_is_its_strongest_by_both_methods(self):
+    def test_the_panda_s_second_order_is_its_strongest(self):
         # An order spectrum of the whole log, made independently, shows 0.17, 0.41 and 0.24 Nm for orders 1, 2, 4.
         log = LOGS / "gpl3" / "panda_gaz_j4.csv"
         if not log.is_file():
             self.skipTest(f"{log} is not there")
-        for method in "ls", "vold-kalman":
-            done = run("track", str(log), "--orders", "1,2,4", "--gear-ratio", "120", "--method", method, "--json")
-            self.assertEqual(done.returncode, 0, done.stderr)
-            first, second, fourth = (line["median_nm"] for line in json.loads(done.stdout)["lines"])
-            self.assertTrue(0.08 < first < 0.25 and 0.2 < second < 0.5 and 0.1 < fourth < 0.4,
-                            f"{method} {first} {second} {fourth}")
-            self.assertGreater(second, 1.5 * first)
+        done = run("spectrum", "--track", str(log), "--orders", "1,2,4", "--gear-ratio", "120", "--json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        first, second, fourth = (line["median_nm"] for line in json.loads(done.stdout)["lines"])
+        self.assertTrue(0.08 < first < 0.25 and 0.2 < second < 0.5 and 0.1 < fourth < 0.4, f"{first} {second} {fourth}")
+        self.assertGreater(second, 1.5 * first)
 
 
 class Refusals(unittest.TestCase):
     def refused(self, code, words, *parts):
-        done = run("track", *words)
+        done = run("spectrum", "--track", *words)
         self.assertEqual(done.returncode, code, done.stderr)
         self.assertEqual(done.stdout, "")
         for part in parts:
@@ -160,13 +139,15 @@ class Refusals(unittest.TestCase):
         self.refused(2, [MOVE, "--orders", "0", "--gear-ratio", "100"], "above 0")
         self.refused(2, [MOVE, "--orders", "1,1", "--gear-ratio", "100"], "listed twice")
         self.refused(2, [MOVE, "--orders", "1", "--gear-ratio", "-3"], "--gear-ratio -3 is not above 0")
-        self.refused(2, [MOVE, *ORDERS, "--bandwidth", "1Hz"], "--method vold-kalman")
-        self.refused(2, [MOVE, *ORDERS, "--method", "vold-kalman", "--window", "1s"], "--bandwidth")
         self.refused(2, [MOVE, "--tones", "50Hz"], "--window")
 
-    def test_a_bandwidth_that_the_log_is_too_short_for_is_refused_with_one_that_it_can_give(self):
-        self.refused(3, [MOVE, *ORDERS, "--method", "vold-kalman", "--bandwidth", "0.1Hz"], "needs 15 s", "0.53 Hz")
+    def test_its_options_and_those_of_the_spectra_are_kept_apart(self):
+        self.refused(2, [MOVE, *ORDERS, "--bins"], "--track goes with neither")
+        self.refused(2, [MOVE, *ORDERS, "--speed-step", "40deg/s"], "--against speed")
+        for words in ["--tones", "50Hz"], ["--against", "speed"], ["--window", "1s"]:
+            done = run("spectrum", MOVE, *words)
+            self.assertEqual((done.returncode, done.stdout), (2, ""))
+            self.assertIn("belong to --track", done.stderr)
 
     def test_a_log_at_rest_has_nothing_to_track(self):
         self.refused(3, [str(DATA / "paper_rest.csv"), *ORDERS], "no row could be measured")
-        self.refused(3, [str(DATA / "paper_rest.csv"), *ORDERS, "--method", "vold-kalman"], "no row could be measured")

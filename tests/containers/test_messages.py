@@ -76,7 +76,7 @@ class Mcap(Messages):
 
     def test_all_that_follows_is_the_same(self):
         twin, path = self.twin(), self.bag()
-        for command in (("spectrum",), ("track", "--gear-ratio", "100", "--orders", "1,2"), ("diagnose", "--model", "auto")):
+        for command in (("spectrum",), ("spectrum", "--track", "--gear-ratio", "100", "--orders", "1,2"), ("diagnose", "--model", "auto")):
             got, expected = (self.identified(log, "--joint", "elbow", command=command) for log in (path, twin))
             self.assertEqual(got, expected, command[0])
         method = ("--joint", "elbow", "--method", "oscillator,gear-ratio=100,orders=1:2", "--output-format", "npy")

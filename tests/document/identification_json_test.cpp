@@ -39,7 +39,7 @@ Identification example() {
     found.gear_ratio.ci95_low = 99.98;
     found.gear_ratio.ci95_high = 100.04;
     found.gear_ratio.candidates = {{100.01, 0.9, "orders 1 and 2"}, {50.0, 0.1, "orders 2 and 4"}};
-    found.velocity_error = {DegPerSec(0.4), DegPerSec(0.03), Seconds(0.0105), Seconds(0.0007)};
+    found.velocity_error = {DegPerSec(0.4), DegPerSec(0.03)};
     found.gear_ratio.residuals = {{60.0, 33.3, 2.0, -0.001, 0.7}};
     return found;
 }
@@ -68,15 +68,6 @@ TEST_CASE("joint.json reads back as it was written, byte for byte") {
     REQUIRE(back.velocity_error);
     CHECK(back.velocity_error->offset == DegPerSec(0.4));
     CHECK(back.velocity_error->offset_error == DegPerSec(0.03));
-    CHECK(back.velocity_error->delay == Seconds(0.0105));
-    CHECK(back.velocity_error->delay_error == Seconds(0.0007));
-    Identification of_stretches = example();
-    of_stretches.velocity_error->delay_told = false;
-    const auto offset_alone =
-        identification_from_json(identification_text(of_stretches, {}), "joint.json").velocity_error;
-    REQUIRE(offset_alone);
-    CHECK(offset_alone->offset == DegPerSec(0.4));
-    CHECK_FALSE(offset_alone->delay_told);
     CHECK_FALSE(identification_from_json(identification_text(nothing, {}), "joint.json").velocity_error);
 }
 

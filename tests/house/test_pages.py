@@ -39,7 +39,7 @@ HELP_LISTS = {
     ("export", "--to"): named("export"),
     ("simulate", "--motion"): named("motions"),
     **{(command, "--format"): named("formats")
-       for command in ("info", "spectrum", "identify", "track", "map", "filter", "compare", "recommend", "diagnose")},
+       for command in ("info", "spectrum", "identify", "map", "filter", "compare", "recommend", "diagnose")},
     ("simulate", "--format"): named("formats", READ_ONLY),
     ("filter", "--output-format"): named("formats", READ_ONLY),
 }

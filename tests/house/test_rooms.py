@@ -50,8 +50,7 @@ DOORS = {
     r"hdf5\.h": {"src/log/containers/hdf5.cpp"},
     r"sqlite3": {"src/log/messages/rosbag2_messages.cpp"},
     r"pybind11": {"src/python/module.cpp"},
-    r"Eigen/Sparse": {"src/analysis/track/vold_kalman.cpp"},
-    r"Eigen/(?!Sparse)": {"src/core/matrices/linear_algebra.hpp"},
+    r"Eigen/": {"src/core/matrices/linear_algebra.hpp"},
 }
 
 @functools.cache

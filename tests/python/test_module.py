@@ -168,7 +168,7 @@ class Equal(ModuleCase):
         self.assertEqual(ripplenotch.diagnose(MOVE, json.loads(model.read_text())).to_json(), self.result("diagnose", MOVE, "--model", "model.json"))
 
     def test_any_command(self):
-        self.assertEqual(ripplenotch.run("spectrum", MOVE, peaks=True).to_json(), self.result("spectrum", MOVE, "--peaks"))
+        self.assertEqual(ripplenotch.run("spectrum", MOVE, domain="order").to_json(), self.result("spectrum", MOVE, "--domain", "order"))
         self.assertEqual(ripplenotch.help("filter"), self.good("filter", "--help").stdout)
 
 

@@ -3,7 +3,6 @@
 // Amplitude of torque against frequency: the paper's windowed DFT, in newton-metres, with its lines and their
 // false-alarm probability.
 
-#include <complex>
 #include <cstddef>
 #include <memory>
 #include <optional>
@@ -16,57 +15,6 @@
 
 namespace ripplenotch {
 
-// Fourier sums of uniform and of arbitrarily placed samples. The only users of FFTW sit behind these
-// functions; plans are estimated, never measured, so that the same input gives the same bits.
-
-/// X[k] = sum over n of x[n] exp(-2 pi i k n / N) for k = 0 .. N/2; N = x.size() > 0, any length.
-[[nodiscard]] std::vector<std::complex<double>> real_fourier(std::span<const double> x);
-
-/// The same for many signals of one length, without copies: fill in(), then run().
-class RealTransform {
-  public:
-    /// length > 0.
-    explicit RealTransform(std::size_t length);
-    ~RealTransform();
-    RealTransform(RealTransform&&) noexcept;
-    RealTransform& operator=(RealTransform&&) noexcept;
-
-    [[nodiscard]] std::span<double> in();
-    /// length / 2 + 1 sums, valid until the next run; in() stays as it is.
-    std::span<const std::complex<double>> run();
-
-  private:
-    struct Arrays;
-    std::unique_ptr<Arrays> arrays_;
-};
-
-/// The smallest length >= at_least without prime factors above 7, for transforms whose length is free.
-[[nodiscard]] std::size_t fast_length(std::size_t at_least);
-
-/// S[k] = sum over j of value[j] exp(-2 pi i k spacing where[j]) for k = 0 .. count - 1, at any places
-/// `where` (unit: 1/unit of spacing). Equal to the direct sum within 1e-9 of sum |value|. O(n + count log
-/// count). Method: spreading with the kernel exp(beta (sqrt(1 - x^2) - 1)), transform, division by the
-/// kernel's own transform (Barnett, Magland, af Klinteberg, SIAM J. Sci. Comput. 41, 2019). No interpolation
-/// takes place on the samples.
-[[nodiscard]] std::vector<std::complex<double>> nonuniform_fourier(std::span<const double> where,
-                                                                   std::span<const double> value,
-                                                                   double spacing, std::size_t count);
-
-/// The same sum at one frequency, with its first two derivatives by frequency; for refining a peak. O(n).
-struct FourierPoint {
-    std::complex<double> value, first, second;
-};
-[[nodiscard]] FourierPoint fourier_point(std::span<const double> where, std::span<const double> value,
-                                         double frequency);
-
-/// Where a maximum is looked for: about a frequency, at most so far from it.
-struct PeakGuess {
-    double frequency = 0.0, reach = 0.0;
-};
-/// Nearest maximum of |sum| to the guess, by Newton steps.
-[[nodiscard]] double refine_peak(std::span<const double> where, std::span<const double> value,
-                                 const PeakGuess& guess);
-
 /// A line of a spectrum, between bins. Amplitudes are zero to peak.
 struct SpectralPeak {
     double hz = 0.0;
@@ -78,21 +26,9 @@ struct SpectralPeak {
     double false_alarm = 1.0;  ///< chance that noise shows such a line anywhere in this spectrum
 };
 
-/// A band that rises above the neighbouring noise and is wider than a line: a resonance, or what changes
-/// frequency with the speed.
-struct SpectralHump {
-    double from_hz = 0.0, to_hz = 0.0;  ///< at least twice the noise's power, 15 dB below its highest
-    double peak_hz = 0.0;               ///< frequency of its highest bin
-    double peak_nm = 0.0;               ///< amplitude there
-    double rms_nm = 0.0;                ///< rms torque in the band, noise subtracted
-    double floor_nm = 0.0;              ///< amplitude of the neighbouring noise alone, rms
-    double false_alarm = 1.0;           ///< chance that noise shows such a hump anywhere in this spectrum
-};
-
 struct SpectrumOptions {
     std::optional<Seconds> segment;  ///< Welch: length of the pieces, half overlapping; left out: one piece
-    /// False-alarm probability of `peaks` over the whole spectrum, and of `humps` likewise.
-    double false_alarm = 0.01;
+    double false_alarm = 0.01;       ///< chance that noise gives any of `peaks`
 };
 
 /// Bins run from 0 Hz to half the sample rate, all vectors have the same length.
@@ -102,7 +38,6 @@ struct Spectrum {
     std::vector<double> psd_nm2_hz;    ///< one-sided
     std::vector<double> floor_nm;      ///< noise floor as an amplitude, rms; 0 where it cannot be known
     std::vector<SpectralPeak> peaks;   ///< strongest first
-    std::vector<SpectralHump> humps;   ///< most energy first
     Hertz bin_width;
     Hertz resolution;  ///< bin_width times 1.5, the noise bandwidth of a Hann window
     std::size_t pieces = 0;

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "ripplenotch/analysis/line_test.hpp"
-#include "ripplenotch/analysis/spectrum.hpp"
 #include "ripplenotch/analysis/sweeps.hpp"
 
 namespace ripplenotch {
@@ -38,12 +37,6 @@ struct Stack {
     [[nodiscard]] PowerSpectrum tested() const;
     /// States that the sweeps hold no line at a place, and no noise there.
     void mark_removed(double place);
-    struct HumpRule {
-        double false_alarm = 0.0;
-        double lowest = 0.0;  ///< lower limit for humps, in orders or hertz
-    };
-    /// significant_humps, likewise; most energy first. None where there are few cells.
-    [[nodiscard]] std::vector<SpectralHump> humps(const HumpRule& rule) const;
     double tries_factor = 1.0;  ///< longest over mean length
 };
 

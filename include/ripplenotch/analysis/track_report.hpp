@@ -13,14 +13,6 @@
 
 namespace ripplenotch {
 
-enum class AmplitudeKind { peak, rms, peak_to_peak };
-/// Amplitude in this kind of a cosine of amplitude 1, zero to peak.
-[[nodiscard]] double amplitude_factor(AmplitudeKind kind);
-/// "amplitude_nm", "rms_nm", "peak_to_peak_nm": in this project amplitude means zero to peak.
-[[nodiscard]] std::string_view amplitude_name(AmplitudeKind kind);
-/// "zero to peak", "rms", "peak to peak"
-[[nodiscard]] std::string_view amplitude_words(AmplitudeKind kind);
-
 /// The name of a line of the tracks.
 struct TrackLabel {
     enum class Kind { order, order_output, tone } kind = Kind::order;
@@ -35,16 +27,12 @@ struct TrackLabel {
 struct TrackReport {
     std::string joint;
     std::string doubt;  ///< why these orders may be others: a sentence that the verdict begins with, or empty
-    std::string method;  ///< "ls" or "vold-kalman"
-    AmplitudeKind kind = AmplitudeKind::peak;
     std::optional<GearAccount> gear;
     bool angle_from_position = false;    ///< else phases count from the first sample
-    std::optional<double> window_turns;  ///< ls: of the motor where there is a gear ratio, else of the output
-    std::optional<Seconds> window;       ///< ls
-    std::optional<Hertz> bandwidth, bandwidth_obtained;  ///< vold-kalman
-    std::optional<int> poles;                            ///< vold-kalman
+    std::optional<double> window_turns;  ///< of the motor where there is a gear ratio, else of the output
+    std::optional<Seconds> window;
     std::vector<TrackLabel> labels;
-    /// The ripple of each label over the whole log, whatever the method; empty for tones.
+    /// The ripple of each label over the whole log; empty for tones.
     std::vector<std::optional<RippleEstimate>> ripple;
     OrderTracks tracks;
     std::optional<SpeedTrack> by_speed;  ///< when the rows go by speed
@@ -60,9 +48,7 @@ struct TrackColumn {
 /// nan where a line was not measured.
 [[nodiscard]] std::vector<TrackColumn> track_columns(const TrackReport& report);
 
-/// One line over the rows in which it was measured, amplitudes in the kind of the report. Median, least and
-/// greatest of Vold-Kalman leave out rows within 1 / bandwidth of the log's ends, where an envelope rests on
-/// one side alone.
+/// One line over the rows in which it was measured.
 struct TrackSummary {
     std::size_t rows = 0;  ///< rows where it was measured; 0: the other values mean nothing
     double median_nm = 0.0, least_nm = 0.0, greatest_nm = 0.0;

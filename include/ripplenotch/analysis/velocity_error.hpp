@@ -1,18 +1,15 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Gain error, delay and noise of a logged velocity.
+// Offset and noise of a logged velocity.
 
 #include "ripplenotch/core/quantity.hpp"
 #include "ripplenotch/core/trace.hpp"
 
 namespace ripplenotch {
 
-/// Gain error and delay of the logged velocity (the lag of a filter counts as delay), with standard errors.
-/// Steady speeds determine the offset alone.
+/// Offset of the logged velocity, with its standard error.
 struct VelocityError {
     DegPerSec offset, offset_error;
-    Seconds delay, delay_error;
-    bool delay_told = true;
 };
 
 /// Standard deviation of the velocity's noise, row by row, while the joint moves: what makes a supervisor

@@ -6,9 +6,8 @@
 #include <span>
 #include <string>
 
-#include "ripplenotch/analysis/frequency_response.hpp"
 #include "ripplenotch/analysis/identification.hpp"
-#include "ripplenotch/analysis/motion_lines.hpp"
+#include "ripplenotch/analysis/line_search.hpp"
 #include "ripplenotch/analysis/order_map.hpp"
 #include "ripplenotch/analysis/spectrum.hpp"
 #include "ripplenotch/core/gear_account.hpp"
@@ -24,26 +23,16 @@ namespace ripplenotch {
 /// cells where nothing was found are empty.
 [[nodiscard]] Figure motor_matrix_figure(const std::string& source, std::span<const Identification> joints);
 
-struct ShownSpectrum {
-    std::string name;  ///< "stretch 2, 60 deg/s"; empty for the whole log
-    const Spectrum* spectrum = nullptr;
-    bool smears_orders = false;  ///< as Stretch::smears_orders
-};
-
 /// Lines that get their name in a spectrum, strongest first.
 inline constexpr std::size_t most_named_lines = 12;
-/// Spectra that get a panel; the caption states the total number.
-inline constexpr std::size_t most_spectrum_panels = 8;
 
 /// Amplitude against frequency with the noise floor, lines named by frequency and amplitude.
-[[nodiscard]] Figure spectrum_figure(const std::string& source, std::span<const ShownSpectrum> spectra);
+/// `smears_orders`: as Stretch::smears_orders.
+[[nodiscard]] Figure spectrum_figure(const std::string& source, const Spectrum& spectrum, bool smears_orders);
 
 /// Amplitude against output order, order lines named.
 [[nodiscard]] Figure order_spectrum_figure(const std::string& source, const Stack& stack,
                                            const MotionLines& lines);
-
-/// Bode diagram with 95 % bands: gain and phase where they are determined, and the coherence with its limit.
-[[nodiscard]] Figure response_figure(const std::string& source, const ResponseReport& report);
 
 /// Campbell diagram or order map: speed along x. With a gear the lines of its orders are drawn;
 /// `axis_per_motor_turn`: the map's own orders are per motor turn, not per output turn.

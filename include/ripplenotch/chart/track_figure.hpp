@@ -63,12 +63,6 @@ class TorqueCourse {
     bool any_ = false;
 };
 
-/// How the amplitudes of a track are shown: the factor for a cosine of amplitude 1, and its name.
-struct TrackScale {
-    double factor = 1.0;
-    std::string label = "amplitude, zero to peak";
-};
-
 /// A line in the legend, and what gives its colour: an order of the motor, a tone, or neither.
 struct TrackName {
     std::string words;
@@ -78,10 +72,10 @@ struct TrackName {
 
 /// Amplitude of each line against time with twice its standard error as a ribbon, and its phase.
 [[nodiscard]] Figure track_figure(const std::string& source, const OrderTracks& tracks,
-                                  std::span<const TrackName> names, const TrackScale& scale);
+                                  std::span<const TrackName> names);
 
 /// The same against signed speed, the ribbon being the spread over the rows of a speed.
 [[nodiscard]] Figure track_figure(const std::string& source, const SpeedTrack& tracks,
-                                  std::span<const TrackName> names, const TrackScale& scale);
+                                  std::span<const TrackName> names);
 
 }  // namespace ripplenotch

@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// spectrum.json: peaks, noise floor, window and resolution of one or several spectra of a log.
+// spectrum.json: peaks, noise floor, window and resolution of the spectrum of a log.
 
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "ripplenotch/analysis/frequency_response.hpp"
-#include "ripplenotch/analysis/motion_lines.hpp"
+#include "ripplenotch/analysis/line_search.hpp"
 #include "ripplenotch/analysis/order_map.hpp"
 #include "ripplenotch/analysis/spectrum.hpp"
-#include "ripplenotch/analysis/steady.hpp"
+#include "ripplenotch/analysis/stretches.hpp"
 #include "ripplenotch/analysis/track_report.hpp"
 #include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/document/provenance.hpp"
@@ -30,13 +29,8 @@ namespace ripplenotch {
 /// Schema ripplenotch/track/1; the columns are arrays, null where a line was not measured.
 [[nodiscard]] std::string track_text(const TrackReport& report, const Provenance& provenance);
 
-/// Schema ripplenotch/response/1: `third_octaves`, and all bins as arrays, null where the
-/// response is not determined.
-[[nodiscard]] std::string response_text(const ResponseReport& report, const Provenance& provenance);
-
-/// A frequency spectrum and the samples that it is of.
-struct StretchSpectrum {
-    std::optional<int> number;  ///< of the steady stretch, from 1; empty for the whole log
+/// A frequency spectrum and the motion behind it.
+struct LogSpectrum {
     Stretch stretch;
     Spectrum spectrum;
 };
@@ -48,8 +42,8 @@ struct OrderSpectrum {
     std::string doubt;  ///< why these orders may be others: half a sentence; empty where nothing says so
 };
 
-[[nodiscard]] std::string spectra_text(const std::string& joint, const std::vector<StretchSpectrum>& spectra,
-                                       double false_alarm, const Provenance& provenance);
+[[nodiscard]] std::string spectrum_text(const std::string& joint, const LogSpectrum& spectrum,
+                                        double false_alarm, const Provenance& provenance);
 [[nodiscard]] std::string order_spectrum_text(const std::string& joint, const OrderSpectrum& spectrum,
                                               double false_alarm, const Provenance& provenance);
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "ripplenotch/analysis/ripple_estimate.hpp"
+#include "ripplenotch/analysis/ripple_meter.hpp"
 #include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/core/quantity.hpp"
 #include "ripplenotch/evaluate/contender.hpp"

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "ripplenotch/analysis/ripple_estimate.hpp"
+#include "ripplenotch/analysis/ripple_meter.hpp"
 #include "ripplenotch/core/quantity.hpp"
 #include "ripplenotch/core/spec.hpp"
 #include "ripplenotch/design/candidate_table.hpp"

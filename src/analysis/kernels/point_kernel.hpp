@@ -4,7 +4,7 @@
 
 #include <span>
 
-#include "ripplenotch/analysis/spectrum.hpp"
+#include "ripplenotch/analysis/fourier.hpp"
 
 namespace ripplenotch {
 

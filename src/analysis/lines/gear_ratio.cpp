@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "core/matrices/least_squares.hpp"
-#include "ripplenotch/analysis/identification.hpp"
+#include "ripplenotch/analysis/gear_ratio.hpp"
 
 #include <fmt/format.h>
 
@@ -8,8 +7,9 @@
 #include <array>
 #include <cmath>
 
-#include "analysis/lines/disagreement.hpp"
 #include "analysis/lines/ratio_hypothesis.hpp"
+#include "core/matrices/least_squares.hpp"
+#include "ripplenotch/analysis/line_test.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
@@ -246,6 +246,23 @@ GearRatioResult fit_gear_ratio(std::span<const OrderLine> lines, const RatioQues
     // The robust fit moves the value a little from where the comparison left it; one ratio, one number.
     result.fit.candidates.front().value = *result.fit.value;
     return result;
+}
+
+std::vector<double> undecided_ratios(const GearRatioFit& fit) {
+    // Chosen, not derived: score of the first, and of others relative to it.
+    constexpr double probable = 0.2, beside_it = 0.1;
+    constexpr double same_ratio = 0.5e-4;  // the five digits that are printed
+    std::vector<double> ratios;
+    if (fit.value || fit.candidates.empty() || fit.candidates.front().score < probable) return ratios;
+    for (const RatioCandidate& one : fit.candidates) {
+        // Two reasons for one number, such as another unit of the speed, are one ratio.
+        const auto is_same = [&](double ratio) {
+            return std::abs(ratio - one.value) <= same_ratio * one.value;
+        };
+        if (one.score > beside_it * fit.candidates.front().score && std::ranges::none_of(ratios, is_same))
+            ratios.push_back(one.value);
+    }
+    return ratios.size() > 1 ? ratios : std::vector<double>{};
 }
 
 }  // namespace ripplenotch

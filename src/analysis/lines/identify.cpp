@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "analysis/lines/identify.hpp"
+#include "ripplenotch/analysis/identification.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -18,8 +18,7 @@
 #include "analysis/lines/disagreement.hpp"
 #include "analysis/shared_limits.hpp"
 #include "core/matrices/least_squares.hpp"
-#include "ripplenotch/analysis/identification.hpp"
-#include "ripplenotch/analysis/motion_lines.hpp"
+#include "ripplenotch/analysis/line_search.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
@@ -41,8 +40,7 @@ constexpr std::array findings{Named<RippleFinding>{RippleFinding::ratio, "ratio"
 constexpr std::array doubt_reasons{Named<DoubtReason>{DoubtReason::clock, "clock"},
                                    Named<DoubtReason>{DoubtReason::unit, "unit"}};
 constexpr std::array abouts{Named<Disagreement::About>{Disagreement::About::ratio, "gear ratio"},
-                            Named<Disagreement::About>{Disagreement::About::amplitude, "amplitude"},
-                            Named<Disagreement::About>{Disagreement::About::phase, "phase"}};
+                            Named<Disagreement::About>{Disagreement::About::amplitude, "amplitude"}};
 constexpr std::array line_kinds{Named<LineKind>{LineKind::order, "order"},
                                 Named<LineKind>{LineKind::tone, "tone"},
                                 Named<LineKind>{LineKind::unknown, "unknown"}};
@@ -77,23 +75,6 @@ std::optional<SeenFrequencies> seen_frequencies(const Line& line) {
 std::optional<double> motor_order(const Line& line) {
     const bool follows = line.kind == LineKind::order || line.kind == LineKind::unknown;
     return follows ? line.order : std::nullopt;
-}
-
-std::vector<double> undecided_ratios(const GearRatioFit& fit) {
-    // Chosen, not derived: score of the first, and of others relative to it.
-    constexpr double probable = 0.2, beside_it = 0.1;
-    constexpr double same_ratio = 0.5e-4;  // the five digits that are printed
-    std::vector<double> ratios;
-    if (fit.value || fit.candidates.empty() || fit.candidates.front().score < probable) return ratios;
-    for (const RatioCandidate& one : fit.candidates) {
-        // Two reasons for one number, such as another unit of the speed, are one ratio.
-        const auto is_same = [&](double ratio) {
-            return std::abs(ratio - one.value) <= same_ratio * one.value;
-        };
-        if (one.score > beside_it * fit.candidates.front().score && std::ranges::none_of(ratios, is_same))
-            ratios.push_back(one.value);
-    }
-    return ratios.size() > 1 ? ratios : std::vector<double>{};
 }
 
 std::optional<GearAccount> found_gear(const Identification& found) {
@@ -157,17 +138,20 @@ std::string told(double value, double error, std::string_view unit, std::string_
 }
 
 std::string of_velocity(const std::optional<VelocityError>& error) {
-    if (!error) return "the ratio's interval does not include an offset, a filter or a delay of the velocity";
-    std::string text = "velocity error estimated from the ripple: " +
-                       told(error->offset.value(), error->offset_error.value(), "deg/s", "low", "high");
-    if (error->delay_told)
-        text +=
-            ", " + told(1e3 * error->delay.value(), 1e3 * error->delay_error.value(), "ms", "early", "late");
-    return text + "; it is corrected, and its uncertainty is included in the ratio's interval";
+    if (!error) return "the ratio's interval does not include an offset of the velocity";
+    return "velocity error estimated from the ripple: " +
+           told(error->offset.value(), error->offset_error.value(), "deg/s", "low", "high") +
+           "; it is corrected, and its uncertainty is included in the ratio's interval";
 }
 
-}  // namespace
+/// Finding, conclusive and verdict once more, after something was added.
+void settle(Identification& result) {
+    result.finding = finding_in(result);
+    result.conclusive = settled(result);
+    result.verdict = verdict_sentence(result);
+}
 
+/// Writes finding, grounds, notes, conclusive and verdict from the lines and the ratio already in `result`.
 void conclude(const MotionLines& motion, const IdentifyOptions& options, Identification& result) {
     if (motion.sweeps_left_out > 0) {
         result.notes.push_back(fmt::format("the order spectrum used {} of {} sweeps, evenly chosen",
@@ -184,11 +168,7 @@ void conclude(const MotionLines& motion, const IdentifyOptions& options, Identif
     settle(result);
 }
 
-void settle(Identification& result) {
-    result.finding = finding_in(result);
-    result.conclusive = settled(result);
-    result.verdict = verdict_sentence(result);
-}
+}  // namespace
 
 void cast_doubt(Identification& found, Doubt doubt) {
     for (Line& line : found.lines) {
@@ -211,6 +191,24 @@ void cast_doubt(Identification& found, Doubt doubt) {
 }
 
 namespace {
+
+/// A line as it is reported, and as the gear ratio sees it when it may turn with the joint.
+struct Reported {
+    Line line = {};
+    std::optional<OrderLine> order = {};
+};
+
+/// "mains 50 Hz", "3 times mains 60 Hz"; empty for any other frequency.
+std::string mains_note(double hz) {
+    constexpr double tolerance = 0.004;  // mains keep within 1 %, nearly always within a fifth of that
+    for (const double mains_hz : {50.0, 60.0}) {
+        const double n = std::round(hz / mains_hz);
+        if (n < 1.0 || n > 6.0 || std::abs(hz - n * mains_hz) > tolerance * n * mains_hz) continue;
+        const std::string mains = fmt::format("mains {:.0f} Hz", mains_hz);
+        return n == 1.0 ? mains : fmt::format("{:.0f} times {}", n, mains);
+    }
+    return "";
+}
 
 /// Reports which orders above those searched would explain the line about as well, seen folded.
 void list_folds(const MotionLine& found, double highest_searched, double rate_hz, Line& line) {
@@ -241,10 +239,7 @@ Reported from_motion(const MotionLines& motion, std::size_t source, double rate_
     line.by_speed = found.by_speed;
     line.speed_from_deg_s = motion.slowest_deg_s;
     line.speed_to_deg_s = motion.fastest_deg_s;
-    if (found.kind != LineKind::order && found.hz > 0.0) {
-        line.hz = found.hz;
-        reported.hz_error = found.hz_stderr;
-    }
+    if (found.kind != LineKind::order && found.hz > 0.0) line.hz = found.hz;
     const bool tone = found.kind == LineKind::tone;
     if (!tone) {
         line.order_output = found.order_output;
@@ -262,6 +257,7 @@ Reported from_motion(const MotionLines& motion, std::size_t source, double rate_
         line.phase_deg = *found.phase_deg;
         line.phase_known = true;
     }
+    if (tone) line.note = mains_note(found.hz);
     if (found.kind == LineKind::unknown)
         line.note = "the speed varies too little to distinguish an order from a tone";
     if (!tone) list_folds(found, motion.highest_spectrum_order, rate_hz, line);
@@ -322,14 +318,11 @@ Identification identify_together(std::span<const TraceView> logs, const Identify
         result.velocity_noise = std::max(result.velocity_noise, velocity_noise(log));
     if (motion.sweeps > 0) result.evidence = "order spectrum";
     add_ratio(reported, {options.hint, options.hinted_orders}, result);
-    result.families = families_among(reported);
-    name_mains(reported);
     for (Reported& r : reported) {
         result.lines.push_back(std::move(r.line));
     }
     std::stable_sort(result.lines.begin(), result.lines.end(),
                      [](const Line& a, const Line& b) { return a.amplitude_nm > b.amplitude_nm; });
-    result.hums = hums_beside(motion, result.lines);
     conclude(motion, options, result);
     return result;
 }
@@ -344,7 +337,7 @@ Identification identify(std::span<const TraceView> logs, const IdentifyOptions& 
     if (ripple && logs.size() > 1) {
         std::vector<Identification> each;
         for (const TraceView& log : logs) each.push_back(identify_together({&log, 1}, options));
-        together.disagreements = disagreements(together, each, logs);
+        together.disagreements = disagreements(together, each);
         settle(together);
     }
     for (const Doubt& doubt : options.doubts) cast_doubt(together, doubt);

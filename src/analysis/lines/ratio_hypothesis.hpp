@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "ripplenotch/analysis/identification.hpp"
+#include "ripplenotch/analysis/gear_ratio.hpp"
 
 namespace ripplenotch {
 

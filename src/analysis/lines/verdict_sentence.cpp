@@ -71,42 +71,15 @@ std::vector<const Line*> of_kind(const Identification& found, LineKind kind) {
     return lines;
 }
 
-/// "multiples 2 to 5 of 10.02 Hz"
-std::string family_in_words(const ToneFamily& family) {
-    std::vector<std::string> words;
-    const auto& n = family.multiples;
-    const bool unbroken = n.back() - n.front() + 1 == static_cast<int>(n.size());
-    for (const int one : n) words.push_back(std::to_string(one));
-    return fmt::format("multiples {} of {:.4g} Hz",
-                       unbroken ? fmt::format("{} to {}", n.front(), n.back()) : listed(words), family.hz);
-}
-
 std::string tones_too(const Identification& found) {
+    constexpr std::size_t most = 3;  // chosen, not derived: a sentence that a person reads
     std::vector<std::string> words;
-    const std::size_t most = found.families.empty() ? 3 : 6;
     for (const Line* line : of_kind(found, LineKind::tone)) {
-        if ((!found.families.empty() || !seen_at_rest(*line)) && words.size() < most)
+        if (!seen_at_rest(*line) && words.size() < most)
             words.push_back(
                 fmt::format("{:.4g} Hz{}", *line->hz, line->note.empty() ? "" : " (" + line->note + ")"));
     }
-    std::string text =
-        words.empty() ? ""
-                      : fmt::format("; fixed tone{} at {}", found.families.empty() ? "" : "s", listed(words));
-    for (const ToneFamily& family : found.families) text += ", " + family_in_words(family);
-    return text;
-}
-
-std::string hums_too(const Identification& found) {
-    std::vector<std::string> words;
-    for (const Hum& hum : found.hums)
-        words.push_back(
-            fmt::format("{:.3g} to {:.3g} Hz ({:.2g} Nm rms)", hum.from_hz, hum.to_hz, hum.rms_nm));
-    if (words.empty()) return "";
-    return fmt::format("; narrow-band noise stronger than {}: {}",
-                       found.finding == RippleFinding::nothing || found.finding == RippleFinding::too_little
-                           ? "the noise"
-                           : "the ripple",
-                       listed(words));
+    return words.empty() ? "" : "; fixed tones at " + listed(words);
 }
 
 std::string line_in_words(const Disagreement& one) {
@@ -123,9 +96,6 @@ std::string disagreements_too(const Identification& found) {
             [](const Disagreement::Value& a, const Disagreement::Value& b) { return a.value < b.value; });
         if (one.about == Disagreement::About::ratio) {
             words.push_back(fmt::format("gear ratio from {:.6g} to {:.6g}", least->value, most->value));
-        } else if (one.about == Disagreement::About::phase) {
-            words.push_back(fmt::format("the phase of {} from {:.0f} to {:.0f} deg", line_in_words(one),
-                                        least->value + 0.0, most->value + 0.0));
         } else {
             words.push_back(
                 fmt::format("{} from {:.2g} to {:.2g} Nm", line_in_words(one), least->value, most->value));
@@ -134,9 +104,7 @@ std::string disagreements_too(const Identification& found) {
     return words.empty() ? "" : "; the recordings disagree: " + listed(words);
 }
 
-std::string besides(const Identification& found) {
-    return tones_too(found) + hums_too(found) + disagreements_too(found);
-}
+std::string besides(const Identification& found) { return tones_too(found) + disagreements_too(found); }
 
 /// Which of two combs is the ratio depends on which spline drives the joint: the lines do not show it.
 std::string of_both_splines(const GearRatioFit& ratio, int decimals) {
@@ -287,13 +255,10 @@ std::string doubted(const Identification& found) {
             seen.push_back(fmt::format("{} ({:.2g} Nm)", frequencies(line), line.amplitude_nm));
     }
     if (found.grounds.sweeps == 0) return text;
-    std::string families;
-    for (const ToneFamily& family : found.families) families += ", " + family_in_words(family);
-    return text + fmt::format(" Seen, from {}: {}{}{}.", basis(found.grounds),
+    return text + fmt::format(" Seen, from {}: {}.", basis(found.grounds),
                               seen.empty()
                                   ? "no line"
-                                  : fmt::format("line{} at {}", seen.size() == 1 ? "" : "s", listed(seen)),
-                              families, hums_too(found));
+                                  : fmt::format("line{} at {}", seen.size() == 1 ? "" : "s", listed(seen)));
 }
 
 }  // namespace

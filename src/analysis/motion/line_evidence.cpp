@@ -6,9 +6,8 @@
 #include <complex>
 #include <limits>
 
-#include "analysis/lines/disagreement.hpp"
 #include "core/process/two_cores.hpp"
-#include "ripplenotch/analysis/spectrum.hpp"
+#include "ripplenotch/analysis/fourier.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {

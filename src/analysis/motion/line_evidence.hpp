@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "analysis/motion/motion_lines.hpp"
-#include "ripplenotch/analysis/motion_lines.hpp"
+#include "analysis/motion/sweep_fit.hpp"
+#include "ripplenotch/analysis/line_search.hpp"
 
 namespace ripplenotch {
 

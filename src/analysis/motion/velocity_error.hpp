@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "ripplenotch/analysis/motion_lines.hpp"
+#include "ripplenotch/analysis/line_search.hpp"
 #include "ripplenotch/analysis/stack.hpp"
 #include "ripplenotch/analysis/sweeps.hpp"
 
@@ -15,20 +15,20 @@ namespace ripplenotch {
 
 struct VelocityFit {
     VelocityError error;
-    /// Relative error that all orders have in common: from the offset and the delay, which are only known
-    /// within their errors, and from the velocity's noise, which its sum adds up.
+    /// Relative error that all orders have in common: from the offset, which is only known within its
+    /// error, and from the velocity's noise, which its sum adds up.
     double order_share_error = 0.0;
     std::vector<double> order_shares;  ///< by how much of itself each order of the fit lies higher
-    /// Largest shift of a sample within its sweep by offset and delay, in cycles of the highest order.
+    /// Largest shift of a sample within its sweep by the offset, in cycles of the highest order.
     double most_cycles = 0.0;
 };
 
-/// One offset and one delay of the velocity of all logs that have no position. An angle that is a sum of
-/// velocities is off by -offset * t + delay * velocity, and ripple of order n is out of phase by 2 pi n times
-/// that: the offset, the delay and the position of each line that make the summed power of the lines over
-/// their noise largest, which are the likeliest where each sweep has an amplitude and a phase of its own.
-/// Their prior: normal, 1 % of the fastest speed and 20 ms. The errors (sandwich) include noise of torque,
-/// the velocity's noise, and the uncertainty of the other unknowns. Needs at most four lines, the clearest.
+/// One offset of the velocity of all logs that have no position. An angle that is a sum of velocities is off
+/// by -offset * t, and ripple of order n is out of phase by 2 pi n times that: the offset and the position of
+/// each line that make the summed power of the lines over their noise largest, which are the likeliest where
+/// each sweep has an amplitude and a phase of its own. The prior of the offset: normal, 1 % of the fastest
+/// speed. The errors (sandwich) include noise of torque, the velocity's noise, and the uncertainty of the
+/// other unknowns. Needs at most four lines, the clearest.
 ///
 /// `sweeps` as cut, no line removed; `angle` is the stack of the same sweeps whose floors are the noise;
 /// `orders` are cycles per output turn. Empty where the power has no clear maximum. Cost O(samples * orders).

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include "ripplenotch/analysis/fourier.hpp"
+
 #include <fftw3.h>
 
 #include <algorithm>
@@ -15,10 +17,9 @@
 
 #include "analysis/kernels/point_kernel.hpp"
 #include "analysis/kernels/spreading_kernel.hpp"
-#include "analysis/spectrum/stack.hpp"
+#include "analysis/spectrum/pieces.hpp"
 #include "core/functions/many_numbers.hpp"
 #include "core/vectors/dot.hpp"
-#include "ripplenotch/analysis/spectrum.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "analysis/shared_limits.hpp"
-#include "analysis/spectrum/spectrum.hpp"
+#include "analysis/spectrum/running_median.hpp"
 #include "core/functions/many_numbers.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
@@ -397,6 +397,15 @@ double detectable_ratio(const PowerOverFloor& threshold) {
     const double half = one_sided_95 / std::sqrt(threshold.averages);
     const double u = half + std::sqrt(half * half + std::max(0.0, 2.0 * threshold.ratio - 1.0));
     return std::max(0.0, 0.5 * (u * u - 1.0));
+}
+
+double excess_scatter(double squares, double freedom) {
+    if (!(freedom >= 1.0)) return 1.0;
+    constexpr double normal_99 = 2.3263;  // 99 % quantile of a normal variable
+    // 99 % quantile of chi-square by the cube root of Wilson and Hilferty, within 1 % of the exact one.
+    const double share = 2.0 / (9.0 * freedom);
+    const double limit = freedom * portable::pow(1.0 - share + normal_99 * std::sqrt(share), 3.0);
+    return squares > limit ? std::sqrt(squares / freedom) : 1.0;
 }
 
 }  // namespace ripplenotch

@@ -1,29 +1,74 @@
 // SPDX-License-Identifier: MIT
-#include "analysis/spectrum/spectrum.hpp"
+#include "ripplenotch/analysis/spectrum.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <numbers>
 #include <vector>
 
-#include "analysis/spectrum/fourier.hpp"
-#include "ripplenotch/analysis/spectrum.hpp"
+#include "analysis/spectrum/line_meter.hpp"
+#include "analysis/spectrum/pieces.hpp"
+#include "ripplenotch/analysis/fourier.hpp"
+#include "ripplenotch/analysis/line_test.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 
+namespace {
+
+/// Bins of the main lobe at zero of what the removal of a straight line leaves.
+constexpr std::size_t trend_bins = 3;
+
+/// Largest amplitude that a line of amplitude 1 shows `bins` away through a Hann window, side lobes included.
 double leakage(double bins) {
     const double d = std::abs(bins);
     return d < 2.0 ? 1.0 : 1.0 / (std::numbers::pi * d * (d * d - 1.0));
 }
 
+constexpr double skirt_margin = 2.0;  ///< a side lobe may be this much higher than the window's own
+
+/// Independent averages that half-overlapping Hann pieces are worth: neighbours share a sixth of their
+/// amplitude and so 1/36 of their power in correlation, (1 + 2/36)^-1.
 double independent_pieces(std::size_t pieces) {
     return std::max(1.0, static_cast<double>(pieces) / (pieces > 1 ? 1.0556 : 1.0));
 }
 
-namespace {
+// The mean spectrum of pieces that go by one after another: once for the power, and once more for the lines
+// found in it.
+
+class Welch {
+  public:
+    /// `length` samples a piece.
+    Welch(std::size_t length, Hertz rate);
+
+    /// First pass: consecutive samples, seconds and Nm. Returns how many are done with: the others are to
+    /// come again, in front of those that follow them.
+    std::size_t add(std::span<const double> time_s, std::span<const double> torque_nm);
+    /// The result with another rate from the beginning on; empty where it cannot be determined.
+    [[nodiscard]] std::optional<Welch> at(Hertz rate) const;
+    /// Between the passes. False when there is no line, and so no need of a second pass.
+    bool find_lines(double false_alarm);
+    /// Second pass, the same samples in the same way.
+    std::size_t measure(std::span<const double> time_s, std::span<const double> torque_nm);
+
+    [[nodiscard]] Spectrum spectrum() const;
+
+  private:
+    [[nodiscard]] PowerSpectrum tested() const;
+    [[nodiscard]] double bin_hz() const { return rate_ / static_cast<double>(length_); }
+    [[nodiscard]] SpectralPeak peak(std::size_t line) const;
+
+    std::size_t length_;
+    double rate_;
+    PieceMaker maker_;
+    std::size_t pieces_ = 0;
+    std::vector<double> power_;  // squared amplitude of a line, sum over pieces; the mean from find_lines on
+    double gain_ = 0.0;          // ratio of density times rate to squared amplitude, likewise
+    std::vector<double> floor_;  // mean noise power
+    std::vector<SignificantPeak> found_;
+    std::vector<LineMeter> meters_;
+};
 
 constexpr double hann_error_factor =
     1.5307;  // standard error of a Hann-windowed frequency over the Cramer-Rao bound
@@ -56,8 +101,6 @@ std::vector<SignificantPeak> without_skirts(std::vector<SignificantPeak> found,
     }
     return kept;
 }
-
-}  // namespace
 
 Welch::Welch(std::size_t length, Hertz rate)
     : length_(length), rate_(rate.value()), maker_(length, rate), power_(length / 2 + 1, 0.0) {}
@@ -95,10 +138,6 @@ bool Welch::find_lines(double false_alarm) {
     gain_ *= share;
     floor_ = noise_floor(tested());
     found_ = without_skirts(significant_peaks(tested(), floor_, false_alarm), power_);
-    const std::vector<double> rest = power_without_lines();
-    PowerSpectrum without_lines = tested();
-    without_lines.power = rest;
-    humps_ = significant_humps(without_lines, false_alarm);
     for (const SignificantPeak& found : found_) {
         const std::size_t k = found.bin;
         const double between = log_parabola(power_[k - 1], power_[k], power_[k + 1]);
@@ -106,55 +145,6 @@ bool Welch::find_lines(double false_alarm) {
         if (pieces_ > 1) meter.expect_even_pieces(maker_.even_time_s());
     }
     return !found_.empty();
-}
-
-/// The noise in place of each line, as far as its skirt rises above it.
-std::vector<double> Welch::power_without_lines() const {
-    std::vector<double> rest = power_;
-    for (const SignificantPeak& found : found_) {
-        const double amplitude = skirt_margin * std::sqrt(power_[found.bin]);
-        const auto fill = [&](std::size_t bin, std::size_t apart) {
-            const double leaks = amplitude * leakage(static_cast<double>(apart) - 0.5);
-            if (apart > 2 && leaks * leaks < floor_[bin]) return false;
-            rest[bin] = floor_[bin];
-            return true;
-        };
-        for (std::size_t k = found.bin; k < rest.size() && fill(k, k - found.bin); ++k) {
-        }
-        for (std::size_t k = found.bin; k > tested().first && fill(k - 1, found.bin - k + 1); --k) {
-        }
-    }
-    return rest;
-}
-
-std::vector<SpectralHump> Welch::humps() const {
-    std::vector<SpectralHump> humps;
-    const std::vector<double> rest = power_without_lines();
-    for (const SignificantHump& found : humps_) {
-        SpectralHump hump;
-        double square = 0.0;
-        std::size_t highest = found.first;
-        for (std::size_t k = found.first; k < found.end; ++k) {
-            square += (rest[k] - found.floor) / (2.0 * hann_cell);
-            if (rest[k] > rest[highest]) highest = k;
-        }
-        // A line that is wide because its frequency or amplitude changes is no hump of its own.
-        const bool of_a_line = std::any_of(found_.begin(), found_.end(), [&](const SignificantPeak& line) {
-            return line.bin + 1 >= found.first && line.bin <= found.end && power_[line.bin] > 2.0 * square;
-        });
-        if (of_a_line) continue;
-        hump.from_hz = static_cast<double>(found.first) * bin_hz();
-        hump.to_hz = static_cast<double>(found.end - 1) * bin_hz();
-        hump.peak_hz = static_cast<double>(highest) * bin_hz();
-        hump.peak_nm = std::sqrt(rest[highest]);
-        hump.rms_nm = std::sqrt(std::max(square, 0.0));
-        hump.floor_nm = std::sqrt(found.floor);
-        hump.false_alarm = found.false_alarm;
-        humps.push_back(hump);
-    }
-    std::stable_sort(humps.begin(), humps.end(),
-                     [](const SpectralHump& a, const SpectralHump& b) { return a.rms_nm > b.rms_nm; });
-    return humps;
 }
 
 std::size_t Welch::measure(std::span<const double> time_s, std::span<const double> torque_nm) {
@@ -199,13 +189,14 @@ Spectrum Welch::spectrum() const {
         spectrum.psd_nm2_hz.push_back(power_[k] * (gain_ / rate_) * single);
         spectrum.floor_nm.push_back(k < first ? 0.0 : std::sqrt(floor_[k]));
     }
-    spectrum.humps = humps();
     for (std::size_t line = 0; line < found_.size(); ++line) spectrum.peaks.push_back(peak(line));
     std::stable_sort(
         spectrum.peaks.begin(), spectrum.peaks.end(),
         [](const SpectralPeak& a, const SpectralPeak& b) { return a.amplitude_nm > b.amplitude_nm; });
     return spectrum;
 }
+
+}  // namespace
 
 struct SpectrumStream::Work {
     Welch welch;
@@ -251,92 +242,6 @@ void SpectrumStream::measure(std::span<const double> time_s, std::span<const dou
 }
 
 Spectrum SpectrumStream::spectrum() const { return work_->welch.spectrum(); }
-
-namespace {
-
-// Ranks kept to each side of the median: four deviations of where the next window of the same noise has its.
-std::size_t ranks_beside(std::size_t count) {
-    return static_cast<std::size_t>(2.0 * std::sqrt(static_cast<double>(count))) + 8;
-}
-
-}  // namespace
-
-void RunningMedian::start(std::size_t first, std::size_t end) {
-    const auto window = signal_.subspan(first, end - first);
-    scratch_.assign(window.begin(), window.end());
-    const std::size_t middle = window.size() / 2, beside = ranks_beside(window.size());
-    const auto lowest = scratch_.begin() + static_cast<std::ptrdiff_t>(middle - std::min(middle, beside));
-    const auto highest =
-        scratch_.begin() + static_cast<std::ptrdiff_t>(std::min(window.size() - 1, middle + beside));
-    std::nth_element(scratch_.begin(), lowest, scratch_.end());
-    low_ = *lowest;
-    std::nth_element(lowest, highest, scratch_.end());
-    const double apart = *highest - low_;
-    buckets_a_unit_ = apart > 1e-300 ? static_cast<double>(bucket_count - 3) / apart : 0.0;
-    counts_.fill(0);
-    middle_ = below_ = 0;
-    come(first, end);
-}
-
-// Buckets rise with the values, whatever is rounded.
-std::uint8_t RunningMedian::bucket_of(double value) const {
-    const double place = (value - low_) * buckets_a_unit_ + 1.0;
-    const double last = static_cast<double>(bucket_count - 1);
-    return static_cast<std::uint8_t>(std::max(0.0, std::min(last, place)));
-}
-
-// Where values come in no order, a branch on one is guessed wrong every other time: there are none.
-void RunningMedian::come(std::size_t first, std::size_t end) {
-    for (std::size_t k = first; k < end; ++k) {
-        const std::uint8_t bucket = bucket_of(signal_[k]);
-        bucket_[k] = bucket;
-        ++counts_[bucket];
-        below_ += static_cast<std::size_t>(bucket < middle_);
-    }
-}
-
-void RunningMedian::move_on(std::size_t first, std::size_t end) {
-    for (std::size_t k = first_; k < first; ++k) {
-        const std::uint8_t bucket = bucket_[k];
-        --counts_[bucket];
-        below_ -= static_cast<std::size_t>(bucket < middle_);
-    }
-    come(end_, end);
-}
-
-bool RunningMedian::settle(std::size_t rank) {
-    while (rank < below_) below_ -= counts_[--middle_];
-    while (rank >= below_ + counts_[middle_]) below_ += counts_[middle_++];
-    return middle_ > 0 && middle_ + 1 < bucket_count;
-}
-
-double RunningMedian::inside(std::size_t rank) {
-    scratch_.clear();
-    const std::uint8_t *const begin = bucket_.data(), *const end = begin + end_;
-    const auto next = [&](const std::uint8_t* from) {
-        return static_cast<const std::uint8_t*>(
-            std::memchr(from, static_cast<int>(middle_), static_cast<std::size_t>(end - from)));
-    };
-    for (auto* at = next(begin + first_); at != nullptr; at = next(at + 1))
-        scratch_.push_back(signal_[static_cast<std::size_t>(at - begin)]);
-    const auto place = scratch_.begin() + static_cast<std::ptrdiff_t>(rank);
-    std::nth_element(scratch_.begin(), place, scratch_.end());
-    return *place;
-}
-
-double RunningMedian::at(std::size_t first, std::size_t count) {
-    const std::size_t end = first + count;
-    const bool onward = first >= first_ && end >= end_;
-    const bool little = onward && first - first_ + end - end_ < count / 2;
-    if (little) move_on(first, end);
-    if (!little || !settle(count / 2)) {
-        start(first, end);
-        settle(count / 2);
-    }
-    first_ = first;
-    end_ = end;
-    return inside(count / 2 - below_);
-}
 
 std::size_t piece_length(std::size_t samples, Hertz rate, const SpectrumOptions& options) {
     std::size_t length = samples;

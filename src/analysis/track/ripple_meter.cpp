@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
+#include "ripplenotch/analysis/ripple_meter.hpp"
+
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/track/ripple_estimate.hpp"
-#include "ripplenotch/analysis/ripple_estimate.hpp"
+#include "analysis/track/ripple_segments.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 

@@ -15,7 +15,6 @@
 #include <vector>
 
 #include "cli/command.hpp"
-#include "cli/identify/amplitude_table.hpp"
 #include "cli/options/joint_runs.hpp"
 #include "cli/options/plot_request.hpp"
 #include "cli/options/verdict_options.hpp"
@@ -73,18 +72,63 @@ std::string line_row(const Line& line, std::size_t kind_width) {
                 " " + line.note});
 }
 
+// The amplitude by speed and direction.
+
+std::string amplitude_cell(const RippleAtSpeed& at) {
+    const RippleEstimate& ripple = at.ripple;
+    return ripple.present() ? fmt::format("{:.3g} +/- {:.1g}", ripple.amplitude_nm,
+                                          normal_95_errors * ripple.standard_error_nm)
+                            : fmt::format("none above {:.2g}", ripple.detectable_nm);
+}
+
+std::string speed_cell(const RippleAtSpeed& at) {
+    const std::string from = fmt::format("{:.3g}", at.speed_from_deg_s),
+                      to = fmt::format("{:.3g}", at.speed_to_deg_s);
+    return from == to ? from : from + "-" + to;
+}
+
+/// A row per order and range of speed, a column per direction; empty without any.
+std::string amplitude_table(const std::vector<RippleAtSpeed>& all) {
+    const auto goes = [&](int direction) {
+        return std::any_of(all.begin(), all.end(),
+                           [&](const RippleAtSpeed& at) { return at.direction == direction; });
+    };
+    std::vector<int> directions;
+    for (const int direction : {1, -1})
+        if (goes(direction)) directions.push_back(direction);
+    const auto row = [&](const std::string& order, const std::string& speed, const auto& cell) {
+        std::string text = fmt::format("{:>5} {:>12}", order, speed);
+        for (const int direction : directions) text += fmt::format(" {:>18}", cell(direction));
+        return text.substr(0, text.find_last_not_of(' ') + 1) + "\n";
+    };
+    if (all.empty()) return "";
+    std::string text = "\namplitude by speed and direction, zero to peak, +/- 95 %\n";
+    text += row("order", "speed", [](int direction) { return direction < 0 ? "backward" : "forward"; });
+    text += row("", "deg/s", [](int) { return "Nm"; });
+    for (std::size_t i = 0; i < all.size();) {
+        std::size_t end = i + 1;
+        while (end < all.size() && all[end].ripple.order == all[i].ripple.order &&
+               all[end].speed_from_deg_s == all[i].speed_from_deg_s)
+            ++end;
+        text += row(fmt::format("{:.4g}", all[i].ripple.order), speed_cell(all[i]), [&](int direction) {
+            for (std::size_t k = i; k < end; ++k)
+                if (all[k].direction == direction) return amplitude_cell(all[k]);
+            return std::string("-");
+        });
+        i = end;
+    }
+    return text;
+}
+
 /// One recording a row, with the line's amplitude or the ratio as it alone tells it.
 std::string disagreement_table(const Disagreement& one, const std::vector<std::string>& recordings) {
     const bool ratio = one.about == Disagreement::About::ratio;
-    const bool phase = one.about == Disagreement::About::phase;
     std::string text = "\nthe recordings disagree: ";
     if (!ratio) {
         text += one.order ? fmt::format("order {:g}", *one.order)
                           : fmt::format("output order {:.5g}", *one.order_output);
     }
-    text += ratio   ? "gear ratio\n"
-            : phase ? ", phase in deg (the wave generator or the encoder's zero may have been turned)\n"
-                    : ", Nm\n";
+    text += ratio ? "gear ratio\n" : ", Nm\n";
     for (const Disagreement::Value& value : one.values) {
         const std::string name = value.recording < recordings.size()
                                      ? recordings[value.recording]
@@ -278,8 +322,6 @@ Identification identified_joint(const Joint& joint, const IdentifyRequest& reque
     const std::string& unit = joint.logs.front().recording.torque_unit;
     found.verdict = in_torque_unit(found.verdict, unit);
     for (std::string& note : found.notes) note = in_torque_unit(note, unit);
-    for (AmplitudeChange& change : found.by_speed.changes)
-        change.sentence = in_torque_unit(change.sentence, unit);
     found.sample_rate = controller_rate(joint);
     return found;
 }

@@ -20,7 +20,7 @@
 #include "cli/options/options.hpp"
 #include "cli/options/plot_request.hpp"
 #include "cli/options/verdict_options.hpp"
-#include "cli/spectrum/response.hpp"
+#include "cli/spectrum/track.hpp"
 #include "cli/talk.hpp"
 #include "ripplenotch/analysis/order_map.hpp"
 #include "ripplenotch/analysis/spectrum.hpp"
@@ -44,10 +44,6 @@ namespace {
 
 // Spectra as people and programs read them.
 
-std::string counted(std::size_t count, std::string_view noun) {
-    return count == 0 ? fmt::format("no {}", noun) : how_many(count, noun);
-}
-
 std::string line_table(const std::vector<SpectralPeak>& peaks) {
     if (peaks.empty()) return "";
     std::vector<std::vector<std::string>> rows{{"Hz", "+/-", "amplitude, Nm", "phase, deg", "SNR"}};
@@ -55,18 +51,6 @@ std::string line_table(const std::vector<SpectralPeak>& peaks) {
         rows.push_back({fmt::format("{:.4f}", peak.hz), fmt::format("{:.2g}", peak.hz_stderr),
                         fmt::format("{:.4g}", peak.amplitude_nm), fmt::format("{:.1f}", peak.phase_deg),
                         fmt::format("{:.1f}", peak.snr)});
-    }
-    return text_table(rows, "r");
-}
-
-std::string hump_table(const std::vector<SpectralHump>& humps) {
-    if (humps.empty()) return "";
-    std::vector<std::vector<std::string>> rows{
-        {"hump, Hz", "rms in it, Nm", "highest at, Hz", "amplitude, Nm", "noise, Nm"}};
-    for (const SpectralHump& hump : humps) {
-        rows.push_back({fmt::format("{:.4g} to {:.4g}", hump.from_hz, hump.to_hz),
-                        fmt::format("{:.3g}", hump.rms_nm), fmt::format("{:.4g}", hump.peak_hz),
-                        fmt::format("{:.3g}", hump.peak_nm), fmt::format("{:.2g}", hump.floor_nm)});
     }
     return text_table(rows, "r");
 }
@@ -93,24 +77,14 @@ double largest_of(std::span<const double> values) {
     return values.empty() ? 0.0 : *std::max_element(values.begin(), values.end());
 }
 
-// The bins as CSV; several spectra with their number and speed in front.
-std::string frequency_csv(const std::vector<StretchSpectrum>& spectra) {
-    const bool numbered = spectra.front().number.has_value();
-    std::string text = numbered ? "stretch,speed_deg_s,frequency_hz,amplitude_nm,psd_nm2_hz,floor_nm\n"
-                                : "frequency_hz,amplitude_nm,psd_nm2_hz,floor_nm\n";
-    for (const StretchSpectrum& one : spectra) {
-        const Spectrum& s = one.spectrum;
-        const double amplitude_nm = largest_of(s.amplitude_nm), psd = largest_of(s.psd_nm2_hz);
-        for (std::size_t k = 0; k < s.hz.size(); ++k) {
-            if (numbered) {
-                text += std::to_string(*one.number) + ",";
-                append_shortest(text, one.stretch.speed.value());
-                text += ",";
-            }
-            append_cells(text,
-                         {s.hz[k], to_digits_in_row({s.amplitude_nm[k], amplitude_nm}),
-                          power_cell(psd, s.psd_nm2_hz[k]), to_digits_in_row({s.floor_nm[k], amplitude_nm})});
-        }
+// The bins as CSV.
+std::string frequency_csv(const Spectrum& s) {
+    std::string text = "frequency_hz,amplitude_nm,psd_nm2_hz,floor_nm\n";
+    const double amplitude_nm = largest_of(s.amplitude_nm), psd = largest_of(s.psd_nm2_hz);
+    for (std::size_t k = 0; k < s.hz.size(); ++k) {
+        append_cells(text,
+                     {s.hz[k], to_digits_in_row({s.amplitude_nm[k], amplitude_nm}),
+                      power_cell(psd, s.psd_nm2_hz[k]), to_digits_in_row({s.floor_nm[k], amplitude_nm})});
     }
     return text;
 }
@@ -127,24 +101,18 @@ std::string order_csv(const Stack& stack) {
 }
 
 // The lines as tables.
-std::string frequency_peaks(const std::vector<StretchSpectrum>& spectra) {
-    std::string text;
-    for (const StretchSpectrum& one : spectra) {
-        const Spectrum& s = one.spectrum;
-        if (!text.empty()) text += "\n";
-        text += one.number ? fmt::format("Stretch {}, {:.4g} deg/s: ", *one.number, one.stretch.speed.value())
-                           : "";
-        const std::string humps = s.humps.empty() ? "" : " and " + counted(s.humps.size(), "hump");
-        text += fmt::format("{}{} in {:.4g} s (resolution {:.3g} Hz, floor {:.2g} Nm).\n",
-                            counted(s.peaks.size(), "line"), humps, one.stretch.duration.value(),
-                            s.resolution.value(), median_floor(s.floor_nm));
-        text += line_table(s.peaks) + hump_table(s.humps);
-        if (one.stretch.smears_orders())
-            text += fmt::format(
-                "The speed changes ({:.3g} deg/s, give or take {:.2g}, over the angle turned), so that "
-                "what turns with the\njoint is no line here: --domain order counts it by output turn.\n",
-                one.stretch.turning_deg_s, one.stretch.turning_spread_deg_s);
-    }
+std::string frequency_peaks(const LogSpectrum& one) {
+    const Spectrum& s = one.spectrum;
+    std::string text =
+        fmt::format("{} in {:.4g} s (resolution {:.3g} Hz, floor {:.2g} Nm).\n",
+                    s.peaks.empty() ? "no line" : how_many(s.peaks.size(), "line"),
+                    one.stretch.duration.value(), s.resolution.value(), median_floor(s.floor_nm));
+    text += line_table(s.peaks);
+    if (one.stretch.smears_orders())
+        text += fmt::format(
+            "The speed changes ({:.3g} deg/s, give or take {:.2g}, over the angle turned), so that "
+            "what turns with the\njoint is no line here: --domain order counts it by output turn.\n",
+            one.stretch.turning_deg_s, one.stretch.turning_spread_deg_s);
     return text;
 }
 
@@ -204,8 +172,8 @@ class GuessedSpectrum {
 
 }  // namespace
 
-StretchSpectrum streamed_spectrum(LogPasses& log, const SpectrumOptions& options,
-                                  const std::function<void()>& tell) {
+LogSpectrum streamed_spectrum(LogPasses& log, const SpectrumOptions& options,
+                              const std::function<void()>& tell) {
     GuessedSpectrum guess(options);
     log.first([&](const TraceView& rows) { guess.add(rows); });
     const LogFacts& facts = log.facts();
@@ -225,7 +193,7 @@ StretchSpectrum streamed_spectrum(LogPasses& log, const SpectrumOptions& options
     require_piece_length(length, options);
     if (!added && stream->find_lines(options.false_alarm))
         log.again([&](const TraceView& rows) { stream->measure(rows.time_s, rows.torque_nm); });
-    return {std::nullopt, speed.stretch(facts.sample_rate), stream->spectrum()};
+    return {speed.stretch(facts.sample_rate), stream->spectrum()};
 }
 
 namespace {
@@ -234,7 +202,6 @@ namespace {
 
 struct SpeedMapRequest {
     std::optional<std::string> map;  ///< "campbell" or "order"; nothing without it
-    GearOptions gear;
     std::optional<double> resolution, highest;
     std::optional<DegPerSec> speed_step;
 };
@@ -268,44 +235,47 @@ std::string in_words(const SpeedMap& map, std::string_view unit, std::optional<d
     return text;
 }
 
-void attach_speed_map(Options& options, SpeedMapRequest& request) {
+void attach_speed_map(Options& options, SpeedMapRequest& request, GearOptions& gear) {
     options.text("--map", request.map, "campbell|order",
                  "over speed: frequency against speed, or order against speed");
     attach_gear(
-        options, request.gear,
-        {.ratio = "--map order: count orders per motor turn instead of per output turn; --method needs it",
-         .orders = "--map: orders whose lines are drawn, in cycles per motor turn (default: 1,2)",
-         .joint_file = "--map: joint.json with gear ratio and orders"});
-    options.number("--resolution", request.resolution, Dimension::none,
-                   "of the map, in Hz or orders; of --response in Hz");
+        options, gear,
+        {.ratio = "motor turns per joint turn; --map order counts orders per motor turn with it",
+         .orders = "orders that --track measures and --map draws, in cycles per motor turn (default: 1,2)",
+         .joint_file = "joint.json of identify: gear ratio and orders from there"});
+    options.number("--resolution", request.resolution, Dimension::none, "of the map, in Hz or orders");
     options.number("--highest", request.highest, Dimension::none, "frequency or order where the map ends");
-    options.number("--speed-step", request.speed_step, Dimension::speed, "width of a row of the map");
+    options.number("--speed-step", request.speed_step, Dimension::speed,
+                   "width of a row of the map, or of --track --against speed; about 24 rows when left out",
+                   true);
 }
 
 // Throws UsageError when options of the map are given without --map, or make no sense.
-void check_speed_map(const SpeedMapRequest& request, bool of_response) {
-    const bool shared = request.gear.any() || request.resolution;
-    if (!request.map && ((shared && !of_response) || request.highest || request.speed_step)) {
+void check_speed_map(const SpeedMapRequest& request, const GearOptions& gear, bool track) {
+    if (!request.map &&
+        ((!track && (gear.any() || request.speed_step)) || request.resolution || request.highest)) {
         raise<UsageError>(
-            "--joint-file, --gear-ratio, --orders, --resolution, --highest and --speed-step belong to --map");
+            "--joint-file, --gear-ratio, --orders and --speed-step belong to --map and --track, --resolution "
+            "and "
+            "--highest to --map");
     }
     if (request.map && *request.map != map_names[0] && *request.map != map_names[1])
         raise<UsageError>("--map: '{}' is none of campbell, order", *request.map);
     const auto positive = [](std::string_view option, std::optional<double> value) {
         if (value && !(*value > 0.0)) raise<UsageError>("{} {} is not above 0", option, shortest(*value));
     };
-    check_gear(request.gear);
+    check_gear(gear);
     positive("--resolution", request.resolution);
     positive("--highest", request.highest);
     if (request.speed_step) positive("--speed-step", request.speed_step->value());
 }
 
 // The lines that are drawn into the map, where a gear is known; notes the joint file as an input.
-MapLines map_lines(const SpeedMapRequest& request, Provenance& provenance) {
-    const GearChoice choice(request.gear);
+MapLines map_lines(const SpeedMapRequest& request, const GearOptions& gear, Provenance& provenance) {
+    const GearChoice choice(gear);
     if (choice.joint()) provenance.inputs.push_back(input_record(choice.joint()->path));
     MapLines lines{choice.of(), false};
-    if (!lines.gear && !request.gear.orders.empty()) raise_no_gear("--orders");
+    if (!lines.gear && !gear.orders.empty()) raise_no_gear("--orders");
     lines.axis_per_motor_turn = lines.gear && *request.map == "order";
     return lines;
 }
@@ -340,53 +310,24 @@ struct SpectrumRequest {
     CommonOptions common;
     ReadOptions log;
     std::string path, domain = "frequency";
-    std::optional<std::string> stretch;
     std::optional<Seconds> segment;
     double false_alarm = 0.01;
-    SteadyRule steady;
+    GearOptions gear;
     SpeedMapRequest map;
+    TrackRequest track;
     ResidualOptions residual;
-    ResponseRequest response;
     PlotRequest plot;
-    bool peaks = false, bins = false;
+    bool bins = false;
 
     /// Frequencies of all of the log are the same however the joint moves.
-    [[nodiscard]] bool needs_motion() const {
-        return stretch || map.map || residual.any() || domain != "frequency" ||
-               (response.signals && response.needs_motion(map.gear));
-    }
+    [[nodiscard]] bool needs_motion() const { return map.map || residual.any() || domain != "frequency"; }
     /// Numbers by the thousand, and no table for people.
     [[nodiscard]] bool is_csv() const {
         return !common.json && (map.map || bins || common.output.ends_with(".csv"));
     }
     /// Half-overlapping pieces of all of the log, which need no more of it at a time.
-    [[nodiscard]] bool in_pieces() const { return segment && !needs_motion() && !response.signals; }
+    [[nodiscard]] bool in_pieces() const { return segment && !needs_motion(); }
 };
-
-/// The parts of the log that are asked for: all of it, every steady stretch, or one of them by number.
-std::vector<std::pair<std::optional<int>, Stretch>> parts_of(const SpectrumRequest& request,
-                                                             const TraceView& trace) {
-    if (!request.stretch) return {{std::nullopt, whole_log(trace)}};
-    const std::vector<Stretch> found = steady_stretches(trace, request.steady);
-    std::vector<std::pair<std::optional<int>, Stretch>> parts;
-    for (std::size_t i = 0; i < found.size(); ++i) parts.emplace_back(static_cast<int>(i) + 1, found[i]);
-    if (parts.empty()) {
-        raise<DataError>(
-            "{}: no steady stretch of {} s or longer; lower --steady-for, widen --steady-band, or leave out "
-            "--stretch",
-            request.path, shortest(request.steady.at_least.value()));
-    }
-    if (*request.stretch == "all") return parts;
-    const auto number = parse_number(*request.stretch);
-    if (!number || *number < 1.0 || *number != std::floor(*number)) {
-        raise<UsageError>("--stretch: '{}' is neither all nor a number from 1 on", *request.stretch);
-    }
-    if (*number > static_cast<double>(parts.size())) {
-        raise<UsageError>("--stretch {}: {} has {} steady stretch{}", *request.stretch, request.path,
-                          parts.size(), parts.size() == 1 ? "" : "es");
-    }
-    return {parts[static_cast<std::size_t>(*number) - 1]};
-}
 
 /// What goes to the output, and the figure of it.
 struct Result {
@@ -396,8 +337,7 @@ struct Result {
 
 Result order_result(const SpectrumRequest& request, const TraceView& trace, const std::string& joint,
                     const std::string& doubt, const Provenance& provenance) {
-    if (request.stretch || request.segment)
-        raise<UsageError>("--stretch and --segment belong to --domain frequency");
+    if (request.segment) raise<UsageError>("--segment belongs to --domain frequency");
     MotionLinesOptions options;
     options.false_alarm = request.false_alarm;
     OrderSpectrum result{
@@ -417,46 +357,25 @@ Result order_result(const SpectrumRequest& request, const TraceView& trace, cons
             }};
 }
 
-Figure frequency_figure(const std::string& source, const std::vector<StretchSpectrum>& spectra) {
-    std::vector<ShownSpectrum> shown;
-    for (const StretchSpectrum& one : spectra) {
-        const std::string name =
-            one.number ? fmt::format("Stretch {}, {:.4g} deg/s", *one.number, one.stretch.speed.value()) : "";
-        shown.push_back({name, &one.spectrum, one.stretch.smears_orders()});
-    }
-    return spectrum_figure(source, shown);
-}
-
-std::vector<StretchSpectrum> frequency_spectra(const SpectrumRequest& request, const TraceView& trace) {
-    std::vector<StretchSpectrum> spectra;
-    for (const auto& [number, stretch] : parts_of(request, trace)) {
-        spectra.push_back({number, stretch,
-                           torque_spectrum(trace.part(stretch.first, stretch.count),
-                                           {request.segment, request.false_alarm})});
-    }
-    return spectra;
-}
-
 // A piece that is longer than what there is is all of it.
-void say_segment(const SpectrumRequest& request, const StretchSpectrum& one) {
+void say_segment(const SpectrumRequest& request, const Spectrum& spectrum) {
     constexpr double rounding = 1.01;  // of the piece's length to whole samples
-    const double piece_s = one.spectrum.piece_duration.value();
+    const double piece_s = spectrum.piece_duration.value();
     if (!request.segment || request.segment->value() <= rounding * piece_s) return;
-    const std::string what = one.number ? fmt::format("stretch {}", *one.number) : "the log";
-    warn(request.common, fmt::format("--segment {} s: {} is {:.4g} s long, so all of it is one piece",
-                                     shortest(request.segment->value()), what, piece_s));
+    warn(request.common, fmt::format("--segment {} s: the log is {:.4g} s long, so all of it is one piece",
+                                     shortest(request.segment->value()), piece_s));
 }
 
-Result frequency_result(const SpectrumRequest& request, std::vector<StretchSpectrum> spectra,
-                        const std::string& joint, const Provenance& provenance) {
-    for (const StretchSpectrum& one : spectra) say_segment(request, one);
+Result frequency_result(const SpectrumRequest& request, LogSpectrum found, const std::string& joint,
+                        const Provenance& provenance) {
+    say_segment(request, found.spectrum);
     if (request.is_csv() && request.common.verbose && !request.common.quiet)
-        talk_lines(frequency_peaks(spectra));
-    std::string text = request.common.json ? spectra_text(joint, spectra, request.false_alarm, provenance)
-                       : request.is_csv()  ? frequency_csv(spectra)
-                                           : frequency_peaks(spectra);
-    return {std::move(text), [spectra = std::move(spectra), source = joint_in_words(request.path, joint)] {
-                return frequency_figure(source, spectra);
+        talk_lines(frequency_peaks(found));
+    std::string text = request.common.json ? spectrum_text(joint, found, request.false_alarm, provenance)
+                       : request.is_csv()  ? frequency_csv(found.spectrum)
+                                           : frequency_peaks(found);
+    return {std::move(text), [found = std::move(found), source = joint_in_words(request.path, joint)] {
+                return spectrum_figure(source, found.spectrum, found.stretch.smears_orders());
             }};
 }
 
@@ -469,19 +388,6 @@ Result map_result(const SpectrumRequest& request, const MapLines& lines, const T
             }};
 }
 
-Result response_result(const SpectrumRequest& request, const ResponseLog& read,
-                       const Provenance& provenance) {
-    ResponseReport report = response_report(request.response, request.map.gear, read);
-    std::string text = request.common.json ? response_text(report, provenance)
-                       : request.is_csv()  ? response_csv(report)
-                                           : response_table(report);
-    if (request.is_csv()) say(request.common, response_verdict(report));
-    return {std::move(text),
-            [report = std::move(report), source = joint_in_words(request.path, read.log.trace.joint)] {
-                return response_figure(source, report);
-            }};
-}
-
 using Made = std::pair<Result, Provenance>;
 
 /// The log goes by and is not held.
@@ -489,30 +395,27 @@ Made piecewise_result(const SpectrumRequest& request, const std::string& command
     ReadOptions reading = request.log;
     reading.needs_velocity = false;
     LogPasses log(request.path, reading);
-    const StretchSpectrum spectrum = streamed_spectrum(log, {request.segment, request.false_alarm}, [&] {
+    const LogSpectrum spectrum = streamed_spectrum(log, {request.segment, request.false_alarm}, [&] {
         say_layout(request.common, log.layout());
         say_warnings(request.common, log.recording().warnings);
     });
     const Provenance provenance{{input_record(request.path)}, command_line, {{log.recording()}}};
-    return {frequency_result(request, {spectrum}, log.layout().chosen.joint, provenance), provenance};
+    return {frequency_result(request, spectrum, log.layout().chosen.joint, provenance), provenance};
 }
 
 Made whole_result(const SpectrumRequest& request, const std::string& command_line) {
     Provenance provenance{{}, command_line};
-    const MapLines lines = request.map.map ? map_lines(request.map, provenance) : MapLines{};
+    const MapLines lines = request.map.map ? map_lines(request.map, request.gear, provenance) : MapLines{};
     if (lines.gear) say(request.common, gear_in_words(*lines.gear));
     ReadOptions reading = read_options(request.log, lines.gear);
     take_joint_of(request.residual, reading.joint);
     reading.needs_velocity = request.needs_motion();
-    reading.needs_torque = !request.response.signals || request.response.names("torque");
     Log log = read_log(request.path, reading);
     say_layout(request.common, log.layout);
     take_residual(request.residual, reading, 1, {request.path, log}, request.common, provenance);
     say_warnings(request.common, log.recording.warnings);
     provenance.inputs.insert(provenance.inputs.begin(), input_record(request.path));
     provenance.recordings.push_back({log.recording});
-    if (request.response.signals)
-        return {response_result(request, {request.path, reading, log}, provenance), provenance};
     const bool by_order = request.domain == "order" || request.map.map == "order";
     const std::string doubt =
         by_order ? reading_doubt({&log, 1}, [](const OtherReading&) { return true; }) : "";
@@ -521,7 +424,9 @@ Made whole_result(const SpectrumRequest& request, const std::string& command_lin
     const TraceView trace = log.trace.view();
     if (request.domain == "order")
         return {order_result(request, trace, log.trace.joint, doubt, provenance), provenance};
-    return {frequency_result(request, frequency_spectra(request, trace), log.trace.joint, provenance),
+    return {frequency_result(
+                request, {whole_log(trace), torque_spectrum(trace, {request.segment, request.false_alarm})},
+                log.trace.joint, provenance),
             provenance};
 }
 
@@ -539,48 +444,46 @@ JointResult spectrum_of_joint(const SpectrumRequest& request, const std::string&
     return result;
 }
 
-void check_response(SpectrumRequest& request) {
-    if (!request.response.signals) {
-        if (request.response.method || request.response.estimator != "h1")
-            raise<UsageError>("--method and --estimator belong to --response");
-        return;
-    }
-    if (request.map.map || request.stretch || request.peaks || request.bins || request.domain != "frequency")
-        raise<UsageError>("--response goes with neither --domain, --stretch, --map, --peaks nor --bins");
-    if (request.segment && request.map.resolution)
+/// What the spectra and the track share.
+ExitCode run_track_of(const SpectrumRequest& request, const std::string& command_line) {
+    if (request.map.map || request.segment || request.bins || request.domain != "frequency" ||
+        request.residual.any())
         raise<UsageError>(
-            "--segment and --resolution state the same, 1.5 over one is the other: leave one out");
-    request.response.segment = request.segment;
-    if (request.map.resolution) request.response.resolution = Hertz(*request.map.resolution);
-    if (request.map.gear.any() && !request.response.method)
-        raise<UsageError>("--gear-ratio, --orders and --joint-file belong to --method and to --map");
+            "--track goes with neither --domain, --segment, --map, --bins, --residual nor --simulated");
+    check_output_name(request.common.output, "a track", ".csv .txt .npy .json");
+    TrackRequest track = request.track;
+    track.common = request.common;
+    track.plot = request.plot;
+    track.log = request.log;
+    track.path = request.path;
+    track.gear_options = request.gear;
+    return run_track(track, command_line);
 }
 
 ExitCode run_spectrum(SpectrumRequest& request, const std::string& command_line) {
     if (!(request.false_alarm > 0.0) || request.false_alarm > 0.5) {
         raise<UsageError>("--false-alarm {} is not between 0 and 0.5", shortest(request.false_alarm));
     }
-    check_speed_map(request.map, request.response.signals.has_value());
-    check_response(request);
+    request.track.speed_step = request.map.speed_step;
+    check_speed_map(request.map, request.gear, request.track.wanted);
+    check_track(request.track);
     hash_where_told(request.common, request.plot);
-    if (request.map.map && (request.stretch || request.segment || request.peaks || request.bins ||
-                            request.domain != "frequency"))
-        raise<UsageError>("--map goes with neither --domain, --stretch, --segment, --peaks nor --bins");
-    if (request.peaks) check_output_name(request.common.output, "a table of lines", ".txt .json");
+    if (request.track.wanted) return run_track_of(request, command_line);
+    check_output_name(request.common.output, "a spectrum", ".csv .txt .json");
+    if (request.map.map && (request.segment || request.bins || request.domain != "frequency"))
+        raise<UsageError>("--map goes with neither --domain, --segment nor --bins");
     if (request.bins) check_output_name(request.common.output, "a table of bins", ".csv .txt");
-    if (request.bins && (request.peaks || request.common.json))
-        raise<UsageError>("--bins and {}: the bins are CSV, and not the lines; give one of them",
-                          request.peaks ? "--peaks" : "--json");
+    if (request.bins && request.common.json)
+        raise<UsageError>("--bins and --json: the bins are CSV, and not the lines; give one of them");
     ReadOptions log = request.log;
     take_joint_of(request.residual, log.joint);
-    const std::string_view documents = request.response.signals ? "responses" : "spectra";
-    return run_joints({request.path, log, request.common, &request.plot, documents, request.is_csv()},
+    return run_joints({request.path, log, request.common, &request.plot, "spectra", request.is_csv()},
                       [&](const std::optional<std::string>& joint, const CommonOptions& common) {
                           SpectrumRequest one = request;
                           one.common = common;
                           if (joint) one.log.joint = joint;
                           one.plot.path = of_joint(request.plot.path, joint);
-                          one.map.gear.joint_file = of_joint(request.map.gear.joint_file, joint);
+                          one.gear.joint_file = of_joint(request.gear.joint_file, joint);
                           return spectrum_of_joint(one, command_line);
                       });
 }
@@ -590,26 +493,18 @@ std::function<ExitCode()> attach_spectrum(Options& options) {
     options.argument("LOG", request->path, true, "a log; - is standard input");
     options.choice("--domain", request->domain, domain_names,
                    "against frequency, or against cycles per output turn");
-    options.text("--stretch", request->stretch, "all|NUMBER",
-                 "steady stretches instead of the whole log, each or one of them");
     options.number("--segment", request->segment, Dimension::time,
                    "average half-overlapping pieces of this length (Welch)", true);
     options.flag("--bins", request->bins,
-                 "every bin as CSV instead of tables of the lines and humps; as with -o FILE.csv");
-    options.flag("--peaks", request->peaks, "these tables, which are the default");
+                 "every bin as CSV instead of a table of the lines; as with -o FILE.csv");
     options.number("--false-alarm", request->false_alarm, Dimension::none,
                    "chance that noise gives any line in a spectrum");
-    options.number("--steady-band", request->steady.band_percent, Dimension::none,
-                   "a stretch is steady while its speed stays within this many per cent ...");
-    options.number("--steady-band-speed", request->steady.band_deg_s, Dimension::speed,
-                   "... or within this speed, whichever is wider; none by default");
-    options.number("--steady-for", request->steady.at_least, Dimension::time, "for at least this long", true);
-    attach_speed_map(options, request->map);
-    attach_response(options, request->response);
+    attach_speed_map(options, request->map, request->gear);
+    attach_track(options, request->track);
     attach_residual(options, request->residual);
     attach_plot(options, request->plot, request->common);
     attach_log(options, request->log);
-    attach_common(options, request->common, {"a spectrum", ".csv .txt .json", true});
+    attach_common(options, request->common, {"a spectrum", ".csv .txt .npy .json", true});
     return [request, &options] { return run_spectrum(*request, options.command_line()); };
 }
 
@@ -621,7 +516,9 @@ const Command commands::spectrum{
     .description =
         "Prints the lines that rise above the noise; with --bins, or -o FILE.csv, every bin as CSV "
         "(frequency_hz, amplitude_nm,\npsd_nm2_hz, floor_nm). Amplitudes are zero to peak in Nm, whatever "
-        "the window and the length.\nExample: ripplenotch spectrum log.csv",
+        "the window and the length.\nWith --track: time_s, speed_deg_s, and per line amplitude, phase and "
+        "standard "
+        "error.\nExample: ripplenotch spectrum log.csv",
     .attach = attach_spectrum,
 };
 

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "ripplenotch/analysis/spectrum.hpp"
+#include "ripplenotch/analysis/fourier.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/diagnose/rules.hpp"
 

@@ -90,27 +90,9 @@ void describe(Archive& archive, Is<Line> auto& line) {
     archive("note", line.note, if_there);
 }
 
-template <class Archive>
-void describe(Archive& archive, Is<VelocityError> auto& error) {
+void describe(auto& archive, Is<VelocityError> auto& error) {
     archive("offset_deg_s", error.offset, StepsOf{10.0 * error.offset_error.value()});
     archive("offset_stderr_deg_s", error.offset_error);
-    const StepsOf steps{10.0 * error.delay_error.value()};
-    const bool delay = archive.known("delay_s", error.delay_told, error.delay, steps),
-               delay_error = archive.known("delay_stderr_s", error.delay_told, error.delay_error, fitted);
-    if constexpr (Archive::reading) error.delay_told = delay && delay_error;
-}
-
-void describe(auto& archive, Is<ToneFamily> auto& family) {
-    archive("hz", family.hz);
-    archive("hz_stderr", family.hz_stderr);
-    archive("multiples", family.multiples, Limits{1.0, 1e6});
-}
-
-void describe(auto& archive, Is<Hum> auto& hum) {
-    archive("from_hz", hum.from_hz);
-    archive("to_hz", hum.to_hz);
-    archive("peak_hz", hum.peak_hz);
-    archive("rms_nm", hum.rms_nm);
 }
 
 void describe(auto& archive, Is<Disagreement::Value> auto& value) {
@@ -120,7 +102,7 @@ void describe(auto& archive, Is<Disagreement::Value> auto& value) {
 }
 
 void describe(auto& archive, Is<Disagreement> auto& one) {
-    archive("about", one.about, Names{about_name, Disagreement::About::phase});
+    archive("about", one.about, Names{about_name, Disagreement::About::amplitude});
     archive("order", one.order);
     archive("order_output", one.order_output);
     archive("chance", one.chance);
@@ -148,13 +130,6 @@ void describe(Archive& archive, Is<RippleAtSpeed> auto& at) {
     archive("false_alarm", ripple.false_alarm);
 }
 
-void describe(auto& archive, Is<AmplitudeChange> auto& change) {
-    archive("order", change.order);
-    archive("speed_chance", change.speed_chance);
-    archive("direction_chance", change.direction_chance);
-    archive("sentence", change.sentence);
-}
-
 // Older files tell the finding in words alone, and nothing of what is read only if it is there.
 void describe(auto& archive, Is<Identification> auto& found) {
     archive("verdict", found.verdict);
@@ -170,15 +145,12 @@ void describe(auto& archive, Is<Identification> auto& found) {
     archive("lines", found.lines, AtMost{most_lines});
     archive("velocity_error", found.velocity_error);
     archive("velocity_noise_deg_s", found.velocity_noise, if_any);
-    archive("families", found.families, if_there);
-    archive("hums", found.hums, if_there);
     archive("disagreements", found.disagreements, if_there);
     if (archive.holds("other_motors", !found.other_motors.empty())) {
         archive("other_motors", found.other_motors);
         archive("other_motors_not_known", found.other_motors_not_known);
     }
-    archive("amplitude_by_speed_and_direction", found.by_speed.ripple, if_there);
-    archive("amplitude_changes", found.by_speed.changes, if_there);
+    archive("amplitude_by_speed_and_direction", found.by_speed, if_there);
     archive("notes", found.notes);
 }
 

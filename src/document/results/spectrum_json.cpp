@@ -53,17 +53,12 @@ void write_tracked_line(JsonWriter& json, const TrackReport& report, std::size_t
 void describe(JsonWriter& json, const TrackReport& report) {
     json("verdict", report.doubt + track_verdict(report));
     json("joint", report.joint);
-    json("method", report.method);
     json("against", report.by_speed ? "speed" : "time");
-    json("amplitude", amplitude_words(report.kind));
     json.known("gear_ratio", report.gear.has_value(), report.gear ? report.gear->ratio : GearRatio());
     json("gear", report.gear);
     json("angle", report.angle_from_position ? "position" : "integrated velocity");
     json("window_turns", report.window_turns);
     json("window_s", report.window);
-    json("bandwidth_hz", report.bandwidth);
-    json("bandwidth_obtained_hz", report.bandwidth_obtained);
-    json("poles", report.poles);
     json.known("speed_step_deg_s", report.by_speed.has_value(),
                report.by_speed ? report.by_speed->step_deg_s : 0.0);
     json("residual_rms_nm", report.tracks.residual_rms_nm);
@@ -92,16 +87,6 @@ void describe(JsonWriter& json, const SpectralPeak& peak) {
     json("false_alarm", peak.false_alarm);
 }
 
-void describe(JsonWriter& json, const SpectralHump& hump) {
-    json("from_hz", hump.from_hz);
-    json("to_hz", hump.to_hz);
-    json("peak_hz", hump.peak_hz);
-    json("peak_nm", hump.peak_nm);
-    json("rms_nm", hump.rms_nm);
-    json("floor_nm", hump.floor_nm);
-    json("false_alarm", hump.false_alarm);
-}
-
 void describe(JsonWriter& json, const MotionLine& line) {
     const bool tone = line.kind == LineKind::tone;
     json("kind", line_kind_name(line.kind));
@@ -123,9 +108,7 @@ double median_floor(const std::vector<double>& floor_nm) {
     return median_in(known);
 }
 
-void describe(JsonWriter& json, const StretchSpectrum& one) {
-    json("stretch", one.number);
-    json("first_row", one.stretch.first);
+void describe(JsonWriter& json, const LogSpectrum& one) {
     json("rows", one.stretch.count);
     json("duration_s", one.stretch.duration);
     json("speed_deg_s", one.stretch.speed);
@@ -137,17 +120,16 @@ void describe(JsonWriter& json, const StretchSpectrum& one) {
     json("resolution_hz", one.spectrum.resolution);
     json("noise_floor_nm", median_floor(one.spectrum.floor_nm));
     json("peaks", one.spectrum.peaks);
-    json("humps", one.spectrum.humps);
 }
 
-std::string spectra_text(const std::string& joint, const std::vector<StretchSpectrum>& spectra,
-                         double false_alarm, const Provenance& provenance) {
+std::string spectrum_text(const std::string& joint, const LogSpectrum& spectrum, double false_alarm,
+                          const Provenance& provenance) {
     return to_fitted_text(document_of("spectrum", provenance, [&](JsonWriter& json) {
         json("joint", joint);
         json("domain", "frequency");
         json("window", "hann");
         json("false_alarm", false_alarm);
-        json("spectra", spectra);
+        json("spectra", std::span(&spectrum, 1));
     }));
 }
 

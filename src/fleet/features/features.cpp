@@ -80,16 +80,6 @@ void noise_floor(const FeatureSource& from, Descriptor& one) {
         one.reason = "the torque holds its values from sample to sample";
 }
 
-void resonance(const FeatureSource& from, Descriptor& one) {
-    if (from.found.hums.empty()) {
-        one.reason = "no band of frequencies holds more torque than the lines";
-        return;
-    }
-    const Hum& hum = from.found.hums.front();
-    one.value = hum.peak_hz;
-    one.ci95 = Interval{hum.from_hz, hum.to_hz};
-}
-
 struct DescriptorKind {
     std::string_view stem;    ///< "ripple_N_amplitude": with an order in the place of N
     std::string_view unit;    ///< as it ends the name
@@ -112,7 +102,6 @@ constexpr std::array descriptor_kinds = {
     DescriptorKind{"gravity", "nm", true, fitted<&JointFit::gravity>},
     DescriptorKind{"sensor_zero", "nm", true, fitted<&JointFit::sensor_zero>},
     DescriptorKind{"noise_floor", "nm", true, noise_floor},
-    DescriptorKind{"resonance", "hz", false, resonance},
 };
 
 /// Those of an order for one order after the other.

@@ -42,7 +42,6 @@ class Namer {
         single("lost_motion_deg", "lost motion");
         single("sensor_zero_nm", "zero of the torque sensor");
         single("noise_floor_nm", "noise of the torque sensor");
-        single("resonance_hz", "resonance");
         single("inertia_kgm2", "inertia of the load");
         single("gravity_nm", "weight of the load");
         several("friction", {"coulomb_friction_nm", "viscous_friction_nm_per_deg_s"});

@@ -286,7 +286,7 @@ def diagnose(log: AnyLog, model: Mapping[str, Any] | str | os.PathLike[str] | No
 
 
 def run(command: str, *inputs: Any, **options: Any) -> Result:
-    """Any command whose result is JSON: `run("spectrum", log, domain="order")`, `run("track", log, gear_ratio=100)["joint"]`."""
+    """Any command whose result is JSON: `run("spectrum", log, domain="order")`, `run("spectrum", log, track=True, gear_ratio=100)["joint"]`."""
     return _run(command, list(inputs), options, Result)
 
 

@@ -1,0 +1,331 @@
+// SPDX-License-Identifier: MIT
+#include "ripplenotch/analysis/sweeps.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "analysis/motion/sweep_fit.hpp"
+#include "core/functions/many_numbers.hpp"
+#include "core/process/two_cores.hpp"
+#include "ripplenotch/analysis/stretches.hpp"
+#include "ripplenotch/core/portable_math.hpp"
+
+namespace ripplenotch {
+
+namespace {
+
+constexpr double smoothing_s = 0.05;  // as models smooth speeds (measured_motion.hpp)
+
+std::vector<double> integrated_velocity(const TraceView& log) {
+    std::vector<double> turns(log.size(), 0.0);
+    for (std::size_t k = 1; k < log.size(); ++k) {
+        const double step = log.time_s[k] - log.time_s[k - 1];
+        turns[k] = turns[k - 1] + 0.5 * (log.velocity_deg_s[k] + log.velocity_deg_s[k - 1]) * step / 360.0;
+    }
+    return turns;
+}
+
+/// Position in turns, jumps of more than half a turn between neighbours taken as wrapping.
+std::vector<double> unwrapped_position(const TraceView& log) {
+    std::vector<double> turns(log.size());
+    double offset = 0.0;
+    for (std::size_t k = 0; k < log.size(); ++k) {
+        if (k > 0) {
+            const double jump = log.position_deg[k] - log.position_deg[k - 1];
+            if (std::abs(jump) > 180.0) offset -= std::round(jump / 360.0);
+        }
+        turns[k] = log.position_deg[k] / 360.0 + offset;
+    }
+    return turns;
+}
+
+}  // namespace
+
+OutputAngle output_angle(const TraceView& log) {
+    if (log.has_position()) return {unwrapped_position(log), true};
+    return {integrated_velocity(log), false};
+}
+
+std::vector<double> smoothed_speed(const TraceView& log) {
+    const auto width = static_cast<std::size_t>(smoothing_s * log.sample_rate.value()) | 1U;
+    return moving_mean(log.velocity_deg_s, width);
+}
+
+std::vector<SampleRun> directed_runs(std::span<const double> speed_deg_s,
+                                     std::span<const std::size_t> run_starts, const RunRule& rule) {
+    double fastest = 0.0;
+    for (const double v : speed_deg_s) fastest = std::max(fastest, std::abs(v));
+    const double slowest = std::max(rule.slowest_share * fastest, rule.standstill_deg_s);
+    std::vector<SampleRun> runs;
+    auto start = run_starts.begin();
+    int direction = 0;
+    for (std::size_t k = 0; k < speed_deg_s.size(); ++k) {
+        const int here = speed_deg_s[k] > slowest ? 1 : speed_deg_s[k] < -slowest ? -1 : 0;
+        const bool begins = start != run_starts.end() && *start == k;
+        start += begins ? 1 : 0;
+        if (here != 0 && (here != direction || begins)) runs.push_back({k, k});
+        if (here != 0) runs.back().end = k + 1;
+        direction = here;
+    }
+    return runs;
+}
+
+std::vector<SampleRun> whole_runs(std::size_t samples, std::span<const std::size_t> run_starts) {
+    std::vector<SampleRun> runs;
+    std::size_t first = 0;
+    for (const std::size_t start : run_starts) {
+        runs.push_back({first, start});
+        first = start;
+    }
+    if (first < samples) runs.push_back({first, samples});
+    return runs;
+}
+
+namespace {
+
+/// Half-overlapping pieces of equal length in angle that cover the run: of about rule.longest_turns and
+/// rule.longest_s where it is longer, by half as much again at most.
+std::vector<SampleRun> pieces_of(const SampleRun& run, const TraceView& log, std::span<const double> turns,
+                                 const SweepRule& rule) {
+    const double start = turns[run.first];
+    const double length = std::abs(turns[run.end - 1] - start);
+    if (length < rule.shortest_turns) return {};
+    const double duration = log.time_s[run.end - 1] - log.time_s[run.first];
+    const double longest = std::min(rule.longest_turns, length * rule.longest_s / std::max(duration, 1e-9));
+    // No more pieces than samples, however far apart those are.
+    const auto count = static_cast<std::size_t>(
+        std::clamp(std::floor(2.0 * length / longest) - 1.0, 1.0, static_cast<double>(run.size())));
+    if (count == 1) return {run};
+    const double hop = length / static_cast<double>(count + 1), width = std::min(2.0 * hop, 1.5 * longest);
+    std::vector<SampleRun> pieces;
+    std::size_t from = run.first;
+    for (std::size_t i = 0; i < count; ++i) {
+        const double begin = hop * static_cast<double>(i);
+        while (from < run.end && std::abs(turns[from] - start) < begin) ++from;
+        std::size_t to = from;
+        while (to < run.end && std::abs(turns[to] - start) <= begin + width) ++to;
+        pieces.push_back({from, to});
+    }
+    return pieces;
+}
+
+/// Weight by speed, in steps of speed that are narrow compared with its range.
+class SpeedShares {
+  public:
+    SpeedShares(std::span<const double> speed, std::span<const double> weight)
+        : speed_(speed), weight_(weight) {
+        const auto [least, most] = std::minmax_element(
+            speed.begin(), speed.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
+        low_ = std::abs(*least);
+        const double range = std::abs(*most) - low_;
+        steps_per_deg_s_ = range > 0.0 ? static_cast<double>(sums_.size()) / range : 0.0;
+        for (std::size_t k = 0; k < speed.size(); ++k) sums_[step_of(speed[k])] += weight[k];
+    }
+
+    /// The speed below which lies so much weight.
+    [[nodiscard]] double quantile(double share) const {
+        std::size_t step = 0;
+        double below = 0.0;
+        while (step + 1 < sums_.size() && below + sums_[step] < share) below += sums_[step++];
+        std::vector<std::pair<double, double>> inside;
+        for (std::size_t k = 0; k < speed_.size(); ++k) {
+            if (step_of(speed_[k]) == step) inside.emplace_back(std::abs(speed_[k]), weight_[k]);
+        }
+        auto from = inside.begin(), to = inside.end();
+        while (to - from > 1) {
+            const auto middle = from + (to - from) / 2;
+            std::nth_element(from, middle, to,
+                             [](const auto& a, const auto& b) { return a.first < b.first; });
+            double slower = 0.0;
+            for (auto one = from; one != middle; ++one) slower += one->second;
+            const bool beyond = below + slower < share;
+            if (beyond) below += slower;
+            (beyond ? from : to) = middle;
+        }
+        return from == inside.end() ? low_ : from->first;
+    }
+
+  private:
+    [[nodiscard]] std::size_t step_of(double speed) const {
+        const auto step = static_cast<std::size_t>((std::abs(speed) - low_) * steps_per_deg_s_);
+        return std::min(step, sums_.size() - 1);
+    }
+
+    std::span<const double> speed_, weight_;
+    double low_ = 0.0, steps_per_deg_s_ = 0.0;
+    std::array<double, 512> sums_{};
+};
+
+/// Hann window over the sweep's own length, times the angle that each sample stands for.
+void weigh_sweep(Sweep& sweep) {
+    const bool at_rest = sweep.rest();
+    sweep.length_turns = at_rest ? 0.0 : std::abs(sweep.turns.back() - sweep.turns.front());
+    sweep.duration_s = sweep.time_s.back() - sweep.time_s.front();
+    sweep.weight.resize(sweep.turns.size());
+    sweep.weight_sum = sweep.weight_square_sum = 0.0;
+    for (std::size_t k = 0; k < sweep.turns.size(); ++k) {
+        sweep.weight[k] = 2.0 * std::numbers::pi * std::clamp(sweep.progress(k), 0.0, 1.0);
+    }
+    portable::cos(sweep.weight, sweep.weight);
+    for (std::size_t k = 0; k < sweep.turns.size(); ++k) {
+        sweep.weight[k] = (0.5 - 0.5 * sweep.weight[k]) * sweep.share_turns[k];
+        sweep.weight_sum += sweep.weight[k];
+        sweep.weight_square_sum += sweep.weight[k] * sweep.weight[k];
+    }
+}
+
+/// Samples of a log that become a piece.
+struct Planned {
+    std::size_t log = 0;
+    SampleRun span;
+    bool rest = false;
+};
+
+Sweep make_sweep(const TraceView& log, const Planned& plan, std::span<const double> all_turns,
+                 std::span<const double> all_speed, const SweepRule& rule) {
+    const SampleRun& span = plan.span;
+    const std::size_t n = span.end - span.first;
+    const double step = 1.0 / log.sample_rate.value();
+    const auto turns = all_turns.subspan(span.first, n);
+    const auto speed = all_speed.subspan(span.first, n);
+    const auto time = log.time_s.subspan(span.first, n);
+    Sweep sweep;
+    sweep.log = plan.log;
+    sweep.first = span.first;
+    sweep.rate_hz = log.sample_rate.value();
+    sweep.turns.assign(turns.begin(), turns.end());
+    sweep.speed_deg_s.assign(speed.begin(), speed.end());
+    sweep.time_s.resize(n);
+    sweep.share_turns.resize(n);
+    for (std::size_t k = 0; k < n; ++k) {
+        sweep.time_s[k] = time[k] - 0.5 * (time.front() + time.back());
+        const double before = k > 0 ? time[k] - time[k - 1] : step;
+        const double after = k + 1 < n ? time[k + 1] - time[k] : step;
+        const double seconds = std::clamp(0.5 * (before + after), 0.0, 3.0 * step);
+        // The smoothed speed gives each sample its share of angle: differences of a held or coarse position
+        // would not.
+        sweep.share_turns[k] = plan.rest ? seconds : std::abs(speed[k]) * seconds / 360.0;
+        sweep.fast_deg_s = std::max(sweep.fast_deg_s, std::abs(speed[k]));
+    }
+    if (!plan.rest) sweep.length_turns = std::abs(turns.back() - turns.front());
+    sweep.measured_nm = log.torque_nm.subspan(span.first, n);
+    sweep.trend_terms = static_cast<std::size_t>(std::lround(2.0 * rule.trend_cycles)) + 2;
+    weigh_sweep(sweep);
+    if (!(sweep.weight_sum > 0.0)) return sweep;
+    if (!plan.rest) {
+        for (std::size_t k = 0; k < n; ++k) sweep.mean_deg_s += sweep.weight[k] * speed[k] / sweep.weight_sum;
+        const SpeedShares shares(speed, sweep.weight);
+        sweep.slow_deg_s = shares.quantile(0.25 * sweep.weight_sum);
+        sweep.quick_deg_s = shares.quantile(0.75 * sweep.weight_sum);
+    }
+    fit_out(sweep, {});
+    return sweep;
+}
+
+/// Takes an offset off a velocity and what was summed from it.
+void put_right(const TraceView& log, const VelocityError& error, std::vector<double>& turns,
+               std::vector<double>& speed) {
+    for (std::size_t k = 0; k < turns.size(); ++k) {
+        const double since_start = log.time_s[k] - log.time_s.front();
+        turns[k] -= error.offset.value() * since_start / 360.0;
+        speed[k] -= error.offset.value();
+    }
+}
+
+/// The standstill between the runs of a log, in pieces of at most rule.longest_s.
+std::vector<SampleRun> rests_of(const TraceView& log, std::span<const double> speed, double standstill_deg_s,
+                                const SweepRule& rule) {
+    // Chosen, not derived: five cycles of the slowest tone that is reported.
+    constexpr double shortest_s = 0.5;
+    const auto longest = static_cast<std::size_t>(rule.longest_s * log.sample_rate.value());
+    std::vector<SampleRun> rests;
+    for (const SampleRun& run : whole_runs(log.size(), log.run_starts)) {
+        std::size_t first = run.first;
+        for (std::size_t k = run.first; k <= run.end; ++k) {
+            const bool still = k < run.end && std::abs(speed[k]) <= standstill_deg_s;
+            if (still && k - first < longest) continue;
+            if (k > first && log.time_s[k - 1] - log.time_s[first] >= shortest_s) rests.push_back({first, k});
+            first = still ? k : k + 1;
+        }
+    }
+    return rests;
+}
+
+/// Keeps pieces evenly over all of them until their number and their samples fit.
+std::vector<Planned> within_budget(std::vector<Planned> all, const SweepRule& rule) {
+    std::size_t samples = 0;
+    for (const Planned& piece : all) samples += piece.span.end - piece.span.first;
+    if (samples <= rule.most_samples && all.size() <= rule.most_pieces) return all;
+    const double share = std::min(static_cast<double>(rule.most_samples) / static_cast<double>(samples),
+                                  static_cast<double>(rule.most_pieces) / static_cast<double>(all.size()));
+    std::vector<Planned> kept;
+    double credit = 0.5;
+    for (const Planned& piece : all) {
+        credit += share;
+        if (credit < 1.0) continue;
+        credit -= 1.0;
+        kept.push_back(piece);
+    }
+    if (kept.empty()) kept.push_back(all.front());
+    return kept;
+}
+
+}  // namespace
+
+Sweep part_of(const Sweep& sweep, std::size_t first, std::size_t count) {
+    const auto cut = [&](const std::vector<double>& whole) {
+        const auto from = whole.begin() + static_cast<std::ptrdiff_t>(first);
+        return std::vector<double>(from, from + static_cast<std::ptrdiff_t>(count));
+    };
+    Sweep part = sweep;
+    part.first += first;
+    part.measured_nm = sweep.measured_nm.subspan(first, count);
+    part.turns = cut(sweep.turns);
+    part.time_s = cut(sweep.time_s);
+    part.speed_deg_s = cut(sweep.speed_deg_s);
+    part.torque_nm = cut(sweep.torque_nm);
+    part.share_turns = cut(sweep.share_turns);
+    weigh_sweep(part);
+    part.value.resize(count);
+    for (std::size_t k = 0; k < count; ++k) part.value[k] = part.torque_nm[k] * part.weight[k];
+    return part;
+}
+
+Sweeps cut_sweeps(std::span<const TraceView> logs, const SweepRule& rule, const VelocityError& error) {
+    std::vector<OutputAngle> angles;
+    std::vector<std::vector<double>> speeds;
+    std::vector<Planned> planned;
+    Sweeps sweeps;
+    for (std::size_t i = 0; i < logs.size(); ++i) {
+        const TraceView& log = logs[i];
+        angles.push_back(output_angle(log));
+        speeds.push_back(smoothed_speed(log));
+        if (!angles.back().absolute) put_right(log, error, angles.back().turns, speeds.back());
+        const double still_deg_s = standstill_deg_s(log, speeds.back());
+        for (const SampleRun& run :
+             directed_runs(speeds.back(), log.run_starts, {rule.slowest_share, still_deg_s})) {
+            for (const SampleRun& piece : pieces_of(run, log, angles.back().turns, rule)) {
+                if (piece.end - piece.first >= rule.fewest_samples) planned.push_back({i, piece, false});
+            }
+        }
+        for (const SampleRun& rest : rests_of(log, speeds.back(), still_deg_s, rule)) {
+            if (rest.end - rest.first >= rule.fewest_samples) planned.push_back({i, rest, true});
+        }
+        sweeps.absolute_angle = sweeps.absolute_angle && angles.back().absolute;
+    }
+    const std::size_t all = planned.size();
+    planned = within_budget(std::move(planned), rule);
+    sweeps.pieces_left_out = all - planned.size();
+    sweeps.pieces.resize(planned.size());
+    on_two_cores(planned.size(), [&](std::size_t i) {
+        const std::size_t log = planned[i].log;
+        sweeps.pieces[i] = make_sweep(logs[log], planned[i], angles[log].turns, speeds[log], rule);
+    });
+    std::erase_if(sweeps.pieces, [](const Sweep& sweep) { return !(sweep.weight_sum > 0.0); });
+    return sweeps;
+}
+
+}  // namespace ripplenotch

@@ -1,0 +1,384 @@
+// SPDX-License-Identifier: MIT
+// Lines in motion: sums over sweeps, the search, and lines above half the sample rate.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "analysis/motion/sweep_fit.hpp"
+#include "analysis/traces.hpp"
+#include "ripplenotch/analysis/alias.hpp"
+#include "ripplenotch/analysis/identification.hpp"
+#include "ripplenotch/analysis/line_search.hpp"
+#include "ripplenotch/analysis/stack.hpp"
+#include "support/catch.hpp"
+
+using namespace ripplenotch;
+using Catch::Contains;
+using Catch::Matchers::WithinAbs;
+using Catch::Matchers::WithinRel;
+
+namespace {
+
+/// Back and forth with changing speed, as identification trajectories do: two sines without common period.
+double wandering(double t) { return 60.0 * std::sin(0.9 * t) + 35.0 * std::sin(2.3 * t + 1.0); }
+
+MotionLines lines_of(const Trace& trace, double false_alarm = 0.01) {
+    const TraceView view = trace.view();
+    return find_motion_lines({&view, 1}, {.sweeps = {}, .stack = {}, .false_alarm = false_alarm});
+}
+
+const MotionLine* nearest_order(const MotionLines& found, double order) {
+    for (const MotionLine& line : found.lines) {
+        if (line.kind == LineKind::order && std::abs(line.order_output - order) < 0.02 * order) return &line;
+    }
+    return nullptr;
+}
+
+}  // namespace
+
+TEST_CASE("orders are found in a motion that is never steady, with amplitude and phase") {
+    const bool position = GENERATE(true, false);
+    const Trace trace = tests::make_trace({.seconds = 12.0,
+                                           .speed_deg_s = wandering,
+                                           .ripple = {{100.0, 0.8, 0.4}, {200.0, 0.5, -1.0}},
+                                           .noise_nm = 0.2,
+                                           .position = position});
+    const MotionLines found = lines_of(trace);
+    REQUIRE(found.lines.size() == 2);
+    for (const auto& [order, amplitude, phase] :
+         {std::tuple{100.0, 0.8, 0.4}, std::tuple{200.0, 0.5, -1.0}}) {
+        const MotionLine* line = nearest_order(found, order);
+        REQUIRE(line != nullptr);
+        CHECK_THAT(line->order_output, WithinAbs(order, 4.0 * line->order_stderr + 1e-6));
+        CHECK(line->order_stderr < 0.2);
+        CHECK_THAT(line->amplitude_nm, WithinRel(amplitude, 0.05));
+        REQUIRE(line->phase_deg.has_value() == position);
+        if (position) CHECK_THAT(*line->phase_deg, WithinAbs(phase * degrees_per_radian, 8.0));
+    }
+}
+
+TEST_CASE(
+    "lines that stand four resolutions apart in short sweeps are all found, though each hides the others") {
+    // To and fro over 30 deg: orders 96, 192, 288, 384 are 8, 16, 24 and 32 cycles in a sweep.
+    const auto speed = [](double t) { return 15.0 * std::numbers::pi * std::sin(std::numbers::pi * t); };
+    for (const std::uint32_t seed : {1U, 2U, 3U}) {
+        const Trace trace = tests::make_trace(
+            {.rate_hz = 500.0,
+             .seconds = 10.0,
+             .speed_deg_s = speed,
+             .ripple = {{96.0, 0.5, 0.4}, {192.0, 0.4, -1.0}, {288.0, 0.3, 2.0}, {384.0, 0.3, 1.0}},
+             .noise_nm = 0.2,
+             .seed = seed});
+        const MotionLines found = lines_of(trace);
+        for (const auto& [order, amplitude] :
+             {std::pair{96.0, 0.5}, {192.0, 0.4}, {288.0, 0.3}, {384.0, 0.3}}) {
+            CAPTURE(seed, order);
+            // Whether it follows the angle, eight cycles in each of ten equal sweeps may not show.
+            const auto line =
+                std::find_if(found.lines.begin(), found.lines.end(), [&](const MotionLine& one) {
+                    const double seen = one.kind == LineKind::tone ? one.order_seen : one.order_output;
+                    return std::abs(seen - order) < 0.05 * order;
+                });
+            REQUIRE(line != found.lines.end());
+            CHECK_THAT(line->amplitude_nm, WithinRel(amplitude, 0.15));
+        }
+        CHECK(found.lines.size() == 4);
+    }
+}
+
+TEST_CASE("a tone is not taken for an order, though the speed lingers at its turning points") {
+    const Trace trace = tests::make_trace(
+        {.seconds = 12.0, .speed_deg_s = wandering, .tones = {{26.0, 1.0, 0.0}}, .noise_nm = 0.05});
+    const MotionLines found = lines_of(trace);
+    REQUIRE_FALSE(found.lines.empty());
+    for (const MotionLine& line : found.lines) CHECK(line.kind == LineKind::tone);
+    CHECK_THAT(found.lines.front().hz, WithinAbs(26.0, 0.05));
+}
+
+TEST_CASE("an order and a tone that cross are told apart") {
+    const Trace trace = tests::make_trace({.seconds = 12.0,
+                                           .speed_deg_s = wandering,
+                                           .ripple = {{160.0, 0.5, 0.0}},
+                                           .tones = {{26.0, 0.5, 0.0}},
+                                           .noise_nm = 0.05});
+    const MotionLines found = lines_of(trace);
+    REQUIRE(nearest_order(found, 160.0) != nullptr);
+    CHECK(std::any_of(found.lines.begin(), found.lines.end(), [](const MotionLine& line) {
+        return line.kind == LineKind::tone && std::abs(line.hz - 26.0) < 0.05;
+    }));
+}
+
+TEST_CASE("at one speed, order and tone cannot be told apart, and the line says unknown") {
+    const Trace trace = tests::make_trace({.seconds = 6.0,
+                                           .speed_deg_s = [](double) { return 60.0; },
+                                           .ripple = {{200.0, 0.5, 0.0}},
+                                           .noise_nm = 0.1});
+    const MotionLines found = lines_of(trace);
+    REQUIRE(found.lines.size() == 1);
+    CHECK(found.lines[0].kind == LineKind::unknown);
+    CHECK_THAT(found.lines[0].order_output, WithinRel(200.0, 0.001));
+}
+
+TEST_CASE("noise of any colour, held and coarse samples give orders in at most one log of a hundred") {
+    constexpr int runs = 300;
+    int alarms = 0;
+    for (int run = 0; run < runs; ++run) {
+        const double fast = 20.0 + 10.0 * (run % 7), slow = 5.0 + 5.0 * (run % 5);
+        const auto speed = [=](double t) {
+            return fast * std::sin(1.1 * t + run) + slow * std::sin(2.7 * t);
+        };
+        Trace trace = tests::make_trace({.rate_hz = 500.0,
+                                         .seconds = 8.0,
+                                         .speed_deg_s = speed,
+                                         .noise_nm = 0.3,
+                                         .seed = static_cast<std::uint32_t>(5000 + run)});
+        const int kind = run % 5;
+        auto& x = trace.torque_nm;
+        const double colour = kind == 1 ? 0.9 : kind == 2 ? 0.99 : 0.0;
+        for (std::size_t k = 1; k < x.size(); ++k) x[k] += colour * (x[k - 1] - 10.0);
+        // A lightly damped resonance at 35 Hz (Q = 10) driven by the noise.
+        double a = 0.0, b = 0.0;
+        for (std::size_t k = 0; k < x.size() && kind == 3; ++k) {
+            const double pole = std::exp(-std::numbers::pi * 3.5 / 500.0);
+            const double next = 2.0 * pole * std::cos(2.0 * std::numbers::pi * 35.0 / 500.0) * a -
+                                pole * pole * b + x[k] - 10.0;
+            b = a;
+            a = next;
+            x[k] = 10.0 + next;
+        }
+        for (std::size_t k = 0; k < x.size() && kind == 4; ++k) {
+            // Smooth motion torque, coarse steps, every third sample held.
+            x[k] = std::round((x[k] + 4.0 * std::cos(1.1 * trace.time_s[k])) / 0.13) * 0.13;
+            if (k % 3 == 2) x[k] = x[k - 1];
+        }
+        const MotionLines found = lines_of(trace);
+        alarms += std::any_of(found.lines.begin(), found.lines.end(),
+                              [](const MotionLine& l) { return l.kind == LineKind::order; });
+    }
+    INFO(alarms << " of " << runs);
+    CHECK(alarms <= runs / 100);
+}
+
+namespace {
+
+// Forth and back over several turns at changing speed, with torque that nothing smooth explains.
+struct Moved {
+    Trace trace;
+    std::vector<Sweep> sweeps;
+
+    Moved() {
+        trace.sample_rate = Hertz(500.0);
+        std::mt19937 random(3);
+        std::normal_distribution<double> noise(0.0, 0.3);
+        for (int k = 0; k < 12'000; ++k) {
+            const double t = k / 500.0, phase = 2.0 * std::numbers::pi * t / 6.0;
+            trace.time_s.push_back(t);
+            trace.position_deg.push_back(300.0 * std::sin(phase));
+            trace.velocity_deg_s.push_back(300.0 * std::cos(phase) * 2.0 * std::numbers::pi / 6.0);
+            trace.torque_nm.push_back(2.0 + 0.01 * trace.position_deg.back() + noise(random));
+        }
+        const TraceView log = trace.view();
+        sweeps = cut_sweeps({&log, 1}, {}).pieces;
+    }
+};
+
+// The smooth terms of a sweep at one of its samples.
+std::vector<double> smooth_at(const Sweep& sweep, std::size_t k) {
+    const double u = std::abs(sweep.turns[k] - sweep.turns.front()) / sweep.length_turns;
+    std::vector<double> terms{1.0, u - 0.5};
+    for (std::size_t m = 1; m + 1 < sweep.trend_terms; ++m)
+        terms.push_back(std::cos(std::numbers::pi * static_cast<double>(m) * u));
+    return terms;
+}
+
+}  // namespace
+
+TEST_CASE("what is left of a sweep is at right angles to its smooth part and to lines taken out beside it") {
+    const Moved moved;
+    REQUIRE(moved.sweeps.size() > 3);
+    const std::vector<KnownLine> lines{{Axis::angle, 40.0}, {Axis::time, 17.0}};
+    for (const std::size_t taken : {0U, 1U, 2U}) {
+        for (Sweep sweep : moved.sweeps) {
+            fit_out(sweep, std::span(lines).first(taken));
+            std::vector<double> with(sweep.trend_terms, 0.0), size(sweep.trend_terms, 0.0);
+            double left = 0.0;
+            std::vector<std::complex<double>> with_line(taken);
+            for (std::size_t k = 0; k < sweep.value.size(); ++k) {
+                const std::vector<double> terms = smooth_at(sweep, k);
+                left += sweep.weight[k] * sweep.torque_nm[k] * sweep.torque_nm[k];
+                for (std::size_t m = 0; m < terms.size(); ++m) {
+                    with[m] += sweep.value[k] * terms[m];
+                    size[m] += sweep.weight[k] * terms[m] * terms[m];
+                }
+                for (std::size_t i = 0; i < taken; ++i)
+                    with_line[i] += std::polar(sweep.value[k], 2.0 * std::numbers::pi * lines[i].place *
+                                                                   places(sweep, lines[i].axis)[k]);
+            }
+            // Line and first cosine are nearly parallel: the fit is held by 1e-10 of itself.
+            for (std::size_t m = 0; m < with.size(); ++m)
+                CHECK(std::abs(with[m]) < 1e-7 * std::sqrt(left * size[m]));
+            for (const std::complex<double>& sum : with_line)
+                CHECK(std::abs(sum) < 1e-7 * std::sqrt(left * sweep.weight_sum));
+        }
+    }
+}
+
+TEST_CASE("a line that is restored leaves what only the others explain") {
+    const Moved moved;
+    // Clear of each other and of the trend; near each other; an order and a tone that cross.
+    for (const auto& lines : {std::vector<KnownLine>{{Axis::angle, 40.0}, {Axis::angle, 90.0}},
+                              {{Axis::angle, 40.0}, {Axis::angle, 43.0}},
+                              {{Axis::angle, 40.0}, {Axis::time, 17.0}}}) {
+        std::vector<Sweep> removed = moved.sweeps;
+        for (std::size_t count = 1; count <= lines.size(); ++count)
+            remove_last(removed, std::span(lines).first(count));
+        for (std::size_t restored = 0; restored < lines.size(); ++restored) {
+            const std::vector<Sweep> with = with_line(removed, lines, restored);
+            for (std::size_t i = 0; i < with.size(); ++i) {
+                Sweep alone = moved.sweeps[i];
+                fit_out(alone, std::span(lines).subspan(1 - restored, 1));
+                double apart = 0.0, size = 0.0;
+                for (std::size_t k = 0; k < alone.value.size(); ++k) {
+                    apart += std::pow(with[i].value[k] - alone.value[k], 2);
+                    size += std::pow(alone.value[k], 2);
+                }
+                // Lines ten cycles apart have a few thousandths of each other's amplitude in them.
+                CHECK(apart < 5e-5 * size);
+            }
+        }
+    }
+}
+
+TEST_CASE("each mean of a stack is over the sweeps") {
+    const Moved moved;
+    for (const Axis axis : {Axis::angle, Axis::time}) {
+        const Stack whole = stack_sweeps(moved.sweeps, axis, {});
+        // Against the sweeps one by one, each a stack of its own on the same bins.
+        REQUIRE(whole.floors.size() == moved.sweeps.size());
+        for (std::size_t k = whole.first; k < whole.ratio.size(); k += 37) {
+            double square = 0.0, weight = 0.0;
+            for (std::size_t i = 0; i < moved.sweeps.size(); ++i) {
+                const double floor = static_cast<double>(whole.floors[i][k]),
+                             sum = moved.sweeps[i].weight_sum;
+                if (floor == 0.0) continue;
+                square += whole.sweep_weights[i] * 4.0 * floor / (sum * sum);
+                weight += whole.sweep_weights[i];
+            }
+            // The floors are kept as floats.
+            if (weight > 0.0) CHECK(whole.floor_nm[k] == Approx(std::sqrt(square / weight)).epsilon(1e-6));
+        }
+    }
+}
+
+TEST_CASE("of no sweeps there is no stack") { CHECK(stack_sweeps({}, Axis::angle, {}).ratio.empty()); }
+
+namespace {
+
+Identification identified(const std::vector<Trace>& traces, std::optional<double> hint = std::nullopt) {
+    std::vector<TraceView> views;
+    for (const Trace& trace : traces) views.push_back(trace.view());
+    IdentifyOptions options;
+    if (hint) options.hint = GearRatio(*hint);
+    return identify(views, options);
+}
+
+Trace at_25_hz(double seconds, std::function<double(double)> speed, std::uint32_t seed,
+               double order = 202.0) {
+    return tests::make_trace({.rate_hz = 25.0,
+                              .seconds = seconds,
+                              .speed_deg_s = std::move(speed),
+                              .ripple = {{order, 0.3, 0.4}},
+                              .noise_nm = 0.03,
+                              .seed = seed});
+}
+
+/// A short move: half a second of rest, up to `top`, almost to the end, as pick-and-place logs have it.
+double short_move(double t, double top) {
+    if (t < 0.3) return 0.0;
+    return t < 0.8 ? top * (t - 0.3) / 0.5 : t < 2.35 ? top : std::max(0.1, top * (1.0 - (t - 2.35) / 0.5));
+}
+
+}  // namespace
+
+TEST_CASE("an order above half the sample rate is found at its own place from three steady speeds") {
+    std::vector<Trace> logs;
+    std::uint32_t seed = 1;
+    for (const double speed : {47.0, 61.0, 83.0})
+        logs.push_back(at_25_hz(
+            30.0, [=](double) { return speed; }, seed++));
+    const Identification found = identified(logs);
+    REQUIRE(found.lines.size() == 1);
+    CHECK(found.lines[0].kind == LineKind::order);
+    CHECK_THAT(*found.lines[0].order_output, WithinAbs(202.0, 0.2));
+    CHECK_THAT(found.lines[0].amplitude_nm, WithinAbs(0.3, 0.01));
+    REQUIRE(found.lines[0].by_speed.size() >= 3);
+    for (const AmplitudeAtSpeed& at : found.lines[0].by_speed)
+        CHECK_THAT(at.hz, WithinAbs(202.0 * at.speed_deg_s / 360.0, 0.02));
+}
+
+TEST_CASE("two speeds show an order at its own place or leave it open, and three fixed tones are no order") {
+    const Identification two = identified({at_25_hz(
+                                               30.0, [](double) { return 47.0; }, 1),
+                                           at_25_hz(
+                                               30.0, [](double) { return 61.0; }, 2)});
+    REQUIRE_FALSE(two.lines.empty());
+    for (const Line& line : two.lines)
+        CHECK((line.kind == LineKind::unknown || std::abs(*line.order_output - 202.0) < 0.2));
+    std::vector<Trace> logs;
+    for (const double speed : {47.0, 61.0, 83.0}) {
+        logs.push_back(tests::make_trace({.rate_hz = 25.0,
+                                          .seconds = 30.0,
+                                          .speed_deg_s = [=](double) { return speed; },
+                                          .tones = {{3.3 + 0.11 * speed - 4.0, 0.3, 0.0}},
+                                          .noise_nm = 0.03,
+                                          .seed = static_cast<std::uint32_t>(speed)}));
+    }
+    for (const Line& line : identified(logs).lines) CHECK(line.kind != LineKind::order);
+}
+
+TEST_CASE("in motion of varying speed an order beyond half the sample rate is found at its own place") {
+    const Identification found = identified({at_25_hz(
+        60.0, [](double t) { return 55.0 + 20.0 * std::sin(0.7 * t); }, 3)});
+    REQUIRE(found.lines.size() == 1);
+    CHECK_THAT(*found.lines[0].order_output, WithinAbs(202.0, 0.5));
+}
+
+TEST_CASE("a short log of 65 samples shows its order within 2 %") {
+    for (const double top : {10.3, 14.7}) {
+        const Identification found = identified({at_25_hz(
+            2.6, [=](double t) { return short_move(t, top); }, 5)});
+        REQUIRE_FALSE(found.lines.empty());
+        CHECK_THAT(*found.lines[0].order_output, WithinAbs(202.0, 4.0));
+    }
+}
+
+TEST_CASE("noise of any colour in logs of 65 samples gives a line in at most one of a hundred") {
+    constexpr int runs = 1000;
+    for (int kind = 0; kind < 5; ++kind) {
+        int orders = 0, any = 0;
+        for (int run = 0; run < runs; ++run) {
+            const double top = run % 3 == 0 ? 10.3 : run % 3 == 1 ? 14.7 : 60.0;
+            Trace log = tests::make_trace({.rate_hz = 25.0,
+                                           .seconds = 2.6,
+                                           .speed_deg_s = [=](double t) { return short_move(t, top); },
+                                           .noise_nm = 0.1,
+                                           .seed = static_cast<std::uint32_t>(100 + 7 * run)});
+            auto& x = log.torque_nm;
+            const double colour = kind == 1 ? 0.7 : kind == 2 ? 0.95 : 0.0;
+            for (std::size_t k = 1; k < x.size(); ++k) x[k] += colour * (x[k - 1] - 10.0);
+            for (std::size_t k = 0; k < x.size(); ++k) {
+                if (kind == 3) x[k] = std::round(x[k] / 0.13) * 0.13;
+                if (kind == 4 && k % 3 == 2) x[k] = x[k - 1];
+            }
+            const Identification found = identified({log});
+            any += std::any_of(found.lines.begin(), found.lines.end(),
+                               [](const Line& l) { return l.kind != LineKind::tone; });
+            orders += std::any_of(found.lines.begin(), found.lines.end(),
+                                  [](const Line& l) { return l.kind == LineKind::order; });
+        }
+        INFO("kind " << kind << ": " << orders << " orders, " << any << " lines of " << runs);
+        CHECK(orders <= runs / 100);
+        CHECK(any <= runs / 100 + 9);  // 10 expected, three standard deviations more allowed
+    }
+}
