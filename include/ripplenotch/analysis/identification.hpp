@@ -171,9 +171,6 @@ struct Identification {
 /// supports a ratio.
 [[nodiscard]] std::optional<GearAccount> found_gear(const Identification& found);
 
-/// The verdict as text, reasons against it first.
-[[nodiscard]] std::string verdict_sentence(const Identification& found);
-
 /// The largest amplitude of an order of a joint's motor, its own or another one, in the torque of `found`,
 /// Nm. Empty where none was found, or where it may be of another motor as well.
 [[nodiscard]] std::optional<double> motor_amplitude(const Identification& found, const std::string& motor);
@@ -181,9 +178,6 @@ struct Identification {
 /// The joints whose motors are in a matrix of these torques: those that were looked for, in the order of the
 /// torques, then those whose own torques are not there. None where there is one torque only.
 [[nodiscard]] std::vector<std::string> motors_in_matrix(std::span<const Identification> found);
-
-/// What was found of the motors of other joints, a sentence; empty where nothing was.
-[[nodiscard]] std::string other_motors_sentence(const Identification& found);
 
 /// Retracts the orders and the gear ratio in `found` and records why: every line that would turn with the
 /// joint becomes of kind unknown, with its frequencies. The ratios that it would fit stay listed.

@@ -7,6 +7,7 @@
 
 #include "ripplenotch/analysis/amplitude_by_speed.hpp"
 #include "ripplenotch/analysis/ripple_estimate.hpp"
+#include "ripplenotch/analysis/verdict_sentence.hpp"
 #include "ripplenotch/verdict/other_motors.hpp"
 #include "ripplenotch/verdict/readings.hpp"
 

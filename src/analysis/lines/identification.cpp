@@ -19,6 +19,7 @@
 #include "analysis/shared_limits.hpp"
 #include "core/matrices/least_squares.hpp"
 #include "ripplenotch/analysis/line_search.hpp"
+#include "ripplenotch/analysis/verdict_sentence.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
@@ -86,6 +87,39 @@ std::optional<GearAccount> found_gear(const Identification& found) {
     std::sort(orders.begin(), orders.end());
     orders.erase(std::unique(orders.begin(), orders.end()), orders.end());
     return GearAccount{GearRatio(*found.gear_ratio.value), std::move(orders), {}, {}, "found in the log"};
+}
+
+std::optional<double> motor_amplitude(const Identification& found, const std::string& motor) {
+    double largest = 0.0;
+    if (found.joint == motor) {
+        for (const Line& line : found.lines)
+            if (line.order_output) largest = std::max(largest, line.amplitude_nm);
+    }
+    for (const OtherMotorRipple& other : found.other_motors) {
+        if (other.joint != motor || !other.doubt.empty()) continue;
+        for (const OtherMotorRipple::AtOrder& at : other.orders)
+            if (at.found) largest = std::max(largest, at.amplitude_nm);
+    }
+    return largest > 0.0 ? std::optional(largest) : std::nullopt;
+}
+
+std::vector<std::string> motors_in_matrix(std::span<const Identification> found) {
+    std::vector<std::string> motors;
+    if (found.size() < 2) return motors;
+    const auto add = [&motors](const std::string& joint) {
+        if (std::find(motors.begin(), motors.end(), joint) == motors.end()) motors.push_back(joint);
+    };
+    const auto looked_for = [&found](const std::string& joint) {
+        return std::any_of(found.begin(), found.end(), [&](const Identification& one) {
+            return std::any_of(one.other_motors.begin(), one.other_motors.end(),
+                               [&](const OtherMotorRipple& motor) { return motor.joint == joint; });
+        });
+    };
+    for (const Identification& one : found)
+        if (looked_for(one.joint)) add(one.joint);
+    for (const Identification& one : found)
+        for (const OtherMotorRipple& motor : one.other_motors) add(motor.joint);
+    return motors;
 }
 
 namespace {
