@@ -63,6 +63,7 @@ TEST_CASE("tones that are multiples of one frequency are no orders, at whatever 
         return;
     }
     CHECK(count_of(found, LineKind::tone) == 4);
+    CHECK(found.lines.back().note == "mains 50 Hz");  // the weakest, of 50.1 Hz
 }
 
 TEST_CASE("orders stay orders beside such tones, and at speeds that share a divisor") {

@@ -282,22 +282,6 @@ class Doubts(Case):
         for value, nm in zip(values, wear):
             self.assertAlmostEqual(value, nm, delta=0.05 * nm)
 
-    def test_an_encoder_whose_zero_was_moved_is_told_by_its_phase(self):
-        logs = [self.log(f"{i}.csv", speed=60, ripple_nm=0.5, seed=i) for i in range(3)]
-        moved = pathlib.Path(logs[2])
-        rows = [row.split(",") for row in moved.read_text().split()]
-        moved.write_text("\n".join(",".join(row[:3] + [row[3] if k == 0 else f"{float(row[3]) + 0.9:.6f}"])
-                                   for k, row in enumerate(rows)) + "\n")
-        self.assertEqual(identified(*logs[:2])["disagreements"], [])
-        one, = identified(*logs)["disagreements"]
-        self.assertEqual(one["about"], "phase")
-        values = [value["value"] for value in one["values"]]
-        self.assertAlmostEqual(values[0] - values[1], 0, delta=5)
-        self.assertAlmostEqual((values[0] - values[2]) % 360, 90, delta=5)
-        lines = run("identify", *logs, "-q").stdout.splitlines()
-        self.assertIn("the recordings disagree: the phase of ", lines[0])
-        self.assertTrue(any(line.endswith("2.csv") for line in lines))
-
 
 class FixedTones(Case):
     """The shortest sweep of this motion has 2.7 cycles of the first order, which its smooth part takes some of."""

@@ -232,17 +232,28 @@ struct Reported {
     std::optional<OrderLine> order = {};
 };
 
-/// "mains 50 Hz", "3 times mains 60 Hz"; empty for any other frequency.
-std::string mains_note(double hz) {
+/// Which multiple of the mains frequency a tone is; 0: none.
+double mains_multiple(const Line& line, double mains_hz) {
     constexpr double tolerance = 0.004;  // mains keep within 1 %, nearly always within a fifth of that
-    for (const double mains_hz : {50.0, 60.0}) {
-        const double n = std::round(hz / mains_hz);
-        if (n < 1.0 || n > 6.0 || std::abs(hz - n * mains_hz) > tolerance * n * mains_hz) continue;
-        const std::string mains = fmt::format("mains {:.0f} Hz", mains_hz);
-        return n == 1.0 ? mains : fmt::format("{:.0f} times {}", n, mains);
-    }
-    return "";
+    if (line.kind != LineKind::tone || !line.hz) return 0.0;
+    const double n = std::round(*line.hz / mains_hz);
+    return n <= 6.0 && std::abs(*line.hz - n * mains_hz) <= tolerance * n * mains_hz ? n : 0.0;
 }
+
+/// Notes at tones that they are the mains frequency or a multiple of it: 50 or 60 Hz, whichever more are.
+void name_mains(std::span<Line> lines) {
+    const auto count = [&](double hz) {
+        return std::count_if(lines.begin(), lines.end(),
+                             [hz](const Line& line) { return mains_multiple(line, hz) > 0.0; });
+    };
+    const double hz = count(60.0) > count(50.0) ? 60.0 : 50.0;
+    for (Line& line : lines)
+        if (const double n = mains_multiple(line, hz); n > 0.0)
+            line.note = fmt::format("{}mains {:.0f} Hz", n > 1.0 ? fmt::format("{:.0f} times ", n) : "", hz);
+}
+
+// Uncertainty of an improvement as a share: the noise below a line is not known better. Chosen, not derived.
+constexpr double floor_doubt = 0.15;
 
 /// Reports which orders above those searched would explain the line about as well, seen folded.
 void list_folds(const MotionLine& found, double highest_searched, double rate_hz, Line& line) {
@@ -291,7 +302,6 @@ Reported from_motion(const MotionLines& motion, std::size_t source, double rate_
         line.phase_deg = *found.phase_deg;
         line.phase_known = true;
     }
-    if (tone) line.note = mains_note(found.hz);
     if (found.kind == LineKind::unknown)
         line.note = "the speed varies too little to distinguish an order from a tone";
     if (!tone) list_folds(found, motion.highest_spectrum_order, rate_hz, line);
@@ -355,6 +365,7 @@ Identification identify_together(std::span<const TraceView> logs, const Identify
     for (Reported& r : reported) {
         result.lines.push_back(std::move(r.line));
     }
+    name_mains(result.lines);
     std::stable_sort(result.lines.begin(), result.lines.end(),
                      [](const Line& a, const Line& b) { return a.amplitude_nm > b.amplitude_nm; });
     conclude(motion, options, result);

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include "ripplenotch/analysis/stretches.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,7 +13,6 @@
 #include <span>
 #include <utility>
 
-#include "ripplenotch/analysis/stretches.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include "analysis/shared_limits.hpp"
 #include "analysis/spectrum/running_median.hpp"
 #include "core/functions/many_numbers.hpp"
 #include "ripplenotch/core/number.hpp"
@@ -13,6 +12,10 @@
 
 namespace ripplenotch {
 namespace {
+
+// Maxima are looked for among correlated bins: about this many independent tries per cell. With it, white
+// noise raises a false alarm somewhat less often than allowed.
+constexpr double tries_per_cell = 1.6;
 
 constexpr double lobe_cells = 4.0 / 3.0;    // half of a Hann line's main lobe: two cycles
 constexpr double fewest_below_cells = 2.0;  // chosen, not derived

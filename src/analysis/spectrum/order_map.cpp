@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "ripplenotch/analysis/order_map.hpp"
 
 #include <algorithm>
 #include <array>
@@ -6,10 +7,8 @@
 #include <map>
 #include <numbers>
 
-#include "analysis/shared_limits.hpp"
 #include "core/matrices/factorisations.hpp"
 #include "ripplenotch/analysis/fourier.hpp"
-#include "ripplenotch/analysis/order_map.hpp"
 #include "ripplenotch/analysis/order_track.hpp"
 #include "ripplenotch/analysis/sweeps.hpp"
 #include "ripplenotch/core/error.hpp"
@@ -18,6 +17,10 @@
 namespace ripplenotch {
 
 namespace {
+
+// Number of terms of the polynomial trend that is removed from a window: a cubic, since a quadratic leaks
+// into order 2 where a joint reverses.
+constexpr std::ptrdiff_t window_trend_terms = 4;
 
 constexpr double bins_per_resolution = 3.0;           // chosen, not derived
 constexpr std::size_t fewest_samples_of_window = 32;  // chosen, not derived

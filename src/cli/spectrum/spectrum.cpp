@@ -243,8 +243,9 @@ void attach_speed_map(Options& options, SpeedMapRequest& request, GearOptions& g
         {.ratio = "motor turns per joint turn; --map order counts orders per motor turn with it",
          .orders = "orders that --track measures and --map draws, in cycles per motor turn (default: 1,2)",
          .joint_file = "joint.json of identify: gear ratio and orders from there"});
-    options.number("--resolution", request.resolution, Dimension::none, "of the map, in Hz or orders");
-    options.number("--highest", request.highest, Dimension::none, "frequency or order where the map ends");
+    options.number("--resolution", request.resolution, Dimension::none, "of the map, in Hz or orders", true);
+    options.number("--highest", request.highest, Dimension::none, "frequency or order where the map ends",
+                   true);
     options.number("--speed-step", request.speed_step, Dimension::speed,
                    "width of a row of the map, or of --track --against speed; about 24 rows when left out",
                    true);
@@ -255,19 +256,12 @@ void check_speed_map(const SpeedMapRequest& request, const GearOptions& gear, bo
     if (!request.map &&
         ((!track && (gear.any() || request.speed_step)) || request.resolution || request.highest)) {
         raise<UsageError>(
-            "--joint-file, --gear-ratio, --orders and --speed-step belong to --map and --track, --resolution "
-            "and "
-            "--highest to --map");
+            "--joint-file, --gear-ratio, --orders and --speed-step belong to --map and --track, and "
+            "--resolution and --highest to --map");
     }
     if (request.map && *request.map != map_names[0] && *request.map != map_names[1])
         raise<UsageError>("--map: '{}' is none of campbell, order", *request.map);
-    const auto positive = [](std::string_view option, std::optional<double> value) {
-        if (value && !(*value > 0.0)) raise<UsageError>("{} {} is not above 0", option, shortest(*value));
-    };
     check_gear(gear);
-    positive("--resolution", request.resolution);
-    positive("--highest", request.highest);
-    if (request.speed_step) positive("--speed-step", request.speed_step->value());
 }
 
 // The lines that are drawn into the map, where a gear is known; notes the joint file as an input.
