@@ -52,7 +52,7 @@ class Hashes(InFolder):
         raw = self.hash_of("log.csv")
         for command in (("identify",), ("spectrum", "--track", *GEAR), ("spectrum",), ("map", *GEAR), ("compare", *GEAR, *LOWPASS)):
             for number, output in enumerate((("--json",), ("-o", "NAME"), ("--plot", "NAME"))):
-                name = f"{command[0]}_{number}.json"
+                name = f"{len(command)}_{command[0]}_{number}.json"
                 done = self.run_tool(command[0], "log.csv", *command[1:], *(w.replace("NAME", name) for w in output))
                 self.assertEqual(done.returncode, 0, done.stderr)
                 words = json.loads(done.stdout if output == ("--json",) else (self.folder / name).read_text())
