@@ -10,7 +10,7 @@
 #include "core/vectors/dot.hpp"
 #include "diagnose/engine/gram.hpp"
 #include "diagnose/engine/settings.hpp"
-#include "ripplenotch/analysis/spectrum.hpp"
+#include "ripplenotch/analysis/fourier.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch::engine {
