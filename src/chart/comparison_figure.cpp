@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "ripplenotch/chart/comparison_figure.hpp"
+#include "ripplenotch/chart/table_figure.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/figure/min_max.hpp"
 

@@ -159,10 +159,6 @@ std::optional<std::string> run_gnuplot(const std::string& script) {
     return printed;
 }
 
-}  // namespace ripplenotch
-
-namespace ripplenotch {
-
 namespace {
 
 bool harmless(char c) {
@@ -274,10 +270,6 @@ bool segment_of(const NamedLine& line, const PlotRange& x, const PlotRange& y, S
     segment = {from, line.value * from, to, line.value * to};
     return from < to;
 }
-
-}  // namespace ripplenotch
-
-namespace ripplenotch {
 
 namespace {
 

@@ -3,9 +3,20 @@
 // The declarations of every effect's record, and what the families of effects share; seen by them and by the
 // catalogue alone.
 
+#include <algorithm>
+#include <array>
+#include <complex>
+#include <span>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/model/effect.hpp"
 
 namespace ripplenotch {
+
+namespace effects {
 
 // What the functions of a record are given.
 using Values = std::span<const double>;
@@ -14,12 +25,12 @@ using Gains = std::span<std::complex<double>>;
 
 // Rows of the table of an effect's parameters: name, unit, help, numbers, where a screening begins, hint.
 
-struct Range {
+struct ParameterRange {
     double start, lower, upper, neutral = 0.0;
 };
 
-inline Parameter plain(std::string_view name, std::string_view unit, std::string_view help, Range range,
-                       std::vector<double> tried = {}, Hint hint = Hint::none) {
+inline Parameter plain(std::string_view name, std::string_view unit, std::string_view help,
+                       ParameterRange range, std::vector<double> tried = {}, Hint hint = Hint::none) {
     return {.name = name,
             .unit = unit,
             .help = help,
@@ -32,15 +43,16 @@ inline Parameter plain(std::string_view name, std::string_view unit, std::string
 }
 
 /// The torque is an affine function of it.
-inline Parameter linear(std::string_view name, std::string_view unit, std::string_view help, Range range) {
+inline Parameter linear(std::string_view name, std::string_view unit, std::string_view help,
+                        ParameterRange range) {
     Parameter row = plain(name, unit, help, range);
     row.linear = true;
     return row;
 }
 
 /// A search moves in its logarithm.
-inline Parameter logarithmic(std::string_view name, std::string_view unit, std::string_view help, Range range,
-                             std::vector<double> tried = {}) {
+inline Parameter logarithmic(std::string_view name, std::string_view unit, std::string_view help,
+                             ParameterRange range, std::vector<double> tried = {}) {
     Parameter row = plain(name, unit, help, range, std::move(tried));
     row.logarithmic = true;
     return row;
@@ -99,7 +111,33 @@ inline Parameter seed_parameter() {
                          {first_seed, 0.0, 2147483647.0, first_seed}));
 }
 
-namespace effects {
+// Cosines of an angle at every sample, in blocks that stay in the first-level cache.
+
+/// use(k, cosine of angle_deg(k)) for each sample k.
+template <class AngleDeg, class Use>
+void with_cosines(std::size_t samples, AngleDeg angle_deg, Use use) {
+    std::array<double, 256> angles{}, cosines{};
+    for (std::size_t first = 0; first < samples; first += angles.size()) {
+        const std::size_t count = std::min(angles.size(), samples - first);
+        for (std::size_t i = 0; i < count; ++i) angles[i] = angle_deg(first + i);
+        portable::cos_degrees(std::span(angles).first(count), cosines);
+        for (std::size_t i = 0; i < count; ++i) use(first + i, cosines[i]);
+    }
+}
+
+/// use(k, cosine, sine) of angle_deg(k) for each sample k.
+template <class AngleDeg, class Use>
+void with_cosines_and_sines(std::size_t samples, AngleDeg angle_deg, Use use) {
+    std::array<double, 256> angles{}, cosines{}, sines{};
+    for (std::size_t first = 0; first < samples; first += angles.size()) {
+        const std::size_t count = std::min(angles.size(), samples - first);
+        for (std::size_t i = 0; i < count; ++i) angles[i] = angle_deg(first + i);
+        portable::cos_degrees(std::span(angles).first(count), cosines);
+        portable::sin_degrees(std::span(angles).first(count), sines);
+        for (std::size_t i = 0; i < count; ++i) use(first + i, cosines[i], sines[i]);
+    }
+}
+
 #define EFFECT(name) extern const Effect name;
 #include "model/effects/effects.def"
 #undef EFFECT

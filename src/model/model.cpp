@@ -1,117 +1,22 @@
 // SPDX-License-Identifier: MIT
+#include "ripplenotch/model/model.hpp"
+
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
+#include <optional>
+#include <span>
 #include <utility>
+#include <vector>
 
+#include "model/model.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
-#include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/core/spec.hpp"
-#include "ripplenotch/model/fit.hpp"
-#include "ripplenotch/model/model.hpp"
-#include "ripplenotch/model/sensors.hpp"
-#include "ripplenotch/model/setup_fault.hpp"
 
 namespace ripplenotch {
-
-namespace {
-
-// SplitMix64's finalizer (Steele, Lea, Flood 2014): neighbouring seeds and channels become unrelated engine
-// seeds.
-std::uint64_t mixed(std::uint64_t seed, NoiseChannel channel) {
-    std::uint64_t z = seed + 0x9e3779b97f4a7c15U * static_cast<std::uint64_t>(channel);
-    z = (z ^ (z >> 30U)) * 0xbf58476d1ce4e5b9U;
-    z = (z ^ (z >> 27U)) * 0x94d049bb133111ebU;
-    return z ^ (z >> 31U);
-}
-
-}  // namespace
-
-Noise::Noise(std::uint64_t seed, NoiseChannel channel) : engine_(mixed(seed, channel)) {}
-
-double Noise::uniform() { return static_cast<double>(engine_() >> 11U) * 0x1p-53; }
-
-double Noise::normal() {
-    if (has_spare_) {
-        has_spare_ = false;
-        return spare_;
-    }
-    // A point uniform in the unit disc; its squared radius is uniform too, and independent of its direction.
-    double x = 0.0, y = 0.0, square = 0.0;
-    do {
-        x = 2.0 * uniform() - 1.0;
-        y = 2.0 * uniform() - 1.0;
-        square = x * x + y * y;
-    } while (square >= 1.0 || square == 0.0);
-    const double stretch = std::sqrt(-2.0 * portable::log(square) / square);
-    spare_ = y * stretch;
-    has_spare_ = true;
-    return x * stretch;
-}
-
-void add_noise(std::span<double> values, const NoiseKind& kind, std::uint64_t seed, NoiseChannel channel) {
-    const auto [rms, correlation] = kind;
-    if (rms == 0.0) return;
-    Noise noise(seed, channel);
-    // The first number is drawn from where the process settles, so that the rms is the same from the start.
-    const double fresh = std::sqrt(1.0 - correlation * correlation);
-    double state = 0.0, share = 1.0;
-    for (double& value : values) {
-        state = correlation * state + share * noise.normal();
-        share = fresh;
-        value += rms * state;
-    }
-}
-
-void add_white_noise(std::span<double> values, double rms, std::uint64_t seed, NoiseChannel channel) {
-    add_noise(values, {.rms = rms}, seed, channel);
-}
-
-namespace {
-
-bool is_stated_sensor(const Term& term) {
-    return side_of(term) == Side::sensor && std::all_of(term.values.begin(), term.values.end(),
-                                                        [](const auto& value) { return value.has_value(); });
-}
-
-}  // namespace
-
-bool has_sensors(const Model& model) {
-    return std::any_of(model.terms.begin(), model.terms.end(), is_stated_sensor);
-}
-
-void through_sensors(const Model& model, const Motion& motion, std::vector<double>& torque_nm) {
-    for (const Term& term : model.terms) {
-        if (is_stated_sensor(term))
-            term.effect->apply({.motion = motion, .ratio = model.gear_ratio}, values_of(term), torque_nm);
-    }
-}
-
-std::string_view setup_fault_name(SetupFaultKind kind) {
-    switch (kind) {
-        case SetupFaultKind::wrong_joint:
-            return "wrong-joint";
-        case SetupFaultKind::other_motion:
-            return "other-motion";
-        case SetupFaultKind::motion_sign:
-            return "motion-sign";
-        case SetupFaultKind::motion_unit:
-            return "motion-unit";
-        case SetupFaultKind::motor_side_motion:
-            return "motor-side-motion";
-        case SetupFaultKind::torque_sign:
-            return "torque-sign";
-        case SetupFaultKind::torque_unit:
-            return "torque-unit";
-        case SetupFaultKind::motor_side_torque:
-            return "motor-side-torque";
-        case SetupFaultKind::gravity_direction:
-            break;
-    }
-    return "gravity-direction";
-}
 
 namespace {
 
@@ -195,6 +100,115 @@ std::vector<std::string> missing_values(const Model& model) {
         }
     }
     return names;
+}
+
+namespace {
+
+bool has_side(const Model& model, Side side) {
+    return std::ranges::any_of(model.terms, [&](const Term& term) { return side_of(term) == side; });
+}
+
+}  // namespace
+
+std::optional<Motion> motion_behind(const Model& model, const Motion& logged, GearRatio& ratio) {
+    std::optional<Motion> changed;
+    for (const Term& term : model.terms) {
+        if (!changes_motion(term)) continue;
+        if (!changed) changed = logged;
+        term.effect->change_motion(values_of(term), *changed, ratio);
+    }
+    return changed;
+}
+
+void refuse_missing_values(const Model& model) {
+    if (const auto missing = missing_values(model); !missing.empty()) {
+        raise<UsageError>("the model does not state {}; give the value, or fit it to a log first",
+                          fmt::join(missing, ", "));
+    }
+}
+
+std::vector<double> load_nm(const Model& model, const Situation& situation) {
+    std::vector<double> load;
+    if (std::ranges::none_of(model.terms, [](const Term& term) { return term.effect->uses_load; }))
+        return load;
+    load = situation.motion.known_nm;
+    load.resize(situation.motion.size());
+    each(model, Side::joint, [&](const Effect& effect, const std::vector<double>& values) {
+        if (effect.bears_load) effect.apply(situation, values, load);
+    });
+    return load;
+}
+
+Gain gain_of(const Model& model, const Situation& situation, double order) {
+    if (!has_side(model, Side::ripple)) return {};
+    Gain gain(situation.motion.size(), 1.0);
+    each(model, Side::ripple, [&](const Effect& change, const std::vector<double>& numbers) {
+        change.change_ripple(situation, Order(order), numbers, gain);
+    });
+    return gain;
+}
+
+void add_torque(const Term& term, const Situation& situation, const Gain& gain, std::span<double> torque_nm) {
+    Situation with_gain = situation;
+    with_gain.ripple_gain = gain;
+    term.effect->apply(with_gain, values_of(term), torque_nm);
+}
+
+Gain gain_for(const Model& model, const Term& term, const Situation& situation) {
+    if (!term.effect->ripple_order) return {};
+    return gain_of(model, situation, values_of(term)[*term.effect->ripple_order]);
+}
+
+namespace {
+
+// Adds the torques of all of them.
+void add_joint_torque(const Model& model, const Situation& situation, std::span<double> torque_nm) {
+    for (const Term& term : model.terms) {
+        if (term.effect->side == Side::joint)
+            add_torque(term, situation, gain_for(model, term, situation), torque_nm);
+    }
+}
+
+// A model along a motion: motion effects first, then ripple gains, then the sum of torques, then the chain of
+// sensor and converter. docs/decisions/0005-sides.md gives the reasons for this order.
+
+std::vector<double> evaluate(const Model& model, const Motion& logged, std::span<const double> noise_nm,
+                             Chance chance) {
+    refuse_missing_values(model);
+    GearRatio ratio = model.gear_ratio;
+    const std::optional<Motion> changed = motion_behind(model, logged, ratio);
+    const Motion& motion = changed ? *changed : logged;
+    const auto load = load_nm(model, {.motion = motion, .ratio = ratio});
+    const Situation situation{.motion = motion, .ratio = ratio, .load_nm = load};
+    std::vector<double> torque_nm = motion.known_nm;
+    torque_nm.resize(motion.size());
+    add_joint_torque(model, situation, torque_nm);
+    const auto transform = [&](const Effect& effect, const std::vector<double>& values) {
+        if (chance == Chance::acts || !effect.chance) effect.apply(situation, values, torque_nm);
+    };
+    each(model, Side::sensor, transform);
+    for (std::size_t k = 0; k < noise_nm.size(); ++k) torque_nm[k] += noise_nm[k];
+    each(model, Side::converter, transform);
+    return torque_nm;
+}
+
+}  // namespace
+
+std::vector<double> predict_nm(const Model& model, const Motion& motion) {
+    return evaluate(model, motion, {}, Chance::left_out);
+}
+
+std::vector<double> sensed_nm(const Model& model, const Motion& motion, std::vector<double> torque_nm) {
+    each(model, Side::sensor, [&](const Effect& effect, const std::vector<double>& values) {
+        if (effect.linear_in_torque && !effect.uses_load)
+            effect.apply({.motion = motion, .ratio = model.gear_ratio}, values, torque_nm);
+    });
+    return torque_nm;
+}
+
+std::vector<double> measure_nm(const Model& model, const Motion& motion, std::span<const double> noise_nm,
+                               Chance chance) {
+    return evaluate(model, motion, noise_nm, chance);
 }
 
 }  // namespace ripplenotch

@@ -19,139 +19,118 @@ namespace ripplenotch {
 
 namespace {
 
-// Internal to the survey module: the figures of a joint's rows, collected in one pass.
-
-class PassingRows {
+// Range of a signal whose first value is a number.
+class Extremes {
   public:
-    /// `facts` of the log that will go by; the means are of as few rows as `most_means` allow.
-    PassingRows(const LogFacts& facts, std::size_t most_means);
-    void add(const TraceView& rows);
-
-    [[nodiscard]] std::optional<Range> speed_deg_s() const { return speed_.range(); }
-    [[nodiscard]] std::optional<Range> torque_nm() const { return torque_.range(); }
-    /// Turns of the joint, both directions added up.
-    [[nodiscard]] double turns() const;
-    /// Means of so many consecutive rows each, as a trace of its own, at a rate that is as much lower.
-    [[nodiscard]] Trace take_means();
+    void add(double value) {
+        if (!any_) known_ = std::isfinite(value);
+        any_ = true;
+        low_ = std::min(low_, value);
+        high_ = std::max(high_, value);
+    }
+    [[nodiscard]] bool known() const { return known_; }
+    [[nodiscard]] std::optional<Range> range() const {
+        return known_ ? std::optional(Range{low_, high_}) : std::nullopt;
+    }
 
   private:
-    /// Range of a signal whose first value is a number.
-    struct Extremes {
-        double low = std::numeric_limits<double>::infinity(), high = -low;
-        bool any = false, known = false;
-        void add(double value);
-        [[nodiscard]] std::optional<Range> range() const;
-    };
+    double low_ = std::numeric_limits<double>::infinity(), high_ = -low_;
+    bool any_ = false, known_ = false;
+};
+
+// The figures of a joint's rows, collected in one pass.
+class PassingRows {
+  public:
+    PassingRows(std::size_t rows, Hertz sample_rate)
+        : rows_(rows),
+          stride_(static_cast<std::size_t>(std::max(1.0, stride_s * sample_rate.value()))),
+          rate_hz_(sample_rate.value()) {}
+
+    void add(const TraceView& rows) {
+        for (std::size_t k = 0; k < rows.size(); ++k, ++at_) {
+            speed_.add(rows.velocity_deg_s[k]);
+            torque_.add(rows.torque_nm[k]);
+            add_turns(rows, k);
+        }
+    }
+    void describe(JointInfo& joint) const {
+        joint.speed_deg_s = speed_.range();
+        joint.torque_nm = torque_.range();
+        joint.turns = moved_deg_ / 360.0;
+    }
+
+  private:
+    static constexpr double stride_s = 0.01;  // noise of a position at standstill must not add up to turns
+
+    // Turns of the joint, both directions added up: from position, each stride_-th row and the last, else
+    // from velocity over time.
+    void add_turns(const TraceView& rows, std::size_t k) {
+        if (!rows.has_position()) {
+            if (rate_hz_ > 0.0 && speed_.known()) moved_deg_ += std::abs(rows.velocity_deg_s[k]) / rate_hz_;
+            return;
+        }
+        if (at_ == 0) strode_from_deg_ = rows.position_deg[k];
+        if (at_ % stride_ != 0 && at_ + 1 != rows_) return;
+        moved_deg_ += std::abs(rows.position_deg[k] - strode_from_deg_);
+        strode_from_deg_ = rows.position_deg[k];
+    }
+
+    std::size_t rows_, stride_, at_ = 0;
+    double rate_hz_;
+    Extremes speed_, torque_;
+    double moved_deg_ = 0.0, strode_from_deg_ = 0.0;
+};
+
+// Means of so many consecutive rows each, as a trace of its own, at a rate that is as much lower.
+class PassingMeans {
+  public:
+    /// Of as few rows as `most_means` allow.
+    PassingMeans(const LogFacts& facts, std::size_t most_means)
+        : in_mean_((facts.rows + most_means - 1) / most_means) {
+        means_.sample_rate = Hertz(facts.sample_rate.value() / static_cast<double>(in_mean_));
+    }
+
+    void add(const TraceView& rows) {
+        begins_run_ = begins_run_ || (!rows.run_starts.empty() && any_);
+        for (std::size_t k = 0; k < rows.size(); ++k) {
+            any_ = true;
+            sums_.time_s += rows.time_s[k];
+            sums_.velocity_deg_s += rows.velocity_deg_s[k];
+            sums_.torque_nm += rows.torque_nm[k];
+            if (rows.has_position()) sums_.position_deg += rows.position_deg[k];
+            if (++sums_.rows == in_mean_) end_mean(rows.has_position());
+        }
+        by_position_ = rows.has_position();
+    }
+    [[nodiscard]] Trace take() {
+        if (sums_.rows > 0) end_mean(by_position_);
+        return std::move(means_);
+    }
+
+  private:
     struct Sums {
         std::size_t rows = 0;
         double time_s = 0.0, velocity_deg_s = 0.0, torque_nm = 0.0, position_deg = 0.0;
     };
-    void add_turns(const TraceView& rows, std::size_t k);
-    void end_mean();
 
-    std::size_t rows_, in_mean_, stride_, at_ = 0;
-    double rate_hz_;
-    Extremes speed_, torque_;
-    double moved_deg_ = 0.0, strode_from_deg_ = 0.0;
-    bool by_position_ = false, begins_run_ = false;
+    // A gap within the rows of a mean is placed before the mean, which is accurate enough for a stretch of
+    // seconds.
+    void end_mean(bool by_position) {
+        const auto rows = static_cast<double>(sums_.rows);
+        if (std::exchange(begins_run_, false) && means_.size() > 0)
+            means_.run_starts.push_back(means_.size());
+        means_.time_s.push_back(sums_.time_s / rows);
+        means_.velocity_deg_s.push_back(sums_.velocity_deg_s / rows);
+        means_.torque_nm.push_back(sums_.torque_nm / rows);
+        if (by_position) means_.position_deg.push_back(sums_.position_deg / rows);
+        sums_ = {};
+    }
+
+    std::size_t in_mean_;
+    bool any_ = false, by_position_ = false, begins_run_ = false;
     Sums sums_;
     Trace means_;
 };
-
-constexpr double stride_s = 0.01;  // noise of a position at standstill must not add up to turns
-
-PassingRows::PassingRows(const LogFacts& facts, std::size_t most_means)
-    : rows_(facts.rows),
-      in_mean_((facts.rows + most_means - 1) / most_means),
-      stride_(static_cast<std::size_t>(std::max(1.0, stride_s * facts.sample_rate.value()))),
-      rate_hz_(facts.sample_rate.value()) {
-    means_.sample_rate = Hertz(rate_hz_ / static_cast<double>(in_mean_));
-}
-
-}  // namespace
-
-void PassingRows::Extremes::add(double value) {
-    if (!any) known = std::isfinite(value);
-    any = true;
-    low = std::min(low, value);
-    high = std::max(high, value);
-}
-
-std::optional<Range> PassingRows::Extremes::range() const {
-    if (!known) return std::nullopt;
-    return Range{low, high};
-}
-
-namespace {
-
-// Each stride_-th row and the last, as in a log that is held.
-void PassingRows::add_turns(const TraceView& rows, std::size_t k) {
-    if (!rows.has_position()) {
-        if (rate_hz_ > 0.0 && speed_.known) moved_deg_ += std::abs(rows.velocity_deg_s[k]) / rate_hz_;
-        return;
-    }
-    by_position_ = true;
-    if (at_ == 0) strode_from_deg_ = rows.position_deg[k];
-    if (at_ % stride_ != 0 && at_ + 1 != rows_) return;
-    moved_deg_ += std::abs(rows.position_deg[k] - strode_from_deg_);
-    strode_from_deg_ = rows.position_deg[k];
-}
-
-void PassingRows::add(const TraceView& rows) {
-    begins_run_ = begins_run_ || (!rows.run_starts.empty() && at_ > 0);
-    for (std::size_t k = 0; k < rows.size(); ++k, ++at_) {
-        speed_.add(rows.velocity_deg_s[k]);
-        torque_.add(rows.torque_nm[k]);
-        add_turns(rows, k);
-        sums_.time_s += rows.time_s[k];
-        sums_.velocity_deg_s += rows.velocity_deg_s[k];
-        sums_.torque_nm += rows.torque_nm[k];
-        if (rows.has_position()) sums_.position_deg += rows.position_deg[k];
-        if (++sums_.rows == in_mean_) end_mean();
-    }
-}
-
-// A gap within the rows of a mean is placed before the mean, which is accurate enough for a stretch of
-// seconds.
-void PassingRows::end_mean() {
-    const auto rows = static_cast<double>(sums_.rows);
-    if (std::exchange(begins_run_, false) && means_.size() > 0) means_.run_starts.push_back(means_.size());
-    means_.time_s.push_back(sums_.time_s / rows);
-    means_.velocity_deg_s.push_back(sums_.velocity_deg_s / rows);
-    means_.torque_nm.push_back(sums_.torque_nm / rows);
-    if (by_position_) means_.position_deg.push_back(sums_.position_deg / rows);
-    sums_ = {};
-}
-
-double PassingRows::turns() const { return moved_deg_ / 360.0; }
-
-Trace PassingRows::take_means() {
-    if (sums_.rows > 0) end_mean();
-    return std::move(means_);
-}
-
-std::optional<Range> range_of(const std::vector<double>& values) {
-    if (values.empty() || !std::isfinite(values.front())) return std::nullopt;
-    const auto [low, high] = std::minmax_element(values.begin(), values.end());
-    return Range{*low, *high};
-}
-
-// Turns of the joint, back and forth added up: from position, else from velocity over time. Position is
-// thinned to hundredths of a second, so that its noise at standstill does not add up to turns.
-double turns_of(const Trace& trace, double sample_rate) {
-    double degrees = 0.0;
-    const auto stride = static_cast<std::size_t>(std::max(1.0, 0.01 * sample_rate));
-    if (!trace.position_deg.empty()) {
-        for (std::size_t i = 0; i + 1 < trace.size(); i += stride) {
-            const std::size_t next = std::min(i + stride, trace.size() - 1);
-            degrees += std::abs(trace.position_deg[next] - trace.position_deg[i]);
-        }
-    } else if (sample_rate > 0.0 && std::isfinite(trace.velocity_deg_s.front())) {
-        for (std::size_t i = 0; i < trace.size(); ++i)
-            degrees += std::abs(trace.velocity_deg_s[i]) / sample_rate;
-    }
-    return degrees / 360.0;
-}
 
 std::vector<SteadyStretch> stretches_of(const Log& log) {
     std::vector<SteadyStretch> stretches;
@@ -174,9 +153,9 @@ struct Surveyed {
 
 Surveyed surveyed(Log log) {
     JointInfo joint;
-    joint.speed_deg_s = range_of(log.trace.velocity_deg_s);
-    joint.torque_nm = range_of(log.trace.torque_nm);
-    joint.turns = turns_of(log.trace, log.trace.sample_rate.value());
+    PassingRows rows(log.trace.size(), log.trace.sample_rate);
+    rows.add(log.trace.view());
+    rows.describe(joint);
     joint.stretches = stretches_of(log);
     log.trace = {};
     return {std::move(log), std::move(joint)};
@@ -188,18 +167,20 @@ Surveyed survey_long(const std::shared_ptr<const Spool>& spool, const ReadOption
     LogPasses passes(spool, options);
     Surveyed found;
     passes.first([](const TraceView&) {});
-    PassingRows rows(passes.facts(), most_rows);
-    passes.second([&](const TraceView& part) { rows.add(part); });
+    PassingRows rows(passes.facts().rows, passes.facts().sample_rate);
+    PassingMeans means(passes.facts(), most_rows);
+    passes.second([&](const TraceView& part) {
+        rows.add(part);
+        means.add(part);
+    });
     found.log.layout = passes.layout();
     found.log.recording = passes.recording();
     found.log.held_bad_values = passes.facts().held_bad_values;
     found.log.clock_factor = passes.facts().clock_factor;
     found.log.position_range_deg = passes.facts().position_range_deg;
-    found.info.speed_deg_s = rows.speed_deg_s();
-    found.info.torque_nm = rows.torque_nm();
-    found.info.turns = rows.turns();
+    rows.describe(found.info);
     Log thinned;
-    thinned.trace = rows.take_means();
+    thinned.trace = means.take();
     found.info.stretches = stretches_of(thinned);
     return found;
 }

@@ -21,6 +21,11 @@ inline const std::string panda_mdh =
     "a_m,alpha_deg,d_m,theta_deg\n0,0,0.333,0\n0,-90,0,0\n0,90,0.316,0\n0.0825,90,0,0\n-0.0825,-90,0.384,0\n"
     "0,90,0,0\n0.088,90,0,0\n";
 
+/// Six joints with the lengths of a small industrial arm.
+inline const std::string six_dh =
+    "a_m,alpha_deg,d_m,theta_deg\n0,90,0.13,0\n-0.6,0,0,0\n-0.55,0,0,0\n0,90,0.16,0\n0,-90,0.11,0\n0,0,0.09,"
+    "0\n";
+
 /// Smooth motions of `n` joints, each a sum of five sines as for identification (Swevers 1997).
 inline std::vector<Motion> fourier_motions(std::size_t n, double seconds, double rate_hz, unsigned seed,
                                            double size_deg = 40.0) {

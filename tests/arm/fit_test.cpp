@@ -2,13 +2,19 @@
 // An arm whose masses are known, logged with friction and noise, and fitted again.
 #include "ripplenotch/arm/arm_fit.hpp"
 
+#include <fmt/format.h>
+
 #include <cstring>
+#include <filesystem>
 #include <limits>
 
 #include "arm/fit/stated_arm.hpp"
 #include "arm_support.hpp"
 #include "ripplenotch/core/error.hpp"
+#include "ripplenotch/log/log.hpp"
 #include "support/catch.hpp"
+#include "support/places.hpp"
+#include "support/skipped.hpp"
 
 using namespace ripplenotch;
 using namespace ripplenotch::test;
@@ -19,10 +25,6 @@ using Catch::Matchers::WithinRel;
 namespace {
 
 constexpr double noise_nm = 0.5, coulomb_nm = 4.0, viscous_nm = 3.0;
-
-const std::string six_dh =
-    "a_m,alpha_deg,d_m,theta_deg\n0,90,0.13,0\n-0.6,0,0,0\n-0.55,0,0,0\n0,90,0.16,0\n0,-90,0.11,0\n0,0,0.09,"
-    "0\n";
 
 // A log of the arm in `chain` at 200 Hz.
 struct Recorded {
@@ -81,12 +83,11 @@ double left(const std::vector<double>& predicted, const TraceView& log, std::siz
     return std::sqrt(sum / static_cast<double>(log.size() - first));
 }
 
-std::vector<double> sum_of(const GivenTerm& term) {
-    std::vector<double> torque_nm(term.torque_nm.front().size());
-    for (std::size_t c = 0; c < term.torque_nm.size(); ++c)
-        for (std::size_t k = 0; k < torque_nm.size(); ++k)
-            torque_nm[k] += term.mean[c] * term.torque_nm[c][k];
-    return torque_nm;
+std::vector<double> sum_of(const GivenTerm& term, const std::vector<double>& values) {
+    std::vector<double> sum(term.torque_nm[0].size(), 0.0);
+    for (std::size_t c = 0; c < values.size(); ++c)
+        for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += values[c] * term.torque_nm[c][k];
+    return sum;
 }
 
 }  // namespace
@@ -154,7 +155,7 @@ TEST_CASE("what other joints say of an arm is a mean and a deviation of 1 in col
         CHECK(term.deviation.front() == 1.0);
         const auto by_mean =
             arm_torque(six.chain, fit.find(joint)->mean, arm_motions(log, fit.smoothing), joint);
-        const auto by_columns = sum_of(term);
+        const auto by_columns = sum_of(term, term.mean);
         // Smoothed over 0.12 s, which the motion's 0.5 Hz hardly feels.
         for (std::size_t k = 50; k + 50 < by_mean.size(); k += 100)
             CHECK_THAT(by_columns[k], WithinAbs(by_mean[k], 0.3));
@@ -260,4 +261,198 @@ TEST_CASE("a log that no arm can be fitted to is refused", "[arm][broken]") {
         trace.position_deg.assign(8000, 1.0);
     }
     CHECK_THROWS_WITH(fit_arm(six.chain, six.log.view()), Contains("no joint moves"));
+}
+
+// An arm whose values are stated gives the torque that its columns gave with the values they were fitted to.
+
+namespace {
+
+const std::string three_dh = "a_m,alpha_deg,d_m,theta_deg\n0,90,0.3,0\n0.4,0,0,0\n0.3,0,0,0\n";
+
+struct RecordedArm {
+    std::vector<Trace> joints;
+
+    RecordedArm(const Chain& chain, unsigned seed) {
+        const auto motions = fourier_motions(chain.size(), 12.0, 100.0, seed, 60.0);
+        const auto links = random_links(chain.size(), 5);
+        for (std::size_t j = 0; j < chain.size(); ++j) {
+            Trace& trace = joints.emplace_back();
+            trace.sample_rate = Hertz(100.0);
+            trace.time_s = motions[j].time_s;
+            trace.position_deg = motions[j].position_deg;
+            trace.velocity_deg_s = motions[j].velocity_deg_s;
+            trace.torque_nm = arm_torque(chain, links, motions, j);
+        }
+    }
+    [[nodiscard]] ArmLog view() const {
+        ArmLog log;
+        for (const Trace& joint : joints) log.joints.push_back(joint.view());
+        log.has_torque.assign(joints.size(), true);
+        return log;
+    }
+};
+
+ArmFitOptions barely_pulled() {
+    ArmFitOptions options;
+    options.smoothing = Seconds(0.12);
+    options.pull = 1e-3;
+    return options;
+}
+
+}  // namespace
+
+TEST_CASE("links of fitted columns give the same torque, along the log of the fit and along another",
+          "[arm]") {
+    const Chain chain = chain_of_dh("three.csv", three_dh);
+    const RecordedArm log(chain, 3), other(chain, 8);
+    const ArmFit fit = fit_arm(chain, log.view(), barely_pulled());
+    for (const ArmKnowledge knowledge : {ArmKnowledge::other_joints, ArmKnowledge::pull}) {
+        for (std::size_t joint = 0; joint < 3; ++joint) {
+            GivenTerm term = arm_term(chain, fit, log.view(), joint, knowledge);
+            std::vector<double> values = term.mean;
+            for (std::size_t v = 0; v < values.size(); ++v)
+                values[v] += term.deviation[v] * (0.3 * static_cast<double>(v % 5) - 0.5);
+            const ArmValues stated = arm_values(chain, fit, joint, values, knowledge);
+            CHECK(stated.links.size() == 30);
+            for (const RecordedArm* recorded : {&log, &other}) {
+                term = arm_term(chain, fit, recorded->view(), joint, knowledge);
+                const auto by_columns = sum_of(term, values);
+                const auto by_links = stated_torque(chain, stated, fit.smoothing, recorded->view(), joint);
+                double size = 0.0, worst = 0.0;
+                for (std::size_t k = 0; k < by_links.size(); ++k) {
+                    size = std::max(size, std::abs(by_columns[k]));
+                    worst = std::max(worst, std::abs(by_columns[k] - by_links[k]));
+                }
+                INFO("joint " << joint);
+                CHECK(worst < 1e-9 * size);
+            }
+        }
+    }
+}
+
+TEST_CASE("values for another joint are refused", "[arm]") {
+    const Chain chain = chain_of_dh("three.csv", three_dh);
+    const RecordedArm log(chain, 3);
+    const ArmFit fit = fit_arm(chain, log.view(), barely_pulled());
+    CHECK_THROWS_AS(arm_values(chain, fit, 1, std::vector<double>(30, 0.0)), UsageError);
+}
+
+TEST_CASE("a nuisance is an offset, and friction of the widths that the fit has", "[arm]") {
+    const Chain chain = chain_of_dh("three.csv", three_dh);
+    const RecordedArm log(chain, 3);
+    const auto only = [&](const ArmNuisance& nuisance) {
+        return nuisance_torque(chain, nuisance, log.joints[1].view(), 1);
+    };
+    CHECK(only({.offset_nm = 0.7}) == std::vector<double>(log.joints[1].size(), 0.7));
+    const auto coulomb = only({.coulomb_nm = 2.0}), viscous = only({.viscous_nm_per_deg_s = 0.1});
+    for (std::size_t k = 20; k + 20 < coulomb.size(); ++k) {
+        const double v = log.joints[1].velocity_deg_s[k];
+        CHECK_THAT(viscous[k], WithinAbs(0.1 * v, 0.05));
+        if (std::abs(v) > 5.0) CHECK_THAT(coulomb[k], WithinAbs(v > 0 ? 2.0 : -2.0, 0.02));
+    }
+}
+
+// Arms fitted to logs of real robots and judged on rows that nothing was fitted to. The logs are not part of
+// the project; run with test_arm "[real]".
+
+namespace {
+
+// UR10: Universal Robots, "DH parameters for calculations of kinematics and dynamics", support articles; the
+// log's robot is an older one, with the lengths of ur_description's ur10.
+const std::string ur10_dh =
+    "theta_deg,d_m,a_m,alpha_deg\n0,0.1273,0,90\n0,0,-0.612,0\n0,0,-0.5723,0\n0,0.163941,0,90\n"
+    "0,0.1157,0,-90\n0,0.0922,0,0\n";
+// KUKA KR300 R2500: the data sheet's lengths as the log's authors give them; the base frame points down.
+const std::string kuka_dh =
+    "theta_deg,d_m,a_m,alpha_deg\n0,-0.675,0.35,90\n0,-0.189,1.15,0\n90,0.189,0.041,-90\n0,-1,0,90\n"
+    "0,0,0,-90\n0,-0.24,0,180\n";
+
+struct Robot {
+    std::vector<Log> logs;
+    ArmLog log;
+    explicit Robot(const std::string& name) : logs(read_joints_at_once(logs_folder() + "/" + name, {})) {
+        for (const Log& joint : logs) {
+            log.joints.push_back(joint.trace.view());
+            log.has_torque.push_back(true);
+        }
+    }
+};
+
+bool absent(const std::string& name) {
+    if (std::filesystem::exists(logs_folder() + "/" + name)) return false;
+    skipped(name + " is not in the folder of real logs");
+    return true;
+}
+
+double rms(std::span<const double> a, std::span<const double> b, std::size_t first) {
+    double sum = 0.0;
+    for (std::size_t k = first; k < a.size(); ++k) sum += (a[k] - b[k]) * (a[k] - b[k]);
+    return std::sqrt(sum / static_cast<double>(a.size() - first));
+}
+
+// Fit on the first rows of one log, left on the later rows of it or all of another.
+std::vector<double> left(const Chain& chain, const Robot& one, const Robot* other, bool alone) {
+    ArmFitOptions options;
+    const std::size_t rows = one.log.joints.front().size();
+    const std::size_t first = other == nullptr ? rows * 6 / 10 : 0;
+    if (other == nullptr) {
+        options.use.assign(rows, false);
+        std::fill_n(options.use.begin(), first, true);
+    }
+    const ArmLog& judge = other == nullptr ? one.log : other->log;
+    std::vector<double> found;
+    std::string words;
+    std::optional<ArmFit> all;
+    for (std::size_t j = 0; j < chain.size(); ++j) {
+        if (alone) options.joints = {j};
+        if (alone || !all) all = fit_arm(chain, one.log, options);
+        if (alone || j == 0)
+            words += fmt::format(" [pull {:g}, {} s, {} of {}]", all->pull, all->smoothing.value(),
+                                 all->values_told, all->values_there);
+        found.push_back(rms(judge.joints[j].torque_nm, fitted_torque(chain, *all, judge, j), first));
+        words += fmt::format(" {:.3f}", found.back());
+    }
+    WARN(chain.source << (alone ? " alone:" : " all:") << words);
+    return found;
+}
+
+void require_below(const std::vector<double>& found, const std::vector<double>& most) {
+    for (std::size_t j = 0; j < most.size(); ++j) {
+        INFO("joint " << j + 1);
+        CHECK(found[j] < most[j]);
+    }
+}
+
+}  // namespace
+
+TEST_CASE("real: a Panda's arm", "[.real]") {
+    const std::string name = "gpl3/panda_gaz_all.csv";
+    if (absent(name)) return;
+    const Robot robot(name);
+    const Chain chain = chain_of_mdh("panda", panda_mdh);
+    require_below(left(chain, robot, nullptr, false), {0.35, 0.42, 0.30, 0.43, 0.12, 0.13, 0.055});
+}
+
+TEST_CASE("real: a UR10's arm") {
+    const std::string name = "ur10_unisa_exciting_all.csv";
+    if (absent(name)) return;
+    const Robot robot(name);
+    const Chain chain = chain_of_dh("ur10", ur10_dh);
+    require_below(left(chain, robot, nullptr, false), {1.5, 3.4, 1.9, 0.5, 0.35, 1.5});
+}
+
+TEST_CASE("real: a KUKA's arm") {
+    const std::string name = "kuka_kr300_trajA_all.csv";
+    if (absent(name)) return;
+    const Robot robot(name), other("kuka_kr300_trajB_all.csv");
+    Chain chain = chain_of_dh("kuka", kuka_dh);
+    chain.gravity_m_s2 = {0, 0, 9.81};
+    require_below(left(chain, robot, &other, false), {1.25, 3.6, 2.2, 0.5, 0.55, 0.45});
+}
+
+TEST_CASE("real: a Panda by the directions of its axes alone", "[.axes]") {
+    const std::string name = "gpl3/panda_gaz_all.csv";
+    if (absent(name)) return;
+    require_below(left(chain_of_axes("zyzYzYZ"), Robot(name), nullptr, true),
+                  {0.4, 0.5, 0.33, 0.52, 0.13, 0.155, 0.06});
 }

@@ -8,7 +8,7 @@
 
 #include "ripplenotch/core/trace.hpp"
 #include "ripplenotch/diagnose/diagnosis.hpp"
-#include "ripplenotch/model/fit.hpp"
+#include "ripplenotch/model/noise.hpp"
 #include "ripplenotch/model/motions.hpp"
 
 namespace ripplenotch::fixture {

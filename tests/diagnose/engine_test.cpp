@@ -10,6 +10,8 @@
 #include "diagnose/engine/search.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/model/motion.hpp"
+#include "ripplenotch/model/motions.hpp"
+#include "ripplenotch/model/noise.hpp"
 #include "support/catch.hpp"
 
 namespace ripplenotch {

@@ -6,7 +6,7 @@
 
 #include "diagnose_fixture.hpp"
 #include "ripplenotch/core/error.hpp"
-#include "ripplenotch/model/fit.hpp"
+#include "ripplenotch/model/noise.hpp"
 #include "ripplenotch/model/motions.hpp"
 #include "support/catch.hpp"
 

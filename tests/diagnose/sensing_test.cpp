@@ -6,7 +6,6 @@
 #include "diagnose_fixture.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/model/motion.hpp"
-#include "ripplenotch/model/sensors.hpp"
 #include "support/catch.hpp"
 
 namespace ripplenotch {
@@ -48,7 +47,7 @@ Trace measured(std::initializer_list<const char*> hidden, std::uint64_t seed) {
     for (const char* term : hidden) truth.terms.push_back(parse_term(term));
     Trace log = fixture::logged(truth, strokes(), seed);
     std::vector<double> of_arm = arms_torque(arm(), {12.0, 3.0, 0.4});
-    through_sensors(truth, strokes(), of_arm);
+    of_arm = sensed_nm(truth, strokes(), std::move(of_arm));
     for (std::size_t k = 0; k < of_arm.size(); ++k) log.torque_nm[k] += of_arm[k];
     return log;
 }
@@ -97,13 +96,8 @@ TEST_CASE("a torque taken through a model's sensors is the model's own torque wi
     for (const char* sensor : {"delay,delay_s=0.0037", "delay,delay_s=-0.002", "lag,time_constant_s=0.006"}) {
         Model with = plain;
         with.terms.push_back(parse_term(sensor));
-        std::vector<double> torque_nm = predict_nm(plain, strokes());
-        through_sensors(with, strokes(), torque_nm);
-        CHECK(torque_nm == predict_nm(with, strokes()));
-        CHECK(has_sensors(with));
+        CHECK(sensed_nm(with, strokes(), predict_nm(plain, strokes())) == predict_nm(with, strokes()));
     }
-    CHECK_FALSE(has_sensors(plain));
-    CHECK_FALSE(has_sensors(model_of({"delay"})));
 }
 
 TEST_CASE("beside an arm nothing is named where nothing is hidden") {
@@ -175,7 +169,7 @@ TEST_CASE("the residual is what the improved model, its sensor and the arm leave
         if (value.name == "arm") values.push_back(value.value);
     }
     std::vector<double> of_arm = arms_torque(arm(), values);
-    through_sensors(found.model, strokes(), of_arm);
+    of_arm = sensed_nm(found.model, strokes(), std::move(of_arm));
     Motion motion = motion_along(log.view(), default_smoothing);
     const std::vector<double> own = predict_nm(found.model, motion);
     double worst = 0.0;

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "ripplenotch/diagnose/setup.hpp"
-#include "ripplenotch/model/fit.hpp"
+#include "ripplenotch/model/noise.hpp"
 #include "ripplenotch/model/model.hpp"
 #include "ripplenotch/model/motions.hpp"
 

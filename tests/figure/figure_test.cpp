@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "ripplenotch/figure/figure.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <map>
+#include <random>
 #include <set>
 #include <sstream>
 #include <stdexcept>
 
+#include "ripplenotch/figure/min_max.hpp"
 #include "support/catch.hpp"
 
 using namespace ripplenotch;
@@ -101,4 +105,118 @@ TEST_CASE("twelve series, and twelve orders, are told apart by colour and mark")
     }
     CHECK(order_style(0.5, CurveStyle::points) == CurveStyle::crosses);
     CHECK(order_ink(0.5) == order_ink(1.0));
+}
+
+namespace {
+
+constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
+
+Curve noise(std::size_t count, unsigned seed) {
+    std::mt19937 random(seed);
+    std::normal_distribution<double> normal;
+    Curve curve;
+    for (std::size_t i = 0; i < count; ++i) {
+        curve.x.push_back(static_cast<double>(i));
+        curve.y.push_back(normal(random));
+    }
+    return curve;
+}
+
+}  // namespace
+
+TEST_CASE("thinning hides no peak: one sample that sticks out anywhere is still there") {
+    const std::size_t count = GENERATE(10001U, 65536U, 99999U, 250000U);
+    Curve curve = noise(count, 1);
+    for (const std::size_t at :
+         {std::size_t{0}, std::size_t{1}, count / 3, count / 2 + 17, count - 2, count - 1}) {
+        for (const double height : {100.0, -100.0}) {
+            Curve spiked = curve;
+            spiked.y[at] = height;
+            const Curve fewer = thinned(spiked, 500);
+            const auto found = std::find(fewer.y.begin(), fewer.y.end(), height);
+            INFO("sample " << at << " of " << count);
+            REQUIRE(found != fewer.y.end());
+            CHECK(fewer.x[static_cast<std::size_t>(found - fewer.y.begin())] == static_cast<double>(at));
+        }
+    }
+}
+
+TEST_CASE("what is left are points that were there, in their order, with the first and the last") {
+    const Curve curve = noise(123457, 2);
+    const Curve fewer = thinned(curve, 700);
+    REQUIRE(fewer.x.size() <= 8 * 700);
+    CHECK(fewer.x.front() == curve.x.front());
+    CHECK(fewer.x.back() == curve.x.back());
+    CHECK(std::is_sorted(fewer.x.begin(), fewer.x.end()));
+    for (std::size_t i = 0; i < fewer.x.size(); ++i)
+        REQUIRE(fewer.y[i] == curve.y[static_cast<std::size_t>(fewer.x[i])]);
+}
+
+TEST_CASE("in every stretch of two buckets the lowest and the highest left are those that were there") {
+    const std::size_t count = 1 << 17, buckets = 256;
+    const Curve curve = noise(count, 3);
+    const Curve fewer = thinned(curve, buckets);
+    // Buckets hold between count / (2 * 256) and count / 256 points.
+    const std::size_t stretch = 2 * count / buckets;
+    std::map<double, double> left;
+    for (std::size_t i = 0; i < fewer.x.size(); ++i) left[fewer.x[i]] = fewer.y[i];
+    for (std::size_t first = 0; first + stretch <= count; first += stretch / 2) {
+        const auto begin = curve.y.begin() + static_cast<std::ptrdiff_t>(first);
+        const std::size_t inner = first + stretch / 4;  // a whole bucket lies around here
+        const auto highest =
+            std::max_element(curve.y.begin() + static_cast<std::ptrdiff_t>(inner),
+                             curve.y.begin() + static_cast<std::ptrdiff_t>(inner + stretch / 2));
+        double shown = -1e9;
+        for (auto it = left.lower_bound(static_cast<double>(first));
+             it != left.end() && it->first < static_cast<double>(first + stretch); ++it)
+            shown = std::max(shown, it->second);
+        CHECK(shown >= *highest);
+        CHECK(shown <= *std::max_element(begin, begin + static_cast<std::ptrdiff_t>(stretch)));
+    }
+}
+
+TEST_CASE("a short curve stays as it is") {
+    const Curve curve = noise(4000, 4);
+    const Curve same = thinned(curve, 1000);
+    CHECK(same.x == curve.x);
+    CHECK(same.y == curve.y);
+}
+
+TEST_CASE("a gap stays a gap, and nan breaks the line") {
+    MinMaxCourse course(100);
+    for (int i = 0; i < 5; ++i) course.add(i, 1.0);
+    course.break_here();
+    for (int i = 100; i < 105; ++i) course.add(i, 2.0);
+    course.add(105, nothing);
+    course.add(106, 3.0);
+    const Curve curve = course.curve("", Ink::blue);
+    CHECK(std::count_if(curve.y.begin(), curve.y.end(), [](double y) { return std::isnan(y); }) == 2);
+    CHECK(std::isnan(curve.y[5]));
+    CHECK(curve.y.back() == 3.0);
+}
+
+TEST_CASE("ten million points take bounded memory") {
+    MinMaxCourse course;
+    for (int i = 0; i < 10'000'000; ++i) course.add(i, std::fmod(i * 0.618, 1.0));
+    const Curve curve = course.curve("", Ink::blue);
+    CHECK(curve.x.size() <= 8 * shown_buckets);
+    CHECK(curve.x.size() >= shown_buckets);
+}
+
+TEST_CASE("a map on fewer cells keeps its highest cell, and empty cells stay empty") {
+    HeatMap map{.label = "amplitude"};
+    for (int i = 0; i <= 1000; ++i) map.x_edges.push_back(i);
+    for (int i = 0; i <= 700; ++i) map.y_edges.push_back(i);
+    map.cells.assign(1000 * 700, 0.1);
+    const std::size_t column = GENERATE(0U, 1U, 333U, 998U, 999U);
+    const std::size_t row = GENERATE(0U, 350U, 699U);
+    map.cells[row * 1000 + column] = 7.0;
+    for (std::size_t r = 0; r < 700; ++r)
+        for (std::size_t c = 400; c < 500; ++c) map.cells[r * 1000 + c] = nothing;
+    const HeatMap raster = rasterised(map, {0.0, 1000.0}, PlotScale::linear, {0.0, 700.0}, PlotScale::linear,
+                                      {.columns = 50, .rows = 30});
+    REQUIRE(raster.cells.size() == 1500);
+    CHECK(raster.cells[row * 30 / 700 * 50 + column * 50 / 1000] == 7.0);
+    CHECK(std::isnan(raster.cells[15 * 50 + 22]));
+    CHECK(raster.cells[15 * 50 + 30] == 0.1);
 }

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "filter/tables.hpp"
-#include "ripplenotch/model/fit.hpp"
+#include "ripplenotch/model/noise.hpp"
 #include "ripplenotch/model/model.hpp"
 #include "ripplenotch/model/motions.hpp"
 

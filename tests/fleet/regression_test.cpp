@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "ripplenotch/model/fit.hpp"
+#include "ripplenotch/model/noise.hpp"
 #include "support/catch.hpp"
 
 using namespace ripplenotch;

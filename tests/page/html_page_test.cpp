@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "filter/tables.hpp"
-#include "ripplenotch/chart/comparison_figure.hpp"
+#include "ripplenotch/chart/table_figure.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/document/figure_json.hpp"
 #include "ripplenotch/figure/gnuplot.hpp"

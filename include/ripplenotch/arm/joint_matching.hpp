@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Which joint of a log is which of an arm, by their names alone.
+// Which joint of a log is which of an arm, by their names alone, and how far each goes.
 
 #include <span>
 #include <string>
@@ -11,6 +11,9 @@
 #include "ripplenotch/arm/chain.hpp"
 
 namespace ripplenotch {
+
+struct ArmFit;
+struct ArmLog;
 
 /// "panda_joint1" of the chain is "1" of the log.
 using StatedJoints = std::vector<std::pair<std::string, std::string>>;
@@ -28,5 +31,25 @@ struct JointMatch {
 /// UsageError that names the joint without a partner and the joints of the log.
 [[nodiscard]] JointMatch match_joints(const Chain& chain, std::span<const std::string> log_joints,
                                       const StatedJoints& stated, std::string_view log_name);
+
+// How far each joint of an arm goes in a log, and whether it can go there.
+
+/// Below this travel, a link's inertia cannot be distinguished from the next one's.
+inline constexpr double least_travel_deg = 5.0;
+
+struct JointTravel {
+    std::string name;       ///< in the chain
+    std::string log;        ///< in the log
+    double travel_deg = 0;  ///< from its least to its greatest position; of a prismatic joint m
+};
+
+/// `log_joints`: the joints' names in the log, in the order of the chain. Throws DataError where a position
+/// is so far out of the chain's limits, so often, that its unit must be another one.
+[[nodiscard]] std::vector<JointTravel> arm_travel(const Chain& chain, const ArmLog& log,
+                                                  const std::vector<std::string>& log_joints);
+
+/// Why the log determines fewer values of the arm than another one could; or nothing.
+[[nodiscard]] std::vector<std::string> arm_warnings(const ArmFit& fit,
+                                                    const std::vector<JointTravel>& travel);
 
 }  // namespace ripplenotch

@@ -3,70 +3,14 @@
 // The values that a model does not state, estimated from a measured torque by separable least squares.
 
 #include <cstddef>
-#include <cstdint>
 #include <optional>
-#include <random>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "ripplenotch/model/effect.hpp"
-#include "ripplenotch/model/fault_rules.hpp"
 #include "ripplenotch/model/model.hpp"
 
 namespace ripplenotch {
-
-// Detection of a converter effect in a log: whether it is present, and which samples it invalidates. No model
-// of the joint is needed for that.
-
-/// A log as Effect::detect sees it. Spans have motion.size() entries.
-struct LoggedTorque {
-    const Motion& motion;  ///< as measured
-    std::span<const double> torque_nm;
-    std::span<const unsigned char> use;  ///< 0: does not count, be it for what an earlier detector found
-    double moving_deg_s = 0.0;           ///< slower samples count as resting
-    double step_nm = 0.0;   ///< distance of the values of a log that holds few; 0: as good as continuous
-    double noise_nm = 0.0;  ///< rms, from second differences
-};
-
-struct DetectedFault {
-    std::vector<double> values;  ///< values of the effect's parameters, in their order; bounds are ignored
-    std::vector<std::size_t> spoiled;  ///< samples that do not hold the joint's torque, rising
-    std::string words;                 ///< what was seen, for people
-    double bends_nm = 0.0;  ///< steps so coarse that they bend whatever is in the torque; 0: there are none
-};
-
-/// The signal to which a noise stream belongs. Each has a stream of its own, so that adding noise to one
-/// signal leaves the noise of another unchanged. The numbers are part of the definition of a seed: never
-/// change one.
-enum class NoiseChannel : std::uint64_t { torque = 1, velocity = 2, spikes = 3, dropout = 4 };
-
-/// Normally distributed numbers that are the same on every machine: mt19937_64 (specified by the standard)
-/// and our own transform, because std::normal_distribution differs between libraries.
-class Noise {
-  public:
-    Noise(std::uint64_t seed, NoiseChannel channel);
-    /// Mean 0, standard deviation 1 (Marsaglia's polar method).
-    double normal();
-    /// Uniform in [0, 1) with 53 random bits.
-    double uniform();
-
-  private:
-    std::mt19937_64 engine_;
-    double spare_ = 0.0;
-    bool has_spare_ = false;
-};
-
-/// With `correlation` c in [0, 1) each number is c times the one before plus a fresh part (first-order
-/// autoregression): 0 is white, near 1 is slow.
-struct NoiseKind {
-    double rms = 0.0, correlation = 0.0;
-};
-/// Adds noise to each value.
-void add_noise(std::span<double> values, const NoiseKind& kind, std::uint64_t seed, NoiseChannel channel);
-
-/// The same without correlation.
-void add_white_noise(std::span<double> values, double rms, std::uint64_t seed, NoiseChannel channel);
 
 /// 95 % interval, of the errors being normal and the model being linear within it. With
 /// FitOptions::error_stretch they need not be white.

@@ -20,7 +20,12 @@ enum class SetupFaultKind {
     gravity_direction,  ///< the weight acts in another direction
 };
 /// "torque-sign".
-[[nodiscard]] std::string_view setup_fault_name(SetupFaultKind kind);
+[[nodiscard]] constexpr std::string_view setup_fault_name(SetupFaultKind kind) {
+    constexpr std::string_view names[] = {"wrong-joint", "other-motion",      "motion-sign",
+                                          "motion-unit", "motor-side-motion", "torque-sign",
+                                          "torque-unit", "motor-side-torque", "gravity-direction"};
+    return names[static_cast<std::size_t>(kind)];
+}
 
 struct SetupFault {
     SetupFaultKind kind = SetupFaultKind::other_motion;

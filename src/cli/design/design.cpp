@@ -18,7 +18,7 @@
 #include "cli/options/plot_request.hpp"
 #include "cli/options/verdict_options.hpp"
 #include "cli/talk.hpp"
-#include "ripplenotch/chart/comparison_figure.hpp"
+#include "ripplenotch/chart/table_figure.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/visible_text.hpp"

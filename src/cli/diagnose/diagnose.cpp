@@ -15,7 +15,7 @@
 #include "cli/diagnose/joint_diagnosis.hpp"
 #include "cli/options/verdict_options.hpp"
 #include "cli/talk.hpp"
-#include "ripplenotch/chart/trend_figure.hpp"
+#include "ripplenotch/chart/diagnosis_figure.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/document/diagnosis_json.hpp"
 #include "ripplenotch/verdict/gear_choice.hpp"

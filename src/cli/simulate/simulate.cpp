@@ -26,9 +26,9 @@
 #include "ripplenotch/document/model_json.hpp"
 #include "ripplenotch/document/simulation_json.hpp"
 #include "ripplenotch/log/log.hpp"
-#include "ripplenotch/model/fit.hpp"
 #include "ripplenotch/model/motion.hpp"
 #include "ripplenotch/model/motions.hpp"
+#include "ripplenotch/model/noise.hpp"
 #include "ripplenotch/verdict/gear_choice.hpp"
 #include "ripplenotch/verdict/given_terms.hpp"
 

@@ -11,7 +11,7 @@
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
-#include "ripplenotch/model/fit.hpp"
+#include "ripplenotch/model/detection.hpp"
 #include "ripplenotch/model/model.hpp"
 #include "ripplenotch/model/motion.hpp"
 #include "ripplenotch/model/motions.hpp"

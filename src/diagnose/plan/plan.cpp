@@ -21,7 +21,7 @@
 #include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/diagnose/diagnosis.hpp"
 #include "ripplenotch/diagnose/plan.hpp"
-#include "ripplenotch/model/fit.hpp"
+#include "ripplenotch/model/noise.hpp"
 #include "ripplenotch/model/model.hpp"
 #include "ripplenotch/model/motions.hpp"
 #include "ripplenotch/model/prediction.hpp"

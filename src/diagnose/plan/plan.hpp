@@ -6,8 +6,8 @@
 
 #include "ripplenotch/diagnose/diagnosis.hpp"
 #include "ripplenotch/diagnose/plan.hpp"
-#include "ripplenotch/model/fit.hpp"
 #include "ripplenotch/model/model.hpp"
+#include "ripplenotch/model/noise.hpp"
 
 namespace ripplenotch {
 

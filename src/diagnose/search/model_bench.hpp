@@ -13,7 +13,7 @@
 #include "diagnose/case/case.hpp"
 #include "diagnose/case/lines.hpp"
 #include "diagnose/case/noise_floor.hpp"
-#include "model/catalogue.hpp"
+#include "model/carriers.hpp"
 #include "ripplenotch/diagnose/diagnosis.hpp"
 #include "ripplenotch/model/fit.hpp"
 #include "ripplenotch/model/model.hpp"

@@ -7,7 +7,7 @@
 
 #include "diagnose/search/model_bench.hpp"
 #include "diagnose/search/search_starts.hpp"
-#include "model/catalogue.hpp"
+#include "model/carriers.hpp"
 #include "model/fit/weighing.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/model/prediction.hpp"

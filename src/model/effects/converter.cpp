@@ -8,7 +8,8 @@
 #include "model/effects.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
-#include "ripplenotch/model/fit.hpp"
+#include "ripplenotch/model/detection.hpp"
+#include "ripplenotch/model/noise.hpp"
 
 namespace ripplenotch {
 namespace {

@@ -4,7 +4,6 @@
 #include "core/functions/many_numbers.hpp"
 #include "core/vectors/dot.hpp"
 #include "model/effects.hpp"
-#include "model/evaluate.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {

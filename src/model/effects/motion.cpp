@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include "model/effects.hpp"
-#include "model/evaluate.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {

@@ -4,7 +4,6 @@
 
 #include "core/functions/many_numbers.hpp"
 #include "model/effects.hpp"
-#include "model/evaluate.hpp"
 #include "model/motion/lost_rows.hpp"
 #include "model/spring/mass_on_spring.hpp"
 

@@ -8,7 +8,7 @@
 #include "core/matrices/factorisations.hpp"
 #include "core/matrices/least_squares.hpp"
 #include "core/vectors/dot.hpp"
-#include "model/catalogue.hpp"
+#include "model/carriers.hpp"
 #include "model/fit/weighing.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/model/fit.hpp"

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <complex>
 #include <numbers>
 #include <vector>
 
@@ -14,10 +15,10 @@
 #include "support/catch.hpp"
 
 using namespace ripplenotch;
+using std::numbers::pi;
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
 using Complex = std::complex<double>;
 
 // Angle in deg and speed of a joint that goes from one speed to another and back to rest, smoothly.
@@ -228,4 +229,180 @@ TEST_CASE(
     // What is left is the spring's twist by the ripple itself: 0.3 Nm are 0.022 deg.
     CHECK(std::sqrt(off) < 0.03 * ripple_nm);
     CHECK(std::sqrt(off_at_motor) > 0.2 * ripple_nm);
+}
+
+namespace {
+
+// cos(2 pi f k), f in cycles per sample.
+std::vector<double> wave(double frequency, std::size_t count = 400) {
+    std::vector<double> values(count);
+    for (std::size_t k = 0; k < count; ++k)
+        values[k] = std::cos(2.0 * pi * frequency * static_cast<double>(k));
+    return values;
+}
+
+// Largest difference from size * cos(2 pi f k + phase) away from both ends.
+double error(const std::vector<double>& values, double frequency, std::complex<double> response) {
+    double most = 0.0;
+    for (std::size_t k = 200; k + 20 < values.size(); ++k) {
+        const auto turned = response * std::polar(1.0, 2.0 * pi * frequency * static_cast<double>(k));
+        most = std::max(most, std::abs(values[k] - turned.real()));
+    }
+    return most;
+}
+
+}  // namespace
+
+TEST_CASE("a shift by a part of a sample is exact to the error that its header states") {
+    for (const double delay : {0.5, 3.25, -0.5, -7.8, 12.5}) {
+        for (const auto& [frequency, bound] :
+             {std::pair(0.01, 1e-12), {0.1, 1e-7}, {0.2, 5e-5}, {0.3, 1e-2}}) {
+            CAPTURE(delay, frequency);
+            auto values = wave(frequency);
+            shift_samples(values, delay);
+            CHECK(error(values, frequency, std::polar(1.0, -2.0 * pi * frequency * delay)) < bound);
+        }
+    }
+}
+
+TEST_CASE("a shift by whole samples moves samples, and the ends stay") {
+    std::vector<double> values = {1.0, 2.0, 4.0, 8.0};
+    shift_samples(values, 2.0);
+    CHECK(values == std::vector<double>{1.0, 1.0, 1.0, 2.0});
+    values = {1.0, 2.0, 4.0, 8.0};
+    shift_samples(values, -1.0);
+    CHECK(values == std::vector<double>{2.0, 4.0, 8.0, 8.0});
+    values.clear();
+    shift_samples(values, 1.5);
+    CHECK(values.empty());
+}
+
+TEST_CASE("a lag answers as 1 / (1 + i w tau) says, without half a sample too much or too little") {
+    for (const double tau : {0.05, 0.5, 1.0, 3.0, 8.0, 50.0}) {
+        for (const auto& [frequency, bound] : {std::pair(0.002, 1e-9), {0.02, 1e-7}, {0.1, 5e-4}}) {
+            CAPTURE(tau, frequency);
+            auto values = wave(frequency, 1400);
+            first_order_lag(values, tau);
+            // What the start leaves decays within tau; beyond 20 tau it is below 1e-8.
+            values.erase(values.begin(), values.begin() + 1000);
+            const std::complex<double> response = 1.0 / std::complex(1.0, 2.0 * pi * frequency * tau);
+            const auto turn = std::polar(1.0, 2.0 * pi * frequency * 1000.0);
+            CHECK(error(values, frequency, response * turn) < bound);
+        }
+    }
+}
+
+TEST_CASE("a lag starts settled, and a step reaches 1 - 1/e of its way after the time constant") {
+    std::vector<double> values(400, 3.0);
+    first_order_lag(values, 20.0);
+    for (const double value : values) CHECK(value == Approx(3.0).epsilon(1e-14));
+    // A ramp lags by tau, whatever tau.
+    for (const double tau : {0.3, 4.0, 20.0}) {
+        std::vector<double> ramp(1000);
+        for (std::size_t k = 0; k < ramp.size(); ++k) ramp[k] = static_cast<double>(k);
+        first_order_lag(ramp, tau);
+        CHECK(ramp[900] == Approx(900.0 - tau).epsilon(1e-12));
+    }
+    // The step happens half-way between the samples 99 and 100.
+    std::vector<double> step(400, 0.0);
+    for (std::size_t k = 100; k < step.size(); ++k) step[k] = 1.0;
+    first_order_lag(step, 20.0);
+    for (const std::size_t k : {110U, 120U, 160U})
+        CHECK(step[k] == Approx(1.0 - std::exp(-(static_cast<double>(k) - 99.5) / 20.0)).margin(1e-3));
+}
+
+// A free mass on a damped spring, over steps of many lengths.
+
+namespace {
+
+struct FreeState {
+    double at, moving;
+};
+
+FreeState after(const FreeMove& move, const FreeState& begun) {
+    return {move.at_of_at * begun.at + move.at_of_moving * begun.moving,
+            move.moving_of_moving * begun.moving - move.at_of_moving * begun.at};
+}
+
+}  // namespace
+
+TEST_CASE("two steps are as one of their length, and a step of none changes nothing") {
+    for (const double damping : {0.001, 0.1, 0.7, 1.0, 2.0}) {
+        const FreeState begun{1.0, 0.25};
+        for (const double radians : {0.0, 1e-3, 0.4, 3.0, 50.0}) {
+            const FreeState once = after(free_move(damping, 1.5 * radians), begun),
+                            twice = after(free_move(damping, 0.5 * radians),
+                                          after(free_move(damping, radians), begun));
+            CHECK(std::abs(once.at - twice.at) < 1e-14);
+            CHECK(std::abs(once.moving - twice.moving) < 1e-14);
+        }
+        const FreeState stays = after(free_move(damping, 0.0), begun);
+        CHECK(stays.at == begun.at);
+        CHECK(stays.moving == begun.moving);
+    }
+}
+
+TEST_CASE("moves from near ones are those of the formula, in whatever order they are asked for") {
+    for (const double damping : {0.001, 0.1, 0.7, 1.0, 2.0}) {
+        FreeMoves moves(damping);
+        for (int k = 0; k < 20'000; ++k) {
+            const double radians = std::fmod(7.123 * k, 25.0);
+            const FreeMove near = moves.within(radians), formula = free_move(damping, radians);
+            // Of rounding: the numbers are up to 1.
+            REQUIRE(std::abs(near.at_of_at - formula.at_of_at) < 2e-14);
+            REQUIRE(std::abs(near.at_of_moving - formula.at_of_moving) < 2e-14);
+            REQUIRE(std::abs(near.moving_of_moving - formula.moving_of_moving) < 2e-14);
+        }
+    }
+}
+
+// A drive that turns with the joint.
+
+namespace {
+
+constexpr double cycles_per_deg = 200.0 / 360.0;
+
+Motion motion_at(std::vector<double> time_s) {
+    const std::size_t samples = time_s.size();
+    Motion motion{Hertz(1000.0), std::move(time_s), std::vector<double>(samples),
+                  std::vector<double>(samples), std::vector<double>(samples)};
+    for (std::size_t k = 0; k < samples; ++k) motion.velocity_deg_s[k] = 40.0 + 300.0 * motion.time_s[k];
+    return motion;
+}
+
+}  // namespace
+
+TEST_CASE("a drive turns back by what the mean speed of a step says, and knows the step's length") {
+    std::vector<double> time_s;
+    for (int k = 0; k < 300; ++k) time_s.push_back(1e-3 * (k / 3) + 1e-4 * (k % 3) + (k > 200 ? 0.5 : 0.0));
+    const Motion motion = motion_at(time_s);
+    const auto drive = turning_drive(motion, cycles_per_deg);
+    CHECK(drive->hz[0] == cycles_per_deg * motion.velocity_deg_s[0]);
+    // 0.1 ms, 0.8 ms, 0.5 s beside the usual 1 ms, though each is written with other last bits.
+    CHECK(drive->steps_s.size() == 4);
+    for (std::size_t k = 1; k < motion.size(); ++k) {
+        const double step_s = time_s[k] - time_s[k - 1];
+        const double hz = cycles_per_deg * 0.5 * (motion.velocity_deg_s[k - 1] + motion.velocity_deg_s[k]);
+        CHECK(drive->hz[k] == Approx(hz).epsilon(1e-15));
+        CHECK(std::abs(drive->steps_s[drive->step[k]] - step_s) <= 1e-12);
+        CHECK(std::abs(drive->cosine[k] - std::cos(2.0 * std::numbers::pi * hz * step_s)) < 1e-11);
+        CHECK(std::abs(drive->sine[k] + std::sin(2.0 * std::numbers::pi * hz * step_s)) < 1e-11);
+    }
+}
+
+TEST_CASE("stamps that stand still or go back are a usual step, and a gap of any length is a step") {
+    const auto drive = turning_drive(motion_at({0.0, 0.001, 0.001, 0.0005, 1e300}), cycles_per_deg);
+    CHECK(drive->step == std::vector<std::size_t>{0, 0, 0, 0, 1});
+    CHECK(drive->steps_s[1] == 1e300);
+}
+
+TEST_CASE("a drive that was asked for is kept, and another motion or another order gets its own") {
+    const Motion motion = motion_at({0.0, 0.001, 0.002});
+    Motion faster = motion;
+    faster.velocity_deg_s[1] += 1.0;
+    const auto first = turning_drive(motion, cycles_per_deg);
+    CHECK(turning_drive(Motion(motion), cycles_per_deg) == first);
+    CHECK(turning_drive(motion, 2.0 * cycles_per_deg)->hz[0] == 2.0 * first->hz[0]);
+    CHECK(turning_drive(faster, cycles_per_deg)->hz[1] > first->hz[1]);
+    CHECK(turning_drive(motion, cycles_per_deg)->hz == first->hz);
 }

@@ -3,15 +3,12 @@
 // The contributions of the terms of a model along a motion, before they are summed: shared by a whole
 // evaluation and by Prediction, which needs parts of one.
 
-#include <algorithm>
-#include <array>
 #include <complex>
 #include <cstddef>
 #include <optional>
 #include <span>
 #include <vector>
 
-#include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/model/model.hpp"
 
 namespace ripplenotch {
@@ -47,32 +44,5 @@ void refuse_missing_values(const Model& model);
 
 /// Adds the torque of one joint effect.
 void add_torque(const Term& term, const Situation& situation, const Gain& gain, std::span<double> torque_nm);
-
-// Cosines of an angle at every sample, in blocks that stay in the first-level cache.
-
-/// use(k, cosine of angle_deg(k)) for each sample k.
-template <class AngleDeg, class Use>
-void with_cosines(std::size_t samples, AngleDeg angle_deg, Use use) {
-    std::array<double, 256> angles{}, cosines{};
-    for (std::size_t first = 0; first < samples; first += angles.size()) {
-        const std::size_t count = std::min(angles.size(), samples - first);
-        for (std::size_t i = 0; i < count; ++i) angles[i] = angle_deg(first + i);
-        portable::cos_degrees(std::span(angles).first(count), cosines);
-        for (std::size_t i = 0; i < count; ++i) use(first + i, cosines[i]);
-    }
-}
-
-/// use(k, cosine, sine) of angle_deg(k) for each sample k.
-template <class AngleDeg, class Use>
-void with_cosines_and_sines(std::size_t samples, AngleDeg angle_deg, Use use) {
-    std::array<double, 256> angles{}, cosines{}, sines{};
-    for (std::size_t first = 0; first < samples; first += angles.size()) {
-        const std::size_t count = std::min(angles.size(), samples - first);
-        for (std::size_t i = 0; i < count; ++i) angles[i] = angle_deg(first + i);
-        portable::cos_degrees(std::span(angles).first(count), cosines);
-        portable::sin_degrees(std::span(angles).first(count), sines);
-        for (std::size_t i = 0; i < count; ++i) use(first + i, cosines[i], sines[i]);
-    }
-}
 
 }  // namespace ripplenotch
