@@ -84,34 +84,3 @@ def rich(rng, start_deg, seconds):
         motion.stroke(direction * rng.uniform(90.0, 180.0), rng.uniform(1.6, 2.8)).rest(rng.uniform(0.3, 0.4))
         direction = -direction
     return motion.rest(max(0.3, seconds - motion.duration_s))
-
-
-def one_way(rng, start_deg, seconds):
-    """Three constant speeds in one direction and never a rest: the poorest log that still has several speeds."""
-    motion = Motion(start_deg)
-    speeds = rng.permutation([40.0, 90.0, 160.0])
-    motion.speed_deg_s = speeds[0]
-    for k, speed in enumerate(speeds):
-        motion.stay(seconds / 3.0 - (0.8 if k < 2 else 0.0))
-        if k < 2:
-            motion.speed_to(speeds[k + 1], 0.8)
-    return motion.stay(seconds - motion.duration_s) if motion.duration_s < seconds - 0.01 else motion
-
-
-def one_stroke(rng, start_deg, seconds):
-    """The move of the paper: 180 degrees in 2 s between two rests."""
-    motion = Motion(start_deg).rest(0.5)
-    return motion.stroke(rng.choice([-1.0, 1.0]) * 180.0, seconds - 1.0).rest(0.5)
-
-
-def short_travel(rng, start_deg, seconds):
-    """Strokes of 15 degrees to and fro: many reversals, hardly any position."""
-    motion = Motion(start_deg).rest(0.5)
-    direction = 1.0
-    while motion.duration_s < seconds - 2.0:
-        motion.stroke(direction * 15.0, rng.uniform(0.4, 1.2)).rest(rng.uniform(0.1, 0.3))
-        direction = -direction
-    return motion.rest(seconds - motion.duration_s)
-
-
-MOTIONS = {"rich": rich, "one way": one_way, "one stroke": one_stroke, "short travel": short_travel}

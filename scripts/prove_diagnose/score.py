@@ -46,11 +46,9 @@ def undecided_names(found):
     return names | {entry["effect"] for entry in found["rounds"] if entry["status"] in ("ambiguous", "unidentifiable")}
 
 
-def names(case, acceptable, hidden, found, there=()):
-    """exact, in_set, false names. there: names of what the recorder brought into the log; right, and not asked for."""
+def names(acceptable, hidden, found):
+    """exact, in_set, false names. acceptable: the names that are right where no effect of the catalogue is hidden."""
     named, undecided = set(named_keys(found)), undecided_names(found)
-    if not any(effect["effect"] in there for effect in hidden):
-        named = {k for k in named if k[0] not in there}
     if acceptable:
         right = {k for k in named if k[0] in acceptable}
         return {"exact": bool(right) and named == right, "in_set": bool(right) or bool(undecided & set(acceptable)),

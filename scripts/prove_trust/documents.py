@@ -44,12 +44,12 @@ def make(tool, source, folder):
         "track": ("spectrum", "log.csv", "--track", "--gear-ratio", "100", "--orders", "1,2", "--json", "-o"),
         "comparison": ("compare", "--step", "10Nm", "--speed", "90deg/s", "--sample-rate", "1kHz", "--gear-ratio", "100",
                        "--orders", "1,2", "--method", "lowpass,cutoff=13Hz,order=1", "--json", "-o"),
-        "effects": ("effects", "--json", "-o"),
+        "effects": ("diagnose", "--effects", "--json"),
         "figure": ("design", "joint.json", "--speed", "18:180:54", "--q", "0.25", "--plot"),
     }
     for kind, words in made.items():
         target = pathlib.Path(folder, f"{kind}.json").name
-        if kind == "diagnosis":
+        if kind in ("diagnosis", "effects"):
             done = subprocess.run([tool, *map(str, words), "--force"], cwd=folder, capture_output=True, timeout=60)
             (folder / target).write_bytes(done.stdout)
         else:

@@ -97,8 +97,8 @@ struct Declared {
     std::function<ExitCode()> work;
 };
 
-// "help identify" and "version", as people type them elsewhere; "features --merge" and "help effects" are
-// commands of their own.
+// "help identify", "help effects" and "version", as people type them elsewhere; "features --merge" is a
+// command of its own.
 CommandWords in_our_words(CommandWords words) {
     const auto merge = std::find(words.begin(), words.end(), "--merge");
     if (!words.empty() && words.front() == "features" && merge != words.end()) {
@@ -106,10 +106,8 @@ CommandWords in_our_words(CommandWords words) {
         words.front() = "merge";
     }
     if (words.empty() || is_command(words.front())) return words;
-    if (words.front() == "help" && words.size() > 1 && words[1] == "effects") {
-        words.erase(words.begin());
-        return words;
-    }
+    if (words.front() == "help" && words.size() == 2 && words[1] == "effects")
+        return {"diagnose", "--effects"};
     if (words.front() == "version") words.front() = "--version";
     if (words.front() != "help") return words;
     words.erase(words.begin());
@@ -146,7 +144,7 @@ constexpr std::string_view whole_help = "--help-all";
 constexpr std::array<std::pair<std::string_view, std::string_view>, 5> command_groups = {
     {{"identify", "Look at a log"},
      {"export", "Filter it"},
-     {"effects", "Model the joint"},
+     {"diagnose", "Model the joint"},
      {"trend", "Fleets"},
      {"report", "Report"}}};
 

@@ -11,10 +11,10 @@
 #include "diagnose/angle/angle.hpp"
 #include "diagnose/case/case.hpp"
 #include "diagnose/case/known_torque.hpp"
-#include "diagnose/examined.hpp"
 #include "diagnose/judging/doubt.hpp"
 #include "diagnose/judging/judge.hpp"
 #include "diagnose/judging/residual_regions.hpp"
+#include "diagnose/limits.hpp"
 #include "diagnose/report/summary.hpp"
 #include "diagnose/search/search.hpp"
 #include "ripplenotch/core/error.hpp"
@@ -23,6 +23,60 @@
 
 namespace ripplenotch {
 namespace {
+
+bool is_among(std::span<const std::string> names, std::string_view name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+// Whether effects take part that need the joint's position, the gear ratio, or motion in both directions.
+struct Examinable {
+    bool of_position = true, of_motor = true, of_direction = true;
+};
+
+// Effects that a fit can find; those of the converter are found in the log itself (find_faults).
+std::vector<const Effect*> examined(std::span<const std::string> without, Examinable some) {
+    std::vector<const Effect*> effects;
+    for (const Effect* effect : catalogue()) {
+        const bool left_out = is_among(without, effect->name);
+        if (left_out || effect->side == Side::converter || (!some.of_position && needs_position(*effect)) ||
+            (!some.of_motor && needs_gear_ratio(*effect)) || (!some.of_direction && effect->differs))
+            continue;
+        effects.push_back(effect);
+    }
+    return effects;
+}
+
+// Faults whose effect is not among those tried have no name: the samples that they invalidate are
+// unexplained. They are removed from `faults`.
+std::vector<ResidualRegion> nameless(std::vector<Fault>& faults, std::span<const std::string> without) {
+    std::vector<ResidualRegion> left;
+    for (const Fault& fault : faults) {
+        if (is_among(without, fault.term.effect->name))
+            left.push_back({RegionKind::time, {fault.time_s, {}, {}, {}, {}, {}}, 0.0, 0.0});
+    }
+    std::erase_if(faults, [&](const Fault& fault) { return is_among(without, fault.term.effect->name); });
+    return left;
+}
+
+// Measures the residual in invalidated samples, once there is a model of the others.
+void measure_at_samples(std::vector<ResidualRegion>& nameless, const Case& c, const Model& stated) {
+    std::vector<double> left = predict_nm(stated, c.motion);
+    double all = 0.0;
+    for (std::size_t k = 0; k < left.size(); ++k) {
+        left[k] = c.torque_nm[k] - left[k];
+        all += left[k] * left[k];
+    }
+    for (ResidualRegion& region : nameless) {
+        double sum = 0.0, count = 0.0;
+        for (const Span& span : region.where.time_s) {
+            const auto first = std::lower_bound(c.motion.time_s.begin(), c.motion.time_s.end(), span.from);
+            for (auto at = first; at != c.motion.time_s.end() && *at <= span.to; ++at, count += 1.0)
+                sum += portable::pow(left[static_cast<std::size_t>(at - c.motion.time_s.begin())], 2);
+        }
+        region.rms_nm = std::sqrt(sum / std::max(count, 1.0));
+        region.part = sum / std::max(all, 1e-300);
+    }
+}
 
 struct Searched {
     std::unique_ptr<ModelBench> bench;  ///< on which the last model was found
@@ -34,24 +88,23 @@ struct Searched {
 
 // The noise with the last model, and that model fitted with it. The first noise estimate contains what the
 // search could not explain at that time.
-void measure_noise(Searched& found, const Case& c, Work& work, const DiagnosisRules& rules) {
-    found.noise = noise_floor(c, found.last.stated, found.last.open, rules, found.ground);
+void measure_noise(Searched& found, const Case& c, Work& work) {
+    found.noise = noise_floor(c, found.last.stated, found.last.open, found.ground);
     auto kept = found.bench ? found.bench->kept() : std::make_shared<KeptScreenings>();
-    found.bench = std::make_unique<ModelBench>(c, found.noise, work, rules, std::move(kept));
+    found.bench = std::make_unique<ModelBench>(c, found.noise, work, std::move(kept));
     found.bench->settle_on(found.last.stated);
     found.last = found.bench->fitted(found.last.open, found.last.stated, found.last.prices);
 }
 
-Searched search_case(const Case& c, const Model& model, std::span<const Effect* const> effects, Work& work,
-                     const DiagnosisRules& rules) {
+Searched search_case(const Case& c, const Model& model, std::span<const Effect* const> effects, Work& work) {
     const std::size_t own = model.terms.size();
     // The first fit has no estimate of the noise.
-    ModelBench rough(c, {1.0, 1.0, {}}, work, rules);
+    ModelBench rough(c, {1.0, 1.0, {}}, work);
     Searched found;
     found.first = baseline(rough, model);
     found.last = found.first;
-    for (std::size_t look = 0; look < rules.noise_floor.most_looks; ++look) {
-        measure_noise(found, c, work, rules);
+    for (std::size_t look = 0; look < limits::noise_floor::most_looks; ++look) {
+        measure_noise(found, c, work);
         const Candidate start = found.last;
         if (look == 0) found.first = start;
         found.last = search(*found.bench, start, own, effects, found.refused);
@@ -59,10 +112,10 @@ Searched search_case(const Case& c, const Model& model, std::span<const Effect* 
         const bool found_more = found.last.stated.terms.size() > start.stated.terms.size();
         if (look > 0 && !found_more) break;
         if (work.is_over()) {
-            if (found_more) measure_noise(found, c, work, rules);
+            if (found_more) measure_noise(found, c, work);
             break;
         }
-        if (left > rules.noise_floor.was_too_large && found.last.stated.terms.size() == own) break;
+        if (left > limits::noise_floor::was_too_large && found.last.stated.terms.size() == own) break;
     }
     return found;
 }
@@ -83,11 +136,11 @@ void measure_rounds(Diagnosis& diagnosis, const ModelBench& bench, const Candida
     }
 }
 
-bool set_aside(Case& c, const std::vector<ResidualRegion>& left, const DiagnosisRules& rules) {
+bool set_aside(Case& c, const std::vector<ResidualRegion>& left) {
     bool any = false;
-    const double margin_s = rules.regions.aside_margin_s;
+    const double margin_s = limits::regions::aside_margin_s;
     for (const ResidualRegion& region : left) {
-        if (!is_confined(region, c, rules)) continue;
+        if (!is_confined(region, c)) continue;
         for (std::size_t k = 0; k < c.size(); ++k) {
             for (const Span& span : region.where.time_s) {
                 if (c.motion.time_s[k] < span.from - margin_s || c.motion.time_s[k] > span.to + margin_s)
@@ -134,24 +187,23 @@ std::vector<Undecidable> undecidable(const ModelBench& bench, const Candidate& m
 // A disturbance of short duration biases everything that is fitted to it. It is reported and excluded, and
 // the rest of the log is diagnosed without it.
 Searched search_rest(Case& part, const Model& model, std::span<const Effect* const> effects,
-                     Diagnosis& diagnosis, std::vector<ResidualRegion>& aside, Work& work,
-                     const DiagnosisRules& rules) {
-    Searched found = search_case(part, model, effects, work, rules);
+                     Diagnosis& diagnosis, std::vector<ResidualRegion>& aside, Work& work) {
+    Searched found = search_case(part, model, effects, work);
     {
-        ModelBench bench(part, found.noise, work, rules);
+        ModelBench bench(part, found.noise, work);
         bench.settle_on(found.first.stated);
         diagnosis.disagreement = residual_regions(bench, found.first.stated);
     }
-    for (std::size_t look = 0; look < rules.regions.most_asides; ++look) {
+    for (std::size_t look = 0; look < limits::regions::most_asides; ++look) {
         const auto left = residual_regions(*found.bench, found.last.stated);
         // Each exclusion of an interval requires a complete new search.
-        if (confined_part(part, left) > rules.regions.most_aside_part || work.is_over() ||
-            !set_aside(part, left, rules))
+        if (confined_part(part, left) > limits::regions::most_aside_part || work.is_over() ||
+            !set_aside(part, left))
             break;
         for (const ResidualRegion& region : left) {
             if (region.kind == RegionKind::time) aside.push_back(region);
         }
-        found = search_case(part, model, effects, work, rules);
+        found = search_case(part, model, effects, work);
     }
     return found;
 }
@@ -160,15 +212,15 @@ Searched search_rest(Case& part, const Model& model, std::span<const Effect* con
 // there.
 Searched search_straight(Case& whole, Case& part, const Model& model, std::span<const Effect* const> effects,
                          Diagnosis& diagnosis, std::vector<ResidualRegion>& aside, Work& work,
-                         const DiagnosisRules& rules, bool has_position) {
-    Searched found = search_rest(part, model, effects, diagnosis, aside, work, rules);
-    if (has_position || !straightened_by(whole, found.last, found.bench->floor_nm(found.last.stated), rules))
+                         bool has_position) {
+    Searched found = search_rest(part, model, effects, diagnosis, aside, work);
+    if (has_position || !straightened_by(whole, found.last, found.bench->floor_nm(found.last.stated)))
         return found;
     found.bench.reset();
     found.ground = {};
     for (std::size_t k = 0; k < part.size(); ++k)
         part.motion.position_deg[k] = whole.motion.position_deg[part.row[k]];
-    measure_noise(found, part, work, rules);
+    measure_noise(found, part, work);
     found.first = found.bench->fitted(found.first.open, found.first.stated, found.first.prices);
     found.refused.clear();
     found.last = search(*found.bench, found.last, model.terms.size(), effects, found.refused);
@@ -177,13 +229,13 @@ Searched search_straight(Case& whole, Case& part, const Model& model, std::span<
 
 // Against the noise that holds the residual: the same search from the start.
 Searched search_again(const Searched& before, const Case& c, const Model& model,
-                      std::span<const Effect* const> effects, Work& work, const DiagnosisRules& rules) {
+                      std::span<const Effect* const> effects, Work& work) {
     std::vector<double> left(c.size(), 0.0);
     const auto cleared = before.bench->cleared_residual(before.last.stated);
     for (std::size_t r = 0; r < cleared.size(); ++r) left[before.bench->rows()[r]] = cleared[r];
     Searched found;
-    found.noise = noise_of_residual(c, left, before.noise, rules);
-    found.bench = std::make_unique<ModelBench>(c, found.noise, work, rules);
+    found.noise = noise_of_residual(c, left, before.noise);
+    found.bench = std::make_unique<ModelBench>(c, found.noise, work);
     found.bench->settle_on(before.first.stated);
     found.first = found.bench->fitted(before.first.open, before.first.stated, before.first.prices);
     found.last = search(*found.bench, found.first, model.terms.size(), effects, found.refused);
@@ -241,12 +293,11 @@ class DiagnosisRun {
     DiagnosisRun(const Model& model, const TraceView& log, const TraceView* validation,
                  const DiagnosisOptions& options)
         : options_(options),
-          rules_(options.rules),
           model_(model),
           has_position_(log.has_position()),
-          whole_(whole_case(log, options.smoothing, rules_.recording)),
-          work_(rules_.search.most_evaluations),
-          more_work_(rules_.search.most_evaluations) {
+          whole_(whole_case(log, options.smoothing)),
+          work_(limits::search::most_evaluations),
+          more_work_(limits::search::most_evaluations) {
         take_known_torque(whole_, options.given);
         whole_.expected_delay = options.expected_delay;
         // Terms that the known torque adds to the model: excess friction in a simulation is below 0, and the
@@ -254,7 +305,7 @@ class DiagnosisRun {
         model_.beside_simulation = is_given(options.given, "simulated");
         fits_offset_ = is_given(options.given, "arm") && !has_offset(model_);
         if (fits_offset_) model_.terms.push_back(parse_term("offset"));
-        model_.widest_step_deg_s = rules_.search.widest_step * fastest_deg_s(whole_.motion);
+        model_.widest_step_deg_s = limits::search::widest_step * fastest_deg_s(whole_.motion);
         own_ = model_.terms.size();
         without_.assign(options.without.begin(), options.without.end());
         // A fault of the set-up explains a wrong scale.
@@ -263,33 +314,32 @@ class DiagnosisRun {
         // An arm has inertia and gravity of its own.
         if (is_given(options.given, "arm"))
             without_.insert(without_.end(), {"inertia", "gravity", "payload-change"});
-        moves_both_ways_ = moves_both_ways(whole_, rules_.advice.least_part);
-        effects_ = examined(without_,
-                            {.of_position = has_position_ || tells_position(whole_.motion, rules_.recording),
-                             .of_motor = model_.has_gear_ratio(),
-                             .of_direction = moves_both_ways_});
+        moves_both_ways_ = moves_both_ways(whole_, limits::advice::least_part);
+        effects_ = examined(without_, {.of_position = has_position_ || tells_position(whole_.motion),
+                                       .of_motor = model_.has_gear_ratio(),
+                                       .of_direction = moves_both_ways_});
         if (validation == nullptr) return;
-        other_ = whole_case(*validation, options.smoothing, rules_.recording);
+        other_ = whole_case(*validation, options.smoothing);
         take_known_torque(*other_, options.validation_given);
-        (void)find_faults(*other_, rules_.faults);
+        (void)find_faults(*other_);
         other_has_position_ = validation->has_position();
     }
 
     [[nodiscard]] Diagnosis run() {
         result_.has_position = has_position_;
         result_.setup.assign(options_.setup.begin(), options_.setup.end());
-        result_.false_alarm = rules_.screening.false_alarm;
+        result_.false_alarm = limits::screening::false_alarm;
         result_.samples = whole_.size();
         add_unused_rows(result_.unused, whole_,
                         "where the acceleration jumps, smoothing hides the torque of the inertia");
-        result_.faults = find_faults(whole_, rules_.faults);
+        result_.faults = find_faults(whole_);
         add_unused_rows(result_.unused, whole_, "spoiled by a fault of the log");
         std::vector<ResidualRegion> spoiled = nameless(result_.faults, options_.without), aside;
         AngleBefore before(whole_, has_position_);
-        if (!has_position_) straighten(whole_, model_, rules_);
-        Case part = excerpt(whole_, rules_.recording);
+        if (!has_position_) straighten(whole_, model_);
+        Case part = excerpt(whole_);
         Searched found =
-            search_straight(whole_, part, model_, effects_, result_, aside, work_, rules_, has_position_);
+            search_straight(whole_, part, model_, effects_, result_, aside, work_, has_position_);
         found.ground = {};  // its columns are not needed any more
         if (other_ && !(has_position_ && other_has_position_)) before.of_other(*other_);
         Candidate last = tested(found, before.has_other());
@@ -298,7 +348,7 @@ class DiagnosisRun {
             Diagnosis first_result = result_;
             const std::size_t own = own_;
             first_bench_ = &plain;
-            Searched again = search_again(found, part, model_, effects_, more_work_, rules_);
+            Searched again = search_again(found, part, model_, effects_, more_work_);
             Candidate last_again = tested(again, before.has_other());
             first_bench_ = nullptr;
             const auto left_nm = [&](const Candidate& model) {
@@ -402,7 +452,7 @@ class DiagnosisRun {
         result_.noise_color = found.noise.color;
         measure_rounds(result_, bench, found.last, own);
         Candidate last = believed(bench, found.last, own, result_.rounds);
-        if (other_ && other_begins_anywhere) put_in_place(*other_, last.stated, bench.rules().recording);
+        if (other_ && other_begins_anywhere) put_in_place(*other_, last.stated);
         if (other_)
             last = reproduced(bench, found.last, last, result_.baseline, *other_, own, result_.rounds);
         // The torque of an uncertain finding counts as unexplained.
@@ -443,7 +493,7 @@ class DiagnosisRun {
         const std::size_t place = own - 1;
         model.prices[place] =
             portable::log(bench.samples()) +
-            2.0 * portable::log(static_cast<double>(effects_.size()) / rules_.screening.false_alarm);
+            2.0 * portable::log(static_cast<double>(effects_.size()) / limits::screening::false_alarm);
         Finding offset = judged_alone(bench, model, place, effects_, unexplained);
         if (offset.status != FindingStatus::confirmed || offset.evidence.gain < model.prices[place] ||
             offset.evidence.share_nm < rms(bench.cleared_residual(model.stated)))
@@ -497,7 +547,7 @@ class DiagnosisRun {
         const bool doubtful = std::any_of(result_.rounds.begin(), result_.rounds.end(), is_doubtful);
         const Model& model = options_.given.empty() ? found.last.stated : last.stated;
         return (doubtful || !result_.unexplained.empty()) &&
-               rms(found.bench->cleared_residual(model)) > rules_.residual.least_left * found.noise.rms_nm;
+               rms(found.bench->cleared_residual(model)) > limits::residual::least_left * found.noise.rms_nm;
     }
 
     // The excerpt chose; the whole log gives the values.
@@ -506,8 +556,8 @@ class DiagnosisRun {
         const bool is_excerpt = part.size() < whole_.size();
         Case all = is_excerpt ? whole_ : part;
         if (is_excerpt) {
-            (void)set_aside(all, aside, rules_);
-            ModelBench bench(all, found.noise, work_, rules_);
+            (void)set_aside(all, aside);
+            ModelBench bench(all, found.noise, work_);
             bench.settle_on(last.stated);
             last = bench.fitted(last.open, last.stated, last.prices, 4);
             const Candidate first = as_given(bench, found.first);
@@ -518,12 +568,12 @@ class DiagnosisRun {
         result_.acts_where_unused = mainly_unused(effects_, all, model_);
         while (true) {
             const Candidate settled =
-                final_values(all, found.noise, last, {result_.faults, result_.rounds, own_}, work_, rules_);
+                final_values(all, found.noise, last, {result_.faults, result_.rounds, own_}, work_);
             report_model(settled);
             measure(settled, found.noise, all);
             if (!withdraw_for_gap(*found.bench, last)) break;
         }
-        name_findings(result_, rules_);
+        name_findings(result_);
         for (const Fault& fault : result_.faults) result_.named.emplace_back(fault.term.effect->name);
         result_.verdict = verdict_of(result_);
     }
@@ -534,7 +584,7 @@ class DiagnosisRun {
         result_.values = last.values;
         for (FittedValue& value : result_.values)
             widen_interval(value, last.stated.terms[value.term].effect->parameters[value.parameter],
-                           rules_.values.interval_factor);
+                           limits::values::interval_factor);
         std::size_t place = own_;
         for (Finding& finding : result_.rounds) {
             if (is_doubtful(finding)) continue;
@@ -569,7 +619,7 @@ class DiagnosisRun {
         const GapCase log_gap{as_given, improved};
         const std::optional<GapCase> other_gap =
             other ? std::optional<GapCase>({*other_as_given, *other}) : std::nullopt;
-        measure_gap(result_, log_gap, other_gap ? &*other_gap : nullptr, rules_);
+        measure_gap(result_, log_gap, other_gap ? &*other_gap : nullptr);
         if (options_.given.empty()) return;
         result_.residual_before_nm = residual_nm(as_given, result_.baseline);
         result_.residual_after_nm = residual_nm(improved, result_.model);
@@ -607,7 +657,6 @@ class DiagnosisRun {
     }
 
     const DiagnosisOptions& options_;
-    const DiagnosisRules& rules_;
     Model model_;
     bool has_position_, other_has_position_ = false, fits_offset_ = false, moves_both_ways_ = true;
     Case whole_;
@@ -625,7 +674,6 @@ class DiagnosisRun {
 
 Diagnosis diagnose(const Model& model, const TraceView& log, const TraceView* validation,
                    const DiagnosisOptions& options) {
-    check(options.rules);
     for (const std::string& name : options.without) (void)find_effect(name);
     check_rows(options.given, log.size(), "the log");
     if (validation != nullptr) {

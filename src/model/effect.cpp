@@ -46,9 +46,9 @@ const Effect& find_effect(std::string_view name) {
     std::copy_if(known.begin(), known.end(), std::back_inserter(within),
                  [&](const std::string& one) { return one.find(name) != std::string::npos; });
     if (name.size() >= fewest_letters && !within.empty())
-        raise<UsageError>("there is no effect '{}'; there {} {}; 'ripplenotch effects' lists all", name,
-                          within.size() == 1 ? "is" : "are", fmt::join(within, ", "));
-    raise<UsageError>("there is no effect '{}'{}; 'ripplenotch effects' lists them", name,
+        raise<UsageError>("there is no effect '{}'; there {} {}; 'ripplenotch diagnose --effects' lists all",
+                          name, within.size() == 1 ? "is" : "are", fmt::join(within, ", "));
+    raise<UsageError>("there is no effect '{}'{}; 'ripplenotch diagnose --effects' lists them", name,
                       did_you_mean(name, known));
 }
 

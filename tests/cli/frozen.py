@@ -52,7 +52,7 @@ ANSWERS = [
     ("diagnose effects", f"diagnose {{d}}/effects.csv --model {MODEL} --without gravity --json"),
     ("spectrum", f"spectrum {STEADY} --json"),
     ("track", f"spectrum {STEADY} --track {GEAR} --json"),
-    ("effects", "effects --json"),
+    ("effects", "diagnose --effects --json"),
 ]
 
 

@@ -101,6 +101,18 @@ class Diagnose(Case):
         self.assertIn("named: nothing\n", second.stdout)
         self.assertIn("unexplained: ", second.stdout)
 
+    def test_explain_says_in_one_line_each_why_a_candidate_was_not_named(self):
+        self.log("log.csv", move(0, 120, -60))
+        done = self.run_tool("diagnose", "log.csv", "--model", "model.json", "--explain")
+        self.assertRegex(done.stdout, r"(?m)^not named: [a-z-]+: it improves the fit no more than chance would$")
+
+    def test_the_catalogue_is_printed_alone(self):
+        for words in (["log.csv", "--effects"], ["--model", "model.json", "--effect", "delay"], ["--effects", "--effect", "delay"]):
+            done = self.run_tool("diagnose", *words)
+            self.assertEqual((done.returncode, done.stdout), (2, ""))
+            self.assertIn("stand alone", done.stderr)
+        self.assertTrue(self.run_tool("diagnose", "--effect", "delay").stdout.startswith("delay: "))
+
     def test_a_model_is_made_of_the_log_by_identify(self):
         self.log("log.csv", move(0, 120, -60), "coulomb-friction,torque_nm=0.4,width_deg_s=2")
         done = self.run_tool("diagnose", "log.csv", "--model", "auto", "-v", "--improved-model", "made.json", "--force")

@@ -15,7 +15,7 @@ MOST_BYTES = 2 << 30
 
 def without_effects():
     """Words that have diagnose read the log and measure the gap, and leave the search for names to its own tests."""
-    effects = json.loads(run("effects", "--json").stdout)["effects"]
+    effects = json.loads(run("diagnose", "--effects", "--json").stdout)["effects"]
     return [word for effect in effects for word in ("--without", effect["effect"])]
 
 

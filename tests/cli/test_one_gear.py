@@ -249,7 +249,7 @@ class BeforeTheGear(Commands):
         yield ["simulate", log, "--gear-ratio", ratio, *out]
         yield ["simulate", log, "--model", f"model_{ratio}.json", *out]
         # What is asked is how the log is read; the search for names has its own tests.
-        effects = [one["effect"] for one in json.loads(self.good("effects", "--json").stdout)["effects"]]
+        effects = [one["effect"] for one in json.loads(self.good("diagnose", "--effects", "--json").stdout)["effects"]]
         untried = [word for effect in effects for word in ("--without", effect)]
         yield ["diagnose", log, "--model", f"model_{ratio}.json", "--json", *untried]
 

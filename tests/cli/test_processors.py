@@ -52,7 +52,7 @@ COMMANDS = {
     "merge": ("merge", "shards"),
     "trend": ("trend", str(DATA / "fleet.ndjson"), "--json"),
     "report": ("report", "table.json", "--no-plotly"),
-    "effects": ("effects",),
+    "effects": ("diagnose", "--effects"),
     "diagnose": ("diagnose", "--model", "model.json", "made.csv", "--json"),
 }
 SLOW_UNDER_EMULATION = ("diagnose",)
@@ -96,7 +96,7 @@ class Processors(SharedCase):
                 self.assertEqual(self.run_tool(*words, RIPPLENOTCH_VECTORS="none"), self.here[name])
 
     def test_a_word_that_turns_nothing_off_is_refused(self):
-        done = run("effects", environment={"RIPPLENOTCH_VECTORS": "off"})
+        done = run("diagnose", "--effects", environment={"RIPPLENOTCH_VECTORS": "off"})
         self.assertEqual(done.returncode, 2)
         self.assertIn("RIPPLENOTCH_VECTORS=off", done.stderr)
 

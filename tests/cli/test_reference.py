@@ -82,7 +82,7 @@ class Reference(unittest.TestCase):
         self.assertEqual(run("help").stdout, run("--help").stdout)
         for words in (["-V"], ["version"]):
             self.assertEqual(run(*words).stdout, run("--version").stdout)
-        self.assertEqual(run("help", "effects").stdout, run("effects").stdout)
+        self.assertEqual(run("help", "effects").stdout, run("diagnose", "--effects").stdout)
         self.assertEqual(run("features", "--merge", "--help").stdout, run("merge", "--help").stdout)
         done = run("help", "nonsense")
         self.assertEqual((done.returncode, done.stdout), (2, ""))

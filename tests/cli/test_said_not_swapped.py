@@ -26,7 +26,8 @@ class NamesOfJson(Told):
         (self.folder / "t.json").write_text(self.good(
             "design", "--gear-ratio", 100, "--sample-rate", "1kHz", "--speed", "18:90:18", "--json").stdout)
         for name in COMMANDS:
-            if name in (*WRITES_A_LOG, "diagnose", "export", "merge", "report", "features"):  # what these write with -o is another thing
+            # What these write with -o is another thing.
+            if name in (*WRITES_A_LOG, "diagnose", "diagnose --effects", "export", "merge", "report", "features"):
                 continue
             words = asked(name)
             with self.subTest(words=words):
@@ -57,7 +58,7 @@ class NamesOfOtherKinds(Told):
 
     def commands(self):
         self.good(*self.DESIGN, "-o", "t.json", "--json")
-        yield from (["info", MOVE], ["effects"], ["identify", PAPER_90], ["compare", MOVE, *LOW], self.DESIGN,
+        yield from (["info", MOVE], ["identify", PAPER_90], ["compare", MOVE, *LOW], self.DESIGN,
                     [*self.DESIGN[:-1], "18:90", "--frontier"], ["spectrum", PAPER_90],
                     ["spectrum", PAPER_90, "--bins"], ["spectrum", MOVE, "--map", "order"],
                     ["spectrum", MOVE, "--track", "--gear-ratio", 100], ["spectrum", MOVE, "--track", "--gear-ratio", 100, "--json"],

@@ -56,14 +56,14 @@ TEST_CASE("the ripple tells how far an integrated position has walked") {
     const double walked_deg = 0.05;
     Case c = off_by(joint(), wander(walked_deg), 81);
     REQUIRE(still_off_deg(c) > 0.6 * walked_deg);
-    straighten(c, opened(joint()), standard);
+    straighten(c, opened(joint()));
     CHECK(still_off_deg(c) < 0.1 * walked_deg);
 }
 
 TEST_CASE("a position that was measured stays as it is") {
     Case c = case_of(plain_log(joint(), 82));
     const std::vector<double> before = c.motion.position_deg;
-    take_out_walk(c, joint(), joint(), WalkOf::log, standard.recording);
+    take_out_walk(c, joint(), joint(), WalkOf::log);
     CHECK(c.motion.position_deg == before);
 }
 
@@ -73,25 +73,25 @@ TEST_CASE(
     for (const double start_deg : {-1.3, 37.4}) {
         CAPTURE(start_deg);
         Case with_gravity = off_by(heavy, std::vector<double>(tour().size(), start_deg), 83);
-        put_in_place(with_gravity, heavy, standard.recording);
+        put_in_place(with_gravity, heavy);
         CHECK(std::abs(std::remainder(still_off_deg(with_gravity, true), 360.0)) < 0.01);
         Case alone = off_by(joint(), std::vector<double>(tour().size(), start_deg), 84);
-        put_in_place(alone, joint(), standard.recording);
+        put_in_place(alone, joint());
         CHECK(std::abs(std::remainder(still_off_deg(alone, true), 3.6)) < 0.01);
     }
 }
 
 TEST_CASE("a way of more than a turn in both directions tells what goes with the position") {
-    CHECK(tells_position(tour(), standard.recording));
+    CHECK(tells_position(tour()));
     const std::vector<std::string> to_and_fro = {"poly6,to=150deg,duration=2.2s",
                                                  "poly6,to=-60deg,duration=3s"};
-    CHECK_FALSE(tells_position(make_motion(to_and_fro, Hertz(500.0)), standard.recording));
+    CHECK_FALSE(tells_position(make_motion(to_and_fro, Hertz(500.0))));
     std::vector<std::string> short_way;
     for (int stroke = 0; stroke < 30; ++stroke) {
         short_way.emplace_back("poly6,to=30deg,duration=0.5s");
         short_way.emplace_back("poly6,to=0deg,duration=0.5s");
     }
-    CHECK_FALSE(tells_position(make_motion(short_way, Hertz(500.0)), standard.recording));
+    CHECK_FALSE(tells_position(make_motion(short_way, Hertz(500.0))));
 }
 
 TEST_CASE("logs of torque and velocity that begin anywhere bear each other's names out") {

@@ -6,6 +6,7 @@
 
 #include "core/vectors/dot.hpp"
 #include "diagnose/judging/doubt.hpp"
+#include "diagnose/limits.hpp"
 #include "diagnose/search/model_bench.hpp"
 #include "diagnose_fixture.hpp"
 #include "ripplenotch/core/portable_math.hpp"
@@ -13,9 +14,7 @@
 
 namespace ripplenotch::fixture {
 
-inline Case case_of(const Trace& log) {
-    return whole_case(log.view(), default_smoothing, standard.recording);
-}
+inline Case case_of(const Trace& log) { return whole_case(log.view(), default_smoothing); }
 
 /// A log of `truth` along the tour, less its noise of the speed: 8500 samples.
 inline Trace plain_log(const Model& truth, std::uint64_t seed) {
@@ -32,8 +31,7 @@ inline const Case& along_tour() {
 
 /// The bench and what has to outlive it. The noise is known, so that no test waits for it to be measured.
 struct TestBench {
-    explicit TestBench(Case looked_at, const DiagnosisRules& by = standard)
-        : rules(by), c(std::move(looked_at)), bench(c, {noise_nm, noise_nm, {}}, work, rules) {}
+    explicit TestBench(Case looked_at) : c(std::move(looked_at)), bench(c, {noise_nm, noise_nm, {}}, work) {}
     TestBench(const TestBench&) = delete;
     TestBench& operator=(const TestBench&) = delete;
 
@@ -42,7 +40,6 @@ struct TestBench {
         return bench.with_errors(bench.fitted(opened(guess), guess, std::vector<double>(guess.terms.size())));
     }
 
-    DiagnosisRules rules;
     Work work{1e9};
     Case c;
     ModelBench bench;
@@ -61,15 +58,6 @@ inline std::vector<double> slow_leftover(const Motion& motion, std::uint64_t see
     const double now = rms(left);
     for (double& value : left) value *= rms_nm / now;
     return left;
-}
-
-inline const Decision& last_against(const std::vector<Decision>& decisions) {
-    static const Decision none;
-    const Decision* last = &none;
-    for (const Decision& decision : decisions) {
-        if (decision.against) last = &decision;
-    }
-    return *last;
 }
 
 }  // namespace ripplenotch::fixture

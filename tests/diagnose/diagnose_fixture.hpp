@@ -14,7 +14,6 @@
 namespace ripplenotch::fixture {
 
 inline constexpr double noise_nm = 0.05;
-inline const DiagnosisRules standard;
 
 inline Motion tour_at(Hertz sample_rate) {
     static const std::vector<std::string> specs = {"rest,duration=0.4s",

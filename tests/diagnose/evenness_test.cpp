@@ -20,7 +20,7 @@ TEST_CASE("a stand-in has another size slow than fast, however well it is fitted
     const Candidate stand_in =
         on.fitted(joint_with({"quadratic-viscous-friction,coefficient_nm_per_deg2_s2=0.00005"}));
     const Unevenness uneven = unevenness(on.bench, stand_in.stated, 3);
-    CHECK(uneven.part > standard.evenness.most_uneven);
+    CHECK(uneven.part > limits::evenness::most_uneven);
     CHECK(!uneven.where.empty());
 }
 

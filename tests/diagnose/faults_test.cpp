@@ -20,7 +20,7 @@ Case case_with(std::initializer_list<std::string> hidden, std::uint64_t seed = 1
     Model truth = joint();
     for (const std::string& term : hidden) truth.terms.push_back(parse_term(term));
     const Trace log = logged(truth, tour(), seed);
-    return whole_case(log.view(), default_smoothing, standard.recording);
+    return whole_case(log.view(), default_smoothing);
 }
 
 std::vector<std::string> names(const std::vector<Fault>& faults) {
@@ -37,7 +37,7 @@ TEST_CASE("a log without faults has none, whatever its noise") {
     for (std::uint64_t seed = 1; seed <= 5; ++seed) {
         Case c = case_with({}, seed);
         const std::size_t before = c.used();
-        CHECK(names(find_faults(c, standard.faults)).empty());
+        CHECK(names(find_faults(c)).empty());
         CHECK(c.used() == before);
     }
 }
@@ -45,7 +45,7 @@ TEST_CASE("a log without faults has none, whatever its noise") {
 TEST_CASE("each fault is found alone, with its size, and what it spoiled does not count") {
     SECTION("clipping") {
         Case c = case_with({"saturation,limit_nm=0.9"});
-        const auto faults = find_faults(c, standard.faults);
+        const auto faults = find_faults(c);
         CHECK(names(faults) == Names{"saturation"});
         CHECK(*faults[0].term.values[0] == 0.9);
         std::size_t counted = 0;
@@ -56,7 +56,7 @@ TEST_CASE("each fault is found alone, with its size, and what it spoiled does no
     SECTION("whole steps") {
         Case c = case_with({"quantization,step_nm=0.4"});
         const std::size_t before = c.used();
-        const auto faults = find_faults(c, standard.faults);
+        const auto faults = find_faults(c);
         CHECK(names(faults) == Names{"quantization"});
         CHECK(*faults[0].term.values[0] == Approx(0.4));
         CHECK(c.used() == before);
@@ -64,7 +64,7 @@ TEST_CASE("each fault is found alone, with its size, and what it spoiled does no
     SECTION("spikes") {
         Case c = case_with({"spikes,rate_percent=0.15,size_nm=5"});
         const std::size_t before = c.used();
-        const auto faults = find_faults(c, standard.faults);
+        const auto faults = find_faults(c);
         CHECK(names(faults) == Names{"spikes"});
         CHECK(*faults[0].term.values[1] == Approx(5.0).epsilon(0.05));
         CHECK(faults[0].samples == before - c.used());
@@ -72,7 +72,7 @@ TEST_CASE("each fault is found alone, with its size, and what it spoiled does no
     }
     SECTION("held stretches") {
         Case c = case_with({"dropout,rate_hz=1,duration_s=0.1"});
-        const auto faults = find_faults(c, standard.faults);
+        const auto faults = find_faults(c);
         CHECK(names(faults) == Names{"dropout"});
         CHECK(*faults[0].term.values[1] == Approx(0.1).epsilon(0.3));
         CHECK(faults[0].time_s.size() >= 6);
@@ -89,13 +89,13 @@ TEST_CASE("an extreme that the recorder held is no clipping, a clipped torque of
     for (std::size_t k = 100; k + 12 < c.size(); k += 300) {
         if (*std::max_element(&c.torque_nm[k], &c.torque_nm[k] + 12) < *peak) hold(c, k, 11);
     }
-    CHECK_FALSE(std::ranges::count(names(find_faults(c, standard.faults)), "saturation"));
+    CHECK_FALSE(std::ranges::count(names(find_faults(c)), "saturation"));
 
     Case clipped = case_with({"saturation,limit_nm=0.9"});
     for (std::size_t k = 100; k + 12 < clipped.size(); k += 300) {
         if (std::abs(clipped.torque_nm[k]) < 0.9) hold(clipped, k, 11);
     }
-    CHECK(std::ranges::count(names(find_faults(clipped, standard.faults)), "saturation") == 1);
+    CHECK(std::ranges::count(names(find_faults(clipped)), "saturation") == 1);
 }
 
 TEST_CASE("whole steps that were rounded once more are steps still, and nothing else") {
@@ -103,7 +103,7 @@ TEST_CASE("whole steps that were rounded once more are steps still, and nothing 
         Case c = case_with({fmt::format("quantization,step_nm={}", step_nm)});
         for (double& torque_nm : c.torque_nm) torque_nm = std::round(torque_nm / 0.1) * 0.1;
         const std::size_t before = c.used();
-        const auto faults = find_faults(c, standard.faults);
+        const auto faults = find_faults(c);
         CHECK(names(faults) == Names{"quantization"});
         CHECK(*faults[0].term.values[0] == Approx(step_nm).margin(0.1 / 5));  // of five levels and more
         CHECK(c.used() == before);
@@ -116,14 +116,14 @@ TEST_CASE("levels without order are no steps") {
         const double place = std::round(torque_nm / 0.4);
         torque_nm = 0.4 * place + 0.13 * std::sin(5.0 * place);
     }
-    CHECK_FALSE(std::ranges::count(names(find_faults(c, standard.faults)), "quantization"));
+    CHECK_FALSE(std::ranges::count(names(find_faults(c)), "quantization"));
 }
 
 TEST_CASE("steps finer than the noise are no fault: a log of four decimals is as good as continuous") {
     Case c = case_with({"quantization,step_nm=0.0001"});
-    CHECK(names(find_faults(c, standard.faults)).empty());
+    CHECK(names(find_faults(c)).empty());
     Case finer = case_with({"quantization,step_nm=0.02"});
-    CHECK(names(find_faults(finer, standard.faults)).empty());
+    CHECK(names(find_faults(finer)).empty());
 }
 
 TEST_CASE("a torque that stays on a step while the joint runs fast is not held, one that then jumps is") {
@@ -134,7 +134,7 @@ TEST_CASE("a torque that stays on a step while the joint runs fast is not held, 
         const double turned = 2.0 * std::numbers::pi * c.motion.position_deg[k] / 3.6;
         c.torque_nm[k] = 0.4 * std::round(4.0 * left * std::sin(turned));
     }
-    CHECK(names(find_faults(c, standard.faults)) == Names{"quantization"});
+    CHECK(names(find_faults(c)) == Names{"quantization"});
     std::size_t held = 0;
     for (std::size_t k = 1; k < c.size(); ++k) {
         if (std::abs(c.motion.velocity_deg_s[k]) < 60.0 || std::abs(c.motion.velocity_deg_s[k - 1]) >= 60.0)
@@ -145,16 +145,16 @@ TEST_CASE("a torque that stays on a step while the joint runs fast is not held, 
         ++held;
     }
     REQUIRE(held >= 3);
-    CHECK(names(find_faults(c, standard.faults)) == Names{"quantization", "dropout"});
+    CHECK(names(find_faults(c)) == Names{"quantization", "dropout"});
 }
 
 TEST_CASE("a resonance and a burst of noise are no spikes") {
     Case c = case_with({"resonance,frequency_hz=30,damping=0.05"});
-    CHECK(names(find_faults(c, standard.faults)) == Names{});
+    CHECK(names(find_faults(c)) == Names{});
     Case burst = case_with({});
     Noise noise(3, NoiseChannel::torque);
     for (std::size_t k = 3000; k < 3600; ++k) burst.torque_nm[k] += 0.4 * noise.normal();
-    CHECK(names(find_faults(burst, standard.faults)).empty());
+    CHECK(names(find_faults(burst)).empty());
 }
 
 TEST_CASE("noise with heavy tails has no spikes") {
@@ -167,6 +167,6 @@ TEST_CASE("noise with heavy tails has no spikes") {
             for (int i = 0; i < 4; ++i) squares += std::pow(noise.normal(), 2);
             torque += 0.08 / std::sqrt(2.0) * noise.normal() / std::sqrt(squares / 4.0);
         }
-        CHECK(names(find_faults(c, standard.faults)) == Names{});
+        CHECK(names(find_faults(c)) == Names{});
     }
 }

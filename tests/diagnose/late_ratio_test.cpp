@@ -70,10 +70,6 @@ TEST_CASE("one of the two alone, or none, is not told as both") {
     Model both = turned(120.0, joint_with({"delay,delay_s=0.0105"}));
     CHECK(!told_together(both, 95, {&find_effect("delay"), &find_effect("offset")}));
     CHECK(!told_together(both, 95, {&find_effect("gear-ratio")}));
-    DiagnosisRules rules;
-    rules.screening.late_ratio = 1000.0;
-    const TestBench strict(case_of(plain_log(both, 95)), rules);
-    CHECK(!with_late_ratio(strict.bench, strict.fitted(joint()), 3, both_effects()));
 }
 
 TEST_CASE("a ratio that was found alone gives way to the pair, one that the model states does not") {

@@ -28,7 +28,7 @@ std::vector<double> with_line(double cycles, const std::vector<double>& where) {
 }
 
 std::vector<ResidualLine> told(const std::vector<double>& values) {
-    return standing_out(along_tour(), values, standard.regions.line_prominence, 4, standard.lines);
+    return standing_out(along_tour(), values, limits::regions::line_prominence, 4);
 }
 
 }  // namespace
@@ -43,8 +43,7 @@ TEST_CASE("a tone is a line in time, with its frequency and its size") {
     CHECK(!lines[0].by_angle);
     CHECK(lines[0].frequency == Approx(37.0).margin(0.02));
     CHECK(lines[0].amplitude_nm == Approx(0.1).epsilon(0.15));
-    const auto tones =
-        strongest_tones_hz(along_tour(), with_line(37.0, along_tour().motion.time_s), standard);
+    const auto tones = strongest_tones_hz(along_tour(), with_line(37.0, along_tour().motion.time_s));
     REQUIRE(!tones.empty());
     CHECK(tones[0] == Approx(37.0).margin(0.02));
 }
@@ -56,15 +55,15 @@ TEST_CASE("a tone is heard on both sides of a gap of any length") {
         for (std::size_t k = far.size() / 3; k < far.size(); ++k) far.motion.time_s[k] += gap_s;
         const auto values = with_line(37.0, far.motion.time_s);
         INFO("a gap of " << gap_s << " s");
-        const auto lines = standing_out(far, values, standard.regions.line_prominence, 4, standard.lines);
+        const auto lines = standing_out(far, values, limits::regions::line_prominence, 4);
         REQUIRE(!lines.empty());
         CHECK(!lines[0].by_angle);
         CHECK(lines[0].frequency == Approx(37.0).margin(0.02));
         CHECK(lines[0].amplitude_nm == Approx(0.1).epsilon(0.2));
-        const auto tones = strongest_tones_hz(far, values, standard);
+        const auto tones = strongest_tones_hz(far, values);
         REQUIRE(!tones.empty());
         CHECK(tones[0] == Approx(37.0).margin(0.02));
-        CHECK(standing_out(far, noise(67), standard.regions.line_prominence, 4, standard.lines).empty());
+        CHECK(standing_out(far, noise(67), limits::regions::line_prominence, 4).empty());
     }
 }
 
@@ -75,18 +74,18 @@ TEST_CASE("a tone of a long log of which pieces are looked at is that of all pie
     for (std::size_t k = 0; k < pieces.size(); ++k)
         pieces.motion.time_s[k] += 120.0 * static_cast<double>(k / each);
     const auto values = with_line(37.1234, pieces.motion.time_s);
-    const auto tones = strongest_tones_hz(pieces, values, standard);
+    const auto tones = strongest_tones_hz(pieces, values);
     REQUIRE(!tones.empty());
     // A fiftieth of a cycle from end to end.
     CHECK(tones[0] == Approx(37.1234).margin(0.02 / 840.0));
 }
 
-TEST_CASE("a swing slower than the rule is no tone") {
-    DiagnosisRules rules;
-    const auto values = with_line(8.0, along_tour().motion.time_s);
-    CHECK(strongest_tones_hz(along_tour(), values, rules).at(0) == Approx(8.0).margin(0.02));
-    rules.lines.slowest_tone_hz = 10.0;
-    for (const double hz : strongest_tones_hz(along_tour(), values, rules)) CHECK(hz > 9.9);
+TEST_CASE("a slow swing is a tone down to 5 Hz") {
+    const auto with = [](double hz) {
+        return strongest_tones_hz(along_tour(), with_line(hz, along_tour().motion.time_s));
+    };
+    CHECK(with(8.0).at(0) == Approx(8.0).margin(0.02));
+    for (const double hz : with(3.0)) CHECK(hz > 4.9);
 }
 
 TEST_CASE("what goes with the angle is an order") {
@@ -100,8 +99,8 @@ TEST_CASE("the ratio that puts the ripple on its lines comes first") {
     Model truth = joint();
     truth.gear_ratio = GearRatio(80.0);
     const Case c = case_of(plain_log(truth, 66));
-    const RatioCandidates found = likely_ratios(c, c.torque_nm, {1.0, 2.0}, {40.0, 250.0}, standard);
-    REQUIRE(found.ratios.size() == standard.screening.most_ratios);
+    const RatioCandidates found = likely_ratios(c, c.torque_nm, {1.0, 2.0}, {40.0, 250.0});
+    REQUIRE(found.ratios.size() == limits::screening::most_ratios);
     CHECK(found.ratios[0] == Approx(80.0).margin(0.5));
     CHECK(found.compared > 100.0);
 }

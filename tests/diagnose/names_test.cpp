@@ -114,29 +114,6 @@ TEST_CASE(
     CHECK(*found.gap.validation_after_nm <= *found.gap.validation_before_nm * (1.0 + 1e-9));
 }
 
-TEST_CASE(
-    "a search that has spent its evaluations ends, says so, and names nothing that it did not look at "
-    "twice") {
-    const Trace log =
-        logged(joint_with({"offset,torque_nm=0.4", "viscous-friction,coefficient_nm_per_deg_s=0.005"}),
-               coarse_tour(), 37);
-    const Diagnosis whole = diagnose(opened(joint()), log.view(), nullptr);
-    CHECK(!whole.search_ended);
-    CHECK(whole.evaluations > 10.0);
-    CHECK(sorted(whole.named) == Names{"offset", "viscous-friction"});
-    DiagnosisOptions short_search;
-    short_search.rules.search.most_evaluations = 1.0;
-    const Diagnosis ended = diagnose(opened(joint()), log.view(), nullptr, short_search);
-    tell(ended);
-    CHECK(ended.search_ended);
-    CHECK(ended.evaluations < whole.evaluations);
-    CHECK(ended.verdict != DiagnosisVerdict::matches);
-    for (const std::string& name : ended.named)
-        CHECK(std::count(whole.named.begin(), whole.named.end(), name) == 1);
-    // Counted, not timed: the same again.
-    CHECK(diagnose(opened(joint()), log.view(), nullptr).evaluations == whole.evaluations);
-}
-
 TEST_CASE("on a short way without position, what depends on where the joint is cannot be decided") {
     Names needing;
     for (const Effect* effect : catalogue()) {
@@ -174,25 +151,4 @@ TEST_CASE("faults that may not be named are unexplained at their samples") {
     REQUIRE(tells(found, RegionKind::time));
     CHECK(found.unexplained[0].rms_nm > 3.0);
     CHECK(found.unexplained[0].where.time_s.size() >= 5);
-}
-
-TEST_CASE("a name comes with the chance that it is wrong, larger where something is left") {
-    Diagnosis found;
-    found.verdict = DiagnosisVerdict::matches;
-    CHECK(!wrong_percent(found));
-    found.named = {"offset"};
-    found.verdict = DiagnosisVerdict::explained;
-    const double explained = wrong_percent(found).value_or(0.0);
-    CHECK(explained > 0.1);
-    CHECK(explained < 1.0);
-    found.verdict = DiagnosisVerdict::partly_explained;
-    CHECK(wrong_percent(found).value_or(0.0) > 3.0 * explained);
-    // Where the residual is part of the noise, or beside an arm that was given, the studies that it was
-    // counted in say nothing.
-    Diagnosis beside = found;
-    beside.residual_in_noise = true;
-    CHECK(!wrong_percent(beside));
-    beside = found;
-    beside.given = {{"arm", 1.0, std::nullopt}};
-    CHECK(!wrong_percent(beside));
 }

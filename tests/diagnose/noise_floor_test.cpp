@@ -12,9 +12,7 @@ using namespace ripplenotch::fixture;
 
 namespace {
 
-NoiseFloor floor_of(const Case& c, const DiagnosisRules& rules = standard) {
-    return noise_floor(c, joint(), opened(joint()), rules);
-}
+NoiseFloor floor_of(const Case& c) { return noise_floor(c, joint(), opened(joint())); }
 
 }  // namespace
 
@@ -43,12 +41,9 @@ TEST_CASE("noise with a memory is told with it, and sums of it scatter more") {
     CHECK(floor.white_nm == Approx(noise_nm * std::sqrt(0.75)).epsilon(0.05));
 }
 
-TEST_CASE("what is loud in some stretches is no noise, unless the rule says that it is") {
+TEST_CASE("what is loud in some stretches is no noise") {
     Case c = case_of(plain_log(joint(), 71));
     Noise burst(72, NoiseChannel::torque);
     for (std::size_t k = 3000; k < 4000; ++k) c.torque_nm[k] += 0.5 * burst.normal();
     CHECK(floor_of(c).rms_nm == Approx(noise_nm).epsilon(0.1));
-    DiagnosisRules rules;
-    rules.noise_floor.unsteady = 0.0;
-    CHECK(floor_of(c, rules).rms_nm > 2.0 * noise_nm);
 }

@@ -14,7 +14,7 @@ template <class Function>
 Place placed(const Case& c, const Function& torque_at, std::string_view term = "offset,torque_nm=1") {
     std::vector<double> torque_nm;
     for (std::size_t k = 0; k < c.size(); ++k) torque_nm.push_back(torque_at(k));
-    return place_of(c, torque_nm, parse_term(term), standard.place);
+    return place_of(c, torque_nm, parse_term(term));
 }
 
 }  // namespace

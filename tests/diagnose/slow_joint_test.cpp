@@ -57,26 +57,20 @@ TEST_CASE("what acts while a slow joint moves is not said to act at rest, and on
         forward.push_back(speed > 0.01 ? 0.3 : 0.0);
     }
     const Term term = parse_term("offset,torque_nm=1");
-    CHECK(place_of(slow, moving, term, standard.place).direction == Direction::both);
-    CHECK(place_of(slow, forward, term, standard.place).direction == Direction::positive);
-    CHECK(!place_of(slow, forward, term, standard.place).speed_deg_s.empty());
+    CHECK(place_of(slow, moving, term).direction == Direction::both);
+    CHECK(place_of(slow, forward, term).direction == Direction::positive);
+    CHECK(!place_of(slow, forward, term).speed_deg_s.empty());
 }
 
 TEST_CASE("a size that differs slow and fast, forth and back is seen on a slow joint as well") {
-    // Twice the friction in one direction. Both halves of the log have as much of each: only who looks at
-    // the direction sees it.
+    // Twice the friction in one direction.
     Trace log = slow_log(joint(), 81);
     for (std::size_t k = 0; k < log.size(); ++k) {
         const double speed = log.velocity_deg_s[k];
         if (std::abs(speed) > 0.01) log.torque_nm[k] += speed > 0.0 ? 0.4 : -0.2;
     }
-    DiagnosisRules halves;
-    halves.evenness.times = 2;
-    // So short that friction does not change within one.
-    halves.evenness.short_stretches = halves.evenness.long_stretches = 1'000;
-    const TestBench on(case_of(log), halves);
+    const TestBench on(case_of(log));
     const Unevenness uneven =
         unevenness(on.bench, joint_with({"coulomb-friction,torque_nm=0.3,width_deg_s=0.002"}), 3);
-    CHECK(uneven.part > standard.evenness.most_uneven);
-    CHECK(uneven.where == "slow and fast, both directions");
+    CHECK(uneven.part > limits::evenness::most_uneven);
 }

@@ -53,11 +53,11 @@ Candidate told_of(const Case& looked_at, const Model& open, const Model& near,
     std::vector<Finding> none;
     return final_values(looked_at, {noise_nm, noise_nm, {}},
                         {open, near, {}, std::vector<double>(open.terms.size(), 0.0), 0.0, true},
-                        {faults, none, open.terms.size()}, work, standard);
+                        {faults, none, open.terms.size()}, work);
 }
 
 Candidate told(const Trace& log, const Model& open, const Model& near) {
-    return told_of(whole_case(log.view(), default_smoothing, standard.recording), open, near, {});
+    return told_of(whole_case(log.view(), default_smoothing), open, near, {});
 }
 
 struct Errors {
@@ -115,8 +115,8 @@ TEST_CASE("a torque that the converter cuts on one side does not pull the values
     Errors offset, ripple;
     for (std::uint64_t seed = 80; seed < 96; ++seed) {
         const Trace log = with_encoder(logged(cut, tour(), seed));
-        Case looked_at = whole_case(log.view(), default_smoothing, standard.recording);
-        const auto faults = find_faults(looked_at, standard.faults);
+        Case looked_at = whole_case(log.view(), default_smoothing);
+        const auto faults = find_faults(looked_at);
         REQUIRE(faults.size() == 1);
         const Candidate found = told_of(looked_at, open, truth, faults);
         offset.look_at(found, truth, 3, 0);
@@ -143,9 +143,9 @@ TEST_CASE("a name whose size the values told in the end do not tell is taken bac
     Model open = opened(truth);
     Work work(1e9);
     const Candidate found =
-        final_values(whole_case(log.view(), default_smoothing, standard.recording), {noise_nm, noise_nm, {}},
+        final_values(whole_case(log.view(), default_smoothing), {noise_nm, noise_nm, {}},
                      {open, truth, {}, std::vector<double>(open.terms.size(), 0.0), 0.0, true},
-                     {no_fault, findings, 3}, work, standard);
+                     {no_fault, findings, 3}, work);
     CHECK(findings[0].status == FindingStatus::confirmed);
     if (offset_nm == 0.0) {
         CHECK(findings[1].status == FindingStatus::unidentifiable);

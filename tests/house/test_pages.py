@@ -120,7 +120,7 @@ class Pages(unittest.TestCase):
     def test_a_mistyped_name_of_any_list_is_answered_with_the_nearest(self):
         log = SOURCE / "data" / "paper_rest.csv"
         for words, nearest in ((("info", log, "--format", "cvs"), "csv"), (("filter", log, "--method", "swiching"), "switching"),
-                               (("export", log, "--to", "c-heder"), "c-header"), (("effects", "vicous-friction"), "viscous-friction"),
+                               (("export", log, "--to", "c-heder"), "c-header"), (("diagnose", "--effect", "vicous-friction"), "viscous-friction"),
                                (("simulate", "--sample-rate", "1kHz", "--gear-ratio", "100", "--motion", "sien"), "sine")):
             done = run(*map(str, words))
             self.assertEqual(done.returncode, 2, done.stderr)

@@ -73,7 +73,7 @@ TEST_CASE("effects have unique names in kebab-case, are found by them, and descr
                  "asymmetric-viscous-friction, quadratic-viscous-friction, stribeck-friction, load-friction, "
                  "position-dependent-friction"));
     CHECK_THROWS_WITH(find_effect("rippel"),
-                      Contains("did you mean ripple?") && Contains("ripplenotch effects"));
+                      Contains("did you mean ripple?") && Contains("ripplenotch diagnose --effects"));
 }
 
 TEST_CASE("each effect of the converter says how a log shows it, and no other effect does") {

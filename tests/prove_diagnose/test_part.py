@@ -28,4 +28,4 @@ class Part(unittest.TestCase):
     def test_what_is_in_no_catalogue_is_reported_where_it_is_and_under_no_name(self):
         rows = prove.rows(self, "outside", 1, ("noise burst", "random wander"))
         self.assertEqual(len(rows), 2)
-        self.assertEqual([(row["case"], row["named"]) for row in rows if row["named"] or not row["unexplained"]], [])
+        self.assertEqual([(row["case"], row["named"]) for row in rows if row["named"] or not row["place"]], [])

@@ -5,7 +5,7 @@ import unittest
 
 import prove  # first: it skips without numpy
 import numpy as np
-from prove_diagnose import cases, measured, score, strengths, yardsticks
+from prove_diagnose import cases, score
 
 
 def diagnosis(rounds, ambiguous=(), unexplained=()):
@@ -27,7 +27,7 @@ def ripple(order, amplitude=(0.2, 0.19, 0.21), phase=(175.0, 170.0, 180.0)):
 
 class Names(unittest.TestCase):
     def score(self, hidden, found, acceptable=()):
-        return score.names(None, acceptable, hidden, found)
+        return score.names(acceptable, hidden, found)
 
     def test_the_right_name_and_nothing_else_is_exact(self):
         self.assertTrue(self.score([RIPPLE], diagnosis([ripple(3)]))["exact"])
@@ -83,20 +83,3 @@ class Gap(unittest.TestCase):
         for spans, right in (([[10.1, 10.3]], True), ([[0.0, 40.0]], False), ([[20.0, 20.5]], False), ([], False)):
             found = diagnosis([], unexplained=[{"where": {"time_s": spans}}])
             self.assertEqual(score.place(case, (10.0, 10.4), found), right, spans)
-
-
-class Yardsticks(unittest.TestCase):
-    def test_they_find_an_effect_that_is_a_column_of_their_library_and_close_its_gap(self):
-        case = next(case for case in cases.studies("single", 1) if case.label == "gravity")
-        train, validate = (measured.Measured(case.log(p), strengths.GEAR_RATIO) for p in ("train", "validate"))
-        before = measured.baseline_gap_nm(train, validate)
-        for method, (found, after) in yardsticks.judge(train, validate).items():
-            self.assertIn(("gravity", None), found, method)
-            self.assertLess(after, 0.1 * before, method)
-
-    def test_forward_regression_takes_the_one_column_of_white_noise_plus_column(self):
-        rng = np.random.default_rng(5)
-        columns, base = rng.standard_normal((4000, 12)), np.ones((4000, 1))
-        values = 3.0 + 0.5 * columns[:, 7] + rng.standard_normal(4000)
-        self.assertEqual(yardsticks.forward_regression(base, columns, values), [7])
-        self.assertEqual(yardsticks.thresholded(base, columns, values, 0.2), [7])

@@ -67,7 +67,7 @@ COMMANDS = {
     "diagnose": "diagnose {log} --model {data}/paper_model.json",
     "design": "design {gear} --sample-rate 1kHz --speed 18:90:18",
     "export": "export --method lowpass,cutoff=13Hz,order=1 --sample-rate 1kHz --to c-header",
-    "effects": "effects",
+    "diagnose --effects": "diagnose --effects",
     "trend": "trend {data}/fleet.ndjson",
     "merge": "merge shards",
     "report": "report result.json",

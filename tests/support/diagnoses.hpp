@@ -21,7 +21,6 @@ inline Finding coulomb_finding() {
     finding.gap_after_nm = 0.0496759;
     finding.validation_before_nm = 0.433479;
     finding.validation_after_nm = 0.0503318;
-    finding.decisions = {{"price", 773388.0, 34.9626, "gain", false}};
     return finding;
 }
 
@@ -48,7 +47,6 @@ inline Diagnosis full_diagnosis() {
     diagnosis.model = diagnosis.baseline;
     for (const Finding& finding : diagnosis.rounds) diagnosis.model.terms.push_back(finding.term);
     diagnosis.values = {{0, 0, 0.4, {}, Interval{0.39, 0.41}, false}};
-    diagnosis.refused = {{{&find_effect("offset"), {}}, {{"price", 6.761, 24.53, "gain", true}}}};
     diagnosis.faults = {{parse_term("quantization,step_nm=0.01"), 12, {{1.5, 1.5}}, "steps of 0.01 Nm"}};
     diagnosis.named = {"coulomb-friction"};
     diagnosis.ambiguous = {{{"tone", "ripple"}, "move at another speed"}};

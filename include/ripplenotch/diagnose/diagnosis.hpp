@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "ripplenotch/core/trace.hpp"
-#include "ripplenotch/diagnose/rules.hpp"
 #include "ripplenotch/diagnose/setup.hpp"
 #include "ripplenotch/model/fit.hpp"
 #include "ripplenotch/model/model.hpp"
@@ -80,24 +79,20 @@ struct Evidence {
                 blocks_positive = 0;  ///< blocks of a second or more; those with a reduction of squares
 };
 
+/// A rival that is behind by less is not told from a finding: 400 to 1 were both as likely.
+inline constexpr double tie_margin = 12.0;
+/// Fewer samples do not distinguish noise from torque: the log is refused.
+inline constexpr std::size_t fewest_samples_diagnosed = 200;
+
 struct RivalFinding {
     std::string_view effect;
     double margin = 0.0;  ///< gain by which the finding is ahead of it
 };
 
-/// A rule that was applied to a finding or a candidate.
-struct Decision {
-    /// From diagnosis_rules(); "price": reduction of squares expected by chance, given all that was tried.
-    std::string rule;
-    double number = 0.0, limit = 0.0;
-    std::string unit;
-    bool against = false;  ///< it was a reason against; the last such decision is decisive
-};
-
 /// A candidate that the search did not add in its last step.
 struct RefusedCandidate {
     Term term;  ///< with the values that were tried
-    std::vector<Decision> decisions;
+    std::string reason;
 };
 
 /// One effect that was added, in the order of adoption.
@@ -111,8 +106,7 @@ struct Finding {
     double gap_before_nm = 0.0, gap_after_nm = 0.0;
     /// rms residual of the validation log, without it and with it, together with all accepted findings.
     std::optional<double> validation_before_nm, validation_after_nm;
-    std::string reason;               ///< reason of a status other than confirmed, as text
-    std::vector<Decision> decisions;  ///< in the order in which the rules were applied
+    std::string reason;  ///< reason of a status other than confirmed, as text
 };
 
 /// Effects between which this log does not decide.
@@ -240,11 +234,6 @@ struct Diagnosis {
     double false_alarm = 0.01;          ///< chance that a log with nothing hidden gets a name, by design
 };
 
-/// Probability in percent that one of the confirmed names is wrong, as counted over simulated logs that ended
-/// with the same verdict. Empty where nothing is named, and for names with an unexplained region remaining,
-/// which those logs do not have.
-[[nodiscard]] std::optional<double> wrong_percent(const Diagnosis& diagnosis);
-
 struct DiagnosisOptions {
     Seconds smoothing = default_smoothing;
     std::span<const std::string> without = {};  ///< names of effects that are not tried
@@ -260,11 +249,10 @@ struct DiagnosisOptions {
     bool others_move = false;  ///< joints of the same arm, whose torque on this one no term holds
     /// A delay at which the search for one begins as well.
     std::optional<Seconds> expected_delay = {};
-    DiagnosisRules rules = {};
 };
 
-/// Diagnoses a log of at least rules.recording.fewest_samples. `validation` is another log that nothing is
-/// fitted to; it may be absent. Throws UsageError: an unknown name in `without`, a rule outside its bounds, a
+/// Diagnoses a log of at least fewest_samples_diagnosed. `validation` is another log that nothing is
+/// fitted to; it may be absent. Throws UsageError: an unknown name in `without`, a
 /// model whose lines are not stated; DataError: a log too short, or without motion.
 [[nodiscard]] Diagnosis diagnose(const Model& model, const TraceView& log, const TraceView* validation,
                                  const DiagnosisOptions& options = {});

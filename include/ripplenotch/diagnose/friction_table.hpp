@@ -45,7 +45,6 @@ struct FrictionDiagnosis {
 /// Fits the frictions of the catalogue. Intervals are of the residual sum of squares along each value, with
 /// Student's t for the degrees of freedom. Throws UsageError for spans of different lengths, DataError for a
 /// table of too few rows or of one speed, or whose torque is against the motion.
-[[nodiscard]] FrictionDiagnosis diagnose_friction(const FrictionTable& table,
-                                                  const DiagnosisRules& rules = {});
+[[nodiscard]] FrictionDiagnosis diagnose_friction(const FrictionTable& table);
 
 }  // namespace ripplenotch

@@ -37,6 +37,9 @@ struct SeriesAgreement {
     [[nodiscard]] double relative_difference() const { return travel > 0.0 ? rms_difference / travel : 0.0; }
 };
 
+/// A shorter delay is within the definition of the sampling instant.
+inline constexpr double least_delay_samples = 0.75;
+
 /// A delay, d, in log(t) = scale * simulation(t - d): above 0 the log is behind, the simulation early.
 struct SimulationLag {
     bool identifiable = false;

@@ -11,31 +11,24 @@
 #include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/diagnose/diagnosis.hpp"
 #include "ripplenotch/diagnose/friction_table.hpp"
-#include "ripplenotch/diagnose/plan.hpp"
 #include "ripplenotch/document/provenance.hpp"
 #include "ripplenotch/export/joint_mjcf.hpp"
 
 namespace ripplenotch {
 
-/// Files that were written beside a diagnosis, and are told with it.
-struct DiagnosisWritten {
-    const MjcfAccount* mjcf = nullptr;  ///< the improved model in MuJoCo's words
-    const MotionPlan* plan = nullptr;   ///< none is told where nothing was open
-    std::string plan_file = {};
-};
-
 /// Schema ripplenotch/diagnosis/1. `gear` is that of the model as given; `arm` what an arm was given, if one;
+/// `mjcf` the improved model as it was written for MuJoCo.
 [[nodiscard]] std::string write_diagnosis(const Diagnosis& diagnosis, const GearAccount& gear,
                                           const Provenance& provenance, const ArmAccount* arm = nullptr,
-                                          const DiagnosisWritten& written = {});
+                                          const MjcfAccount* mjcf = nullptr);
 
 /// One of the joints of a log.
 struct DiagnosedJoint {
     std::string joint;
     const Diagnosis& diagnosis;
     const GearAccount& gear;
-    const ArmAccount* arm;  ///< what an arm was given, if one
-    DiagnosisWritten written = {};
+    const ArmAccount* arm;              ///< what an arm was given, if one
+    const MjcfAccount* mjcf = nullptr;  ///< the improved model as it was written for MuJoCo
 };
 
 /// Schema ripplenotch/diagnoses/1: a list of what write_diagnosis tells of each, with its joint's name.
@@ -46,7 +39,7 @@ struct DiagnosedJoint {
 [[nodiscard]] std::string write_friction(const FrictionDiagnosis& found, const Provenance& provenance);
 
 /// Reads a diagnosis back; `source` is its name in messages. What the document does not hold is not known
-/// then: values of Diagnosis::baseline and of refused candidates are empty, Evidence::raw_gain is nan,
+/// then: values of Diagnosis::baseline are empty, Evidence::raw_gain is nan,
 /// FittedValue has no standard error, and a finding's values have the place that it would have if every round
 /// were in the model. Throws DataError that names `source`, the field, what it holds and what was expected.
 [[nodiscard]] Diagnosis read_diagnosis(std::string_view text, const std::string& source);

@@ -36,9 +36,9 @@ struct ExportReport {
 
 [[nodiscard]] std::string export_report_to_json(const ExportReport& report, const Provenance& provenance);
 
-// The catalogue of effects for programs: what ripplenotch effects --json prints.
+// The catalogue of effects for programs: what ripplenotch diagnose --effects --json prints.
 
-/// {"schema": "ripplenotch/effects/1", "effects": [...]}; docs/commands/effects.md names the fields.
+/// {"schema": "ripplenotch/effects/1", "effects": [...]}; docs/commands/diagnose.md names the fields.
 [[nodiscard]] std::string write_catalogue(std::span<const Effect* const> effects,
                                           const Provenance& provenance);
 

@@ -9,9 +9,12 @@
 #include <vector>
 
 #include "ripplenotch/model/effect.hpp"
-#include "ripplenotch/model/fault_rules.hpp"
 
 namespace ripplenotch {
+
+/// In units of the noise: finer steps of a log are dithered by the noise and bend nothing, so that a log of
+/// four decimals has no fault.
+inline constexpr double step_of_noise = 1.5;
 
 /// A log as Effect::detect sees it. Spans have motion.size() entries.
 struct LoggedTorque {

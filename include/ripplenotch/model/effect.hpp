@@ -104,7 +104,6 @@ struct Polar {
 
 struct LoggedTorque;   // ripplenotch/model/detection.hpp
 struct DetectedFault;  // the same
-struct FaultRules;
 
 struct Effect {
     std::string_view name;      ///< kebab-case, stable
@@ -155,7 +154,7 @@ struct Effect {
 
     /// converter, in addition to apply: whether a log shows this effect, and where. Every one has it: a fit
     /// cannot determine the effects of a converter.
-    std::optional<DetectedFault> (*detect)(const LoggedTorque& log, const FaultRules& rules) = nullptr;
+    std::optional<DetectedFault> (*detect)(const LoggedTorque& log) = nullptr;
 };
 
 /// All effects in the order of effects.def.

@@ -278,15 +278,6 @@ def _disturb(label, rng, shared, setting, p, reference):
         reference[:, 3] = rng.uniform(2, 5) * size * walk / walk.std()
 
 
-def by_name(name):
-    """The case of that name."""
-    study, form, friction, kind, rest = name.split("-", 4)
-    label, _, number = rest.rpartition("-")
-    if study != "dynamics" or form not in FORMS:
-        raise SystemExit(f"prove-diagnose: '{name}' is no case of --physics")
-    return Case(form, friction, kind, label, int(number))
-
-
 def planned(first, seeds, forms, nulls, labels):
     """Singles of the labels, pairs, nulls and disturbances in every form, with friction in the simulation and without."""
     numbers, found = range(first, first + seeds), []

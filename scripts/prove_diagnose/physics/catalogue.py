@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """All hidden effects by label, and what of joint and motion they need."""
 
-import subprocess
-
 from . import effects, later
 
 GRAVITY = {"load-friction": True, "payload": True, "gravity": True, "ripple-load-dependence": True, "inertia": False, **later.GRAVITY}
@@ -20,13 +18,6 @@ def drawer(label):
 
 def labels():
     return [*effects.SINGLES, *later.LATER]
-
-
-def listed(program):
-    """The labels of effects that the program knows: those of `later` only once it lists them."""
-    said = subprocess.run([program, "effects"], capture_output=True, text=True, check=True).stdout
-    names = {line.split()[0] for line in said.splitlines() if line.strip()}
-    return [*effects.SINGLES, *(label for label in later.LATER if label in names)]
 
 
 def gravity(labels):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Effects that join the study as soon as the program lists them (`ripplenotch effects`); otherwise as in effects.py."""
+"""The second half of the effects, as in effects.py."""
 
 import math
 

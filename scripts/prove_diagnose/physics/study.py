@@ -83,19 +83,16 @@ def failed(row):
 
 @dataclasses.dataclass(frozen=True)
 class Study:
-    program: str
     forms: tuple = cases.FORMS
     options: tuple = ()
     nulls: int | None = None
     kinds: tuple = ()
-    case: str | None = None  # only this one
+    seeds = 5
 
     def chosen(self, first, seeds):
         """Cases by form; nulls, unless their number is given, are forty times as many as the seeds."""
-        if self.case:
-            return [cases.by_name(self.case)]
         nulls = 40 * seeds if self.nulls is None else self.nulls
-        return [case for case in cases.planned(first, seeds, self.forms, nulls, catalogue.listed(self.program))
+        return [case for case in cases.planned(first, seeds, self.forms, nulls, catalogue.labels())
                 if not self.kinds or case.kind in self.kinds]
 
     def trial(self, program, case, keep=None):
@@ -125,7 +122,12 @@ class Study:
     def blocks(about, rows):
         return tables.blocks(about, rows)
 
+    @staticmethod
+    def write(case, folder):
+        folder.mkdir(parents=True, exist_ok=True)
+        case.write(folder)
 
-def answer(row):
-    """One-line summary of a row, for the progress output."""
-    return (", ".join(row["named"]) or "nothing") + ("" if row["exact"] else " WRONG") + ("".join(f"; {g}" for g in row["grown"]))
+    @staticmethod
+    def answer(row):
+        """One-line summary of a row, for the progress output."""
+        return (", ".join(row["named"]) or "nothing") + ("" if row["exact"] else " WRONG") + ("".join(f"; {g}" for g in row["grown"]))

@@ -3,7 +3,7 @@
 
 import page_tables
 
-from .. import bars, table
+from .. import table
 from . import cases, catalogue
 
 CONFIGURATIONS = [(form, friction) for form in cases.FORMS for friction in ("friction", "frictionless")
@@ -34,16 +34,16 @@ def asked(rows):
         of = [row for row in rows if row["form"] == form]
         for kind, least in (("single", 0.85), ("pair", 0.75)):
             group = [row["exact"] for row in of if row["kind"] == kind]
-            lines.append(bars.line(f"`{form}`, {KINDS[kind]}: names exactly right", f"at least {100 * least:.0f} %", group, least))
+            lines.append(table.line(f"`{form}`, {KINDS[kind]}: names exactly right", f"at least {100 * least:.0f} %", group, least))
         hidden = [bool(row["false"]) for row in of if row["kind"] in ("single", "pair")]
-        lines.append(bars.line(f"`{form}`, hidden effects: a false name", "at most 2 %", hidden, high=0.02))
-        lines.append(bars.line(f"`{form}`, nothing hidden: a name", "at most 1 %", [bool(r["named"]) for r in of if r["kind"] == "null"],
+        lines.append(table.line(f"`{form}`, hidden effects: a false name", "at most 2 %", hidden, high=0.02))
+        lines.append(table.line(f"`{form}`, nothing hidden: a name", "at most 1 %", [bool(r["named"]) for r in of if r["kind"] == "null"],
                                high=0.01))
-        lines.append(bars.line(f"`{form}`, no effect of the catalogue: a name", "at most 2 %",
+        lines.append(table.line(f"`{form}`, no effect of the catalogue: a name", "at most 2 %",
                                [bool(r["named"]) for r in of if r["kind"] == "outside"], high=0.02))
-        lines.append(bars.line(f"`{form}`: the residual grows", "none", [bool(row["grown"]) for row in of], high=0.0))
-        lines.append(bars.line(f"`{form}`: 95 % interval covers the truth", "90 to 98 %", held(of), 0.9, 0.98))
-    return table.markdown(bars.HEAD, [line for line in lines if line[2] != "no logs"])
+        lines.append(table.line(f"`{form}`: the residual grows", "none", [bool(row["grown"]) for row in of], high=0.0))
+        lines.append(table.line(f"`{form}`: 95 % interval covers the truth", "90 to 98 %", held(of), 0.9, 0.98))
+    return table.markdown(table.HEAD, [line for line in lines if line[2] != "no logs"])
 
 
 def summary(rows):

@@ -26,6 +26,10 @@ class Case:
     number: int
 
     @property
+    def label(self):
+        return self.kind
+
+    @property
     def name(self):
         return f"semi-{self.robot}-{self.kind}-{self.number}"
 
@@ -144,12 +148,3 @@ def made(case, folder):
 def planned(seeds, first=0, kinds=(*KINDS, *DISTURBANCES)):
     """Every kind on every robot once, then again."""
     return [Case(robot, kind, n) for n in range(first, first + seeds) for kind in kinds for robot in robots.ROBOTS]
-
-
-def by_name(name):
-    """The case of that name."""
-    number = name.rpartition("-")[2]
-    found = [case for case in planned(1, int(number)) if case.name == name] if number.isdigit() else []
-    if not found:
-        raise SystemExit(f"prove-diagnose: there is no semi-synthetic case '{name}'; one is {Case('ur10', 'drift', 5000).name}")
-    return found[0]

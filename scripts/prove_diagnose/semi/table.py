@@ -3,7 +3,7 @@
 
 import page_tables
 
-from .. import bars, table
+from .. import table
 from . import cases
 
 ENOUGH = 1.5  # times the residual's rms
@@ -23,14 +23,14 @@ def bar_lines(rows):
     stribeck = [row for row in hidden if row["label"] == "coulomb-friction+stribeck-friction"]
     nothing = [row for row in rows if not hides(row)]
     return [
-        bars.line("names exactly right, each hidden effect at least 0.7 times the residual", "at least 95 %",
+        table.line("names exactly right, each hidden effect at least 0.7 times the residual", "at least 95 %",
              [r["exact"] for r in hidden], 0.95),
-        bars.line("the same, each 1.5 times or more", "at least 97 %", [r["exact"] for r in large], 0.97),
-        bars.line("Coulomb with Stribeck friction", "at least 90 %", [r["exact"] for r in stribeck], 0.9),
-        bars.line("a false name, of all logs", "at most 0.5 %", [r["false"] for r in rows], 0.0, 0.005),
-        bars.line("nothing hidden, or a disturbance outside the catalogue: no name", "each", [not r["named"] for r in nothing], 1.0),
-        bars.line("named, or in a tie", "at least 98 %", [r["offered"] for r in hidden], 0.98),
-        bars.line("95 % interval covers the truth", "90 to 98 %", held(hidden), 0.9, 0.98),
+        table.line("the same, each 1.5 times or more", "at least 97 %", [r["exact"] for r in large], 0.97),
+        table.line("Coulomb with Stribeck friction", "at least 90 %", [r["exact"] for r in stribeck], 0.9),
+        table.line("a false name, of all logs", "at most 0.5 %", [r["false"] for r in rows], 0.0, 0.005),
+        table.line("nothing hidden, or a disturbance outside the catalogue: no name", "each", [not r["named"] for r in nothing], 1.0),
+        table.line("named, or in a tie", "at least 98 %", [r["offered"] for r in hidden], 0.98),
+        table.line("95 % interval covers the truth", "90 to 98 %", held(hidden), 0.9, 0.98),
     ]
 
 
@@ -61,23 +61,8 @@ def wrong(rows):
     return table.listed("diagnose-arms-semi-wrong", "Cases that are not exactly right", lines)
 
 
-def numbers_told(rows):
-    """"17000 to 17003 and 18000": of the cases, each run of numbers without a gap."""
-    runs = []
-    for number in sorted({int(row["case"].rpartition("-")[2]) for row in rows}):
-        if runs and number == runs[-1][1] + 1:
-            runs[-1][1] = number
-        else:
-            runs.append([number, number])
-    return " and ".join(f"{first} to {last}" if last > first else f"{first}" for first, last in runs) or "none"
-
-
-def blocks(abouts, rows):
+def blocks(about, rows):
     """The tables by the name of their mark."""
     rows = sorted(rows, key=lambda r: r["case"])
-    first = abouts[0] if abouts else {}
-    options = f", options {' '.join(first['options'])}" if first.get("options") else ""
-    said = (f"{len(rows)} logs, numbers {numbers_told(rows)}, `diagnose` of commit `{first.get('commit', 'unknown')}`"
-            f"{options}.")
-    head = bars.shown("diagnose-arms-semi-criteria", bar_lines(rows))
-    return {"semi": table.joined(said, head, by_kind(rows), wrong(rows))}
+    head = table.shown("diagnose-arms-semi-criteria", bar_lines(rows))
+    return {"semi": table.joined(about, head, by_kind(rows), wrong(rows))}

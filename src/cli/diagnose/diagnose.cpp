@@ -18,6 +18,7 @@
 #include "ripplenotch/chart/diagnosis_figure.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/document/diagnosis_json.hpp"
+#include "ripplenotch/document/simulation_json.hpp"
 #include "ripplenotch/verdict/gear_choice.hpp"
 
 namespace ripplenotch {
@@ -47,25 +48,63 @@ std::string joints_table(const std::vector<JointDiagnosis>& joints) {
     return text_table(cells, validated ? "lrrrrll" : "lrrll");
 }
 
-/// Every rule with its value, those of --rule included.
-std::string rules_text(const DiagnosisRules& rules) {
-    std::vector<std::vector<std::string>> rows = {{"rule", "is", "from", "to", "kind", "unit", "why"}};
-    for (const DiagnosisRule& rule : diagnosis_rules()) {
-        rows.push_back({rule.name, shortest(rule.get(rules)), shortest(rule.lowest), shortest(rule.highest),
-                        rule.whole ? "whole" : "number", std::string(rule.unit), std::string(rule.why)});
+// The catalogue of effects.
+
+std::string catalogue_text() {
+    std::vector<std::vector<std::string>> rows = {{"effect", "acts on", "summary"}};
+    for (const Effect* effect : catalogue()) {
+        rows.push_back(
+            {std::string(effect->name), std::string(side_name(effect->side)), std::string(effect->summary)});
     }
-    return text_table(rows, "lrrrl");
+    return text_table(rows, "l");
+}
+
+std::string parameters_text(const Effect& effect) {
+    std::vector<std::vector<std::string>> rows = {
+        {"parameter", "unit", "neutral", "from", "to", "left out", "meaning"}};
+    for (const Parameter& p : effect.parameters) {
+        const std::string left_out = p.left_out == LeftOut::fitted    ? "is fitted"
+                                     : p.left_out == LeftOut::refused ? "is refused"
+                                                                      : "is " + shortest(p.start);
+        rows.push_back({std::string(p.name), p.unit.empty() ? "-" : std::string(p.unit), shortest(p.neutral),
+                        shortest(p.lower), shortest(p.upper), left_out, std::string(p.help)});
+    }
+    return text_table(rows, "llrrrll");
+}
+
+std::string effect_text(const Effect& effect) {
+    std::string text = fmt::format("{}: {}\n\n  {}\n\n{}\nacts on: {}\nsymptom: {}\nlook-alikes:\n",
+                                   effect.name, effect.summary, effect.equation, parameters_text(effect),
+                                   side_name(effect.side), effect.symptom);
+    for (const LookAlike& other : effect.look_alikes)
+        text +=
+            fmt::format("  {}, when: {}\n    to distinguish: {}\n", other.name, other.when, other.told_by);
+    return text + fmt::format("source: {}\n", effect.source);
+}
+
+ExitCode print_effects(const DiagnoseRequest& request, const std::string& command_line) {
+    const bool stands_alone = request.path.empty() && request.model.empty() && !request.improved;
+    if (!stands_alone || (request.effects && request.effect))
+        raise<UsageError>(
+            "--effects and --effect NAME stand alone: they print the catalogue and read no LOG");
+    const Effect* only = request.effect ? &find_effect(*request.effect) : nullptr;
+    std::string text = only != nullptr ? effect_text(*only) : catalogue_text();
+    if (request.common.json) {
+        const auto effects = only != nullptr ? std::span<const Effect* const>(&only, 1) : catalogue();
+        text = write_catalogue(effects, {.inputs = {}, .command = command_line});
+    }
+    write_text("-", text, ByteSink::Overwrite::no);
+    return ExitCode::done;
 }
 
 std::string story(const DiagnoseRequest& request, const JointDiagnosis& one) {
     return (one.given.account ? arm_text(*one.given.account) : "") +
            diagnosis_story(request.common, one.diagnosis, request.explain) +
            (one.diagnosis.model.has_gear_ratio() ? "" : gear_in_words(one.gear) + "\n") +
-           (one.mjcf ? mjcf_text(*one.mjcf) : "") + (one.planned ? plan_text(*one.planned) : "");
+           (one.mjcf ? mjcf_text(*one.mjcf) : "");
 }
 
 void write_improved(const DiagnoseRequest& request, JointDiagnosis& one) {
-    if (request.plan) one.planned = plan_for(request, one);
     if (!request.improved) return;
     const std::string path = with_joint(*request.improved, one.joint);
     if (names_mjcf(path)) {
@@ -77,13 +116,7 @@ void write_improved(const DiagnoseRequest& request, JointDiagnosis& one) {
     say(request.common, fmt::format("the improved model is in {}", path));
 }
 
-DiagnosisWritten written_of(const JointDiagnosis& one) {
-    DiagnosisWritten written;
-    if (one.mjcf) written.mjcf = &*one.mjcf;
-    if (one.planned && one.planned->plan) written.plan = &*one.planned->plan;
-    if (one.planned) written.plan_file = one.planned->file;
-    return written;
-}
+const MjcfAccount* mjcf_of(const JointDiagnosis& one) { return one.mjcf ? &*one.mjcf : nullptr; }
 
 ExitCode run_one(const DiagnoseRequest& request, GivenSource& given, const std::string& command_line) {
     JointDiagnosis one = diagnosed_joint(request, std::nullopt, given, command_line);
@@ -92,7 +125,7 @@ ExitCode run_one(const DiagnoseRequest& request, GivenSource& given, const std::
     write_text("-",
                request.common.json
                    ? write_diagnosis(one.diagnosis, one.gear, one.provenance,
-                                     one.given.account ? &*one.given.account : nullptr, written_of(one))
+                                     one.given.account ? &*one.given.account : nullptr, mjcf_of(one))
                    : story(request, one),
                ByteSink::Overwrite::no);
     draw_plot(request.plot, request.common, one.provenance, [&] {
@@ -114,7 +147,7 @@ std::string list_of(const std::vector<JointDiagnosis>& all, const std::string& c
     std::vector<DiagnosedJoint> joints;
     for (const JointDiagnosis& one : all) {
         joints.push_back({one.joint, one.diagnosis, one.gear,
-                          one.given.account ? &*one.given.account : nullptr, written_of(one)});
+                          one.given.account ? &*one.given.account : nullptr, mjcf_of(one)});
         for (const InputRecord& input : one.provenance.inputs) {
             const auto same = [&](const InputRecord& known) { return known.name == input.name; };
             if (std::none_of(provenance.inputs.begin(), provenance.inputs.end(), same))
@@ -144,11 +177,7 @@ ExitCode run_all(const DiagnoseRequest& request, GivenSource& given, const std::
 }
 
 ExitCode run_diagnose(const DiagnoseRequest& request, const std::string& command_line) {
-    const DiagnosisRules rules = rules_of(request);  // refused before anything is read
-    if (request.list_rules) {
-        write_text("-", rules_text(rules), ByteSink::Overwrite::no);
-        return ExitCode::done;
-    }
+    if (request.effects || request.effect) return print_effects(request, command_line);
     if (const auto table = friction_table_of(request))
         return run_friction_table(request, *table, command_line);
     check(request);
@@ -177,18 +206,12 @@ std::function<ExitCode()> attach_diagnose(Options& options) {
                   "an effect that is not tried; may be given several times");
     options.texts("--accept", request->accept, "NAME",
                   "an uncertain finding to include in the model anyway; may be given several times");
-    options.text("--plan", request->plan, "FILE",
-                 "the shortest motion, of 30 s at most, that would decide what the log does not: rows of "
-                 "time, position and velocity; needs --limits");
-    options.writes("--plan");
-    options.text("--limits", request->limits, "KEY=VALUE,...",
-                 "of --plan: speed=90deg/s,acceleration=300deg/s2,range=-90deg:90deg");
     options.flag("--explain", request->explain,
-                 "also print the rules applied to each finding, with their numbers and limits");
-    options.texts("--rule", request->rules, "NAME=VALUE",
-                  "for studies: a limit that a diagnosis decides by; may be given several times");
-    options.flag("--rules", request->list_rules,
-                 "list these limits, their bounds, units and reasons, and end; needs no LOG");
+                 "also print all findings in full, and in one line each why a candidate was not named");
+    options.flag("--effects", request->effects,
+                 "list the effects that models are made of, and end; needs no LOG");
+    options.text("--effect", request->effect, "NAME",
+                 "explain one effect (equation, parameters, symptom, look-alikes), and end; needs no LOG");
     options.number("--smoothing", request->smoothing, Dimension::time,
                    "window in which the log's velocity is fitted to give speed and acceleration");
     options.flag("--require-conclusive", request->require_conclusive,

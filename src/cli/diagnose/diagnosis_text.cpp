@@ -206,9 +206,7 @@ std::string round_text(const Finding& finding, std::size_t number) {
     for (const RivalFinding& rival : finding.alternatives)
         text += fmt::format(
             "  instead of it, {} would leave {} more{}\n", rival.effect, short_number(rival.margin),
-            finding.status == FindingStatus::ambiguous && rival.margin < DiagnosisRules{}.judge.tie_margin
-                ? " (a tie)"
-                : "");
+            finding.status == FindingStatus::ambiguous && rival.margin < tie_margin ? " (a tie)" : "");
     return text;
 }
 
@@ -216,21 +214,6 @@ std::string round_text(const Finding& finding, std::size_t number) {
 std::string doubtful_text(const Finding& finding) {
     return fmt::format("not confirmed: {}{}, {}: {}\n", finding.term.effect->name, size_text(finding),
                        status_name(finding.status), finding.reason);
-}
-
-// The last rule that spoke against decided; without one, all are told.
-std::string decisions_text(const std::vector<Decision>& decisions) {
-    std::string decided, passed;
-    for (const Decision& decision : decisions) {
-        const std::string text =
-            fmt::format("{} {} {}, limit {}", decision.rule, short_number(decision.number), decision.unit,
-                        short_number(decision.limit));
-        if (decision.against)
-            decided = fmt::format("  decided by {}\n", text);
-        else
-            passed += fmt::format("  passed {}\n", text);
-    }
-    return passed + decided;
 }
 
 std::string region_text(const ResidualRegion& region) {
@@ -285,12 +268,10 @@ std::string findings_text(const Diagnosis& diagnosis, bool explain) {
     for (std::size_t i = 0; i < diagnosis.rounds.size(); ++i) {
         const Finding& finding = diagnosis.rounds[i];
         text += explain || !is_doubtful(finding) ? round_text(finding, i + 1) : doubtful_text(finding);
-        if (explain) text += decisions_text(finding.decisions);
     }
     if (!explain) return text;
     for (const RefusedCandidate& candidate : diagnosis.refused)
-        text +=
-            fmt::format("refused: {}\n{}", candidate.term.effect->name, decisions_text(candidate.decisions));
+        text += fmt::format("not named: {}: {}\n", candidate.term.effect->name, candidate.reason);
     return text;
 }
 

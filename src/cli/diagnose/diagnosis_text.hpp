@@ -20,7 +20,7 @@ namespace ripplenotch {
 /// "torque_nm = 0.8 [0.7, 0.9]"
 [[nodiscard]] std::string value_text(const Term& term, const FittedValue& value);
 
-/// `explain`: with the rules that were asked about each finding and each refused candidate.
+/// `explain`: all findings in full, and why each refused candidate was not named.
 [[nodiscard]] std::string diagnosis_story(const CommonOptions& common, const Diagnosis& diagnosis,
                                           bool explain = false);
 

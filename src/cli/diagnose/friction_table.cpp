@@ -30,7 +30,7 @@ ReadOptions reading_of(const DiagnoseRequest& request) {
 bool may_be_table(const DiagnoseRequest& request) {
     const bool has_model = !request.model.empty() && request.model != "auto";
     return !request.path.empty() && request.path != "-" && !has_model && !request.log.sample_rate &&
-           !request.log.constant_speed && !request.given.any() && !request.validate && !request.plan;
+           !request.log.constant_speed && !request.given.any() && !request.validate;
 }
 
 // Opens as a log: then it has a clock, in a column or in its head, or its motion is a position.
@@ -62,7 +62,6 @@ void check_table_options(const DiagnoseRequest& request) {
     };
     refuse(!request.model.empty() && request.model != "auto", "--model FILE");
     refuse(request.validate.has_value(), "--validate");
-    refuse(request.plan.has_value(), "--plan");
     refuse(request.given.simulated.has_value(), "--simulated");
     refuse(request.given.arm.has_value(), "--arm");
     refuse(request.log.sample_rate.has_value(), "--sample-rate");
@@ -130,7 +129,7 @@ std::optional<Log> friction_table_of(const DiagnoseRequest& request) {
                          request.path);
     Log table = read_log(request.path, reading_of(request));
     // A log of fewer rows is refused, so that such a file can only be a table.
-    const std::size_t of_a_log = DiagnosisRules{}.recording.fewest_samples;
+    const std::size_t of_a_log = fewest_samples_diagnosed;
     if (!is_stated && table.trace.size() >= of_a_log)
         raise<DataError>(
             "{}: {} rows of speed and torque without a time, which may be a log or a table of constant "
@@ -148,7 +147,7 @@ ExitCode run_friction_table(const DiagnoseRequest& request, const Log& table,
     say_layout(request.common, table.layout);
     FrictionDiagnosis found;
     try {
-        found = diagnose_friction({table.trace.velocity_deg_s, table.trace.torque_nm}, rules_of(request));
+        found = diagnose_friction({table.trace.velocity_deg_s, table.trace.torque_nm});
     } catch (const DataError& error) {  // the library knows no file
         raise<DataError>("{}: {}", request.path, error.what());
     }

@@ -11,7 +11,6 @@
 #include "cli/options/plot_request.hpp"
 #include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/diagnose/diagnosis.hpp"
-#include "ripplenotch/diagnose/plan.hpp"
 #include "ripplenotch/export/joint_mjcf.hpp"
 #include "ripplenotch/model/model.hpp"
 #include "ripplenotch/model/motion.hpp"
@@ -32,9 +31,10 @@ struct DiagnoseRequest {
     GearOptions gear;                     ///< a ratio alone, in place of a model
     GivenOptions given;
     std::optional<std::string> validate;
-    std::optional<std::string> plan, limits;  ///< a file; "speed=90deg/s,acceleration=..."
-    std::vector<std::string> without, rules, accept;
-    bool list_rules = false, explain = false;
+    std::vector<std::string> without, accept;
+    bool explain = false;
+    bool effects = false;               ///< list the catalogue, and end
+    std::optional<std::string> effect;  ///< explain this one of it, and end
     Seconds smoothing = default_smoothing;
     bool require_conclusive = false;
     bool friction_table = false;  ///< the log is said to be one
@@ -46,13 +46,6 @@ struct DiagnoseRequest {
 void check(const DiagnoseRequest& request);
 /// The file of --improved-model, of which names may end so.
 void check_improved(const DiagnoseRequest& request, std::string_view endings);
-[[nodiscard]] DiagnosisRules rules_of(const DiagnoseRequest& request);
-
-/// What --plan wrote.
-struct PlannedMotion {
-    std::string file;
-    std::optional<MotionPlan> plan;  ///< none: nothing is open
-};
 
 struct JointDiagnosis {
     std::string joint;  ///< empty where the log names none
@@ -62,7 +55,6 @@ struct JointDiagnosis {
     Diagnosis diagnosis;
     Provenance provenance;
     std::optional<MjcfAccount> mjcf = {};  ///< what the improved model was written as, if MuJoCo's
-    std::optional<PlannedMotion> planned = {};
 
     [[nodiscard]] bool is_conclusive() const;
 };
@@ -77,8 +69,6 @@ struct JointDiagnosis {
 /// its chain; the others are told.
 [[nodiscard]] std::vector<std::string> joints_of(const DiagnoseRequest& request, GivenSource& given);
 
-// --plan FILE --limits ...: the motion that would decide what a log left open, as a file of positions.
-
 // --improved-model joint.xml: the improved model in the words of MuJoCo, as far as it has words for it.
 
 /// Names that end in .xml or .mjcf.
@@ -91,11 +81,5 @@ struct JointDiagnosis {
 
 /// What was held and what was not, a line each.
 [[nodiscard]] std::string mjcf_text(const MjcfAccount& account);
-
-/// Plans for one joint and writes its rows of time, position and velocity, where something is open.
-[[nodiscard]] PlannedMotion plan_for(const DiagnoseRequest& request, const JointDiagnosis& one);
-
-/// What it would tell, a line each.
-[[nodiscard]] std::string plan_text(const PlannedMotion& planned);
 
 }  // namespace ripplenotch

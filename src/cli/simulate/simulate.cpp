@@ -97,8 +97,9 @@ void attach_joint_model(Options& options, JointModelOptions& joint) {
     options.number("--inertia", joint.inertia_kgm2, Dimension::inertia, "adds the effect inertia");
     options.texts("--ripple", joint.ripples, "ORDER:AMPLITUDE[:PHASE]",
                   "adds the effect ripple: 1:0.8Nm:0deg; repeatable");
-    options.texts("--effect", joint.effects, "NAME,KEY=VALUE,...",
-                  "adds any effect: offset,torque_nm=0.2; repeatable; 'ripplenotch effects' lists them");
+    options.texts(
+        "--effect", joint.effects, "NAME,KEY=VALUE,...",
+        "adds any effect: offset,torque_nm=0.2; repeatable; 'ripplenotch diagnose --effects' lists them");
 }
 
 struct SimulateOptions {

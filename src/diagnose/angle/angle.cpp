@@ -9,6 +9,7 @@
 #include "diagnose/case/case.hpp"
 #include "diagnose/case/known_torque.hpp"
 #include "diagnose/case/lines.hpp"
+#include "diagnose/limits.hpp"
 #include "diagnose/search/search.hpp"
 #include "model/fit/weighing.hpp"
 #include "model/motion/local_motion.hpp"
@@ -89,7 +90,7 @@ double grid_deg(const Model& stated) {
     return 360.0 / ripple.ratio.value() / static_cast<double>(places_a_turn(ripple));
 }
 
-Walk walk_of(const Case& looked_at, const Model& stated, WalkOf of, const RecordingRules& rules) {
+Walk walk_of(const Case& looked_at, const Model& stated, WalkOf of) {
     Walk walk;
     const auto& time_s = looked_at.motion.time_s;
     if (of == WalkOf::other_log) {
@@ -97,7 +98,7 @@ Walk walk_of(const Case& looked_at, const Model& stated, WalkOf of, const Record
         walk.deviation.push_back(grid_deg(stated));
     }
     const double usual_deg = looked_at.walk_deg * std::sqrt(time_s.back() - time_s.front());
-    for (std::size_t mode = 1; usual_deg > 0.0 && mode <= rules.walk_modes; ++mode) {
+    for (std::size_t mode = 1; usual_deg > 0.0 && mode <= limits::recording::walk_modes; ++mode) {
         walk.position_deg.push_back(sine_of(time_s, mode));
         walk.deviation.push_back(usual_deg * std::numbers::sqrt2 /
                                  ((static_cast<double>(mode) - 0.5) * std::numbers::pi));
@@ -160,18 +161,18 @@ double best_place(const Case& other, const Model& stated, double step_deg, std::
 // with the values that `open` leaves out and `stated` has: by the sines of motion_errors(), drawn to their
 // usual sizes, and for another log by a constant. A case without a random walk is moved by the constant
 // alone, the log itself not at all.
-void step_of_walk(Case& looked_at, const Model& open, const Model& stated, WalkOf of,
-                  const RecordingRules& rules) {
-    Walk walk = walk_of(looked_at, stated, of, rules);
+void step_of_walk(Case& looked_at, const Model& open, const Model& stated, WalkOf of) {
+    Walk walk = walk_of(looked_at, stated, of);
     if (walk.position_deg.empty()) return;
     if (of == WalkOf::log) add_walk_slopes(walk, looked_at, open, stated);
     const double rate_hz = looked_at.motion.sample_rate.value();
-    for (auto& torque : walk.torque_nm) torque = quick_part(torque, rate_hz, rules.angle_window_s);
-    const auto left =
-        quick_part(left_of_stated(looked_at, stated, looked_at.motion), rate_hz, rules.angle_window_s);
-    const auto sizes =
-        Ridge(walk.torque_nm, walk.deviation, quick_noise_of(looked_at, left, rules.angle_window_s))
-            .solve(left);
+    for (auto& torque : walk.torque_nm)
+        torque = quick_part(torque, rate_hz, limits::recording::angle_window_s);
+    const auto left = quick_part(left_of_stated(looked_at, stated, looked_at.motion), rate_hz,
+                                 limits::recording::angle_window_s);
+    const auto sizes = Ridge(walk.torque_nm, walk.deviation,
+                             quick_noise_of(looked_at, left, limits::recording::angle_window_s))
+                           .solve(left);
     std::vector<double> change(looked_at.size(), 0.0);
     for (std::size_t i = 0; i < walk.position_deg.size(); ++i)
         add_scaled(sizes[i], walk.position_deg[i].data(), change.data(), change.size());
@@ -180,33 +181,34 @@ void step_of_walk(Case& looked_at, const Model& open, const Model& stated, WalkO
 
 }  // namespace
 
-void take_out_walk(Case& looked_at, const Model& open, const Model& stated, WalkOf of,
-                   const RecordingRules& rules) {
-    for (int step = 0; step < walk_steps; ++step) step_of_walk(looked_at, open, stated, of, rules);
+void take_out_walk(Case& looked_at, const Model& open, const Model& stated, WalkOf of) {
+    for (int step = 0; step < walk_steps; ++step) step_of_walk(looked_at, open, stated, of);
 }
 
-void put_in_place(Case& other, const Model& stated, const RecordingRules& rules) {
+void put_in_place(Case& other, const Model& stated) {
     const StatedRipple ripple = stated_ripple(stated);
     if (ripple.orders.empty() && !goes_with_output(stated)) return;
     const double turn_deg = 360.0 / ripple.ratio.value();
     const auto settle = [&](double place_deg) {
         other.motion = moved_by_walk(std::move(other.motion), place_deg);
-        take_out_walk(other, stated, stated, WalkOf::other_log, rules);
+        take_out_walk(other, stated, stated, WalkOf::other_log);
     };
-    settle(best_place(other, stated, grid_deg(stated), places_a_turn(ripple), rules.angle_window_s));
+    settle(best_place(other, stated, grid_deg(stated), places_a_turn(ripple),
+                      limits::recording::angle_window_s));
     if (!goes_with_output(stated)) return;
     const auto turns = static_cast<std::size_t>(std::max(1.0, std::round(ripple.ratio.value())));
     settle(best_place(other, stated, turn_deg, turns, 0.0));
 }
 
-bool tells_position(const Motion& motion, const RecordingRules& rules) {
+bool tells_position(const Motion& motion) {
     double forth = 0.0, back = 0.0;
     for (std::size_t k = 1; k < motion.size(); ++k) {
         const double by = motion.position_deg[k] - motion.position_deg[k - 1];
         (by > 0.0 ? forth : back) += std::abs(by);
     }
     const auto [low, high] = std::minmax_element(motion.position_deg.begin(), motion.position_deg.end());
-    return std::min(forth, back) > rules.least_turned_deg && *high - *low >= rules.least_span_deg;
+    return std::min(forth, back) > limits::recording::least_turned_deg &&
+           *high - *low >= limits::recording::least_span_deg;
 }
 
 namespace {
@@ -230,21 +232,21 @@ Moved moved_by(const std::vector<double>& before, const std::vector<double>& aft
 
 }  // namespace
 
-void straighten(Case& whole, const Model& model, const DiagnosisRules& rules) {
+void straighten(Case& whole, const Model& model) {
     for (int step = 0; step < walk_steps; ++step) {
-        Work free(rules.search.most_evaluations);
-        ModelBench rough(whole, {1.0, 1.0, {}}, free, rules);
+        Work free(limits::search::most_evaluations);
+        ModelBench rough(whole, {1.0, 1.0, {}}, free);
         const Candidate fitted = baseline(rough, model);
-        step_of_walk(whole, fitted.open, fitted.stated, WalkOf::log, rules.recording);
+        step_of_walk(whole, fitted.open, fitted.stated, WalkOf::log);
     }
 }
 
-bool straightened_by(Case& whole, const Candidate& found, double floor_nm, const DiagnosisRules& rules) {
+bool straightened_by(Case& whole, const Candidate& found, double floor_nm) {
     std::vector<double> change = predict_nm(found.stated, whole.motion);
-    take_out_walk(whole, found.open, found.stated, WalkOf::log, rules.recording);
+    take_out_walk(whole, found.open, found.stated, WalkOf::log);
     const std::vector<double> now = predict_nm(found.stated, whole.motion);
     for (std::size_t k = 0; k < now.size(); ++k) change[k] -= now[k];
-    return rms(change) > material_sigma(whole, rules) * floor_nm;
+    return rms(change) > material_sigma(whole) * floor_nm;
 }
 
 AngleBefore::AngleBefore(const Case& log, bool has_position) {

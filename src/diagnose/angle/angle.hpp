@@ -19,25 +19,23 @@ enum class WalkOf {
 };
 
 /// All steps, with the same model.
-void take_out_walk(Case& looked_at, const Model& open, const Model& stated, WalkOf of,
-                   const RecordingRules& rules);
+void take_out_walk(Case& looked_at, const Model& open, const Model& stated, WalkOf of);
 
 /// Puts another log of the same joint, which began at an unknown angle, where the model predicts its torque
 /// best: within a turn of the motor by the ripple, and at one of its turns by the torques that depend on the
 /// output's angle, where the model has those. Then its random-walk error is removed.
-void put_in_place(Case& other, const Model& stated, const RecordingRules& rules);
+void put_in_place(Case& other, const Model& stated);
 
 /// Whether the joint turns so far in both directions that torques that depend on the output's angle can be
 /// distinguished from those that depend on direction, speed or time, although the initial angle is unknown.
-[[nodiscard]] bool tells_position(const Motion& motion, const RecordingRules& rules);
+[[nodiscard]] bool tells_position(const Motion& motion);
 
 /// Removes the random-walk error estimated with the model as given, its open values fitted.
-void straighten(Case& whole, const Model& model, const DiagnosisRules& rules);
+void straighten(Case& whole, const Model& model);
 
 /// The same with the result of a search on the same log. True when that changes the predicted torque by more
 /// than is negligible relative to `floor_nm`: the search should be repeated then.
-[[nodiscard]] bool straightened_by(Case& whole, const Candidate& found, double floor_nm,
-                                   const DiagnosisRules& rules);
+[[nodiscard]] bool straightened_by(Case& whole, const Candidate& found, double floor_nm);
 
 /// The angles as they were measured or integrated, for a report of their correction.
 class AngleBefore {

@@ -8,6 +8,7 @@
 #include <numeric>
 #include <string>
 
+#include "diagnose/limits.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
@@ -74,7 +75,7 @@ std::vector<unsigned char> edges_of(const Motion& motion, double edge_s) {
 
 // Where the acceleration jumps, smoothing makes a slope of it, and the torque of the joint's inertia is not
 // known there: such samples do not count.
-void leave_out_kinks(Case& whole, Seconds smoothing, const RecordingRules& rules) {
+void leave_out_kinks(Case& whole, Seconds smoothing) {
     std::vector<double> sizes;
     double most = 0.0;
     for (std::size_t k = 0; k < whole.size(); ++k) {
@@ -82,7 +83,8 @@ void leave_out_kinks(Case& whole, Seconds smoothing, const RecordingRules& rules
         most = std::max(most, std::abs(whole.motion.acceleration_deg_s2[k]));
     }
     std::vector<double> sorted = sizes;
-    const double kink = std::max(rules.kink_deviations * 1.4826 * median_in(sorted), rules.kink_part * most);
+    const double kink = std::max(limits::recording::kink_deviations * 1.4826 * median_in(sorted),
+                                 limits::recording::kink_part * most);
     const auto reach = static_cast<std::size_t>(0.5 * smoothing.value() * whole.motion.sample_rate.value());
     for (std::size_t k = 0; k < whole.size(); ++k) {
         if (sizes[k] <= kink) continue;
@@ -92,11 +94,12 @@ void leave_out_kinks(Case& whole, Seconds smoothing, const RecordingRules& rules
 }
 
 // A hundredth of the fastest speed of a slow joint is motion; of a fast one the limit stays, however fast.
-double slowest_moving(const Motion& motion, const RecordingRules& rules) {
+double slowest_moving(const Motion& motion) {
     double fastest = 0.0;
     for (const double speed : motion.velocity_deg_s) fastest = std::max(fastest, std::abs(speed));
-    return fastest > 0.0 ? std::min(rules.moving_most_deg_s, rules.moving_part * fastest)
-                         : rules.moving_most_deg_s;
+    return fastest > 0.0
+               ? std::min(limits::recording::moving_most_deg_s, limits::recording::moving_part * fastest)
+               : limits::recording::moving_most_deg_s;
 }
 
 }  // namespace
@@ -106,10 +109,10 @@ std::size_t Case::used() const {
         std::count_if(use.begin(), use.end(), [](unsigned char u) { return u != 0; }));
 }
 
-Case whole_case(const TraceView& log, Seconds smoothing, const RecordingRules& rules) {
-    if (log.size() < rules.fewest_samples)
+Case whole_case(const TraceView& log, Seconds smoothing) {
+    if (log.size() < fewest_samples_diagnosed)
         raise<DataError>("the log has {} rows; a diagnosis needs at least {}", log.size(),
-                         rules.fewest_samples);
+                         fewest_samples_diagnosed);
     Case whole;
     whole.motion = motion_along(log, smoothing);
     const Motion smoother = motion_along(log, 3.0 * smoothing), sharper = motion_along(log, 0.5 * smoothing);
@@ -125,9 +128,9 @@ Case whole_case(const TraceView& log, Seconds smoothing, const RecordingRules& r
     whole.from = {0};
     whole.row.resize(log.size());
     std::iota(whole.row.begin(), whole.row.end(), std::size_t{0});
-    whole.moving_deg_s = slowest_moving(whole.motion, rules);
-    whole.edge = edges_of(whole.motion, rules.edge_s);
-    leave_out_kinks(whole, smoothing, rules);
+    whole.moving_deg_s = slowest_moving(whole.motion);
+    whole.edge = edges_of(whole.motion, limits::recording::edge_s);
+    leave_out_kinks(whole, smoothing);
     whole.valid = whole.use;
     if (!log.has_position()) {
         double squares = 0.0;
@@ -140,10 +143,10 @@ Case whole_case(const TraceView& log, Seconds smoothing, const RecordingRules& r
     return whole;
 }
 
-Case excerpt(const Case& whole, const RecordingRules& rules) {
-    const std::size_t stretch_samples = rules.stretch_samples;
-    if (whole.size() <= rules.search_samples + stretch_samples) return whole;
-    const std::size_t stretches = rules.search_samples / stretch_samples;
+Case excerpt(const Case& whole) {
+    const std::size_t stretch_samples = limits::recording::stretch_samples;
+    if (whole.size() <= limits::recording::search_samples + stretch_samples) return whole;
+    const std::size_t stretches = limits::recording::search_samples / stretch_samples;
     std::vector<std::size_t> rows, from;
     for (std::size_t s = 0; s < stretches; ++s) {
         const std::size_t begin = s * (whole.size() - stretch_samples) / (stretches - 1);
@@ -154,7 +157,7 @@ Case excerpt(const Case& whole, const RecordingRules& rules) {
     some.from = from;
     for (const std::size_t begin : from)
         std::fill_n(some.use.begin() + static_cast<std::ptrdiff_t>(begin),
-                    begin > 0 ? rules.settling_samples : 0, 0);
+                    begin > 0 ? limits::recording::settling_samples : 0, 0);
     return some;
 }
 
@@ -164,8 +167,11 @@ Case sketch(const Case& whole, std::size_t count) {
                    Hertz(whole.motion.sample_rate.value() / static_cast<double>(step)));
 }
 
-Case blocks(const Case& whole, std::size_t count, const RecordingRules& rules) {
-    const std::size_t length = rules.block_samples, all = whole.size();
+namespace {
+
+// Blocks of so many rows, of which the first and the last few do not count.
+Case blocks_of(const Case& whole, std::size_t count, std::size_t length, std::size_t begin_rows) {
+    const std::size_t all = whole.size();
     if (all <= count + length) return rows_of(whole, every_nth_row(whole, 1), whole.motion.sample_rate);
     const std::size_t number = count / length;
     std::vector<std::size_t> rows;
@@ -177,15 +183,19 @@ Case blocks(const Case& whole, std::size_t count, const RecordingRules& rules) {
     // At the ends of a stretch a delay refers to samples of another one.
     for (std::size_t k = 0; k < some.size(); ++k) {
         const std::size_t within = k % length;
-        if (within < rules.block_begin || within + rules.block_end > length) some.use[k] = 0;
+        if (within < begin_rows || within + limits::recording::block_end > length) some.use[k] = 0;
     }
     return some;
 }
 
-Case long_blocks(const Case& whole, std::size_t count, RecordingRules rules) {
-    rules.block_samples = rules.ringing_samples;
-    rules.block_begin = rules.ringing_begin;
-    return blocks(whole, count, rules);
+}  // namespace
+
+Case blocks(const Case& whole, std::size_t count) {
+    return blocks_of(whole, count, limits::recording::block_samples, limits::recording::block_begin);
+}
+
+Case long_blocks(const Case& whole, std::size_t count) {
+    return blocks_of(whole, count, limits::recording::ringing_samples, limits::recording::ringing_begin);
 }
 
 bool carries_errors(const Term& term) {
@@ -209,7 +219,7 @@ std::vector<Nuisance> uncertain_torques(const Case& looked_at, const Model& mode
     return columns;
 }
 
-std::vector<Nuisance> walk_errors(const Case& looked_at, const Model& model, const RecordingRules& rules) {
+std::vector<Nuisance> walk_errors(const Case& looked_at, const Model& model) {
     std::vector<Nuisance> errors;
     if (looked_at.walk_deg == 0.0) return errors;
     // How the torque changes with the position: so little that it is a slope, and far above rounding.
@@ -222,7 +232,7 @@ std::vector<Nuisance> walk_errors(const Case& looked_at, const Model& model, con
     // (Karhunen and Loeve).
     const auto& time_s = looked_at.motion.time_s;
     const double duration_s = time_s.back() - time_s.front();
-    for (std::size_t mode = 1; mode <= rules.walk_modes; ++mode) {
+    for (std::size_t mode = 1; mode <= limits::recording::walk_modes; ++mode) {
         const double quarter_turns = (static_cast<double>(mode) - 0.5) * std::numbers::pi;
         Nuisance walk{std::vector<double>(time_s.size()),
                       looked_at.walk_deg * std::sqrt(duration_s) * std::numbers::sqrt2 / quarter_turns};
@@ -235,10 +245,10 @@ std::vector<Nuisance> walk_errors(const Case& looked_at, const Model& model, con
     return errors;
 }
 
-std::vector<Nuisance> motion_errors(const Case& looked_at, const Model& model, const RecordingRules& rules) {
+std::vector<Nuisance> motion_errors(const Case& looked_at, const Model& model) {
     std::vector<Nuisance> errors = acceleration_errors(looked_at, model);
     for (Nuisance& column : uncertain_torques(looked_at, model)) errors.push_back(std::move(column));
-    for (Nuisance& walk : walk_errors(looked_at, model, rules)) errors.push_back(std::move(walk));
+    for (Nuisance& walk : walk_errors(looked_at, model)) errors.push_back(std::move(walk));
     return errors;
 }
 
@@ -268,8 +278,14 @@ double rounded_step(const std::vector<double>& distances, double usual) {
     return in_place ? step : 0.0;
 }
 
+// of the samples: a log with more distinct values than that is as good as continuous.
+constexpr double most_distinct_part = 0.25;
+// of the distance: rounding in a file leaves crumbs: distances this near to whole steps are whole steps.
+constexpr double off_step_part = 0.02;
+// %: so many distances have to be whole steps: rare levels leave multiples, other causes leave any distance.
+constexpr std::size_t fitting_percent = 90;
 // Step of a log that holds few distinct values at equal distances; 0 when it is as good as continuous.
-double step_of(const std::vector<double>& torque_nm, double noise_nm, const FaultRules& rules) {
+double step_of(const std::vector<double>& torque_nm, double noise_nm) {
     std::vector<double> values = torque_nm;
     std::sort(values.begin(), values.end());
     std::vector<double> distances;
@@ -279,20 +295,20 @@ double step_of(const std::vector<double>& torque_nm, double noise_nm, const Faul
         if (distance > 1e-9 * range) distances.push_back(distance);
     }
     if (distances.empty() ||
-        static_cast<double>(distances.size()) > rules.most_distinct_part * static_cast<double>(values.size()))
+        static_cast<double>(distances.size()) > most_distinct_part * static_cast<double>(values.size()))
         return 0.0;
     // The smallest that is common: rarer levels cause multiples of it, rounding causes tiny differences.
     const double step = median_of(distances);
     std::size_t fitting = 0;
     for (const double distance : distances) {
         const double steps = distance / step;
-        if (std::abs(steps - std::round(steps)) < rules.off_step_part * std::max(steps, 1.0) && steps > 0.5)
+        if (std::abs(steps - std::round(steps)) < off_step_part * std::max(steps, 1.0) && steps > 0.5)
             ++fitting;
     }
-    if (fitting >= distances.size() * rules.fitting_percent / 100) return step;
+    if (fitting >= distances.size() * fitting_percent / 100) return step;
     // Finer than the noise, such steps cannot be distinguished from values that happen to lie so.
     const double rounded = rounded_step(distances, step);
-    return rounded >= rules.step_of_noise * noise_nm ? rounded : 0.0;
+    return rounded >= step_of_noise * noise_nm ? rounded : 0.0;
 }
 
 double noise_of(const std::vector<double>& torque_nm) {
@@ -334,17 +350,17 @@ Fault fault_of(const Effect& effect, const DetectedFault& found, const Motion& m
 
 }  // namespace
 
-std::vector<Fault> find_faults(Case& looked_at, const FaultRules& rules) {
+std::vector<Fault> find_faults(Case& looked_at) {
     const double noise_nm = noise_of(looked_at.torque_nm);
     const LoggedTorque log{looked_at.motion,
                            looked_at.torque_nm,
                            looked_at.use,
                            looked_at.moving_deg_s,
-                           step_of(looked_at.torque_nm, noise_nm, rules),
+                           step_of(looked_at.torque_nm, noise_nm),
                            noise_nm};
     std::vector<Fault> faults;
     for (const Effect* effect : detectable()) {
-        const auto found = effect->detect(log, rules);
+        const auto found = effect->detect(log);
         if (!found) continue;
         faults.push_back(fault_of(*effect, *found, looked_at.motion));
         for (const std::size_t k : found->spoiled) looked_at.use[k] = looked_at.valid[k] = 0;
@@ -359,45 +375,45 @@ using Bins = std::vector<double>;
 
 // Mean square of the torque in each bin of a quantity; nothing is known of bins with few samples.
 Bins power_by(const std::vector<double>& quantity, const std::vector<double>& torque_nm, double low,
-              double high, const PlaceRules& rules) {
-    Bins power(rules.bins, 0.0), count(rules.bins, 0.0);
-    const auto bins = static_cast<double>(rules.bins);
+              double high) {
+    Bins power(limits::place::bins, 0.0), count(limits::place::bins, 0.0);
+    const auto bins = static_cast<double>(limits::place::bins);
     for (std::size_t k = 0; k < quantity.size(); ++k) {
-        const auto b =
-            std::min(static_cast<std::size_t>((quantity[k] - low) / (high - low) * bins), rules.bins - 1);
+        const auto b = std::min(static_cast<std::size_t>((quantity[k] - low) / (high - low) * bins),
+                                limits::place::bins - 1);
         power[b] += torque_nm[k] * torque_nm[k];
         count[b] += 1.0;
     }
-    for (std::size_t b = 0; b < rules.bins; ++b)
-        power[b] = count[b] > rules.fewest_in_bin ? power[b] / count[b] : 0.0;
+    for (std::size_t b = 0; b < limits::place::bins; ++b)
+        power[b] = count[b] > limits::place::fewest_in_bin ? power[b] / count[b] : 0.0;
     return power;
 }
 
 // Where along a quantity the rms of the torque is at least half of its largest; empty when that is nowhere in
 // particular, or the quantity hardly changes.
 std::vector<Span> spans_along(const std::vector<double>& quantity, const std::vector<double>& torque_nm,
-                              double least_range, const PlaceRules& rules) {
+                              double least_range) {
     const auto [low, high] = std::minmax_element(quantity.begin(), quantity.end());
     std::vector<Span> spans;
     if (!(*high - *low > least_range)) return spans;
-    const Bins power = power_by(quantity, torque_nm, *low, *high, rules);
+    const Bins power = power_by(quantity, torque_nm, *low, *high);
     const double most = *std::max_element(power.begin(), power.end());
-    const double bins = static_cast<double>(rules.bins), width = (*high - *low) / bins;
+    const double bins = static_cast<double>(limits::place::bins), width = (*high - *low) / bins;
     std::size_t taken = 0;
-    for (std::size_t b = 0; b < rules.bins; ++b) {
-        if (power[b] < rules.large_power * most || most == 0.0) continue;
+    for (std::size_t b = 0; b < limits::place::bins; ++b) {
+        if (power[b] < limits::place::large_power * most || most == 0.0) continue;
         ++taken;
         const double from = *low + static_cast<double>(b) * width;
-        if (b > 0 && power[b - 1] >= rules.large_power * most)
+        if (b > 0 && power[b - 1] >= limits::place::large_power * most)
             spans.back().to = from + width;
         else
             spans.push_back({from, from + width});
     }
-    if (static_cast<double>(taken) > rules.most_bins * bins) spans.clear();
+    if (static_cast<double>(taken) > limits::place::most_bins * bins) spans.clear();
     return spans;
 }
 
-Direction direction_of(const Case& c, const std::vector<double>& torque_nm, const PlaceRules& rules) {
+Direction direction_of(const Case& c, const std::vector<double>& torque_nm) {
     const std::vector<double>& velocity_deg_s = c.motion.velocity_deg_s;
     double moving[2] = {0.0, 0.0}, count[2] = {0.0, 0.0}, rest = 0.0, rests = 0.0;
     for (std::size_t k = 0; k < velocity_deg_s.size(); ++k) {
@@ -413,21 +429,20 @@ Direction direction_of(const Case& c, const std::vector<double>& torque_nm, cons
     const double up = count[1] > 0.0 ? moving[1] / count[1] : 0.0,
                  down = count[0] > 0.0 ? moving[0] / count[0] : 0.0;
     const double still = rests > 0.0 ? rest / rests : 0.0;
-    if (still >= rules.large_power * std::max(up, down)) return Direction::at_rest_too;
-    if (up > rules.one_way_power * down) return Direction::positive;
-    return down > rules.one_way_power * up ? Direction::negative : Direction::both;
+    if (still >= limits::place::large_power * std::max(up, down)) return Direction::at_rest_too;
+    if (up > limits::place::one_way_power * down) return Direction::positive;
+    return down > limits::place::one_way_power * up ? Direction::negative : Direction::both;
 }
 
 }  // namespace
 
-Place place_of(const Case& c, const std::vector<double>& torque_nm, const Term& term,
-               const PlaceRules& rules) {
+Place place_of(const Case& c, const std::vector<double>& torque_nm, const Term& term) {
     Place place;
-    place.time_s = spans_along(c.motion.time_s, torque_nm, 0.0, rules);
+    place.time_s = spans_along(c.motion.time_s, torque_nm, 0.0);
     place.speed_deg_s =
-        spans_along(c.motion.velocity_deg_s, torque_nm, rules.least_speeds * c.moving_deg_s, rules);
-    place.position_deg = spans_along(c.motion.position_deg, torque_nm, rules.least_travel_deg, rules);
-    place.direction = direction_of(c, torque_nm, rules);
+        spans_along(c.motion.velocity_deg_s, torque_nm, limits::place::least_speeds * c.moving_deg_s);
+    place.position_deg = spans_along(c.motion.position_deg, torque_nm, limits::place::least_travel_deg);
+    place.direction = direction_of(c, torque_nm);
     for (std::size_t p = 0; p < term.values.size(); ++p) {
         if (!term.values[p]) continue;
         if (term.effect->ripple_order == p && *term.values[p] > 0.0) place.order.push_back(*term.values[p]);

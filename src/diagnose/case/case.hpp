@@ -7,15 +7,13 @@
 #include <vector>
 
 #include "core/rows/row_facts.hpp"
+#include "diagnose/limits.hpp"
 #include "model/fit/weighing.hpp"
 #include "ripplenotch/core/trace.hpp"
 #include "ripplenotch/diagnose/diagnosis.hpp"
-#include "ripplenotch/diagnose/rules.hpp"
 #include "ripplenotch/model/model.hpp"
 
 namespace ripplenotch {
-
-using RecordingRules = DiagnosisRules::RecordingRules;
 
 struct Case {
     Motion motion;
@@ -40,17 +38,18 @@ struct Case {
     [[nodiscard]] std::size_t used() const;
 };
 
-[[nodiscard]] Case whole_case(const TraceView& log, Seconds smoothing, const RecordingRules& rules);
+[[nodiscard]] Case whole_case(const TraceView& log, Seconds smoothing);
 
-/// The case itself up to rules.search_samples; beyond, stretches spread over it that have about as many.
-[[nodiscard]] Case excerpt(const Case& whole, const RecordingRules& rules);
+/// The case itself up to limits::recording::search_samples; beyond, stretches spread over it that have about
+/// as many.
+[[nodiscard]] Case excerpt(const Case& whole);
 
 /// Every n-th sample, so that about `count` are left. The sample rate falls with it.
 [[nodiscard]] Case sketch(const Case& whole, std::size_t count);
 /// The same number in short stretches at the full rate, for effects that depend on neighbouring samples.
-[[nodiscard]] Case blocks(const Case& whole, std::size_t count, const RecordingRules& rules);
+[[nodiscard]] Case blocks(const Case& whole, std::size_t count);
 /// The same in longer stretches, for effects with a transient response.
-[[nodiscard]] Case long_blocks(const Case& whole, std::size_t count, RecordingRules rules);
+[[nodiscard]] Case long_blocks(const Case& whole, std::size_t count);
 
 /// Whether errors of the measured acceleration pass this term with the torque: a sensor, except one by which
 /// the torque comes before its motion. In a real arm whose friction seemed to lead its motion such errors
@@ -64,26 +63,21 @@ struct Case {
 [[nodiscard]] std::vector<Nuisance> uncertain_torques(const Case& looked_at, const Model& model);
 /// Torque errors of a model due to the random-walk error of an integrated position; none where the log has a
 /// position.
-[[nodiscard]] std::vector<Nuisance> walk_errors(const Case& looked_at, const Model& model,
-                                                const RecordingRules& rules);
+[[nodiscard]] std::vector<Nuisance> walk_errors(const Case& looked_at, const Model& model);
 /// The former, then the latter.
-[[nodiscard]] std::vector<Nuisance> motion_errors(const Case& looked_at, const Model& model,
-                                                  const RecordingRules& rules);
+[[nodiscard]] std::vector<Nuisance> motion_errors(const Case& looked_at, const Model& model);
 
 // Faults of the converter, seen in the logged torque itself: no model of the joint is needed for them.
 // Samples that they spoiled do not count in anything that follows.
 
 /// Marks spoiled samples in `looked_at.use`.
-[[nodiscard]] std::vector<Fault> find_faults(Case& looked_at, const FaultRules& rules);
+[[nodiscard]] std::vector<Fault> find_faults(Case& looked_at);
 
 // Where in a log a torque acts.
 
-using PlaceRules = DiagnosisRules::PlaceRules;
-
 /// Where `torque_nm`, which `term` adds along the case's motion, has at least half of its largest rms;
 /// frequency and order are the term's own.
-[[nodiscard]] Place place_of(const Case& looked_at, const std::vector<double>& torque_nm, const Term& term,
-                             const PlaceRules& rules);
+[[nodiscard]] Place place_of(const Case& looked_at, const std::vector<double>& torque_nm, const Term& term);
 
 // Effects that cannot be examined from a log, because of a missing signal.
 

@@ -10,9 +10,9 @@
 #include <utility>
 #include <vector>
 
+#include "diagnose/limits.hpp"
 #include "ripplenotch/analysis/fourier.hpp"
 #include "ripplenotch/core/portable_math.hpp"
-#include "ripplenotch/diagnose/rules.hpp"
 
 namespace ripplenotch {
 
@@ -41,12 +41,12 @@ LineSpectrum spectrum_of(const LineSamples& samples, double spacing, std::size_t
     return spectrum;
 }
 
-// As finely spaced as the range of the samples resolves, up to `highest` or as many cells as the rules allow.
-LineSpectrum spectrum_of(const LineSamples& samples, double highest, const LineRules& rules) {
-    const double spacing = 1.0 / (rules.oversampling * range_of(samples));
+// As finely spaced as the range of the samples resolves, up to `highest` or limits::lines::most_cells.
+LineSpectrum spectrum_of(const LineSamples& samples, double highest) {
+    const double spacing = 1.0 / (limits::lines::oversampling * range_of(samples));
     return spectrum_of(
         samples, spacing,
-        std::min(static_cast<std::size_t>(std::max(highest / spacing, 1.0)) + 1, rules.most_cells));
+        std::min(static_cast<std::size_t>(std::max(highest / spacing, 1.0)) + 1, limits::lines::most_cells));
 }
 
 // A residual against time, in the form used to search for tones. For a log with long gaps it is the mean of
@@ -56,7 +56,7 @@ LineSpectrum spectrum_of(const LineSamples& samples, double highest, const LineR
 class Tones {
   public:
     /// LineSamples against time in s, in its order.
-    Tones(LineSamples samples, double rate_hz, const LineRules& rules);
+    Tones(LineSamples samples, double rate_hz);
 
     /// In Hz and Nm^2.
     [[nodiscard]] const LineSpectrum& spectrum() const { return spectrum_; }
@@ -66,36 +66,34 @@ class Tones {
   private:
     [[nodiscard]] double agreed_hz(double mean_hz, double error_hz) const;
 
-    const LineRules& rules_;
     LineSamples all_;
     std::vector<LineSamples> pieces_;  ///< none where the whole is used
     LineSpectrum spectrum_;
 };
 
 // Runs of samples without a gap.
-std::vector<LineSamples> pieces_of(const LineSamples& samples, double usual_step, const LineRules& rules) {
+std::vector<LineSamples> pieces_of(const LineSamples& samples, double usual_step) {
     std::vector<LineSamples> pieces(1);
     for (std::size_t k = 0; k < samples.where.size(); ++k) {
-        if (k > 0 && samples.where[k] - samples.where[k - 1] > rules.gap_steps * usual_step) {
-            if (pieces.back().where.size() < rules.fewest_samples) pieces.pop_back();
+        if (k > 0 && samples.where[k] - samples.where[k - 1] > limits::lines::gap_steps * usual_step) {
+            if (pieces.back().where.size() < limits::lines::fewest_samples) pieces.pop_back();
             pieces.emplace_back();
         }
         pieces.back().where.push_back(samples.where[k]);
         pieces.back().value.push_back(samples.value[k]);
     }
-    if (pieces.back().where.size() < rules.fewest_samples) pieces.pop_back();
+    if (pieces.back().where.size() < limits::lines::fewest_samples) pieces.pop_back();
     return pieces;
 }
 
-Tones::Tones(LineSamples samples, double rate_hz, const LineRules& rules)
-    : rules_(rules), all_(std::move(samples)) {
+Tones::Tones(LineSamples samples, double rate_hz) : all_(std::move(samples)) {
     const double highest_hz = 0.5 * rate_hz;
     const double recorded_s = static_cast<double>(all_.where.size()) / rate_hz, range_s = range_of(all_);
-    if (recorded_s < rules.recorded_part * range_s ||
-        rules.oversampling * range_s * highest_hz > static_cast<double>(rules.most_cells))
-        pieces_ = pieces_of(all_, 1.0 / rate_hz, rules);
+    if (recorded_s < limits::lines::recorded_part * range_s ||
+        limits::lines::oversampling * range_s * highest_hz > static_cast<double>(limits::lines::most_cells))
+        pieces_ = pieces_of(all_, 1.0 / rate_hz);
     if (pieces_.empty()) {
-        spectrum_ = spectrum_of(all_, highest_hz, rules);
+        spectrum_ = spectrum_of(all_, highest_hz);
         return;
     }
     double longest_s = 0.0, counted = 0.0;
@@ -103,9 +101,10 @@ Tones::Tones(LineSamples samples, double rate_hz, const LineRules& rules)
         longest_s = std::max(longest_s, range_of(piece));
         counted += static_cast<double>(piece.where.size());
     }
-    spectrum_.spacing = 1.0 / (rules.oversampling * longest_s);
+    spectrum_.spacing = 1.0 / (limits::lines::oversampling * longest_s);
     spectrum_.power.assign(
-        std::min(static_cast<std::size_t>(highest_hz / spectrum_.spacing) + 1, rules.most_cells), 0.0);
+        std::min(static_cast<std::size_t>(highest_hz / spectrum_.spacing) + 1, limits::lines::most_cells),
+        0.0);
     for (const LineSamples& piece : pieces_) {
         const LineSpectrum own = spectrum_of(piece, spectrum_.spacing, spectrum_.power.size());
         const double part = static_cast<double>(piece.where.size()) / counted;
@@ -146,9 +145,9 @@ double Tones::agreed_hz(double mean_hz, double error_hz) const {
         sums.push_back(fourier_point(about, piece.value, mean_hz));
         middle_s.push_back(middle - pieces_.front().where.front());
     }
-    const double step_hz = 1.0 / (rules_.oversampling * range_of(all_));
-    const auto reach = static_cast<int>(
-        std::min(rules_.agreement_errors * error_hz / step_hz, static_cast<double>(rules_.agreement_cells)));
+    const double step_hz = 1.0 / (limits::lines::oversampling * range_of(all_));
+    const auto reach = static_cast<int>(std::min(limits::lines::agreement_errors * error_hz / step_hz,
+                                                 static_cast<double>(limits::lines::agreement_cells)));
     double best_hz = mean_hz, most_power = -1.0;
     for (int i = -reach; i <= reach; ++i) {
         const double off_hz = i * step_hz;
@@ -245,11 +244,11 @@ LineSamples evenly_by_angle(const Case& c, const std::vector<double>& values) {
     return samples;
 }
 
-double highest_cycles_per_deg(const Case& c, const LineRules& rules) {
+double highest_cycles_per_deg(const Case& c) {
     // Order 8.6 of a hundredfold gear, or the limit of the sampling at moderate speed: beyond, noise alone.
     double fastest = 0.0;
     for (const double v : c.motion.velocity_deg_s) fastest = std::max(fastest, std::abs(v));
-    return 0.5 * c.motion.sample_rate.value() / std::max(rules.moderate_speed * fastest, 1.0);
+    return 0.5 * c.motion.sample_rate.value() / std::max(limits::lines::moderate_speed * fastest, 1.0);
 }
 
 struct Peak {
@@ -257,9 +256,8 @@ struct Peak {
     double prominence;
 };
 
-std::vector<Peak> peaks_of(const LineSpectrum& spectrum, std::size_t first, double least,
-                           const LineRules& rules) {
-    const auto floor = background(spectrum.power, rules.background_cells);
+std::vector<Peak> peaks_of(const LineSpectrum& spectrum, std::size_t first, double least) {
+    const auto floor = background(spectrum.power, limits::lines::background_cells);
     std::vector<Peak> peaks;
     for (std::size_t k = std::max<std::size_t>(first, 1); k + 1 < spectrum.power.size(); ++k) {
         if (spectrum.power[k] < spectrum.power[k - 1] || spectrum.power[k] < spectrum.power[k + 1]) continue;
@@ -273,42 +271,48 @@ std::vector<Peak> peaks_of(const LineSpectrum& spectrum, std::size_t first, doub
 }
 
 void gather_by_angle(const Case& c, const std::vector<double>& residual_nm, double least,
-                     const LineRules& rules, std::vector<ResidualLine>& lines) {
+                     std::vector<ResidualLine>& lines) {
     const LineSamples samples = evenly_by_angle(c, residual_nm);
-    if (samples.where.size() < rules.fewest_samples || !(range_of(samples) > rules.least_range)) return;
-    const LineSpectrum spectrum = spectrum_of(samples, highest_cycles_per_deg(c, rules), rules);
+    if (samples.where.size() < limits::lines::fewest_samples ||
+        !(range_of(samples) > limits::lines::least_range))
+        return;
+    const LineSpectrum spectrum = spectrum_of(samples, highest_cycles_per_deg(c));
     // Slow orders are matters of gravity and friction.
-    const auto first = static_cast<std::size_t>(rules.fewest_cycles_per_turn / 360.0 / spectrum.spacing) + 1;
-    for (const Peak& peak : peaks_of(spectrum, first, least, rules)) {
+    const auto first =
+        static_cast<std::size_t>(limits::lines::fewest_cycles_per_turn / 360.0 / spectrum.spacing) + 1;
+    for (const Peak& peak : peaks_of(spectrum, first, least)) {
         const double cell = static_cast<double>(peak.cell) * spectrum.spacing;
         lines.push_back(
             {true, refine_peak(samples.where, samples.value, {.frequency = cell, .reach = spectrum.spacing}),
              std::sqrt(spectrum.power[peak.cell]), peak.prominence});
-        if (lines.size() > rules.most_peaks) break;
+        if (lines.size() > limits::lines::most_peaks) break;
     }
 }
 
 void gather_by_time(const Case& c, const std::vector<double>& residual_nm, double least,
-                    const LineRules& rules, std::vector<ResidualLine>& lines) {
+                    std::vector<ResidualLine>& lines) {
     LineSamples samples = counted(c, c.motion.time_s, residual_nm);
-    if (samples.where.size() < rules.fewest_samples || !(range_of(samples) > rules.least_range)) return;
-    const Tones tones(std::move(samples), c.motion.sample_rate.value(), rules);
+    if (samples.where.size() < limits::lines::fewest_samples ||
+        !(range_of(samples) > limits::lines::least_range))
+        return;
+    const Tones tones(std::move(samples), c.motion.sample_rate.value());
     // Slow tones are matters of drift.
-    const auto first = static_cast<std::size_t>(rules.slowest_tone_hz / tones.spectrum().spacing) + 1;
-    for (const Peak& peak : peaks_of(tones.spectrum(), first, least, rules)) {
+    const auto first =
+        static_cast<std::size_t>(limits::lines::slowest_tone_hz / tones.spectrum().spacing) + 1;
+    for (const Peak& peak : peaks_of(tones.spectrum(), first, least)) {
         lines.push_back({false, tones.refined_hz(peak.cell), std::sqrt(tones.spectrum().power[peak.cell]),
                          peak.prominence});
-        if (lines.size() > rules.most_peaks) break;
+        if (lines.size() > limits::lines::most_peaks) break;
     }
 }
 
 }  // namespace
 
 std::vector<ResidualLine> standing_out(const Case& looked_at, const std::vector<double>& residual_nm,
-                                       double least, std::size_t most, const LineRules& rules) {
+                                       double least, std::size_t most) {
     std::vector<ResidualLine> lines, by_angle;
-    gather_by_time(looked_at, residual_nm, least, rules, lines);
-    gather_by_angle(looked_at, residual_nm, least, rules, by_angle);
+    gather_by_time(looked_at, residual_nm, least, lines);
+    gather_by_angle(looked_at, residual_nm, least, by_angle);
     lines.insert(lines.end(), by_angle.begin(), by_angle.end());
     std::sort(lines.begin(), lines.end(),
               [](const ResidualLine& a, const ResidualLine& b) { return a.prominence > b.prominence; });
@@ -316,28 +320,25 @@ std::vector<ResidualLine> standing_out(const Case& looked_at, const std::vector<
     return lines;
 }
 
-std::vector<double> strongest_tones_hz(const Case& looked_at, const std::vector<double>& residual_nm,
-                                       const DiagnosisRules& rules) {
+std::vector<double> strongest_tones_hz(const Case& looked_at, const std::vector<double>& residual_nm) {
     LineSamples samples = counted(looked_at, looked_at.motion.time_s, residual_nm);
-    if (samples.where.size() < rules.lines.fewest_samples) return {};
-    const Tones seen(std::move(samples), looked_at.motion.sample_rate.value(), rules.lines);
-    const auto first = static_cast<std::size_t>(rules.lines.slowest_tone_hz / seen.spectrum().spacing) + 1;
+    if (samples.where.size() < limits::lines::fewest_samples) return {};
+    const Tones seen(std::move(samples), looked_at.motion.sample_rate.value());
+    const auto first = static_cast<std::size_t>(limits::lines::slowest_tone_hz / seen.spectrum().spacing) + 1;
     std::vector<double> tones;
-    for (const Peak& peak : peaks_of(seen.spectrum(), first, rules.screening.tone_prominence, rules.lines)) {
-        if (tones.size() >= rules.screening.most_tones) break;
+    for (const Peak& peak : peaks_of(seen.spectrum(), first, limits::screening::tone_prominence)) {
+        if (tones.size() >= limits::screening::most_tones) break;
         tones.push_back(seen.refined_hz(peak.cell));
     }
     return tones;
 }
 
 RatioCandidates likely_ratios(const Case& looked_at, const std::vector<double>& torque_nm,
-                              const std::vector<double>& orders, RatioRange range,
-                              const DiagnosisRules& rules) {
+                              const std::vector<double>& orders, RatioRange range) {
     const auto samples = counted(looked_at, looked_at.motion.position_deg, torque_nm);
-    if (orders.empty() || samples.where.size() < rules.lines.fewest_samples) return {};
+    if (orders.empty() || samples.where.size() < limits::lines::fewest_samples) return {};
     const double highest_order = *std::max_element(orders.begin(), orders.end());
-    const LineSpectrum spectrum =
-        spectrum_of(samples, 1.04 * range.highest * highest_order / 360.0, rules.lines);
+    const LineSpectrum spectrum = spectrum_of(samples, 1.04 * range.highest * highest_order / 360.0);
     // The finest order decides how closely ratios are compared.
     const double step = 0.5 * spectrum.spacing * 360.0 / highest_order;
     // Beyond the spectrum there is nothing to score, however far the joint turned according to a wrong clock.
@@ -362,7 +363,7 @@ RatioCandidates likely_ratios(const Case& looked_at, const std::vector<double>& 
     std::sort(tops.begin(), tops.end(), [&](std::size_t a, std::size_t b) { return score[a] > score[b]; });
     RatioCandidates found;
     found.compared = static_cast<double>(last - first);
-    for (std::size_t i = 0; i < std::min(rules.screening.most_ratios, tops.size()); ++i)
+    for (std::size_t i = 0; i < std::min(limits::screening::most_ratios, tops.size()); ++i)
         found.ratios.push_back(static_cast<double>(tops[i]) * step);
     if (!tops.empty()) found.strongest_nm2 = score[tops.front()];
     return found;

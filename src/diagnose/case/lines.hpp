@@ -7,15 +7,13 @@
 #include <vector>
 
 #include "diagnose/case/case.hpp"
+#include "diagnose/limits.hpp"
 #include "ripplenotch/core/quantity.hpp"
 #include "ripplenotch/diagnose/diagnosis.hpp"
-#include "ripplenotch/diagnose/rules.hpp"
 
 namespace ripplenotch {
 
 // The spectrum used to search for lines of a residual: of samples at any positions, in time or in angle.
-
-using LineRules = DiagnosisRules::LineRules;
 
 /// Values in Nm at places in s or in deg.
 struct LineSamples {
@@ -43,12 +41,11 @@ struct ResidualLine {
 /// The strongest lines whose prominence is at least `least`, the strongest first, at most `most`.
 [[nodiscard]] std::vector<ResidualLine> standing_out(const Case& looked_at,
                                                      const std::vector<double>& residual_nm, double least,
-                                                     std::size_t most, const LineRules& rules);
+                                                     std::size_t most);
 
-/// Frequencies of the strongest tones of the residual, refined: at most rules.screening.most_tones.
+/// Frequencies of the strongest tones of the residual, refined: at most limits::screening::most_tones.
 [[nodiscard]] std::vector<double> strongest_tones_hz(const Case& looked_at,
-                                                     const std::vector<double>& residual_nm,
-                                                     const DiagnosisRules& rules);
+                                                     const std::vector<double>& residual_nm);
 
 /// The orders of a model's ripple, and the gear ratio with what its terms make of it.
 struct StatedRipple {
@@ -58,7 +55,7 @@ struct StatedRipple {
 [[nodiscard]] StatedRipple stated_ripple(const Model& model);
 
 /// Gear ratios that put `orders` on the strongest lines of a torque over the angle, the best first; how many
-/// were compared comes with them. At most rules.screening.most_ratios.
+/// were compared comes with them. At most limits::screening::most_ratios.
 /// Gear ratios that are compared.
 struct RatioRange {
     double lowest, highest;
@@ -70,7 +67,6 @@ struct RatioCandidates {
     double strongest_nm2 = 0.0;  ///< squared amplitudes that the orders have at the best one, in all
 };
 [[nodiscard]] RatioCandidates likely_ratios(const Case& looked_at, const std::vector<double>& torque_nm,
-                                            const std::vector<double>& orders, RatioRange range,
-                                            const DiagnosisRules& rules);
+                                            const std::vector<double>& orders, RatioRange range);
 
 }  // namespace ripplenotch

@@ -9,6 +9,7 @@
 #include "core/matrices/factorisations.hpp"
 #include "core/vectors/dot.hpp"
 #include "diagnose/case/lines.hpp"
+#include "diagnose/limits.hpp"
 #include "model/fit/weighing.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/model/prediction.hpp"
@@ -91,8 +92,6 @@ void add_wave(NoiseColumns& columns, const NoiseWave& wave) {
 
 namespace {
 
-using NoiseRules = DiagnosisRules::NoiseRules;
-
 // Cubic B-spline number i, at u in units of the distance of two, from the middle of the second on.
 double spline(double u, std::size_t i) {
     const double d = std::abs(u - (static_cast<double>(i) - 1.0));
@@ -122,8 +121,8 @@ void add_swelling_wave(NoiseColumns& columns, const NoiseWave& wave, const std::
 }
 
 // tanh of the speed over the width of a step of direction, at every sample.
-std::vector<double> unit_direction(const Case& c, const NoiseRules& rules) {
-    const double width_deg_s = rules.step_part * c.moving_deg_s;
+std::vector<double> unit_direction(const Case& c) {
+    const double width_deg_s = limits::noise_floor::step_part * c.moving_deg_s;
     std::vector<double> direction = c.motion.velocity_deg_s;
     for (double& value : direction) value /= width_deg_s;
     portable::many_tanh(direction);
@@ -131,7 +130,7 @@ std::vector<double> unit_direction(const Case& c, const NoiseRules& rules) {
 }
 
 // With what ripple may swell.
-std::vector<std::vector<double>> swells_of(const Case& c, const NoiseRules& rules) {
+std::vector<std::vector<double>> swells_of(const Case& c) {
     const Motion& m = c.motion;
     const double middle_s = 0.5 * (m.time_s.front() + m.time_s.back()), half_s = m.time_s.back() - middle_s;
     std::vector<std::vector<double>> swells(8);
@@ -145,13 +144,12 @@ std::vector<std::vector<double>> swells_of(const Case& c, const NoiseRules& rule
         swells[6].push_back(elapsed * elapsed);
         swells[7].push_back(m.position_deg[k]);
     }
-    swells[3] = unit_direction(c, rules);
+    swells[3] = unit_direction(c);
     return swells;
 }
 
 // Ripple of the model and of its neighbourhood, each swelling with whatever the motion shows.
-void add_ripple(NoiseColumns& columns, const Case& c, double ratio, const std::vector<double>& orders,
-                const NoiseRules& rules) {
+void add_ripple(NoiseColumns& columns, const Case& c, double ratio, const std::vector<double>& orders) {
     const Motion& m = c.motion;
     const auto wave = [&](double cycles_per_turn) {
         return NoiseWave(m.position_deg, cycles_per_turn / 360.0);
@@ -166,16 +164,16 @@ void add_ripple(NoiseColumns& columns, const Case& c, double ratio, const std::v
         add_wave(columns, found);
         if (own.size() < orders.size()) own.push_back(std::move(found));
     }
-    const auto swells = swells_of(c, rules);
+    const auto swells = swells_of(c);
     for (std::size_t i = 0; i < orders.size(); ++i) {
         for (const auto& swell : swells) add_swelling_wave(columns, own[i], swell);
         for (const double side : {-2.0, -1.0, 1.0, 2.0}) add_wave(columns, wave(orders[i] * ratio + side));
     }
 }
 
-void add_smooth(NoiseColumns& columns, const Case& c, const NoiseRules& rules) {
+void add_smooth(NoiseColumns& columns, const Case& c) {
     const Motion& m = c.motion;
-    const double width_deg_s = rules.step_part * c.moving_deg_s;
+    const double width_deg_s = limits::noise_floor::step_part * c.moving_deg_s;
     const auto span = std::minmax_element(m.position_deg.begin(), m.position_deg.end());
     const double low_deg = *span.first, high_deg = *span.second;
     double fastest = 0.0;
@@ -183,33 +181,32 @@ void add_smooth(NoiseColumns& columns, const Case& c, const NoiseRules& rules) {
     for (const double direction : {-1.0, 1.0}) {
         const auto moves = [&](std::size_t k) { return m.velocity_deg_s[k] * direction > width_deg_s; };
         const auto position = [&](std::size_t k) { return m.position_deg[k]; };
-        add_splines(columns, c, rules.position_splines, low_deg, high_deg, position, moves);
+        add_splines(columns, c, limits::noise_floor::position_splines, low_deg, high_deg, position, moves);
         // Closer where it is slow: friction changes most there.
         const auto speed = [&](std::size_t k) { return std::sqrt(std::abs(m.velocity_deg_s[k])); };
-        add_splines(columns, c, rules.speed_splines, 0.0, std::sqrt(fastest), speed, moves);
+        add_splines(columns, c, limits::noise_floor::speed_splines, 0.0, std::sqrt(fastest), speed, moves);
     }
     add_splines(
-        columns, c, rules.time_splines, m.time_s.front(), m.time_s.back(),
+        columns, c, limits::noise_floor::time_splines, m.time_s.front(), m.time_s.back(),
         [&](std::size_t k) { return m.time_s[k]; }, [](std::size_t) { return true; });
     columns.add([&](std::size_t k) { return m.acceleration_deg_s2[k]; });
     columns.add([&](std::size_t k) { return std::abs(m.acceleration_deg_s2[k]); });
-    const std::vector<double> direction = unit_direction(c, rules);
+    const std::vector<double> direction = unit_direction(c);
     columns.add([&](std::size_t k) { return direction[k]; });
     columns.add([&](std::size_t k) { return std::abs(m.acceleration_deg_s2[k]) * direction[k]; });
 }
 
 }  // namespace
 
-NoiseColumns& NoiseGround::columns(const Case& looked_at, const StatedRipple& ripple,
-                                   const NoiseRules& rules) {
+NoiseColumns& NoiseGround::columns(const Case& looked_at, const StatedRipple& ripple) {
     if (columns_ && ripple.orders == ripple_.orders && ripple.ratio == ripple_.ratio) {
         columns_->cut(count_);
         return *columns_;
     }
     ripple_ = ripple;
     columns_.emplace(looked_at.use);
-    add_ripple(*columns_, looked_at, ripple.ratio.value(), ripple.orders, rules);
-    add_smooth(*columns_, looked_at, rules);
+    add_ripple(*columns_, looked_at, ripple.ratio.value(), ripple.orders);
+    add_smooth(*columns_, looked_at);
     count_ = columns_->count();
     return *columns_;
 }
@@ -258,8 +255,8 @@ Autoregression autoregression_of(const std::vector<double>& covariance, double s
 }
 
 // rms of a stretch of the log that is quieter than most.
-double quiet_rms(const std::vector<double>& left, const Case& c, const DiagnosisRules::NoiseRules& rules) {
-    const std::size_t length = std::max<std::size_t>(left.size() / rules.quiet_stretches, 50);
+double quiet_rms(const std::vector<double>& left, const Case& c) {
+    const std::size_t length = std::max<std::size_t>(left.size() / limits::noise_floor::quiet_stretches, 50);
     std::vector<double> powers;
     for (std::size_t first = 0; first + length <= left.size(); first += length) {
         double sum = 0.0, count = 0.0;
@@ -271,8 +268,8 @@ double quiet_rms(const std::vector<double>& left, const Case& c, const Diagnosis
         if (count > 0.5 * static_cast<double>(length)) powers.push_back(sum / count);
     }
     if (powers.empty()) return 0.0;
-    const auto middle =
-        powers.begin() + static_cast<std::ptrdiff_t>(rules.quiet_part * static_cast<double>(powers.size()));
+    const auto middle = powers.begin() + static_cast<std::ptrdiff_t>(limits::noise_floor::quiet_part *
+                                                                     static_cast<double>(powers.size()));
     std::nth_element(powers.begin(), middle, powers.end());
     return std::sqrt(*middle);
 }
@@ -290,10 +287,10 @@ namespace {
 
 // Lines that rise above their surroundings are no noise: they become columns, two at a time.
 std::vector<double> left_without_lines(NoiseColumns& columns, const Case& c,
-                                       const std::vector<double>& torque_nm, const DiagnosisRules& rules) {
+                                       const std::vector<double>& torque_nm) {
     std::vector<double> left = columns.left_of(torque_nm);
-    for (std::size_t line = 0; line < rules.noise_floor.most_lines; line += 2) {
-        const auto found = standing_out(c, left, rules.noise_floor.stands_out, 2, rules.lines);
+    for (std::size_t line = 0; line < limits::noise_floor::most_lines; line += 2) {
+        const auto found = standing_out(c, left, limits::noise_floor::stands_out, 2);
         if (found.empty()) break;
         for (const ResidualLine& strong : found) {
             const auto& where = strong.by_angle ? c.motion.position_deg : c.motion.time_s;
@@ -346,47 +343,45 @@ NoiseFloor::Thinned NoiseFloor::thinned(std::size_t step, std::size_t most_lags,
     return {std::move(found.color), found.white_nm, density};
 }
 
-NoiseFloor noise_floor(const Case& looked_at, const Model& model, const Model& open,
-                       const DiagnosisRules& rules, NoiseGround& ground) {
+NoiseFloor noise_floor(const Case& looked_at, const Model& model, const Model& open, NoiseGround& ground) {
     const Case& c = looked_at;
     std::vector<double> torque_nm = c.torque_nm;
     const auto predicted = predict_nm(model, c.motion);
     for (std::size_t k = 0; k < torque_nm.size(); ++k) torque_nm[k] -= predicted[k];
     const StatedRipple ripple = stated_ripple(model);
-    NoiseColumns& columns = ground.columns(c, ripple, rules.noise_floor);
+    NoiseColumns& columns = ground.columns(c, ripple);
     add_slopes(columns, c, model, open);
-    for (const Nuisance& nuisance : motion_errors(c, model, rules.recording)) columns.add(nuisance.torque_nm);
-    const std::vector<double> left = left_without_lines(columns, c, torque_nm, rules);
-    std::vector<double> covariance = autocovariance(left, c, rules.noise_floor.most_lags);
+    for (const Nuisance& nuisance : motion_errors(c, model)) columns.add(nuisance.torque_nm);
+    const std::vector<double> left = left_without_lines(columns, c, torque_nm);
+    std::vector<double> covariance = autocovariance(left, c, limits::noise_floor::most_lags);
     const double samples = static_cast<double>(c.used());
     const double spent = samples / std::max(samples - static_cast<double>(columns.count()), 0.2 * samples);
     covariance[0] = std::max(covariance[0], 1e-24);
-    NoiseFloor floor = modelled(std::move(covariance), samples, rules.noise_floor.lag_price, spent);
+    NoiseFloor floor = modelled(std::move(covariance), samples, limits::noise_floor::lag_price, spent);
     floor.material_nm = floor.rms_nm;
     // A residual that is large in some stretches only is not noise but something that none of these columns
     // can follow, such as a resonance. Its colour would mask it.
-    const double quiet_nm = quiet_rms(left, c, rules.noise_floor);
-    if (quiet_nm > 0.0 && quiet_nm < rules.noise_floor.unsteady * floor.rms_nm)
+    const double quiet_nm = quiet_rms(left, c);
+    if (quiet_nm > 0.0 && quiet_nm < limits::noise_floor::unsteady * floor.rms_nm)
         floor = {quiet_nm, quiet_nm, {}, quiet_nm, {quiet_nm * quiet_nm}};
     return floor;
 }
 
 NoiseFloor noise_of_residual(const Case& looked_at, const std::vector<double>& residual_nm,
-                             const NoiseFloor& floor, const DiagnosisRules& rules) {
+                             const NoiseFloor& floor) {
     const double samples = static_cast<double>(looked_at.used());
     const auto lags = static_cast<std::size_t>(
-        std::min(rules.residual.memory_s * looked_at.motion.sample_rate.value(), samples / 10.0));
+        std::min(limits::residual::memory_s * looked_at.motion.sample_rate.value(), samples / 10.0));
     std::vector<double> covariance = autocovariance(residual_nm, looked_at, lags);
-    covariance[0] *= 1.0 + rules.residual.color_floor;
-    NoiseFloor noise = modelled(std::move(covariance), samples, rules.noise_floor.lag_price, 1.0);
+    covariance[0] *= 1.0 + limits::residual::color_floor;
+    NoiseFloor noise = modelled(std::move(covariance), samples, limits::noise_floor::lag_price, 1.0);
     noise.material_nm = floor.rms_nm;
     return noise;
 }
 
-NoiseFloor noise_floor(const Case& looked_at, const Model& model, const Model& open,
-                       const DiagnosisRules& rules) {
+NoiseFloor noise_floor(const Case& looked_at, const Model& model, const Model& open) {
     NoiseGround ground;
-    return noise_floor(looked_at, model, open, rules, ground);
+    return noise_floor(looked_at, model, open, ground);
 }
 
 }  // namespace ripplenotch

@@ -70,8 +70,7 @@ void add_wave(NoiseColumns& columns, const NoiseWave& wave);
 class NoiseGround {
   public:
     /// The columns, and nothing behind them. The case must outlive them, and stay as it is.
-    [[nodiscard]] NoiseColumns& columns(const Case& looked_at, const StatedRipple& ripple,
-                                        const DiagnosisRules::NoiseRules& rules);
+    [[nodiscard]] NoiseColumns& columns(const Case& looked_at, const StatedRipple& ripple);
 
   private:
     StatedRipple ripple_;
@@ -100,15 +99,14 @@ struct NoiseFloor {
 };
 
 /// `model`: the best one so far, wholly stated; its own slopes take part.
-[[nodiscard]] NoiseFloor noise_floor(const Case& looked_at, const Model& model, const Model& open,
-                                     const DiagnosisRules& rules);
+[[nodiscard]] NoiseFloor noise_floor(const Case& looked_at, const Model& model, const Model& open);
 /// The same, where the noise of this case is estimated repeatedly.
 [[nodiscard]] NoiseFloor noise_floor(const Case& looked_at, const Model& model, const Model& open,
-                                     const DiagnosisRules& rules, NoiseGround& ground);
+                                     NoiseGround& ground);
 
 /// Where the best model leaves more than noise: its residual, as noise with a correlation time of `memory_s`.
 /// Names are weighted where it is quiet.
 [[nodiscard]] NoiseFloor noise_of_residual(const Case& looked_at, const std::vector<double>& residual_nm,
-                                           const NoiseFloor& floor, const DiagnosisRules& rules);
+                                           const NoiseFloor& floor);
 
 }  // namespace ripplenotch

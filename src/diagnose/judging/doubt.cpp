@@ -14,6 +14,7 @@
 
 #include "diagnose/judging/judge.hpp"
 #include "diagnose/judging/residual_regions.hpp"
+#include "diagnose/limits.hpp"
 #include "diagnose/search/model_bench.hpp"
 #include "diagnose/search/search_starts.hpp"
 #include "ripplenotch/core/portable_math.hpp"
@@ -23,7 +24,6 @@ namespace ripplenotch {
 namespace {
 
 constexpr std::size_t none = static_cast<std::size_t>(-1);
-using EvennessRules = DiagnosisRules::EvennessRules;
 
 struct PlaceSums {
     double samples = 0.0, left = 0.0, torque = 0.0, both = 0.0, square = 0.0;
@@ -33,8 +33,8 @@ struct PlaceSums {
 struct Torques {
     static constexpr double variance_nm2 = 1.0;
     std::vector<double> finding_nm, left_nm;
-    double telling_nm2 =
-        0.0;  ///< sum of squares from which a torque determines its size: rules.telling_deviations
+    double telling_nm2 = 0.0;    ///< sum of squares from which a torque determines its size:
+                                 ///< limits::evenness::telling_deviations
     bool changes = false;        ///< in the log, be it in rows that do not count
     bool by_its_torque = false;  ///< an interval has the weight of the finding's torque in it
 };
@@ -48,7 +48,7 @@ Torques torques_of(const ModelBench& bench, const Model& stated, std::size_t ter
     torques.by_its_torque = stated.terms[term].effect->side != side_of(stated.terms[term]);
     const auto [low, high] = std::minmax_element(added.begin(), added.end());
     torques.changes = *high - *low > 1e-6 * std::max(std::abs(*low), std::abs(*high));
-    const double deviations = bench.rules().evenness.telling_deviations;
+    const double deviations = limits::evenness::telling_deviations;
     torques.telling_nm2 = deviations * deviations;
     return torques;
 }
@@ -155,20 +155,20 @@ Unevenness unevenness(const ModelBench& bench, const Model& stated, std::size_t 
     const auto compare = [&](double part, std::string_view where) {
         if (part > worst.part) worst = {part, where};
     };
-    const EvennessRules& rules = bench.rules().evenness;
-    compare(between(torques, rules.least_sigma, by_time(bench, rules.times), rules.times),
+    compare(between(torques, limits::evenness::least_sigma, by_time(bench, limits::evenness::times),
+                    limits::evenness::times),
             "early and late in the log");
-    compare(between(torques, rules.least_sigma, by_speed(bench, rules.speeds), 2 * rules.speeds),
+    compare(between(torques, limits::evenness::least_sigma, by_speed(bench, limits::evenness::speeds),
+                    2 * limits::evenness::speeds),
             "slow and fast, both directions");
-    for (const std::size_t stretches : {rules.short_stretches, rules.long_stretches})
-        compare(share_within(torques, rules.telling_deviations, by_time(bench, stretches), stretches),
-                "within short stretches of the log");
+    for (const std::size_t stretches : {limits::evenness::short_stretches, limits::evenness::long_stretches})
+        compare(
+            share_within(torques, limits::evenness::telling_deviations, by_time(bench, stretches), stretches),
+            "within short stretches of the log");
     return worst;
 }
 
 namespace {
-
-using DoubtRules = DiagnosisRules::DoubtRules;
 
 constexpr const char* more_is_left = "the unexplained residual is larger than its share";
 
@@ -197,9 +197,8 @@ std::string uneven_words(const Unevenness& uneven) {
 // larger than the change.
 double most_uneven(const Term& term, const ModelBench& bench) {
     if (term.effect->ripple_order) return 1.0;
-    const DiagnosisRules& rules = bench.rules();
     const bool beside_known = bench.noise_holds_residual() && !bench.looked_at().motion.known_nm.empty();
-    return beside_known ? rules.residual.most_uneven : rules.evenness.most_uneven;
+    return beside_known ? limits::residual::most_uneven : limits::evenness::most_uneven;
 }
 
 bool is_fast(Domain d) { return d == Domain::order || d == Domain::frequency; }
@@ -221,7 +220,7 @@ std::optional<double> delay_of_spring(const Term& term, double most_damping) {
 std::optional<double> shortest_delay_samples(const Term& term, const ModelBench& bench) {
     const Case& looked_at = bench.looked_at();
     std::optional<double> shortest;
-    if (const auto delay_s = delay_of_spring(term, bench.rules().shape.most_damping))
+    if (const auto delay_s = delay_of_spring(term, limits::shape::most_damping))
         shortest = *delay_s * looked_at.motion.sample_rate.value();
     for (std::size_t p = 0; p < term.values.size(); ++p) {
         const Parameter& parameter = term.effect->parameters[p];
@@ -260,10 +259,9 @@ struct RaisedDoubt {
 };
 
 // Tests whether the standard error covers the size, unless another size of the effect is identifiable.
-RaisedDoubt doubt_of_error(const Candidate& model, std::size_t term, const DoubtRules& rules,
-                           Hearing& hearing) {
-    const auto size = size_of(model.stated.terms[term], model.values, term, rules.most_error);
-    if (size && hearing.asked("doubt.most_error", size->error, !(size->error < rules.most_error)))
+RaisedDoubt doubt_of_error(const Candidate& model, std::size_t term) {
+    const auto size = size_of(model.stated.terms[term], model.values, term, limits::doubt::most_error);
+    if (size && !(size->error < limits::doubt::most_error))
         return {FindingStatus::unidentifiable,
                 fmt::format("its {} is not identifiable from this log", size->name)};
     return {};
@@ -271,54 +269,44 @@ RaisedDoubt doubt_of_error(const Candidate& model, std::size_t term, const Doubt
 
 // Tests whether a finding is too small to matter, or too small to be identifiable.
 RaisedDoubt doubt_of_size(const ModelBench& bench, const Candidate& model, std::size_t term,
-                          const Evidence& evidence, Hearing& hearing) {
+                          const Evidence& evidence) {
     const Term& stated = model.stated.terms[term];
-    const DoubtRules& rules = bench.rules().doubt;
-    bool slight =
-        !bench.noise_holds_residual() && hearing.asked(material_rule(bench.looked_at()), evidence.share_sigma,
-                                                       evidence.share_sigma < bench.material_sigma());
+    bool slight = !bench.noise_holds_residual() && evidence.share_sigma < bench.material_sigma();
     // Instead it has to gain in most of the log's blocks.
-    if (bench.noise_holds_residual() &&
-        hearing.asked("residual.least_t", evidence.t, evidence.t < bench.rules().residual.least_t))
+    if (bench.noise_holds_residual() && evidence.t < limits::residual::least_t)
         return {FindingStatus::tentative, "its gain is that of a few blocks of the log"};
     // A delay of part of a sample is within the definition of the sampling instant.
     if (const auto samples = shortest_delay_samples(stated, bench); samples && !slight)
-        slight = hearing.asked("doubt.least_delay_samples", *samples, *samples < rules.least_delay_samples);
+        slight = *samples < least_delay_samples;
     if (slight)
         return {FindingStatus::immaterial,
                 fmt::format("it changes the torque by {:.2g} Nm rms, with a noise of {:.2g} Nm rms",
                             evidence.share_nm, bench.noise().material_nm)};
     const double share_nm = std::max(evidence.share_nm, 1e-12);
-    if (hearing.asked("doubt.most_inflation", evidence.own_nm / share_nm,
-                      evidence.own_nm > rules.most_inflation * share_nm))
+    if (evidence.own_nm > limits::doubt::most_inflation * share_nm)
         return {
             FindingStatus::unidentifiable,
             "its torque is nearly collinear with that of another effect: this log cannot distinguish them"};
-    return doubt_of_error(model, term, rules, hearing);
+    return doubt_of_error(model, term);
 }
 
 RaisedDoubt doubt_of_kind(const ModelBench& bench, const Candidate& model, std::size_t term,
-                          const Evidence& evidence, Hearing& hearing) {
-    const DoubtRules& rules = bench.rules().doubt;
-    if (hearing.asked("doubt.least_closed_nm2", evidence.raw_gain,
-                      evidence.raw_gain <= rules.least_closed_nm2))
+                          const Evidence& evidence) {
+    if (evidence.raw_gain <= limits::doubt::least_closed_nm2)
         return {FindingStatus::tentative, "the gap is no smaller with it"};
-    if (const Bend bend = bend_of(bench, model, term); !bend.parameter.empty()) {
-        hearing.asked(bend.rule, bend.number, true);
-        return {FindingStatus::tentative,
-                fmt::format("its {} ends at a bound, or as good as that: it stands in for something else",
-                            bend.parameter)};
+    if (const auto bent = bent_parameter(bench, model, term); !bent.empty()) {
+        return {
+            FindingStatus::tentative,
+            fmt::format("its {} ends at a bound, or as good as that: it stands in for something else", bent)};
     }
-    if (hearing.asked("doubt.least_elsewhere", evidence.elsewhere,
-                      evidence.elsewhere < rules.least_elsewhere))
+    if (evidence.elsewhere < limits::doubt::least_elsewhere)
         return {FindingStatus::tentative,
                 "it explains one short stretch of the log and hardly anything elsewhere"};
     const Unevenness uneven = unevenness(bench, model.stated, term);
-    if (hearing.asked("evenness.most_uneven", uneven.part,
-                      uneven.part > most_uneven(model.stated.terms[term], bench)))
+    if (uneven.part > most_uneven(model.stated.terms[term], bench))
         return {FindingStatus::tentative, uneven_words(uneven)};
     const auto above = above_wandering(bench, model.stated, term, evidence.raw_gain);
-    if (above && hearing.asked("wandering.least_above", *above, *above < bench.rules().wandering.least_above))
+    if (above && *above < limits::wandering::least_above)
         return {FindingStatus::tentative, "the log wanders nearly as slowly, and nearly as far, without it"};
     return {};
 }
@@ -326,22 +314,17 @@ RaisedDoubt doubt_of_kind(const ModelBench& bench, const Candidate& model, std::
 }  // namespace
 
 void doubt_alone(Finding& finding, const ModelBench& bench, const Candidate& model, std::size_t term) {
-    Hearing hearing(bench.rules(), finding.decisions);
-    RaisedDoubt doubt = doubt_of_size(bench, model, term, finding.evidence, hearing);
-    if (doubt.status == FindingStatus::confirmed)
-        doubt = doubt_of_kind(bench, model, term, finding.evidence, hearing);
+    RaisedDoubt doubt = doubt_of_size(bench, model, term, finding.evidence);
+    if (doubt.status == FindingStatus::confirmed) doubt = doubt_of_kind(bench, model, term, finding.evidence);
     finding.status = doubt.status;
     finding.reason = std::move(doubt.reason);
 }
 
-bool doubt_size(Finding& finding, const Candidate& told, std::size_t term, const DiagnosisRules& rules) {
-    std::vector<Decision> decisions;
-    Hearing hearing(rules, decisions);
-    const RaisedDoubt doubt = doubt_of_error(told, term, rules.doubt, hearing);
+bool doubt_size(Finding& finding, const Candidate& told, std::size_t term) {
+    const RaisedDoubt doubt = doubt_of_error(told, term);
     if (doubt.status == FindingStatus::confirmed) return false;
     finding.status = doubt.status;
     finding.reason = doubt.reason;
-    finding.decisions.insert(finding.decisions.end(), decisions.begin(), decisions.end());
     finding.values.clear();
     for (const FittedValue& value : told.values) {
         if (value.term == term) finding.values.push_back(value);
@@ -356,31 +339,23 @@ double excess_of(const ModelBench& bench, const Model& stated) {
 
 void doubt_for_residual(Finding& finding, double excess_nm, const ModelBench& bench,
                         const std::vector<ResidualRegion>& unexplained) {
-    const DoubtRules& rules = bench.rules().doubt;
     const double share_nm = finding.evidence.share_nm;
-    Hearing hearing(bench.rules(), finding.decisions);
-    if (hearing.asked("doubt.outgrown", excess_nm / share_nm,
-                      excess_nm > rules.outgrown * share_nm && !unexplained.empty())) {
+    if (excess_nm > limits::doubt::outgrown * share_nm && !unexplained.empty()) {
         finding.status = FindingStatus::tentative;
         finding.reason = more_is_left;
     }
     const ResidualRegion* largest = nullptr;
     for (const ResidualRegion& place : unexplained) {
-        if (!touches(finding.term.effect->domain, place) ||
-            is_confined(place, bench.looked_at(), bench.rules()))
-            continue;
+        if (!touches(finding.term.effect->domain, place) || is_confined(place, bench.looked_at())) continue;
         if (largest == nullptr || place.rms_nm > largest->rms_nm) largest = &place;
     }
     // The residual must not be small compared with the finding to count against it.
-    if (largest == nullptr || !hearing.asked("doubt.casts_doubt", largest->rms_nm / share_nm,
-                                             !(largest->rms_nm < rules.casts_doubt * share_nm)))
-        return;
+    if (largest == nullptr || largest->rms_nm < limits::doubt::casts_doubt * share_nm) return;
     finding.status = FindingStatus::tentative;
     finding.reason = "unexplained residual remains where it acts";
 }
 
-void doubt_for_size(Finding& finding, const std::vector<Finding>& findings, const DiagnosisRules& all) {
-    const DoubtRules& rules = all.doubt;
+void doubt_for_size(Finding& finding, const std::vector<Finding>& findings) {
     const Evidence& evidence = finding.evidence;
     // A parameter that acts without the size is weaker evidence: the phase of a ripple differs by direction
     // wherever the form of its resonance is not quite the catalogue's.
@@ -391,14 +366,13 @@ void doubt_for_size(Finding& finding, const std::vector<Finding>& findings, cons
     for (const Finding& other : findings) {
         if (&other == &finding) continue;
         const Effect& larger = *other.term.effect;
-        const bool slight = share_sigma < rules.slight_sigma;
-        const bool stands =
-            share_sigma > rules.stands_sigma && evidence.own_nm > rules.shape_part * other.evidence.own_nm;
+        const bool slight = share_sigma < limits::doubt::slight_sigma;
+        const bool stands = share_sigma > limits::doubt::stands_sigma &&
+                            evidence.own_nm > limits::doubt::shape_part * other.evidence.own_nm;
         const double larger_nm = std::max(other.evidence.share_nm, other.evidence.own_nm);
-        if (share_nm > rules.shape_part * larger_nm || stands ||
+        if (share_nm > limits::doubt::shape_part * larger_nm || stands ||
             !(slight || of_one_kind(finding.term.effect->domain, larger.domain)))
             continue;
-        Hearing(all, finding.decisions).asked("doubt.shape_part", share_nm / larger_nm, true);
         finding.status = is_doubtful(other) ? FindingStatus::tentative : FindingStatus::shape_correction;
         finding.reason = fmt::format("it may only correct the form of {}, which is {}", larger.name,
                                      is_doubtful(other) ? "in doubt" : "far larger");
@@ -430,15 +404,9 @@ bool doubt_beside(const ModelBench& bench, const Candidate& kept, std::size_t ow
         }
         if (!is_trusted(finding)) continue;
         const Unevenness uneven = same ? unevenness(bench, kept.stated, place) : Unevenness{};
-        const DiagnosisRules& rules = bench.rules();
         const double share_nm = finding.evidence.share_nm;
-        const bool outdone = (same || kin) && excess_nm > rules.doubt.outgrown * share_nm;
+        const bool outdone = (same || kin) && excess_nm > limits::doubt::outgrown * share_nm;
         if (!outdone && uneven.part <= most_uneven(finding.term, bench)) continue;
-        Hearing hearing(rules, finding.decisions);
-        if (outdone)
-            hearing.asked("doubt.outgrown", excess_nm / share_nm, true);
-        else
-            hearing.asked("evenness.most_uneven", uneven.part, true);
         finding.status = FindingStatus::tentative;
         finding.reason = outdone ? more_is_left : uneven_words(uneven);
         changed = true;

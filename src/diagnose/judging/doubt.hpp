@@ -32,8 +32,7 @@ void doubt_alone(Finding& finding, const ModelBench& bench, const Candidate& mod
 
 /// The same for its size alone, with the reported values: true, and unidentifiable, where the error covers
 /// it.
-[[nodiscard]] bool doubt_size(Finding& finding, const Candidate& told, std::size_t term,
-                              const DiagnosisRules& rules);
+[[nodiscard]] bool doubt_size(Finding& finding, const Candidate& told, std::size_t term);
 
 /// Where more is left over than a finding explains, it may have fed on that. `excess_nm`: of excess_of().
 void doubt_for_residual(Finding& finding, double excess_nm, const ModelBench& bench,
@@ -42,7 +41,7 @@ void doubt_for_residual(Finding& finding, double excess_nm, const ModelBench& be
 /// A finding that is slight compared with a far larger one may only be a correction term for the form of that
 /// one. One whose torque is large, and of which others explain much because they resemble it, is no such
 /// term.
-void doubt_for_size(Finding& finding, const std::vector<Finding>& findings, const DiagnosisRules& rules);
+void doubt_for_size(Finding& finding, const std::vector<Finding>& findings);
 
 /// Repeats the tests without the uncertain findings: together with a surrogate of its kind a finding may pass
 /// that does not by itself. True when one became uncertain.

@@ -13,6 +13,7 @@
 #include "diagnose/case/case.hpp"
 #include "diagnose/case/known_torque.hpp"
 #include "diagnose/judging/doubt.hpp"
+#include "diagnose/limits.hpp"
 #include "diagnose/search/model_bench.hpp"
 #include "diagnose/search/search.hpp"
 #include "diagnose/search/search_starts.hpp"
@@ -26,11 +27,11 @@ namespace {
 // Samples at the limit are there partly because of noise; excluding only those while samples that noise kept
 // below the limit remain would bias the torque low. The expected torque decides instead.
 void leave_out_limited(Case& looked_at, const Model& stated, const std::vector<Fault>& faults,
-                       double noise_nm, const DiagnosisRules::ValueRules& rules) {
+                       double noise_nm) {
     for (const Fault& fault : faults) {
         const auto place = fault.term.effect->range_limit;
         if (!place) continue;
-        const double most_nm = *fault.term.values[*place] - rules.limit_deviations * noise_nm;
+        const double most_nm = *fault.term.values[*place] - limits::values::limit_deviations * noise_nm;
         const auto expected_nm = predict_nm(stated, looked_at.motion);
         std::vector<unsigned char> inside = looked_at.use;
         for (std::size_t k = 0; k < looked_at.size(); ++k) {
@@ -39,17 +40,17 @@ void leave_out_limited(Case& looked_at, const Model& stated, const std::vector<F
         const auto used = [](const std::vector<unsigned char>& use) {
             return static_cast<std::size_t>(std::count(use.begin(), use.end(), 1));
         };
-        if (used(inside) * rules.least_inside >= used(looked_at.use)) looked_at.use = inside;
+        if (used(inside) * limits::values::least_inside >= used(looked_at.use)) looked_at.use = inside;
     }
 }
 
 // The first of the findings whose size is not identifiable with the settled values: it was tested together
 // with terms that have come to other values since, or are gone.
-std::optional<std::size_t> untold(const Candidate& told, const ToldOf& of, const DiagnosisRules& rules) {
+std::optional<std::size_t> untold(const Candidate& told, const ToldOf& of) {
     std::size_t term = of.own_terms;
     for (Finding& finding : of.findings) {
         if (is_doubtful(finding)) continue;
-        if (is_trusted(finding) && doubt_size(finding, told, term, rules)) return term;
+        if (is_trusted(finding) && doubt_size(finding, told, term)) return term;
         ++term;
     }
     return std::nullopt;
@@ -58,12 +59,12 @@ std::optional<std::size_t> untold(const Candidate& told, const ToldOf& of, const
 }  // namespace
 
 Candidate final_values(Case looked_at, const NoiseFloor& noise, const Candidate& chosen, const ToldOf& of,
-                       Work& work, const DiagnosisRules& rules) {
-    leave_out_limited(looked_at, chosen.stated, of.faults, noise.rms_nm, rules.values);
-    ModelBench bench(looked_at, noise, work, rules);
+                       Work& work) {
+    leave_out_limited(looked_at, chosen.stated, of.faults, noise.rms_nm);
+    ModelBench bench(looked_at, noise, work);
     bench.settle_on(chosen.stated);
     Candidate told = bench.settled(chosen);
-    while (const auto term = untold(told, of, rules)) told = bench.settled(without_term(bench, told, *term));
+    while (const auto term = untold(told, of)) told = bench.settled(without_term(bench, told, *term));
     return told;
 }
 
@@ -92,9 +93,9 @@ bool is_slow(const ModelBench& bench, const Model& stated, std::size_t term) {
         torque_nm.push_back(added[k]);
         all_nm2 += added[k] * added[k];
     }
-    const auto& rules = bench.rules().wandering;
-    for (std::size_t wave = 0; wave < rules.slow_waves; ++wave) slow_nm2 += held_nm2(bench, torque_nm, wave);
-    return slow_nm2 > rules.slow_part * all_nm2;
+    for (std::size_t wave = 0; wave < limits::wandering::slow_waves; ++wave)
+        slow_nm2 += held_nm2(bench, torque_nm, wave);
+    return slow_nm2 > limits::wandering::slow_part * all_nm2;
 }
 
 }  // namespace
@@ -103,10 +104,10 @@ std::optional<double> above_wandering(const ModelBench& bench, const Model& stat
                                       double raw_gain_nm2) {
     if (!is_slow(bench, stated, term)) return std::nullopt;
     const auto left_nm = bench.cleared_residual(stated);
-    const auto& rules = bench.rules().wandering;
     double mean_nm2 = 0.0;
-    for (std::size_t wave = 0; wave < rules.waves; ++wave)
-        mean_nm2 += held_nm2(bench, left_nm, rules.slow_waves + wave) / static_cast<double>(rules.waves);
+    for (std::size_t wave = 0; wave < limits::wandering::waves; ++wave)
+        mean_nm2 += held_nm2(bench, left_nm, limits::wandering::slow_waves + wave) /
+                    static_cast<double>(limits::wandering::waves);
     return raw_gain_nm2 / std::max(mean_nm2, 1e-300);
 }
 
@@ -117,8 +118,8 @@ double gain_elsewhere(const ModelBench& bench, const Model& with, const Model& w
     const auto now = bench.residual(with), before = bench.residual(without);
     const auto& time_s = bench.looked_at().motion.time_s;
     const double start_s = time_s.front(),
-                 stretch_s = std::max((time_s.back() - start_s) / bench.rules().judge.stretches,
-                                      bench.rules().judge.least_stretch_s);
+                 stretch_s = std::max((time_s.back() - start_s) / limits::judge::stretches,
+                                      limits::judge::least_stretch_s);
     std::map<long, double> gains;
     double total = 0.0, most = 0.0;
     for (std::size_t r = 0; r < now.size(); ++r) {
@@ -135,8 +136,8 @@ double gain_elsewhere(const ModelBench& bench, const Model& with, const Model& w
 void take_blocks(const ModelBench& bench, const Model& with, const Model& without, Evidence& evidence) {
     const auto now = bench.residual(with), before = bench.residual(without);
     const double memory = 5.0 * static_cast<double>(bench.noise().color.size());
-    const auto length = static_cast<std::size_t>(std::max(
-        {bench.rules().residual.block_s * bench.looked_at().motion.sample_rate.value(), memory, 20.0}));
+    const auto length = static_cast<std::size_t>(
+        std::max({limits::residual::block_s * bench.looked_at().motion.sample_rate.value(), memory, 20.0}));
     double sum = 0.0, squares = 0.0;
     for (std::size_t r = 0; r < bench.rows().size(); ++evidence.blocks) {
         double gain = 0.0;
@@ -172,15 +173,12 @@ double margin_of(const ModelBench& bench, const Candidate& model, const Candidat
 
 // The torque of uncertain findings counts as residual as well.
 void doubt_for_form(const ModelBench& bench, const Candidate& kept, std::vector<Finding>& findings) {
-    const double tie_margin = bench.rules().judge.tie_margin;
     for (Finding& finding : findings) {
         if (finding.status != FindingStatus::confirmed || !is_fixed_curve(*finding.term.effect)) continue;
         for (RivalFinding& rival : finding.alternatives) {
             if (!is_fixed_curve(find_effect(rival.effect)) || rival.margin < tie_margin) continue;
             const double margin = ahead_of_left(rival.margin, bench, kept);
-            if (!Hearing(bench.rules(), finding.decisions)
-                     .asked("judge.tie_margin", margin, margin < tie_margin))
-                continue;
+            if (margin >= tie_margin) continue;
             rival.margin = margin;
             finding.status = FindingStatus::ambiguous;
         }
@@ -189,15 +187,14 @@ void doubt_for_form(const ModelBench& bench, const Candidate& kept, std::vector<
 
 void find_rivals(const ModelBench& bench, const Candidate& model, const Candidate& fewer, std::size_t term,
                  std::span<const Effect* const> effects, bool something_left, Finding& finding) {
-    const DiagnosisRules::JudgeRules& rules = bench.rules().judge;
-    const std::size_t most = bench.work().ended() ? 1 : rules.most_rivals;
+    const std::size_t most = bench.work().ended() ? 1 : limits::judge::most_rivals;
     std::size_t tried = 0;
     const Effect* const load[] = {&find_effect("gravity"), &find_effect("inertia")};
     const bool is_scale = model.stated.terms[term].effect == &find_effect("simulation-scale");
-    Hearing hearing(bench.rules(), finding.decisions);
     for (const Trial& trial : screen(bench, fewer, effects)) {
         if (trial.start.effect == model.stated.terms[term].effect) continue;
-        if (trial.gain < rules.rival_gain * finding.evidence.gain - rules.rival_slack || tried++ >= most)
+        if (trial.gain < limits::judge::rival_gain * finding.evidence.gain - limits::judge::rival_slack ||
+            tried++ >= most)
             break;
         const Candidate other = with_trial(bench, fewer, trial);
         const bool is_form_alone =
@@ -207,12 +204,11 @@ void find_rivals(const ModelBench& bench, const Candidate& model, const Candidat
         if (is_scale && std::ranges::find(load, trial.start.effect) != std::end(load))
             margin -= other.gain_left - one_ahead(bench, other, load).gain_left;
         // At a bound it stands in for something else: a warm-up that never ends is a constant friction.
-        if (std::abs(margin) < rules.tie_margin &&
-            !bend_of(bench, other, other.stated.terms.size() - 1).parameter.empty())
+        if (std::abs(margin) < tie_margin &&
+            !bent_parameter(bench, other, other.stated.terms.size() - 1).empty())
             continue;
         finding.alternatives.push_back({trial.start.effect->name, margin});
-        if (hearing.asked("judge.tie_margin", margin, margin < rules.tie_margin))
-            finding.status = FindingStatus::ambiguous;
+        if (margin < tie_margin) finding.status = FindingStatus::ambiguous;
     }
 }
 
@@ -264,7 +260,7 @@ Finding judged_finding(const ModelBench& bench, const Candidate& model, const Ca
     evidence.raw_gain = squares(bench, fewer.stated) - squares(bench, model.stated);
     evidence.elsewhere = gain_elsewhere(bench, model.stated, fewer.stated);
     take_blocks(bench, model.stated, fewer.stated, evidence);
-    finding.where = place_of(bench.looked_at(), torque_nm, finding.term, bench.rules().place);
+    finding.where = place_of(bench.looked_at(), torque_nm, finding.term);
     return finding;
 }
 
@@ -273,9 +269,6 @@ Finding tested_finding(const ModelBench& bench, const Candidate& model, std::siz
                        std::span<const Effect* const> effects, bool something_left) {
     const Candidate fewer = without_term(bench, model, term);
     Finding finding = judged_finding(bench, model, fewer, term, bench.torque_of(model.stated, term));
-    // It was worth its penalty when it was added; together with later ones it may be worth less.
-    const Evidence& evidence = finding.evidence;
-    Hearing(bench.rules(), finding.decisions).asked_price(evidence.gain, evidence.price, false);
     doubt_alone(finding, bench, model, term);
     if (is_trusted(finding)) find_rivals(bench, model, fewer, term, effects, something_left, finding);
     return finding;
@@ -294,7 +287,7 @@ std::vector<Finding> judge(const ModelBench& bench, const Candidate& found, std:
     for (Finding& finding : findings) {
         if (!is_trusted(finding)) continue;
         doubt_for_residual(finding, excess_nm, bench, unexplained);
-        doubt_for_size(finding, findings, bench.rules());
+        doubt_for_size(finding, findings);
     }
     return findings;
 }
@@ -364,7 +357,7 @@ Check checked(const ModelBench& bench, const Case& other, const Candidate& with,
     std::vector<double> brought = before;
     for (std::size_t k = 0; k < brought.size(); ++k) brought[k] -= after[k];
     return {rms_used(other, before), rms_used(other, after),
-            rms_used(other, brought) > material_sigma(other, bench.rules()) * bench.noise().material_nm};
+            rms_used(other, brought) > material_sigma(other) * bench.noise().material_nm};
 }
 
 void note(Finding& finding, const Check& check) {
@@ -410,9 +403,8 @@ void withdraw_newest(const ModelBench& bench, Candidate& kept, const Model& give
         }
         if (newest == nullptr) return;
         const double kept_nm = rms_left(bench, other, kept.stated);
-        if (kept_nm <= bench.rules().reproduction.most_left * given_nm) return;
+        if (kept_nm <= limits::reproduction::most_left * given_nm) return;
         newest->status = FindingStatus::not_reproduced;
-        Hearing(bench.rules(), newest->decisions).asked("reproduction.most_left", kept_nm / given_nm, true);
         newest->reason =
             fmt::format("residual on the validation log {:.3g} Nm with it, {:.3g} Nm with the model as given",
                         kept_nm, given_nm);
@@ -427,9 +419,8 @@ struct Worst {
     double most = 0.0;  ///< ratio of the residual with it to the residual without it
 };
 
-void withdraw(Finding& finding, double left_part, const DiagnosisRules& rules) {
+void withdraw(Finding& finding) {
     finding.status = FindingStatus::not_reproduced;
-    Hearing(rules, finding.decisions).asked("reproduction.most_left", left_part, true);
     finding.reason = fmt::format("residual on the validation log {:.3g} Nm with it, {:.3g} Nm without it",
                                  *finding.validation_after_nm, *finding.validation_before_nm);
 }
@@ -443,7 +434,7 @@ Candidate reproduced(const ModelBench& bench, const Candidate& all, const Candid
                      const Model& given, const Case& other, std::size_t own_terms,
                      std::vector<Finding>& findings) {
     Candidate kept = model;
-    const double most = bench.rules().reproduction.most_left, most_nm = most * rms_left(bench, other, given);
+    const double most = limits::reproduction::most_left, most_nm = most * rms_left(bench, other, given);
     while (true) {
         Worst named, nameless;
         named.most = nameless.most = most;
@@ -461,7 +452,7 @@ Candidate reproduced(const ModelBench& bench, const Candidate& all, const Candid
         const bool spoilt = nameless.finding != nullptr && rms_left(bench, other, kept.stated) > most_nm;
         if (named.finding == nullptr && !spoilt) break;
         Worst& worst = nameless.finding != nullptr ? nameless : named;
-        withdraw(*worst.finding, worst.most, bench.rules());
+        withdraw(*worst.finding);
         kept = std::move(worst.without);
     }
     withdraw_newest(bench, kept, given, other, own_terms, findings);

@@ -10,6 +10,7 @@
 
 #include "diagnose/case/case.hpp"
 #include "diagnose/judging/doubt.hpp"
+#include "diagnose/limits.hpp"
 #include "diagnose/search/model_bench.hpp"
 #include "diagnose/search/screening.hpp"
 #include "ripplenotch/diagnose/diagnosis.hpp"
@@ -29,16 +30,16 @@ struct ToldOf {
 /// noise and for local model errors. A finding whose size is not identifiable from these values
 /// (doubt.most_error) is unidentifiable, and its term is removed.
 [[nodiscard]] Candidate final_values(Case looked_at, const NoiseFloor& noise, const Candidate& chosen,
-                                     const ToldOf& of, Work& work, const DiagnosisRules& rules);
+                                     const ToldOf& of, Work& work);
 
 // Noise may drift more slowly than the log is long: a random walk of the zero, flicker noise. A whitening
 // filter of sixteen lags does not represent that. So the reduction of squares by a slow finding is compared
 // with the drift of the log at frequencies nearly as low.
 
 /// `raw_gain_nm2`, the reduction of squares by term `term` of `stated`, in units of the mean square of waves
-/// a little faster than it in the residual: rules.wandering.waves of them, of rules.wandering.slow_waves half
-/// periods over the log and one more each. Empty where the term's torque is not slow: less than
-/// rules.wandering.slow_part of its square lies below them.
+/// a little faster than it in the residual: limits::wandering::waves of them, of
+/// limits::wandering::slow_waves half periods over the log and one more each. Empty where the term's torque
+/// is not slow: less than limits::wandering::slow_part of its square lies below them.
 [[nodiscard]] std::optional<double> above_wandering(const ModelBench& bench, const Model& stated,
                                                     std::size_t term, double raw_gain_nm2);
 

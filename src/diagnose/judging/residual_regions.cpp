@@ -8,12 +8,11 @@
 #include <numeric>
 
 #include "diagnose/case/lines.hpp"
+#include "diagnose/limits.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
-
-using RegionRules = DiagnosisRules::RegionRules;
 
 struct Window {
     std::size_t first = 0, end = 0;  ///< places in rows
@@ -23,18 +22,16 @@ struct Window {
 class Residual {
   public:
     Residual(const ModelBench& bench, const Model& stated)
-        : bench_(bench),
-          rules_(bench.rules().regions),
-          raw_nm_(bench.raw_residual(stated)),
-          white_(bench.residual(stated)) {
+        : bench_(bench), raw_nm_(bench.raw_residual(stated)), white_(bench.residual(stated)) {
         // Errors of the measured motion are no disagreement.
         const auto cleared = bench.cleared_residual(stated);
         for (std::size_t r = 0; r < cleared.size(); ++r) raw_nm_[bench.rows()[r]] = cleared[r];
         // A torque that stays on a quantization step is off by up to half of it.
         const double step_nm = bench.looked_at().step_nm;
-        matters_mean_ =
-            std::max(rules_.matters_mean, rules_.matters_mean_steps * step_nm / bench.noise().rms_nm);
-        matters_power_ = step_nm > 0.0 ? rules_.matters_power_steps : rules_.matters_power;
+        matters_mean_ = std::max(limits::regions::matters_mean,
+                                 limits::regions::matters_mean_steps * step_nm / bench.noise().rms_nm);
+        matters_power_ =
+            step_nm > 0.0 ? limits::regions::matters_power_steps : limits::regions::matters_power;
         inflation_ = bench.noise().of_sums();
     }
 
@@ -50,9 +47,10 @@ class Residual {
     [[nodiscard]] std::vector<ResidualRegion> in_time() const {
         std::vector<Window> windows;
         const double rate = bench_.looked_at().motion.sample_rate.value();
-        for (const double length_s : {rules_.shortest_window_s, rules_.short_window_s, rules_.long_window_s,
-                                      rules_.longest_window_s}) {
-            const auto length = std::max(rules_.fewest_in_window, static_cast<std::size_t>(length_s * rate));
+        for (const double length_s : {limits::regions::shortest_window_s, limits::regions::short_window_s,
+                                      limits::regions::long_window_s, limits::regions::longest_window_s}) {
+            const auto length =
+                std::max(limits::regions::fewest_in_window, static_cast<std::size_t>(length_s * rate));
             scan(length, windows);
         }
         std::sort(windows.begin(), windows.end(),
@@ -63,7 +61,7 @@ class Residual {
                 return window.first < other.end && other.first < window.end;
             });
             if (apart) kept.push_back(window);
-            if (kept.size() > rules_.most_windows) break;
+            if (kept.size() > limits::regions::most_windows) break;
         }
         std::sort(kept.begin(), kept.end(),
                   [](const Window& a, const Window& b) { return a.first < b.first; });
@@ -90,10 +88,9 @@ class Residual {
     [[nodiscard]] std::vector<ResidualRegion> in_lines(const GearRatio& ratio) const {
         std::vector<ResidualRegion> found;
         std::vector<double> left_nm = raw_nm_;
-        for (std::size_t peeled = 0; peeled < rules_.most_lines; ++peeled) {
+        for (std::size_t peeled = 0; peeled < limits::regions::most_lines; ++peeled) {
             // One at a time: a peak near a strong line is often its own leakage.
-            const auto lines =
-                standing_out(bench_.looked_at(), left_nm, rules_.line_prominence, 1, bench_.rules().lines);
+            const auto lines = standing_out(bench_.looked_at(), left_nm, limits::regions::line_prominence, 1);
             if (lines.empty()) break;
             const ResidualLine& line = lines[0];
             const double rms_nm = peel(line, left_nm);
@@ -138,9 +135,9 @@ class Residual {
         ResidualRegion region{kind, {}, 0.0, 0.0};
         double squares = 0.0, total = 0.0;
         for (std::size_t b = 0; b < bins.sum.size(); ++b) {
-            if (bins.count[b] < rules_.fewest_in_bin) continue;
+            if (bins.count[b] < limits::regions::fewest_in_bin) continue;
             const double mean = bins.sum[b] / bins.count[b] / sigma_nm();
-            if (std::abs(mean) * std::sqrt(bins.count[b] / inflation_) < rules_.significant ||
+            if (std::abs(mean) * std::sqrt(bins.count[b] / inflation_) < limits::regions::significant ||
                 std::abs(mean) < matters_mean_)
                 continue;
             const double from = bins.low + static_cast<double>(b) * bins.width;
@@ -218,8 +215,10 @@ class Residual {
         for (std::size_t w = 0; w < firsts.size(); ++w) {
             const double by_mean = std::abs(means[w]) * std::sqrt(count / inflation_);
             const double by_power = (powers[w] / typical - 1.0) * std::sqrt(0.5 * count / 2.0);
-            const bool mean_out = by_mean > rules_.significant && std::abs(means[w]) > matters_mean_;
-            const bool power_out = by_power > rules_.significant && powers[w] > matters_power_ * typical;
+            const bool mean_out =
+                by_mean > limits::regions::significant && std::abs(means[w]) > matters_mean_;
+            const bool power_out =
+                by_power > limits::regions::significant && powers[w] > matters_power_ * typical;
             if (!mean_out && !power_out) continue;
             windows.push_back({firsts[w], firsts[w] + length,
                                std::max(mean_out ? by_mean : 0.0, power_out ? by_power : 0.0)});
@@ -258,7 +257,6 @@ class Residual {
     }
 
     const ModelBench& bench_;
-    const RegionRules& rules_;
     std::vector<double> raw_nm_, white_;
     double inflation_ = 1.0, matters_mean_ = 0.0, matters_power_ = 0.0;
 };
@@ -273,22 +271,21 @@ std::vector<ResidualRegion> residual_regions(const ModelBench& bench, const Mode
         found.insert(found.end(), more.begin(), more.end());
     };
     append(residual.in_lines(stated.gear_ratio));
-    const RegionRules& rules = bench.rules().regions;
-    append(residual.in_bins(motion.position_deg, RegionKind::position, rules.position_bins,
-                            rules.least_travel_deg));
-    append(residual.in_bins(motion.velocity_deg_s, RegionKind::speed, rules.speed_bins,
-                            rules.least_speeds * bench.looked_at().moving_deg_s));
+    append(residual.in_bins(motion.position_deg, RegionKind::position, limits::regions::position_bins,
+                            limits::regions::least_travel_deg));
+    append(residual.in_bins(motion.velocity_deg_s, RegionKind::speed, limits::regions::speed_bins,
+                            limits::regions::least_speeds * bench.looked_at().moving_deg_s));
     std::stable_sort(found.begin(), found.end(),
                      [](const ResidualRegion& a, const ResidualRegion& b) { return a.rms_nm > b.rms_nm; });
     return found;
 }
 
-bool is_confined(const ResidualRegion& region, const Case& looked_at, const DiagnosisRules& rules) {
+bool is_confined(const ResidualRegion& region, const Case& looked_at) {
     if (region.kind != RegionKind::time) return false;
     const auto& time_s = looked_at.motion.time_s;
     double total_s = 0.0;
     for (const Span& span : region.where.time_s) total_s += span.to - span.from;
-    return total_s < rules.regions.confined_part * (time_s.back() - time_s.front());
+    return total_s < limits::regions::confined_part * (time_s.back() - time_s.front());
 }
 
 }  // namespace ripplenotch

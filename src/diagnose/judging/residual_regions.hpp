@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "diagnose/limits.hpp"
 #include "diagnose/search/model_bench.hpp"
 #include "ripplenotch/diagnose/diagnosis.hpp"
 
@@ -14,9 +15,8 @@ namespace ripplenotch {
 /// first.
 [[nodiscard]] std::vector<ResidualRegion> residual_regions(const ModelBench& bench, const Model& stated);
 
-/// True when the region is confined to less than rules.regions.confined_part of the log's time, so that
+/// True when the region is confined to less than limits::regions::confined_part of the log's time, so that
 /// the rest of the log can be diagnosed without it.
-[[nodiscard]] bool is_confined(const ResidualRegion& region, const Case& looked_at,
-                               const DiagnosisRules& rules);
+[[nodiscard]] bool is_confined(const ResidualRegion& region, const Case& looked_at);
 
 }  // namespace ripplenotch

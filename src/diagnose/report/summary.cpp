@@ -15,6 +15,7 @@
 #include "diagnose/case/lines.hpp"
 #include "diagnose/judging/doubt.hpp"
 #include "diagnose/judging/judge.hpp"
+#include "diagnose/limits.hpp"
 #include "diagnose/search/search.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/core/trace.hpp"
@@ -22,31 +23,6 @@
 #include "ripplenotch/model/motion.hpp"
 
 namespace ripplenotch {
-
-namespace {
-
-// How often a name is wrong, as counted over simulated logs whose truth is known
-// (docs/studies/diagnose-catalogue.md).
-
-// Names reported in two runs of the studies (single, rarer, pair, triple, noise, poor, disturbed logs and
-// formulas that are not the catalogue's): numbers from 9000 on and from 44000 on. A third run was compared
-// with it.
-struct Counted {
-    double names, wrong;
-};
-constexpr Counted where_explained{676.0, 1.0}, where_something_is_left{186.0, 2.0};
-
-// Posterior mean of the share (Jeffreys prior), so that none wrong of a finite number does not give 0.
-double percent(const Counted& counted) { return 100.0 * (counted.wrong + 0.5) / (counted.names + 1.0); }
-
-}  // namespace
-
-std::optional<double> wrong_percent(const Diagnosis& diagnosis) {
-    if (diagnosis.named.empty() || !diagnosis.given.empty() || diagnosis.residual_in_noise)
-        return std::nullopt;
-    return percent(diagnosis.verdict == DiagnosisVerdict::explained ? where_explained
-                                                                    : where_something_is_left);
-}
 
 std::string_view status_name(FindingStatus status) {
     constexpr std::string_view names[] = {"confirmed",        "ambiguous",      "tentative",     "immaterial",
@@ -112,18 +88,18 @@ struct Seen {
     double travel_deg = 0.0;
 };
 
-Seen seen_in(const Motion& motion, const DiagnosisRules& rules) {
+Seen seen_in(const Motion& motion) {
     double fastest = 0.0;
     for (const double v : motion.velocity_deg_s) fastest = std::max(fastest, std::abs(v));
     Seen seen;
     const double one = 1.0 / static_cast<double>(motion.size());
     for (const double v : motion.velocity_deg_s) {
-        if (std::abs(v) <= rules.recording.moving_part * fastest) {
+        if (std::abs(v) <= limits::recording::moving_part * fastest) {
             seen.rest += one;
             continue;
         }
         (v > 0.0 ? seen.positive : seen.negative) += one;
-        if (std::abs(v) <= rules.advice.slow_part * fastest) seen.slowly += one;
+        if (std::abs(v) <= limits::advice::slow_part * fastest) seen.slowly += one;
     }
     const auto [low, high] = std::minmax_element(motion.position_deg.begin(), motion.position_deg.end());
     seen.travel_deg = *high - *low;
@@ -143,8 +119,7 @@ std::set<std::string_view> in_doubt(const Diagnosis& diagnosis) {
 }
 
 // Missing features of this log's motion for the uncertain effects.
-std::vector<std::string> missing_motion(const Diagnosis& diagnosis, const Seen& seen,
-                                        const DiagnosisRules::AdviceRules& rules) {
+std::vector<std::string> missing_motion(const Diagnosis& diagnosis, const Seen& seen) {
     bool direction = false, speed = false, position = false, load = false;
     for (const std::string_view name : in_doubt(diagnosis)) {
         const Effect& effect = find_effect(name);
@@ -154,14 +129,14 @@ std::vector<std::string> missing_motion(const Diagnosis& diagnosis, const Seen& 
         load = load || effect.uses_load;
     }
     std::vector<std::string> missing;
-    if (direction && std::min(seen.positive, seen.negative) < rules.least_part)
+    if (direction && std::min(seen.positive, seen.negative) < limits::advice::least_part)
         missing.emplace_back("the other direction of motion");
-    if (direction && seen.rest < rules.least_part)
+    if (direction && seen.rest < limits::advice::least_part)
         missing.emplace_back("rests of a second or more between moves");
-    if (speed && seen.slowly < rules.least_part)
-        missing.push_back(
-            fmt::format("slow motion, at {:g} % of the fastest speed or less", 100.0 * rules.slow_part));
-    if (position && diagnosis.has_position && seen.travel_deg < rules.turn_deg)
+    if (speed && seen.slowly < limits::advice::least_part)
+        missing.push_back(fmt::format("slow motion, at {:g} % of the fastest speed or less",
+                                      100.0 * limits::advice::slow_part));
+    if (position && diagnosis.has_position && seen.travel_deg < limits::advice::turn_deg)
         missing.push_back(fmt::format("a travel of more than a turn (here {:.0f} deg)", seen.travel_deg));
     if (load) missing.emplace_back("the same motion with another load");
     if (!diagnosis.has_position && position) missing.emplace_back("a column with the position");
@@ -190,8 +165,7 @@ void add_doubtful(const Diagnosis& diagnosis, std::vector<std::string>& steps) {
 }
 
 // A sentence each; nothing where nothing is uncertain. `smoothed` is the log's motion.
-std::vector<std::string> next_steps(const Diagnosis& diagnosis, const Motion& smoothed,
-                                    const DiagnosisRules& rules) {
+std::vector<std::string> next_steps(const Diagnosis& diagnosis, const Motion& smoothed) {
     std::vector<std::string> steps;
     if (!diagnosis.setup.empty()) {
         const std::string& option = diagnosis.setup.front().option;
@@ -201,7 +175,7 @@ std::vector<std::string> next_steps(const Diagnosis& diagnosis, const Motion& sm
     add_ties(diagnosis, steps);
     add_doubtful(diagnosis, steps);
     if (in_doubt(diagnosis).empty()) return steps;
-    const auto missing = missing_motion(diagnosis, seen_in(smoothed, rules), rules.advice);
+    const auto missing = missing_motion(diagnosis, seen_in(smoothed));
     if (missing.empty()) return steps;
     std::string words;
     for (const std::string& one : missing) words += (words.empty() ? "" : "; ") + one;
@@ -317,7 +291,7 @@ Diagnosis diagnose_in_full(const Model& model, const TraceView& log, const Trace
     if (!options.accept.empty()) told = with_accepted(model, log, validation, options, std::move(told));
     if (!told.setup.empty() || !told.ambiguous.empty() || !told.undecidable.empty() ||
         std::any_of(told.rounds.begin(), told.rounds.end(), is_doubtful))
-        told.next = next_steps(told, motion_along(log, options.smoothing), options.rules);
+        told.next = next_steps(told, motion_along(log, options.smoothing));
     if (!told.residual_after_nm.empty())
         told.bands = band_gaps(log.torque_nm, told.beside_given_nm, told.residual_after_nm, log.sample_rate);
     return told;
@@ -351,7 +325,7 @@ DiagnosisVerdict verdict_of(const Diagnosis& diagnosis) {
     return told ? DiagnosisVerdict::partly_explained : DiagnosisVerdict::unexplained;
 }
 
-void name_findings(Diagnosis& diagnosis, const DiagnosisRules& rules) {
+void name_findings(Diagnosis& diagnosis) {
     std::set<std::set<std::string>> ties;
     for (const Finding& finding : diagnosis.rounds) {
         const Effect& effect = *finding.term.effect;
@@ -363,7 +337,7 @@ void name_findings(Diagnosis& diagnosis, const DiagnosisRules& rules) {
         if (finding.status != FindingStatus::ambiguous) continue;
         Tie tie{{name}, {}};
         for (const RivalFinding& rival : finding.alternatives) {
-            if (rival.margin >= rules.judge.tie_margin) continue;
+            if (rival.margin >= tie_margin) continue;
             tie.effects.emplace_back(rival.effect);
             const Effect& other = find_effect(rival.effect);
             if (tie.advice.empty())
@@ -375,18 +349,17 @@ void name_findings(Diagnosis& diagnosis, const DiagnosisRules& rules) {
     }
 }
 
-void measure_gap(Diagnosis& diagnosis, const GapCase& whole, const GapCase* validation,
-                 const DiagnosisRules& rules) {
+void measure_gap(Diagnosis& diagnosis, const GapCase& whole, const GapCase* validation) {
     DiagnosisGap& gap = diagnosis.gap;
     const std::vector<unsigned char> all(whole.improved.size(), 1);
     gap.before_nm = residual_rms(whole.as_given, diagnosis.baseline, all);
     gap.after_nm = residual_rms(whole.improved, diagnosis.model, all);
-    gap.closed_percent = closed_percent(whole, diagnosis, rules.values.least_gap);
+    gap.closed_percent = closed_percent(whole, diagnosis, limits::values::least_gap);
     if (validation == nullptr) return;
     const std::vector<unsigned char> every(validation->improved.size(), 1);
     gap.validation_before_nm = residual_rms(validation->as_given, diagnosis.baseline, every);
     gap.validation_after_nm = residual_rms(validation->improved, diagnosis.model, every);
-    gap.validation_closed_percent = closed_percent(*validation, diagnosis, rules.values.least_gap);
+    gap.validation_closed_percent = closed_percent(*validation, diagnosis, limits::values::least_gap);
 }
 
 }  // namespace ripplenotch

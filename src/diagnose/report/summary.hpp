@@ -26,7 +26,7 @@ void add_unused_rows(std::vector<UnusedRows>& listed, const Case& whole, std::st
                                                             const Case& whole, const Model& model);
 
 /// Fills in `named` and `ambiguous` from the rounds.
-void name_findings(Diagnosis& diagnosis, const DiagnosisRules& rules);
+void name_findings(Diagnosis& diagnosis);
 
 /// A log before and after: its torque less what given terms bring, as they stand and with the values that
 /// were fitted. Without given terms both are the same.
@@ -37,8 +37,7 @@ struct GapCase {
 
 /// Gaps are over every sample, so that they equal those of `simulate` for the same model and log.
 /// `validation` may be absent.
-void measure_gap(Diagnosis& diagnosis, const GapCase& whole, const GapCase* validation,
-                 const DiagnosisRules& rules);
+void measure_gap(Diagnosis& diagnosis, const GapCase& whole, const GapCase* validation);
 
 [[nodiscard]] DiagnosisVerdict verdict_of(const Diagnosis& diagnosis);
 

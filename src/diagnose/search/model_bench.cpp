@@ -9,6 +9,7 @@
 #include "core/rows/row_facts.hpp"
 #include "core/vectors/dot.hpp"
 #include "diagnose/case/known_torque.hpp"
+#include "diagnose/limits.hpp"
 #include "diagnose/search/search_starts.hpp"
 #include "ripplenotch/model/prediction.hpp"
 
@@ -97,15 +98,11 @@ double explained(std::span<const Column> basis, std::span<const Column> columns,
     return sum;
 }
 
-double material_sigma(const Case& looked_at, const DiagnosisRules& rules) {
-    return looked_at.step_nm > 0.0 ? rules.judge.material_sigma_of_steps : rules.judge.material_sigma;
+double material_sigma(const Case& looked_at) {
+    return looked_at.step_nm > 0.0 ? limits::judge::material_sigma_of_steps : limits::judge::material_sigma;
 }
 
 double Candidate::criterion() const { return gain_left + std::accumulate(prices.begin(), prices.end(), 0.0); }
-
-std::string_view material_rule(const Case& looked_at) {
-    return looked_at.step_nm > 0.0 ? "judge.material_sigma_of_steps" : "judge.material_sigma";
-}
 
 namespace {
 
@@ -130,18 +127,17 @@ bool is_as_good(const std::vector<Term>& sensors, const std::vector<Term>& other
 }  // namespace
 
 ModelBench::ModelBench(const Case& looked_at, const NoiseFloor& noise, Work& work,
-                       const DiagnosisRules& rules, std::shared_ptr<KeptScreenings> kept)
+                       std::shared_ptr<KeptScreenings> kept)
     : case_(looked_at),
       noise_(noise),
       work_(work),
-      rules_(rules),
       weighing_(looked_at.size(), looked_at.use, noise.color, looked_at.valid),
       kept_(std::move(kept)) {
     if (!(noise_.material_nm > 0.0)) noise_.material_nm = noise_.rms_nm;
 }
 
 double ModelBench::same_model_nm2() const {
-    return rules_.screening.same_model * noise_.rms_nm * noise_.rms_nm;
+    return limits::screening::same_model * noise_.rms_nm * noise_.rms_nm;
 }
 
 void ModelBench::settle_on(const Model& model) {
@@ -152,7 +148,7 @@ void ModelBench::settle_on(const Model& model) {
         known_ = std::make_shared<KnownFit>(case_, model, weighing_, noise_.white_nm);
     const std::vector<double> white = weighing_.whitened(raw_residual(model));
     const double left_nm = rms(std::span(white).first(weighing_.rows().size()));
-    walks_ = walk_errors(case_, model, rules_.recording);
+    walks_ = walk_errors(case_, model);
     walks_beside_nm_ = std::max(noise_.white_nm, left_nm);
     sensors_ = sensors_of(model);
     is_settled_ = true;
@@ -203,7 +199,7 @@ Candidate ModelBench::fitted(const Model& open, const Model& first_guess, std::v
         const Model guess = found.stated;
         found = from(guess, iterations, settled);
     }
-    state_where_told(found, case_, rules_);
+    state_where_told(found, case_);
     return found;
 }
 
@@ -227,7 +223,7 @@ Candidate ModelBench::settled(const Candidate& model) const {
                   {.first_guess = &model.stated,
                    .most_iterations = 30,
                    .error_stretch = static_cast<std::size_t>(
-                       std::ceil(rules_.values.error_stretch_s * case_.motion.sample_rate.value())),
+                       std::ceil(limits::values::error_stretch_s * case_.motion.sample_rate.value())),
                    .weighing = &weighing_,
                    .carriers = &carriers_});
 }
@@ -259,7 +255,7 @@ double ModelBench::share(const Candidate& with, const Candidate& without) const 
 
 std::vector<double> ModelBench::cleared_residual(const Model& stated) const {
     Weighing plain(case_.size(), case_.use, {});
-    plain.set_nuisance(motion_errors(case_, stated, rules_.recording), noise_.rms_nm);
+    plain.set_nuisance(motion_errors(case_, stated), noise_.rms_nm);
     const auto cleared = plain(raw_residual(stated));
     // Weighing leaves out what noise_.color makes unusable as well; here only rows() are returned.
     std::vector<double> all(case_.size(), 0.0), told;

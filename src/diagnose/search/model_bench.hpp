@@ -65,34 +65,6 @@ using Column = std::vector<double>;
 [[nodiscard]] double explained(std::span<const Column> basis, std::span<const Column> columns,
                                const Column& left);
 
-// The results of the rules for one finding or candidate.
-
-/// Records each rule that is applied, in order.
-class Hearing {
-  public:
-    /// Both must outlive it.
-    Hearing(const DiagnosisRules& rules, std::vector<Decision>& decisions)
-        : rules_(rules), decisions_(decisions) {}
-
-    /// Records that `rule` was applied to `number`; returns `against`, whether it was a reason against the
-    /// finding.
-    bool asked(std::string_view rule, double number, bool against) {
-        const DiagnosisRule& found = find_diagnosis_rule(rule);
-        decisions_.push_back({found.name, number, found.get(rules_), std::string(found.unit), against});
-        return against;
-    }
-
-    /// The threshold of a name follows from what was tried and is no rule of its own; see Evidence::price.
-    bool asked_price(double gain, double price, bool against) {
-        decisions_.push_back({"price", gain, price, "gain", against});
-        return against;
-    }
-
-  private:
-    const DiagnosisRules& rules_;
-    std::vector<Decision>& decisions_;
-};
-
 // Results for a model along one case, kept so that they are not computed again for a model with the same
 // residual: a search returns to the model that it began with, fitted from elsewhere or against another noise.
 
@@ -172,9 +144,7 @@ struct KeptScreenings {
 
 /// Share of the noise floor below which a torque does not matter. Steps coarser than the noise bend whatever
 /// is in the torque into shapes of their own, which are no effects.
-[[nodiscard]] double material_sigma(const Case& looked_at, const DiagnosisRules& rules);
-/// The name of the rule for it.
-[[nodiscard]] std::string_view material_rule(const Case& looked_at);
+[[nodiscard]] double material_sigma(const Case& looked_at);
 
 /// A model in hand: the terms of the user's model first, then those that were added.
 struct Candidate {
@@ -192,8 +162,8 @@ class KnownFit;
 
 class ModelBench {
   public:
-    /// `looked_at`, `work` and `rules` must outlive it. `kept`: of other benches on the same case.
-    ModelBench(const Case& looked_at, const NoiseFloor& noise, Work& work, const DiagnosisRules& rules,
+    /// `looked_at` and `work` must outlive it. `kept`: of other benches on the same case.
+    ModelBench(const Case& looked_at, const NoiseFloor& noise, Work& work,
                std::shared_ptr<KeptScreenings> kept = std::make_shared<KeptScreenings>());
 
     /// Takes up the motion errors of this model: what can be blamed on them is no gap.
@@ -223,9 +193,8 @@ class ModelBench {
     [[nodiscard]] double floor_nm(const Model& stated) const;
 
     [[nodiscard]] const Case& looked_at() const { return case_; }
-    [[nodiscard]] const DiagnosisRules& rules() const { return rules_; }
     /// Share of the noise floor below which a torque does not matter in `looked_at`.
-    [[nodiscard]] double material_sigma() const { return ripplenotch::material_sigma(case_, rules_); }
+    [[nodiscard]] double material_sigma() const { return ripplenotch::material_sigma(case_); }
     [[nodiscard]] Work& work() const { return work_; }
     /// Whether what no effect explains is part of the noise.
     [[nodiscard]] bool noise_holds_residual() const { return noise_.material_nm < noise_.rms_nm; }
@@ -253,7 +222,6 @@ class ModelBench {
     const Case& case_;
     NoiseFloor noise_;
     Work& work_;
-    const DiagnosisRules& rules_;
     Weighing weighing_;
     bool is_settled_ = false;
     std::vector<Term> sensors_;    ///< sensors of the settled model

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "diagnose/limits.hpp"
 #include "diagnose/search/model_bench.hpp"
 #include "diagnose/search/search_starts.hpp"
 #include "model/carriers.hpp"
@@ -48,7 +49,6 @@ class Screening {
     Screening(const ModelBench& bench, const Candidate& model, const std::vector<double>& left_nm, Case some,
               const Hints& hints, std::size_t most_lags)
         : model_(model),
-          rules_(bench.rules()),
           case_(std::move(some)),
           prediction_(model.stated, case_.motion, &carriers_),
           samples_(bench.samples()),
@@ -57,7 +57,7 @@ class Screening {
         const double full_hz = bench.looked_at().motion.sample_rate.value();
         const auto step = static_cast<std::size_t>(std::lround(full_hz / case_.motion.sample_rate.value()));
         const double counting = std::max(static_cast<double>(case_.used()), 1.0);
-        const double lag_price = rules_.noise_floor.lag_price;
+        const double lag_price = limits::noise_floor::lag_price;
         const NoiseFloor::Thinned noise = bench.noise().thinned(step, most_lags, counting, lag_price);
         const NoiseFloor::Thinned full = bench.noise().thinned(1, all_lags, samples_, lag_price);
         weighing_.emplace(case_.size(), case_.use, noise.color, case_.valid);
@@ -82,7 +82,7 @@ class Screening {
             Trial trial = opened(start);
             const double values = static_cast<double>(free_values(trial.open));
             trial.price = values * portable::log(samples_) + 2.0 * portable::log(cells) +
-                          2.0 * portable::log(static_cast<double>(effects) / rules_.screening.false_alarm);
+                          2.0 * portable::log(static_cast<double>(effects) / limits::screening::false_alarm);
             trial.gain = gain_of(start) * unit_;
             if (trial.gain > 0.0 && (!best || trial.score() > best->score())) best = trial;
         }
@@ -109,7 +109,7 @@ class Screening {
         for (const Nuisance& error : errors_) all.push_back(counted(error.torque_nm));
         std::vector<Column> untouched = all;
         errors_basis_ = orthonormal(untouched);
-        walk_ = walk_errors(case_, prediction_.model(), rules_.recording);
+        walk_ = walk_errors(case_, prediction_.model());
         for (const Nuisance& error : walk_) all.push_back(counted(error.torque_nm));
         const Coordinates coordinates(model_.open, &prediction_.model());
         const std::vector<double> point = starts(coordinates);
@@ -185,7 +185,7 @@ class Screening {
         std::vector<Column> beside;
         for (const Column& column : columns) {
             const Column part = outside_of(basis_, column);
-            const double part_asked = rules_.screening.least_outside;
+            const double part_asked = limits::screening::least_outside;
             if (!(product(part, part) > part_asked * part_asked * product(column, column))) continue;
             beside.push_back(part);
         }
@@ -215,7 +215,7 @@ class Screening {
             if (!is_solved(coordinate) || (only_ripple && is_plain(open.terms[coordinate.term]))) continue;
             columns.push_back(counted(slope_nm(changed, coordinates, point, c)));
         }
-        for (const Nuisance& error : walk_errors(case_, changed.model(), rules_.recording))
+        for (const Nuisance& error : walk_errors(case_, changed.model()))
             columns.push_back(counted(error.torque_nm));
         work_.add(changed.applied(), case_.size());
         return fall(only_ripple ? plain_basis_ : errors_basis_, columns, changed.torque_nm());
@@ -249,7 +249,6 @@ class Screening {
     }
 
     const Candidate& model_;
-    const DiagnosisRules& rules_;
     Case case_;
     mutable Carriers carriers_;
     Prediction prediction_;
@@ -295,18 +294,16 @@ std::vector<Trial> screen(const ModelBench& bench, const Candidate& model,
         return sorted(std::move(trials));
     }
     const Hints hints = hints_of(bench, model, left_nm);
-    const std::size_t count = bench.rules().screening.sketch_samples;
+    const std::size_t count = limits::screening::sketch_samples;
     const Screening thinned(bench, model, left_nm, sketch(bench.looked_at(), count), hints,
                             Screening::all_lags);
     // Delays and lags look at neighbouring samples, which a thinned log does not have.
-    const Screening stretches(bench, model, left_nm,
-                              blocks(bench.looked_at(), count, bench.rules().recording), hints,
-                              bench.rules().recording.block_begin);
+    const Screening stretches(bench, model, left_nm, blocks(bench.looked_at(), count), hints,
+                              limits::recording::block_begin);
     std::optional<Screening> ringing;
     if (std::ranges::any_of(effects, [](const Effect* effect) { return effect->whole.has_value(); }))
-        ringing.emplace(bench, model, left_nm,
-                        long_blocks(bench.looked_at(), 2 * count, bench.rules().recording), hints,
-                        bench.rules().recording.ringing_begin);
+        ringing.emplace(bench, model, left_nm, long_blocks(bench.looked_at(), 2 * count), hints,
+                        limits::recording::ringing_begin);
     std::vector<Trial> trials;
     // A thinned log has no delay of a few samples, and what lies behind one has the wrong phase there.
     const bool delayed = std::ranges::any_of(model.stated.terms,

@@ -6,13 +6,12 @@
 #include <iterator>
 #include <optional>
 
+#include "diagnose/limits.hpp"
 #include "diagnose/search/model_bench.hpp"
 #include "diagnose/search/search_starts.hpp"
 
 namespace ripplenotch {
 namespace {
-
-using SearchRules = DiagnosisRules::SearchRules;
 
 // The lines of a trial are names of their own: ripple of order 3 and of order 4 may both be there.
 bool same_place(const Term& a, const Term& b) {
@@ -31,7 +30,7 @@ bool has_twin(const Candidate& model) {
 }
 
 bool newest_is_bent(const ModelBench& bench, const Candidate& model) {
-    return !bend_of(bench, model, model.stated.terms.size() - 1).parameter.empty();
+    return !bent_parameter(bench, model, model.stated.terms.size() - 1).empty();
 }
 
 // A shape that is bent as far as it goes stands in for something else: before it is taken, whatever closes a
@@ -39,10 +38,10 @@ bool newest_is_bent(const ModelBench& bench, const Candidate& model) {
 // `tried`: the finalists, the best first.
 std::optional<Candidate> best_addition(const ModelBench& bench, const Candidate& now,
                                        const std::vector<Trial>& trials, std::vector<Candidate>& tried) {
-    const SearchRules& rules = bench.rules().search;
-    const double worth = trials.empty() ? 0.0 : std::max(rules.within_reach * trials[0].score(), 0.0);
+    const double worth =
+        trials.empty() ? 0.0 : std::max(limits::search::within_reach * trials[0].score(), 0.0);
     for (const Trial& trial : trials) {
-        if (tried.size() >= rules.finalists || trial.score() <= worth) break;
+        if (tried.size() >= limits::search::finalists || trial.score() <= worth) break;
         if (!tried.empty() && bench.work().is_over()) break;
         tried.push_back(with_trial(bench, now, trial));
     }
@@ -51,7 +50,7 @@ std::optional<Candidate> best_addition(const ModelBench& bench, const Candidate&
                      [](const Candidate& a, const Candidate& b) { return a.criterion() < b.criterion(); });
     const double most = now.criterion() - tried[0].criterion();
     for (const Candidate& next : tried) {
-        if (now.criterion() - next.criterion() < rules.instead_of_bent * most) break;
+        if (now.criterion() - next.criterion() < limits::search::instead_of_bent * most) break;
         if (!newest_is_bent(bench, next)) return next;
     }
     return tried[0];
@@ -78,27 +77,24 @@ double line_part(const ModelBench& bench, const Candidate& now, const Candidate&
     return polar && polar->size > 0 ? raw_part(bench, now, next) : 0.0;
 }
 
-bool worth_it(const ModelBench& bench, const Candidate& now, const Candidate& next,
-              std::vector<Decision>& decisions) {
-    Hearing hearing(bench.rules(), decisions);
+constexpr std::string_view no_more_than_chance = "it improves the fit no more than chance would";
+constexpr std::string_view little_of_the_gap = "it closes too small a part of the gap";
+
+// Why the newest term of `next` is not added; empty where it is worth it.
+std::string_view reason_against(const ModelBench& bench, const Candidate& now, const Candidate& next) {
     const double gain = now.gain_left - next.gain_left, samples = bench.samples();
-    if (hearing.asked_price(gain, next.prices.back(), next.criterion() >= now.criterion())) return false;
+    if (next.criterion() >= now.criterion()) return no_more_than_chance;
     // A torque that is small against the noise floor may still rise above the residual where that is quiet.
-    const double share = bench.share(next, now);
-    if (!bench.noise_holds_residual() &&
-        hearing.asked(material_rule(bench.looked_at()), share, share < bench.material_sigma()))
-        return false;
+    if (!bench.noise_holds_residual() && bench.share(next, now) < bench.material_sigma())
+        return "its torque is too small against the noise to matter";
     const double gap = now.gain_left - samples;
-    const SearchRules& rules = bench.rules().search;
     // An effect that changes the torque as a whole also fits errors of any other effect.
-    if (bench.noise_holds_residual() && next.stated.terms.back().effect->side != Side::joint) {
-        const double part = raw_part(bench, now, next);
-        if (hearing.asked("search.fair_part", part, part < rules.fair_part)) return false;
-    }
-    const bool open = gap > rules.open_gap * samples;
-    if (!open) return true;
-    const double part = std::max(gain / gap, line_part(bench, now, next));
-    return !hearing.asked("search.fair_part", part, part < rules.fair_part);
+    if (bench.noise_holds_residual() && next.stated.terms.back().effect->side != Side::joint &&
+        raw_part(bench, now, next) < limits::search::fair_part)
+        return little_of_the_gap;
+    if (gap <= limits::search::open_gap * samples) return {};
+    return std::max(gain / gap, line_part(bench, now, next)) < limits::search::fair_part ? little_of_the_gap
+                                                                                         : std::string_view();
 }
 
 // Two effects that act on the same ripple may each do little alone, and a third, which does a part of both,
@@ -107,14 +103,13 @@ bool worth_it(const ModelBench& bench, const Candidate& now, const Candidate& ne
 std::optional<Candidate> best_with_one_more(const ModelBench& bench, const Candidate& now,
                                             const Candidate& best, const std::vector<Candidate>& tried,
                                             std::span<const Effect* const> effects) {
-    const SearchRules& rules = bench.rules().search;
     const auto adds_torque = [](const Candidate& one) {
         return one.stated.terms.back().effect->side == Side::joint;
     };
     if (adds_torque(best)) return std::nullopt;
     const double gap = now.gain_left - bench.samples();
-    if (gap < rules.open_gap * bench.samples() ||
-        best.gain_left - bench.samples() < rules.look_ahead_gap * gap)
+    if (gap < limits::search::open_gap * bench.samples() ||
+        best.gain_left - bench.samples() < limits::search::look_ahead_gap * gap)
         return std::nullopt;
     std::optional<Candidate> found;
     double least = one_ahead(bench, best, effects).criterion();
@@ -139,16 +134,14 @@ std::optional<Candidate> late_ratio_instead(const ModelBench& bench, const Candi
                                             const std::optional<Candidate>& alone,
                                             std::span<const Effect* const> effects, std::size_t own_terms) {
     // Such a pair leaves the ripple unexplained: there is much to close.
-    if (now.gain_left - bench.samples() <= bench.rules().search.open_gap * bench.samples())
-        return std::nullopt;
+    if (now.gain_left - bench.samples() <= limits::search::open_gap * bench.samples()) return std::nullopt;
     auto both = with_late_ratio(bench, now, own_terms, effects);
     if (!both ||
         both->criterion() >= (alone ? std::min(alone->criterion(), now.criterion()) : now.criterion()) ||
-        both->stated.terms.size() > own_terms + bench.rules().search.most_names)
+        both->stated.terms.size() > own_terms + limits::search::most_names)
         return std::nullopt;
     for (std::size_t term = both->stated.terms.size() - 2; term < both->stated.terms.size(); ++term) {
-        std::vector<Decision> decisions;
-        if (!worth_it(bench, without_term(bench, *both, term), *both, decisions)) return std::nullopt;
+        if (!reason_against(bench, without_term(bench, *both, term), *both).empty()) return std::nullopt;
     }
     return both;
 }
@@ -159,14 +152,12 @@ std::vector<RefusedCandidate> refused_by(const ModelBench& bench, const Candidat
                                          const std::vector<Candidate>& tried) {
     std::vector<RefusedCandidate> refused;
     for (const Candidate& next : tried) {
-        RefusedCandidate candidate{next.stated.terms.back(), {}};
         // One that passes alone was left out for a better one that did not.
-        if (!worth_it(bench, now, next, candidate.decisions)) refused.push_back(std::move(candidate));
+        if (const auto reason = reason_against(bench, now, next); !reason.empty())
+            refused.push_back({next.stated.terms.back(), std::string(reason)});
     }
     if (!tried.empty() || trials.empty()) return refused;
-    RefusedCandidate best{trials[0].start, {}};
-    Hearing(bench.rules(), best.decisions).asked_price(trials[0].gain, trials[0].price, true);
-    return {best};
+    return {{trials[0].start, std::string(no_more_than_chance)}};
 }
 
 // `spared`: how many of the newest have just been tested.
@@ -199,7 +190,6 @@ void drop_slight_twins(const ModelBench& bench, Candidate& now, std::size_t own_
 
 bool swap_once(const ModelBench& bench, Candidate& now, std::size_t own_terms,
                std::span<const Effect* const> effects) {
-    const SearchRules& rules = bench.rules().search;
     for (std::size_t term = own_terms; term < now.stated.terms.size(); ++term) {
         if (bench.work().is_over()) return false;
         const Candidate fewer = without_term(bench, now, term);
@@ -207,9 +197,10 @@ bool swap_once(const ModelBench& bench, Candidate& now, std::size_t own_terms,
         std::size_t tried = 0;
         for (const Trial& trial : screen(bench, fewer, effects)) {
             if (same_place(trial.start, now.stated.terms[term])) continue;
-            if (trial.gain < rules.swap_gain * gain || tried++ >= rules.most_swaps) break;
+            if (trial.gain < limits::search::swap_gain * gain || tried++ >= limits::search::most_swaps) break;
             const Candidate other = with_trial(bench, fewer, trial);
-            if (other.criterion() < now.criterion() - rules.swap_margin && !newest_is_bent(bench, other)) {
+            if (other.criterion() < now.criterion() - limits::search::swap_margin &&
+                !newest_is_bent(bench, other)) {
                 now = other;
                 return true;
             }
@@ -231,7 +222,7 @@ Candidate with_trial(const ModelBench& bench, const Candidate& model, const Tria
     std::vector<double> prices = model.prices;
     prices.push_back(trial.price);
     return bench.fitted(open, guess, std::move(prices), bench.work().ended() ? 4 : 12,
-                        bench.rules().search.finalist_settled);
+                        limits::search::finalist_settled);
 }
 
 Candidate without_term(const ModelBench& bench, const Candidate& model, std::size_t term) {
@@ -243,7 +234,7 @@ Candidate without_term(const ModelBench& bench, const Candidate& model, std::siz
     prices.erase(prices.begin() + at);
     // After the end only a size is wanted.
     if (bench.work().ended())
-        return bench.fitted(open, guess, std::move(prices), 3, bench.rules().search.finalist_settled);
+        return bench.fitted(open, guess, std::move(prices), 3, limits::search::finalist_settled);
     return bench.fitted(open, guess, std::move(prices));
 }
 
@@ -251,7 +242,7 @@ Candidate one_ahead(const ModelBench& bench, const Candidate& candidate,
                     std::span<const Effect* const> effects) {
     Candidate best = candidate;
     const std::vector<Trial> trials = screen(bench, candidate, effects);
-    for (std::size_t i = 0; i < std::min(bench.rules().search.looked_ahead, trials.size()); ++i) {
+    for (std::size_t i = 0; i < std::min(limits::search::looked_ahead, trials.size()); ++i) {
         Candidate next = with_trial(bench, candidate, trials[i]);
         if (next.criterion() < best.criterion()) best = std::move(next);
     }
@@ -273,7 +264,7 @@ bool merge_once(const ModelBench& bench, Candidate& now, std::size_t own_terms,
             if (bench.work().is_over()) return false;
             const Candidate fewer = without_term(bench, without_term(bench, now, a), b);
             const std::vector<Trial> trials = screen(bench, fewer, effects);
-            for (std::size_t i = 0; i < std::min(bench.rules().search.finalists, trials.size()); ++i) {
+            for (std::size_t i = 0; i < std::min(limits::search::finalists, trials.size()); ++i) {
                 if (!transforms(trials[i].start)) continue;
                 Candidate one = with_trial(bench, fewer, trials[i]);
                 if (one.criterion() >= now.criterion() || newest_is_bent(bench, one)) continue;
@@ -298,7 +289,6 @@ std::optional<Candidate> ripple_with_change(const ModelBench& bench, const Candi
         for (const Trial& change : screen(bench, ripple, changes)) {
             if (side_of(change.start) != Side::ripple || change.score() <= 0.0) continue;
             Candidate both = with_trial(bench, ripple, change);
-            std::vector<Decision> decisions;
             if (both.criterion() < ripple.criterion() && both.criterion() < now.criterion() &&
                 !newest_is_bent(bench, both))
                 return both;
@@ -314,8 +304,8 @@ std::optional<Candidate> other_addition(const ModelBench& bench, const Candidate
                                         const std::vector<Trial>& trials, const std::vector<Candidate>& tried,
                                         std::span<const Effect* const> effects) {
     for (const Candidate& candidate : tried) {
-        std::vector<Decision> decisions;
-        if (worth_it(bench, now, candidate, decisions) && !newest_is_bent(bench, candidate)) return candidate;
+        if (reason_against(bench, now, candidate).empty() && !newest_is_bent(bench, candidate))
+            return candidate;
     }
     return ripple_with_change(bench, now, trials, effects);
 }
@@ -349,31 +339,29 @@ std::optional<Candidate> frictions_instead(const ModelBench& bench, const Candid
 
 Candidate search(ModelBench& bench, const Candidate& start, std::size_t own_terms,
                  std::span<const Effect* const> effects, std::vector<RefusedCandidate>& refused) {
-    const SearchRules& rules = bench.rules().search;
     Candidate now = start;
     const auto add_all = [&] {
         refused.clear();
         // An addition may make an earlier one needless, and that one come back.
-        for (std::size_t added = 0;
-             added < rules.most_additions && now.stated.terms.size() < own_terms + rules.most_names;
+        for (std::size_t added = 0; added < limits::search::most_additions &&
+                                    now.stated.terms.size() < own_terms + limits::search::most_names;
              ++added) {
             if (bench.work().is_over()) return;
             const std::vector<Trial> trials = screen(bench, now, effects);
             std::vector<Candidate> tried;
-            std::vector<Decision> decisions;
             auto next = best_addition(bench, now, trials, tried);
             if (auto both = late_ratio_instead(bench, now, next, effects, own_terms)) {
                 next = std::move(both);
             } else if (next && now.stated.terms.size() == own_terms) {
                 if (auto other = best_with_one_more(bench, now, *next, tried, effects);
-                    other && worth_it(bench, now, *other, decisions))
+                    other && reason_against(bench, now, *other).empty())
                     next = std::move(other);
             }
             if (next) {
                 if (auto frictions = frictions_instead(bench, now, *next, effects))
                     next = std::move(frictions);
             }
-            if (!next || !worth_it(bench, now, *next, decisions))
+            if (!next || !reason_against(bench, now, *next).empty())
                 next = bench.noise_holds_residual() ? other_addition(bench, now, trials, tried, effects)
                                                     : std::nullopt;
             if (!next) {
@@ -394,7 +382,7 @@ Candidate search(ModelBench& bench, const Candidate& start, std::size_t own_term
     };
     drop_needless(bench, now, own_terms, 0);
     add_all();
-    for (std::size_t round = 0; round < rules.swap_rounds; ++round) {
+    for (std::size_t round = 0; round < limits::search::swap_rounds; ++round) {
         if (!swap_once(bench, now, own_terms, effects) && !merge_once(bench, now, own_terms, effects)) break;
         drop_needless(bench, now, own_terms);
         add_all();

@@ -12,6 +12,7 @@
 
 #include "core/matrices/factorisations.hpp"
 #include "diagnose/case/lines.hpp"
+#include "diagnose/limits.hpp"
 #include "diagnose/search/model_bench.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/model/prediction.hpp"
@@ -84,7 +85,7 @@ double usual_speed_deg_s(const Case& looked_at) {
     return squares > 0.0 ? in_two_digits(std::sqrt(squares / samples)) : 0.0;
 }
 
-void state_where_told(Candidate& model, const Case& looked_at, const DiagnosisRules& rules) {
+void state_where_told(Candidate& model, const Case& looked_at) {
     for (std::size_t t = 0; t < model.stated.terms.size() && t < model.prices.size(); ++t) {
         Term &stated = model.stated.terms[t], &open = model.open.terms[t];
         const Effect& effect = *stated.effect;
@@ -95,7 +96,7 @@ void state_where_told(Candidate& model, const Case& looked_at, const DiagnosisRu
         // Amplitude at standstill and at the usual speed, relative to that of the term.
         const double rest = restated(stated, 0.0).ripple, usual = restated(stated, usual_deg_s).ripple;
         const double from_deg_s =
-            std::abs(rest) < rules.search.least_at_rest * std::abs(usual) ? usual_deg_s : 0.0;
+            std::abs(rest) < limits::search::least_at_rest * std::abs(usual) ? usual_deg_s : 0.0;
         if (stated.values[*effect.stated_from].value_or(0.0) == from_deg_s) continue;
         const Restated made = restated(stated, from_deg_s);
         if (!is_allowed(effect, made)) continue;
@@ -116,15 +117,14 @@ class Shapes {
         own_ = torque_at(term_);
     }
 
-    // By how much of it the torque differs from that at the bound, where that is as good.
-    [[nodiscard]] std::optional<double> as_good_at(std::size_t parameter, double bound) const {
+    // Whether the torque at the bound is as good.
+    [[nodiscard]] bool is_as_good_at(std::size_t parameter, double bound) const {
         const std::vector<double> there = torque_at(moved(parameter, bound));
-        const double off = difference(own_, there), as_good = bench_.rules().shape.as_good;
-        if (!(off < as_good)) return std::nullopt;
+        const double as_good = limits::shape::as_good;
+        if (!(difference(own_, there) < as_good)) return false;
         // A bound that is as good as neutral is no particular shape.
         const double neutral = term_.effect->parameters[parameter].neutral;
-        if (difference(torque_at(moved(parameter, neutral)), there) < as_good) return std::nullopt;
-        return off;
+        return !(difference(torque_at(moved(parameter, neutral)), there) < as_good);
     }
 
   private:
@@ -181,8 +181,8 @@ bool is_neutral(const Parameter& parameter, double value) {
 double lost_within(const ModelBench& bench, const Candidate& model, const FittedValue& value) {
     const Parameter& parameter = model.stated.terms[value.term].effect->parameters[value.parameter];
     const bool at_lower = value.value - parameter.lower < parameter.upper - value.value;
-    const double inward = bench.rules().shape.inward_part * (parameter.upper - parameter.lower);
-    const double factor = bench.rules().shape.inward_factor;
+    const double inward = limits::shape::inward_part * (parameter.upper - parameter.lower);
+    const double factor = limits::shape::inward_factor;
     double within = value.value + (at_lower ? inward : -inward);
     if (parameter.lower > 0.0) within = at_lower ? value.value * factor : value.value / factor;
     Model held = model.open, guess = model.stated;
@@ -192,12 +192,11 @@ double lost_within(const ModelBench& bench, const Candidate& model, const Fitted
 
 }  // namespace
 
-Bend bend_of(const ModelBench& bench, const Candidate& model, std::size_t term) {
+std::string_view bent_parameter(const ModelBench& bench, const Candidate& model, std::size_t term) {
     const Effect& effect = *model.stated.terms[term].effect;
     const Term& stated = model.stated.terms[term];
     if (const auto damping = find_parameter(effect, "damping"); damping && side_of(stated) != effect.side) {
-        if (const double value = *stated.values[*damping]; value >= bench.rules().shape.most_damping)
-            return {effect.parameters[*damping].name, "shape.most_damping", value};
+        if (*stated.values[*damping] >= limits::shape::most_damping) return effect.parameters[*damping].name;
     }
     const Shapes shapes(bench, model.stated, term);
     for (const FittedValue& value : model.values) {
@@ -205,13 +204,11 @@ Bend bend_of(const ModelBench& bench, const Candidate& model, std::size_t term) 
         if (value.term != term || !is_shape(effect, value.parameter)) continue;
         if (effect.polar && effect.polar->phase == value.parameter) continue;
         if (value.at_bound && !is_neutral(parameter, value.value)) {
-            const double lost = lost_within(bench, model, value);
-            if (lost > bench.rules().judge.tie_margin) return {parameter.name, "judge.tie_margin", lost};
+            if (lost_within(bench, model, value) > tie_margin) return parameter.name;
         }
         for (const double bound : {parameter.lower, parameter.upper}) {
             if (is_neutral(parameter, bound)) continue;
-            if (const auto off = shapes.as_good_at(value.parameter, bound))
-                return {parameter.name, "shape.as_good", *off};
+            if (shapes.is_as_good_at(value.parameter, bound)) return parameter.name;
         }
     }
     return {};
@@ -296,23 +293,22 @@ class RunningSums {
 
 }  // namespace
 
-ChangeTimes change_times(const Case& looked_at, const std::vector<double>& residual_nm, double noise_nm,
-                         const DiagnosisRules& rules) {
-    const std::size_t compared_times = rules.screening.compared_times;
-    const RunningSums sums(looked_at, residual_nm, rules.screening.change_samples);
+ChangeTimes change_times(const Case& looked_at, const std::vector<double>& residual_nm, double noise_nm) {
+    const std::size_t compared_times = limits::screening::compared_times;
+    const RunningSums sums(looked_at, residual_nm, limits::screening::change_samples);
     const std::size_t spacing = sums.size() / (compared_times + 1);
     if (spacing == 0) return {};
     const auto apart_from_ends =
-        static_cast<std::size_t>(rules.screening.change_within * static_cast<double>(sums.size()));
+        static_cast<std::size_t>(limits::screening::change_within * static_cast<double>(sums.size()));
     std::vector<double> gains(compared_times, 0.0);
     for (std::size_t i = 0; i < compared_times; ++i) {
         const std::size_t place = (i + 1) * spacing;
         if (place >= apart_from_ends && place + apart_from_ends <= sums.size()) gains[i] = sums.gain(place);
     }
-    const double least = std::max(rules.screening.least_change * sums.gap(noise_nm), 0.0);
+    const double least = std::max(limits::screening::least_change * sums.gap(noise_nm), 0.0);
     ChangeTimes found{{}, static_cast<double>(compared_times)};
     const std::size_t apart = compared_times / 16;
-    while (found.times_s.size() < rules.screening.most_change_times) {
+    while (found.times_s.size() < limits::screening::most_change_times) {
         const auto best = static_cast<std::size_t>(std::ranges::max_element(gains) - gains.begin());
         if (!(gains[best] > least)) break;
         std::size_t place = best * spacing;
@@ -346,7 +342,7 @@ LateRatio best_late_ratio(const ModelBench& bench, const Effect& delay, const St
                           RatioRange range, const std::vector<double>& torque_nm) {
     const auto ratios_at = [&](double delay_s) {
         return LateRatio{delay_s, likely_ratios(seen_late(bench.looked_at(), Seconds(delay_s)), torque_nm,
-                                                ripple.orders, range, bench.rules())};
+                                                ripple.orders, range)};
     };
     LateRatio best = ratios_at(0.0);
     const double alone_nm2 = best.ratios.strongest_nm2;
@@ -434,23 +430,22 @@ std::optional<Candidate> with_late_ratio(const ModelBench& bench, const Candidat
     const LateRatio& best =
         before != nullptr
             ? *before
-            : kept.keep(seen,
-                        best_late_ratio(bench, *delay, ripple,
-                                        ratios_beside(now, ripple.ratio.value(), bench.rules()), torque_nm));
+            : kept.keep(seen, best_late_ratio(bench, *delay, ripple, ratios_beside(now, ripple.ratio.value()),
+                                              torque_nm));
     if (best.ratios.ratios.empty() ||
-        !(best.ratios.strongest_nm2 > bench.rules().screening.late_ratio * best.strongest_alone_nm2))
+        !(best.ratios.strongest_nm2 > limits::screening::late_ratio * best.strongest_alone_nm2))
         return std::nullopt;
     const double cells = best.ratios.compared * static_cast<double>(delay->parameters[0].tried.size());
     const double price =
         portable::log(bench.samples()) + portable::log(cells) +
-        2.0 * portable::log(static_cast<double>(effects.size()) / bench.rules().screening.false_alarm);
+        2.0 * portable::log(static_cast<double>(effects.size()) / limits::screening::false_alarm);
     const double error = value_for_ratio(*gear_ratio, 0, ripple.ratio, best.ratios.ratios.front());
     for (const auto& [effect, value] : {std::pair(delay, best.delay_s), std::pair(gear_ratio, error)}) {
         open.terms.push_back({effect, {std::nullopt}});
         guess.terms.push_back({effect, {value}});
         prices.push_back(price);
     }
-    return bench.fitted(open, guess, std::move(prices), 12, bench.rules().search.finalist_settled);
+    return bench.fitted(open, guess, std::move(prices), 12, limits::search::finalist_settled);
 }
 
 namespace {
@@ -540,10 +535,8 @@ bool is_there_already(const Term& tried, const Model& open) {
     });
 }
 
-namespace {}  // namespace
-
-RatioRange ratios_beside(const Candidate& model, double about, const DiagnosisRules& rules) {
-    const RatioRange all{rules.screening.lowest_ratio * about, rules.screening.highest_ratio * about};
+RatioRange ratios_beside(const Candidate& model, double about) {
+    const RatioRange all{limits::screening::lowest_ratio * about, limits::screening::highest_ratio * about};
     RatioRange range = all;
     for (std::size_t t = 0; t < model.stated.terms.size(); ++t) {
         const Term& term = model.stated.terms[t];
@@ -563,7 +556,7 @@ Hints hints_of(const ModelBench& bench, const Candidate& model, const std::vecto
     const Model& stated = model.stated;
     Hints hints;
     if (bench.looked_at().expected_delay) hints.delay_s = bench.looked_at().expected_delay->value();
-    hints.tones_hz = strongest_tones_hz(bench.looked_at(), left_nm, bench.rules());
+    hints.tones_hz = strongest_tones_hz(bench.looked_at(), left_nm);
     StatedRipple ripple = stated_ripple(stated);
     hints.ratio = ripple.ratio;
     hints.orders = std::move(ripple.orders);
@@ -572,10 +565,10 @@ Hints hints_of(const ModelBench& bench, const Candidate& model, const std::vecto
                   [](const Term& term) { return term.effect->ripple_order.has_value(); });
     hints.ratios =
         likely_ratios(seen_late(bench.looked_at(), lateness_of(stated)), bench.raw_residual(without_ripple),
-                      hints.orders, ratios_beside(model, hints.ratio.value(), bench.rules()), bench.rules());
+                      hints.orders, ratios_beside(model, hints.ratio.value()));
     hints.least_order =
-        360.0 * bench.rules().screening.least_cycle / std::max(both_ways_deg(bench.looked_at()), 1e-9);
-    hints.changes = change_times(bench.looked_at(), left_nm, bench.noise().rms_nm, bench.rules());
+        360.0 * limits::screening::least_cycle / std::max(both_ways_deg(bench.looked_at()), 1e-9);
+    hints.changes = change_times(bench.looked_at(), left_nm, bench.noise().rms_nm);
     return hints;
 }
 

@@ -10,8 +10,8 @@
 
 #include "diagnose/case/case.hpp"
 #include "diagnose/case/lines.hpp"
+#include "diagnose/limits.hpp"
 #include "diagnose/search/model_bench.hpp"
-#include "ripplenotch/diagnose/rules.hpp"
 
 namespace ripplenotch {
 
@@ -28,20 +28,15 @@ namespace ripplenotch {
 /// States each change of the ripple that was found (it has a price) from standstill, or from the usual speed
 /// where less of the ripple than search.least_at_rest is present at standstill. Terms whose ripple is not all
 /// fitted stay as they are. The torque stays the same.
-void state_where_told(Candidate& model, const Case& looked_at, const DiagnosisRules& rules);
-
-/// How a shape is bent.
-struct Bend {
-    std::string_view parameter;  ///< empty: it is not
-    std::string_view rule;       ///< the rule for it
-    double number = 0.0;         ///< the number that the rule was applied to
-};
+void state_where_told(Candidate& model, const Case& looked_at);
 
 /// The first parameter of a term that is bent as far as its bounds allow, or so far that the torque is as
 /// good as at a bound. Such an effect can no longer be distinguished from others: Stribeck friction of a
 /// Stribeck speed far above all speeds is Coulomb friction. A bound at which the effect is the same as at its
-/// neutral value, and one that the log hardly distinguishes from a value within, bend nothing.
-[[nodiscard]] Bend bend_of(const ModelBench& bench, const Candidate& model, std::size_t term);
+/// neutral value, and one that the log hardly distinguishes from a value within, bend nothing. Empty: none is
+/// bent.
+[[nodiscard]] std::string_view bent_parameter(const ModelBench& bench, const Candidate& model,
+                                              std::size_t term);
 
 // When inertia and gravity change within a log: where the search for a payload that is picked up or put down
 // begins.
@@ -54,7 +49,7 @@ struct ChangeTimes {
 /// The times at which a change of inertia and gravity reduces the sum of squares of the residual most, each
 /// by least squares together with a constant inertia, gravity and offset.
 [[nodiscard]] ChangeTimes change_times(const Case& looked_at, const std::vector<double>& residual_nm,
-                                       double noise_nm, const DiagnosisRules& rules);
+                                       double noise_nm);
 
 /// Results from the whole residual: lines finer than a thinned log resolves.
 struct Hints {
@@ -69,7 +64,7 @@ struct Hints {
 /// Gear ratios that are compared for a model whose ratio is `about`. An order that the search chose from its
 /// list determines nothing: a ratio that brings it nearer to another one of the list is that order of the
 /// same gear.
-[[nodiscard]] RatioRange ratios_beside(const Candidate& model, double about, const DiagnosisRules& rules);
+[[nodiscard]] RatioRange ratios_beside(const Candidate& model, double about);
 
 [[nodiscard]] Hints hints_of(const ModelBench& bench, const Candidate& model,
                              const std::vector<double>& left_nm);
@@ -92,8 +87,8 @@ struct Hints {
 [[nodiscard]] Case seen_late(const Case& looked_at, Seconds late);
 
 /// The model with a delay and a gear ratio that together raise the ripple's lines above those of the best
-/// ratio alone by a factor of rules.screening.late_ratio; fitted. One of the two that the search has added is
-/// replaced by the pair. None where the first `own_terms` terms hold one, where the model has both, where
+/// ratio alone by a factor of limits::screening::late_ratio; fitted. One of the two that the search has added
+/// is replaced by the pair. None where the first `own_terms` terms hold one, where the model has both, where
 /// they are not among `effects`, or where no delay makes that much.
 [[nodiscard]] std::optional<Candidate> with_late_ratio(const ModelBench& bench, const Candidate& now,
                                                        std::size_t own_terms,

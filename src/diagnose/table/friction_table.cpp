@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "core/matrices/least_squares.hpp"
+#include "diagnose/limits.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
@@ -43,8 +44,7 @@ double rounding_nm(std::span<const double> torque_nm) {
 
 class TableFit {
   public:
-    TableFit(const FrictionTable& table, const DiagnosisRules& rules)
-        : rules_(rules), motion_(motion_of(table)), torque_nm_(table.torque_nm) {
+    TableFit(const FrictionTable& table) : motion_(motion_of(table)), torque_nm_(table.torque_nm) {
         double slowest = std::numeric_limits<double>::infinity();
         for (const double v : motion_.velocity_deg_s) slowest = std::min(slowest, std::abs(v));
         // Each row is steady motion, in which the step at standstill is complete: a tanh of 5 is.
@@ -104,7 +104,7 @@ class TableFit {
 
     // The t of a size that is found just so, of so many degrees of freedom.
     [[nodiscard]] double least_t(double freedom) const {
-        const double ratio = portable::pow(rules_.screening.false_alarm / cells(), 2.0 / freedom);
+        const double ratio = portable::pow(limits::screening::false_alarm / cells(), 2.0 / freedom);
         return std::sqrt(freedom * (1.0 / ratio - 1.0));
     }
 
@@ -173,7 +173,6 @@ class TableFit {
         return at(0.5 * (inside + outside));
     }
 
-    const DiagnosisRules& rules_;
     Motion motion_;
     std::span<const double> torque_nm_;
     double width_deg_s_ = 0.2, least_squares_ = 0.0;
@@ -280,8 +279,7 @@ TableFit::Fitted with_found(const TableFit& table, Model model, std::vector<std:
 }
 
 // What was not added and would have explained the table as well in the place of what was.
-void add_rivals(const TableFit& table, const TableFit::Fitted& best, FrictionDiagnosis& result,
-                double tie_margin) {
+void add_rivals(const TableFit& table, const TableFit::Fitted& best, FrictionDiagnosis& result) {
     constexpr std::size_t always = 2;  // Coulomb and viscous
     for (std::size_t t = always; t < best.open.terms.size(); ++t) {
         const std::string name(best.open.terms[t].effect->name);
@@ -355,21 +353,20 @@ void list_undecidable(FrictionDiagnosis& result) {
 
 }  // namespace
 
-FrictionDiagnosis diagnose_friction(const FrictionTable& table, const DiagnosisRules& rules) {
+FrictionDiagnosis diagnose_friction(const FrictionTable& table) {
     if (table.velocity_deg_s.size() != table.torque_nm.size())
         raise<UsageError>("{} speeds and {} torques, expected as many", table.velocity_deg_s.size(),
                           table.torque_nm.size());
-    check(rules);
     FrictionDiagnosis result;
     const Rows rows = moving(table, result);
     check_rows(rows, result);
-    const TableFit fit({rows.velocity_deg_s, rows.torque_nm}, rules);
+    const TableFit fit({rows.velocity_deg_s, rows.torque_nm});
     std::vector<std::string_view> names = {"stribeck-friction", "quadratic-viscous-friction"};
     const bool both_ways = result.positive > 0 && result.negative > 0;
     if (both_ways) names.insert(names.begin(), {"asymmetric-friction", "asymmetric-viscous-friction"});
     const TableFit::Fitted best =
         with_found(fit, {{}, {fit.term("coulomb-friction"), fit.term("viscous-friction")}}, std::move(names),
-                   result, rules.screening.false_alarm);
+                   result, limits::screening::false_alarm);
     result.model = best.fit.model;
     result.values = best.fit.values;
     for (FittedValue& value : result.values) {
@@ -380,7 +377,7 @@ FrictionDiagnosis diagnose_friction(const FrictionTable& table, const DiagnosisR
     result.noise_nm = std::sqrt(best.squares / best.freedom());
     if (is_found(result, "asymmetric-friction"))
         result.ambiguous.push_back({{"asymmetric-friction", "offset"}, "a torque measured at rest"});
-    add_rivals(fit, best, result, rules.judge.tie_margin);
+    add_rivals(fit, best, result);
     examine_stribeck(fit, best, result);
     list_undecidable(result);
     return result;

@@ -189,66 +189,7 @@ void describe(auto& archive, Is<AngleAccount> auto& angle) {
     archive("validation_start_deg", angle.validation_start_deg, six);
 }
 
-void describe(auto& archive, Is<Decision> auto& decision) {
-    archive("rule", decision.rule);
-    archive("number", decision.number, six_or_unknown);
-    archive("limit", decision.limit, six_or_unknown);
-    archive("unit", decision.unit);
-    archive("against", decision.against);
-}
-
 namespace {
-
-// Which rules were asked about a finding, or about a candidate of the last step, which has no round.
-struct DecisionRow {
-    const Effect* effect = nullptr;
-    std::optional<std::size_t> round;
-    std::string outcome;
-    std::vector<Decision> rules;
-};
-
-}  // namespace
-
-void describe(auto& archive, Is<DecisionRow> auto& row) {
-    describe_effect(archive, row.effect);
-    archive("round", row.round);
-    archive("outcome", row.outcome);
-    archive("rules", row.rules);
-}
-
-namespace {
-
-template <class Archive>
-void describe_decisions(Archive& archive, auto& diagnosis) {
-    std::vector<DecisionRow> rows;
-    if constexpr (!Archive::reading) {
-        for (const Finding& one : diagnosis.rounds)
-            rows.push_back(
-                {one.term.effect, rows.size() + 1, std::string(status_name(one.status)), one.decisions});
-        for (const RefusedCandidate& one : diagnosis.refused)
-            rows.push_back({one.term.effect, std::nullopt, "refused", one.decisions});
-    }
-    archive("decisions", rows, if_there);
-    if constexpr (Archive::reading) {
-        for (std::size_t i = 0; i < rows.size(); ++i) {
-            DecisionRow& row = rows[i];
-            const auto refuse = [&](std::string_view field, const std::string& why) {
-                raise<DataError>("{}: decisions[{}].{} {}", archive.source(), i, field, why);
-            };
-            if (!row.round) {
-                diagnosis.refused.push_back({{row.effect, {}}, std::move(row.rules)});
-                continue;
-            }
-            if (*row.round < 1 || *row.round > diagnosis.rounds.size())
-                refuse("round",
-                       fmt::format("is {}, expected one of {} rounds", *row.round, diagnosis.rounds.size()));
-            Finding& finding = diagnosis.rounds[*row.round - 1];
-            if (row.outcome != status_name(finding.status) || row.effect != finding.term.effect)
-                refuse("outcome", fmt::format("differs from rounds[{}]", *row.round - 1));
-            finding.decisions = std::move(row.rules);
-        }
-    }
-}
 
 // The terms of the model as given, with their values in the improved one.
 template <class Archive>
@@ -353,31 +294,7 @@ void describe(JsonWriter& json, const MjcfAccount& mjcf) {
     json("gap_after_nm", mjcf.after_nm, six);
 }
 
-void describe(JsonWriter& json, const PlanQuestion& question) {
-    json("effect", question.effect);
-    json("rival", question.rival, null_if_empty);
-    json("open", question.open);
-    json("gain_before", question.gain_before, six);
-    json("gain", question.gain, six);
-}
-
 namespace {
-
-// Files that were written with a diagnosis on request.
-void put_written(JsonWriter& json, const DiagnosisWritten& written) {
-    json("mjcf", written.mjcf, if_any);
-    if (written.plan == nullptr) {
-        if (!written.plan_file.empty()) json.put("plan", nullptr);
-        return;
-    }
-    json.group("plan", [&](JsonWriter& plan) {
-        plan("file", written.plan_file);
-        plan("duration_s", written.plan->duration());
-        plan("decides", written.plan->decides);
-        plan("motions", written.plan->motions);
-        plan("questions", written.plan->questions);
-    });
-}
 
 // `joint`: what is written with a diagnosis and is no part of it; nullptr where it is read.
 template <class Archive>
@@ -386,10 +303,7 @@ void describe_diagnosis(Archive& archive, auto& diagnosis, const DiagnosedJoint*
     archive("doubt", diagnosis.doubt, if_any);
     archive.derived("gear", [&] { return &joint->gear; });
     archive("named", diagnosis.named);
-    archive.derived(
-        "wrong_percent", [&] { return wrong_percent(diagnosis); }, six);
     archive("rounds", diagnosis.rounds);
-    describe_decisions(archive, diagnosis);
     archive("faults", diagnosis.faults);
     archive("ambiguous", diagnosis.ambiguous);
     archive("unexplained", diagnosis.unexplained);
@@ -414,10 +328,8 @@ void describe_diagnosis(Archive& archive, auto& diagnosis, const DiagnosedJoint*
     archive("next", diagnosis.next, if_any);
     archive.derived(
         "arm", [&] { return joint->arm; }, if_any);
-    if constexpr (Archive::reading)
-        archive.ignore({"mjcf", "plan"});
-    else
-        put_written(archive, joint->written);
+    archive.derived(
+        "mjcf", [&] { return joint->mjcf; }, if_any);
     describe_own_terms(archive, diagnosis);
     archive("samples", diagnosis.samples);
     archive("samples_used", diagnosis.samples_used);
@@ -460,8 +372,8 @@ Json parameters_json(const Term& term, const std::vector<FittedValue>& values) {
 Json place_json(const Place& place) { return to_json(place); }
 
 std::string write_diagnosis(const Diagnosis& diagnosis, const GearAccount& gear, const Provenance& provenance,
-                            const ArmAccount* arm, const DiagnosisWritten& written) {
-    const DiagnosedJoint joint{{}, diagnosis, gear, arm, written};
+                            const ArmAccount* arm, const MjcfAccount* mjcf) {
+    const DiagnosedJoint joint{{}, diagnosis, gear, arm, mjcf};
     return to_fitted_text(document_of(
         "diagnosis", provenance, [&](JsonWriter& json) { describe_diagnosis(json, diagnosis, &joint); }));
 }

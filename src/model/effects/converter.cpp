@@ -14,6 +14,48 @@
 namespace ripplenotch {
 namespace {
 
+// What tells a fault of the converter from a torque that looks like it.
+// A noisy torque comes to its extreme once or twice; a clipped one stays there.
+constexpr std::size_t fewest_clipped = 8;
+// Times: on whole steps the extreme is held by chance too, but less often than the level below it.
+constexpr double clipped_of_next = 2.0;
+// Levels so near to the extreme are compared with it.
+constexpr double next_level_steps = 1.5;
+// Chance: how likely a run of equal values in the whole log may be by chance and still be told as held.
+constexpr double chance_run = 1e-4;
+// Times the slowest speed: only faster samples say how often neighbours are equal by nature: at rest a
+// noiseless torque stays.
+constexpr double moving_speeds = 2.0;
+// No shorter run is told as held, however unlikely.
+constexpr std::size_t fewest_held = 4;
+// The same where the log holds whole steps, on which a slow torque stays by nature.
+constexpr std::size_t fewest_held_of_steps = 30;
+// Times the usual turn: on whole steps a held stretch goes through several times the angle of the longest
+// natural ones.
+constexpr double held_turns = 4.0;
+// %: share of the runs that are natural, among which the longest is looked for.
+constexpr std::size_t usual_turns_percent = 98;
+// With fewer runs nothing is known of what is usual, and none is told as held.
+constexpr std::size_t fewest_turns = 10;
+// Of the held stretches: that have to end in a jump of more than a step: from a step on which it stays by
+// itself the torque goes to the next one.
+constexpr double jumping_part = 0.1;
+// Deviations: smaller ones are the tail of the noise.
+constexpr double spike_deviations = 9.0;
+// So many have to be far out: one or two are chance, a touch, or the end of a heavy tail.
+constexpr std::size_t fewest_spikes = 3;
+// Times the limit: far out; half of the spikes have to be: spikes stand apart from the noise, heavy tails go
+// on from it.
+constexpr double far_deviations = 2.0;
+// More samples that stand out about one are a burst or a ringing.
+constexpr std::size_t most_out_together = 4;
+// Of its size: after a spike the torque is where it was, within this; after a step it is not.
+constexpr double returns_part = 0.4;
+// Of its size: a spike is farther than this from both sides; a slope is near to one of them.
+constexpr double leaves_part = 0.7;
+// The typical deviation counts as no less: a torque that rests on one step has none.
+constexpr double spike_steps = 0.3;
+
 // The most samples in a row of one value that is no end of the range.
 std::size_t longest_hold(std::span<const double> torque_nm, double low_nm, double high_nm) {
     std::size_t longest = 1, here = 1;
@@ -40,32 +82,30 @@ std::size_t counted_once(std::span<const std::size_t> at, std::size_t longest) {
 }
 
 // Samples at an end of the log's range; none where the torque only came to its extreme.
-std::vector<std::size_t> clipped_at(const LoggedTorque& log, double rail_nm, std::size_t longest,
-                                    const FaultRules& rules) {
+std::vector<std::size_t> clipped_at(const LoggedTorque& log, double rail_nm, std::size_t longest) {
     std::vector<std::size_t> at;
     std::size_t next = 0;  // samples on the level before the last
     for (std::size_t k = 0; k < log.torque_nm.size(); ++k) {
         const double off = std::abs(log.torque_nm[k] - rail_nm);
         if (off <= 1e-9 * std::abs(rail_nm))
             at.push_back(k);
-        else if (log.step_nm > 0.0 && off < rules.next_level_steps * log.step_nm)
+        else if (log.step_nm > 0.0 && off < next_level_steps * log.step_nm)
             ++next;
     }
     // On whole steps the extreme is held by chance, but by fewer samples than the level below it.
-    const bool by_chance = log.step_nm > 0.0 &&
-                           static_cast<double>(at.size()) < rules.clipped_of_next * static_cast<double>(next);
-    if (counted_once(at, longest) < rules.fewest_clipped || by_chance) at.clear();
+    const bool by_chance =
+        log.step_nm > 0.0 && static_cast<double>(at.size()) < clipped_of_next * static_cast<double>(next);
+    if (counted_once(at, longest) < fewest_clipped || by_chance) at.clear();
     return at;
 }
 
 // Single samples that stand off their neighbours.
 class Outliers {
   public:
-    Outliers(const LoggedTorque& log, const FaultRules& rules)
+    Outliers(const LoggedTorque& log)
         : log_(log),
-          rules_(rules),
           torque_nm_(log.torque_nm),
-          least_nm_(std::max(log.noise_nm, rules.spike_steps * log.step_nm)),
+          least_nm_(std::max(log.noise_nm, spike_steps * log.step_nm)),
           off_(from_neighbours()),
           typical_(typical_about(off_)) {}
 
@@ -78,16 +118,14 @@ class Outliers {
         std::size_t out = 0;
         for (std::size_t i = k >= 8 ? k - 8 : 0; i < std::min(k + 9, off_.size()); ++i)
             out += stands_out(i) ? 1U : 0U;
-        return out <= rules_.most_out_together && returns(k);
+        return out <= most_out_together && returns(k);
     }
     [[nodiscard]] double size_nm(std::size_t k) const { return std::abs(off_[k]); }
-    [[nodiscard]] bool is_far(std::size_t k) const {
-        return size_nm(k) > rules_.far_deviations * threshold(k);
-    }
+    [[nodiscard]] bool is_far(std::size_t k) const { return size_nm(k) > far_deviations * threshold(k); }
 
   private:
     [[nodiscard]] double threshold(std::size_t k) const {
-        return rules_.spike_deviations * std::max(typical_[k], least_nm_);
+        return spike_deviations * std::max(typical_[k], least_nm_);
     }
     [[nodiscard]] bool stands_out(std::size_t k) const { return size_nm(k) > threshold(k); }
 
@@ -97,8 +135,8 @@ class Outliers {
         const double size = size_nm(k);
         for (const std::size_t before : {k - 1, k - 2}) {
             for (const std::size_t after : {k + 1, k + 2}) {
-                if (std::abs(torque_nm_[before] - torque_nm_[after]) < rules_.returns_part * size &&
-                    std::abs(torque_nm_[k] - torque_nm_[before]) > rules_.leaves_part * size)
+                if (std::abs(torque_nm_[before] - torque_nm_[after]) < returns_part * size &&
+                    std::abs(torque_nm_[k] - torque_nm_[before]) > leaves_part * size)
                     return true;
             }
         }
@@ -140,7 +178,6 @@ class Outliers {
     }
 
     const LoggedTorque& log_;
-    const FaultRules& rules_;
     std::span<const double> torque_nm_;
     double least_nm_;
     std::vector<double> off_, typical_;
@@ -149,7 +186,7 @@ class Outliers {
 // Runs of equal values, and which of them are no chance.
 class Runs {
   public:
-    Runs(const LoggedTorque& log, const FaultRules& rules) : log_(log), rules_(rules) {}
+    Runs(const LoggedTorque& log) : log_(log) {}
 
     // First sample from k on that differs from the one before it.
     [[nodiscard]] std::size_t end_of_run(std::size_t k) const {
@@ -163,7 +200,7 @@ class Runs {
         const std::size_t n = log_.torque_nm.size();
         std::size_t equal = 0, moving = 0;
         for (std::size_t k = 1; k < n; ++k) {
-            if (std::abs(log_.motion.velocity_deg_s[k]) < rules_.moving_speeds * log_.moving_deg_s ||
+            if (std::abs(log_.motion.velocity_deg_s[k]) < moving_speeds * log_.moving_deg_s ||
                 log_.use[k] == 0)
                 continue;
             ++moving;
@@ -173,9 +210,9 @@ class Runs {
         const double often = std::clamp(
             static_cast<double>(equal) / static_cast<double>(std::max<std::size_t>(moving, 1)), 1e-3, 0.95);
         const auto run = static_cast<std::size_t>(
-            std::ceil(portable::log(rules_.chance_run / static_cast<double>(n)) / portable::log(often)));
+            std::ceil(portable::log(chance_run / static_cast<double>(n)) / portable::log(often)));
         // With whole steps a slow torque stays on one: a held value must be long against that.
-        return std::max(run, log_.step_nm > 0.0 ? rules_.fewest_held_of_steps : rules_.fewest_held);
+        return std::max(run, log_.step_nm > 0.0 ? fewest_held_of_steps : fewest_held);
     }
 
     [[nodiscard]] double turn_deg(std::size_t first, std::size_t end) const {
@@ -192,11 +229,11 @@ class Runs {
             if (end > k) turns.push_back(turn_deg(k - 1, end));
             k = std::max(end, k + 1);
         }
-        if (turns.size() < rules_.fewest_turns) return 1e300;
-        const std::size_t place = std::min(turns.size() * rules_.usual_turns_percent / 100, turns.size() - 1);
+        if (turns.size() < fewest_turns) return 1e300;
+        const std::size_t place = std::min(turns.size() * usual_turns_percent / 100, turns.size() - 1);
         const auto high = turns.begin() + static_cast<std::ptrdiff_t>(place);
         std::nth_element(turns.begin(), high, turns.end());
-        return rules_.held_turns * *high;
+        return held_turns * *high;
     }
 
     // A torque that stays on a quantization step by itself moves to the next one; a held sample catches up at
@@ -209,7 +246,6 @@ class Runs {
 
   private:
     const LoggedTorque& log_;
-    const FaultRules& rules_;
 };
 
 }  // namespace
@@ -234,14 +270,14 @@ const Effect effects::saturation{
             for (std::size_t k = 0; k < torque_nm.size(); ++k)
                 torque_nm[k] = std::clamp(torque_nm[k], -values[0], values[0]);
         },
-    .detect = [](const LoggedTorque& log, const FaultRules& rules) -> std::optional<DetectedFault> {
+    .detect = [](const LoggedTorque& log) -> std::optional<DetectedFault> {
         const auto [low, high] = std::minmax_element(log.torque_nm.begin(), log.torque_nm.end());
         // Whole steps hold a torque as well.
         const std::size_t longest = log.step_nm > 0.0 ? 1 : longest_hold(log.torque_nm, *low, *high);
         DetectedFault fault;
         double limit_nm = 0.0;
         for (const double rail_nm : {*low, *high}) {
-            const std::vector<std::size_t> at = clipped_at(log, rail_nm, longest, rules);
+            const std::vector<std::size_t> at = clipped_at(log, rail_nm, longest);
             if (at.empty()) continue;
             limit_nm = std::max(limit_nm, std::abs(rail_nm));
             fault.spoiled.insert(fault.spoiled.end(), at.begin(), at.end());
@@ -276,8 +312,8 @@ const Effect effects::quantization{
             for (std::size_t k = 0; k < torque_nm.size(); ++k)
                 torque_nm[k] = std::round(torque_nm[k] / values[0]) * values[0] + 0.0;
         },
-    .detect = [](const LoggedTorque& log, const FaultRules& rules) -> std::optional<DetectedFault> {
-        if (log.step_nm == 0.0 || log.step_nm < rules.step_of_noise * log.noise_nm) return std::nullopt;
+    .detect = [](const LoggedTorque& log) -> std::optional<DetectedFault> {
+        if (log.step_nm == 0.0 || log.step_nm < step_of_noise * log.noise_nm) return std::nullopt;
         const std::set<double> levels(log.torque_nm.begin(), log.torque_nm.end());
         return DetectedFault{.values = {log.step_nm},
                              .spoiled = {},
@@ -309,8 +345,8 @@ const Effect effects::spikes{
                 if (hit) torque_nm[k] += up ? values[1] : -values[1];
             }
         },
-    .detect = [](const LoggedTorque& log, const FaultRules& rules) -> std::optional<DetectedFault> {
-        const Outliers outliers(log, rules);
+    .detect = [](const LoggedTorque& log) -> std::optional<DetectedFault> {
+        const Outliers outliers(log);
         DetectedFault fault;
         std::vector<double> sizes_nm;
         std::size_t far = 0;
@@ -321,7 +357,7 @@ const Effect effects::spikes{
             far += outliers.is_far(k) ? 1U : 0U;
         }
         // Spikes stand apart from the noise; heavy tails go on from it.
-        if (far < rules.fewest_spikes || 2 * far < sizes_nm.size()) return std::nullopt;
+        if (far < fewest_spikes || 2 * far < sizes_nm.size()) return std::nullopt;
         const double per_sample =
             static_cast<double>(sizes_nm.size()) / static_cast<double>(log.torque_nm.size());
         const double size_nm = median_of(sizes_nm);
@@ -366,8 +402,8 @@ const Effect effects::dropout{
                 left -= 1.0;
             }
         },
-    .detect = [](const LoggedTorque& log, const FaultRules& rules) -> std::optional<DetectedFault> {
-        const Runs runs(log, rules);
+    .detect = [](const LoggedTorque& log) -> std::optional<DetectedFault> {
+        const Runs runs(log);
         const std::size_t n = log.torque_nm.size(), unlikely = runs.unlikely();
         const double least_turn_deg = runs.least_turn_deg();
         DetectedFault fault;
@@ -383,7 +419,7 @@ const Effect effects::dropout{
             k = std::max(end, k + 1);
         }
         if (lengths.empty() ||
-            static_cast<double>(jumps) < rules.jumping_part * static_cast<double>(lengths.size()))
+            static_cast<double>(jumps) < jumping_part * static_cast<double>(lengths.size()))
             return std::nullopt;
         const double rate = log.motion.sample_rate.value();
         double mean = 0.0;

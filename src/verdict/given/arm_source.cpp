@@ -15,7 +15,6 @@
 #include "ripplenotch/arm/chain.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/spec.hpp"
-#include "ripplenotch/diagnose/rules.hpp"
 
 namespace ripplenotch {
 
@@ -231,7 +230,7 @@ bool GivenArm::is_applied(const ArmLag& lag) const {
     // The rule of a delay that is found in one joint holds here, too: a shorter one is a matter of when a
     // sample is said to be taken.
     const double period_s = 1.0 / reading_.view().joints.front().sample_rate.value();
-    return lag.is_there() && std::abs(lag.delay_s) >= DiagnosisRules{}.doubt.least_delay_samples * period_s;
+    return lag.is_there() && std::abs(lag.delay_s) >= least_delay_samples * period_s;
 }
 
 const ArmFit& GivenArm::fit(std::size_t joint) { return fitted(joint).fit; }
