@@ -28,7 +28,6 @@ SKIPPED = 77
 COUNT = ["valgrind", "--tool=cachegrind", "--cache-sim=no", "--cachegrind-out-file=/dev/null", "--vgdb=no",
          "--vex-guest-chase=no", "--vex-iropt-level=0"]
 SHORT, LONG = 17_000, 29_000  # both beyond the first 16384 rows, which filter looks at before it begins
-SHORT_CASES = ("filter, npy",)  # of the test of a commit, RIPPLENOTCH_SHORT=1
 COLUMNS = ("time_s", "velocity_deg_s", "torque_nm")
 
 # Quiet: the warnings of harm measure the ripple in stretches of the log, whose cost is no cost of a row.
@@ -92,7 +91,7 @@ def without_symbols(tool, folder):
     return folder / "tool"
 
 
-def measure(tool, cases):
+def measure(tool):
     os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
@@ -102,7 +101,7 @@ def measure(tool, cases):
             make_logs(folder, log[:count])
         subprocess.run([tool, "design", "--gear-ratio", "40", "--orders", "1,2", "--sample-rate", "2kHz", "--speed", "20:200:20",
                         "--q", "5", "--width", "digital", "--above", "pass", "-o", folder / "table.json"], check=True)
-        return {case: per_row(tool, folder, words) for case, words in CASES.items() if case in cases}
+        return {case: per_row(tool, folder, words) for case, words in CASES.items()}
 
 
 def reason_to_skip(build, recorded_with):
@@ -126,8 +125,7 @@ def main():
     if reason:
         print(f"SKIPPED: {reason}")
         return SKIPPED
-    short = os.environ.get("RIPPLENOTCH_SHORT") == "1" and not options.update
-    measured = measure(os.environ["RIPPLENOTCH"], SHORT_CASES if short else CASES)
+    measured = measure(os.environ["RIPPLENOTCH"])
     slower = []
     for case, figure in measured.items():
         before = recorded["instructions_per_row"].get(case, math.nan)

@@ -12,7 +12,6 @@
 #include "fuzz/reading.hpp"
 #include "log/text/quick_rows.hpp"
 #include "support/catch.hpp"
-#include "support/rounds.hpp"
 
 using namespace ripplenotch;
 
@@ -110,7 +109,7 @@ TEST_CASE("mutated logs read the same way by vectors, plainly, carefully and in 
     constexpr std::size_t whole = std::string::npos;
     std::mt19937 random(11);
     std::size_t read = 0;
-    const std::size_t rounds = test::rounds(1500);
+    const std::size_t rounds = 1500;
     for (std::size_t i = 0; i < rounds; ++i) {
         std::string text = log_of(random);
         mutate(text, random);

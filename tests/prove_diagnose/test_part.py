@@ -3,7 +3,6 @@
 
 import unittest
 
-from commands import SHORT
 import prove  # first: it skips without numpy
 
 prove.skip_unless_command("diagnose")
@@ -14,9 +13,8 @@ ALONE = ("coulomb-friction", "gear-ratio")
 
 class Part(unittest.TestCase):
     def test_an_effect_hidden_alone_is_named_and_the_improved_model_does_on_another_log_what_was_said(self):
-        alone = ALONE[:1] if SHORT else ALONE
-        rows = prove.rows(self, "single", 1, alone) + ([] if SHORT else prove.rows(self, "pair", 1))
-        self.assertEqual(len(rows), len(alone) + (not SHORT))
+        rows = prove.rows(self, "single", 1, ALONE) + prove.rows(self, "pair", 1)
+        self.assertEqual(len(rows), len(ALONE) + 1)
         self.assertEqual([(row["case"], row["named"]) for row in rows if not row["exact"]], [])
         self.assertEqual([row["case"] for row in rows if row["false"]], [])
         self.assertEqual([row["case"] for row in rows if row["gap"]["as_said"] is False], [])
@@ -24,7 +22,6 @@ class Part(unittest.TestCase):
     def test_nothing_hidden_nothing_named(self):
         self.assertEqual([(row["case"], row["named"]) for row in prove.rows(self, "null", 1) if row["named"]], [])
 
-    @unittest.skipIf(SHORT, "scripts/nightly runs it")
     def test_what_is_in_no_catalogue_is_reported_where_it_is_and_under_no_name(self):
         rows = prove.rows(self, "outside", 1, ("noise burst", "random wander"))
         self.assertEqual(len(rows), 2)
