@@ -26,4 +26,5 @@ endforeach()
 ripplenotch_reference_file(complete-bash ripplenotch.bash)
 ripplenotch_reference_file(complete-zsh _ripplenotch)
 ripplenotch_reference_file(complete-fish ripplenotch.fish)
-add_custom_target(ripplenotch_reference ALL DEPENDS ${reference_files})
+# When it is installed: an edit of the program prints none of them.
+add_custom_target(ripplenotch_reference DEPENDS ${reference_files})

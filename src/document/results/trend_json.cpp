@@ -27,6 +27,7 @@ struct Row {
 template <class Value>
 concept IsRow = requires(Value& value) {
     value.part;
+    value.robot;
 };
 
 // A value in the course of an alert, which its date and descriptor name.

@@ -24,7 +24,7 @@ std::vector<std::string> split_commas(std::string_view text) {
     return entries;
 }
 
-bool is_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
+bool is_ascii_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
 
 /// What stands before the number at the end of a name, "panda_joint" of "panda_joint3".
 std::string_view letters_of(std::string_view name) {
@@ -102,7 +102,7 @@ class Selection {
         const std::string key = joint_key(word);
         if (const auto alike = find([&](const std::string& joint) { return joint_key(joint) == key; }))
             return alike;
-        if (!std::all_of(word.begin(), word.end(), is_digit)) return std::nullopt;
+        if (!std::all_of(word.begin(), word.end(), is_ascii_digit)) return std::nullopt;
         const auto ends_in_it = [&](const std::string& joint) {
             return letters_of(joint).size() + word.size() == joint.size() && joint.ends_with(word);
         };

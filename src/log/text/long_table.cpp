@@ -44,7 +44,7 @@ constexpr std::array<std::string_view, 7> value_words = {"value", "values", "dat
 constexpr std::array<std::string_view, 5> name_keys = {"variable", "name", "variablename", "symbol",
                                                        "symbolname"};
 constexpr std::size_t most_names = 4096;
-constexpr double periods_apart = 3.0;  // as signals of topics are joined
+constexpr double longest_gap_periods = 3.0;  // as signals of topics are joined
 
 bool is_one_of(Words words, std::string_view text) {
     const std::string lower = lower_case(text);
@@ -249,7 +249,7 @@ class AtTimes {
     AtTimes(const std::string& source, const Signal& signal, std::string_view how)
         : source_(source), signal_(signal), how_(how) {
         const double span = signal.time.back() - signal.time.front();
-        limit_ = periods_apart * span / std::max(1.0, static_cast<double>(signal.time.size()) - 1.0);
+        limit_ = longest_gap_periods * span / std::max(1.0, static_cast<double>(signal.time.size()) - 1.0);
     }
     std::optional<std::string> at(double time) {
         const std::vector<double>& times = signal_.time;

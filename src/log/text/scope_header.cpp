@@ -25,7 +25,7 @@ constexpr std::array<std::string_view, 18> keys = {
     "Port",          "Offset",           "ScaleFactor",    "BitMask",      "Unit",
     "Comment",       "Unit ScaleFactor", "Unit Offset"};
 
-std::optional<double> number_of(std::string_view cell) {
+std::optional<double> scope_number(std::string_view cell) {
     const auto number = parse_number(cell, '.');
     return number ? number : parse_number(cell, ',');
 }
@@ -52,7 +52,7 @@ class Head {
 
     [[nodiscard]] bool is_row(std::size_t line) const {
         const std::vector<std::string> row = cells(line);
-        return !row.empty() && number_of(row.front()).has_value();
+        return !row.empty() && scope_number(row.front()).has_value();
     }
 
     [[nodiscard]] bool is_key(std::size_t line) const {
@@ -77,7 +77,7 @@ class Head {
 };
 
 // "Nm (Torque)", "mNm (Torque)", "° (Angle)": the unit, then what it measures.
-std::string bare_unit(const std::string& text) {
+std::string scope_unit(const std::string& text) {
     const std::size_t bracket = text.rfind('(');
     std::string unit = bracket == std::string::npos || !text.ends_with(')') ? text : text.substr(0, bracket);
     while (!unit.empty() && unit.back() == ' ') unit.pop_back();
@@ -110,7 +110,7 @@ void read_scales(const Head& head, std::size_t shift, ScopeHeader& found) {
     for (const ScaleKey& key : scale_keys) {
         const std::vector<std::string> cells = head.under(key.key, found.names_line + 1, found.first_row);
         for (std::size_t c = 0; c < found.names.size() && c + shift < cells.size(); ++c) {
-            const auto number = number_of(cells[c + shift]);
+            const auto number = scope_number(cells[c + shift]);
             if (!number || *number == (key.factor ? 1.0 : 0.0)) continue;
             if (key.factor && key.of_unit && is_size_of(*number, found.units[c])) continue;
             HeadScale& scale = found.scales[c];
@@ -125,7 +125,7 @@ std::optional<double> common_step(const Head& head, const ScopeHeader& found, co
         head.under("SampleTime[ms]", found.names_line + 1, found.first_row);
     std::optional<double> step_ms;
     for (std::size_t c = 1; c < cells.size(); ++c) {
-        const auto number = number_of(cells[c]);
+        const auto number = scope_number(cells[c]);
         if (!number || !(*number > 0.0)) continue;
         if (step_ms.value_or(*number) != *number)
             raise<DataError>(
@@ -149,7 +149,7 @@ void read_channels(const std::vector<std::string>& names, const std::vector<std:
         found.clock_of[c] = times ? c : found.clock_of[c - 1];
         if (times) continue;
         found.names[c] = names[c];
-        if (c < units.size()) found.units[c] = bare_unit(units[c]);
+        if (c < units.size()) found.units[c] = scope_unit(units[c]);
     }
     found.names[0] = first_time > ticks_since_1601 ? "time [100ns]" : "time [ms]";
 }
@@ -184,7 +184,7 @@ std::optional<ScopeHeader> scope_header(std::string_view bytes, const std::vecto
     if (says_more && !twice && names.size() == row.size() + 1) {
         found.names.assign(names.begin() + 1, names.end());
         if (!units.empty()) units.erase(units.begin());
-        for (std::string& unit : units) unit = bare_unit(unit);
+        for (std::string& unit : units) unit = scope_unit(unit);
         units.resize(found.names.size());
         found.units = units;
         found.row_step_s = common_step(head, found, source);
@@ -201,11 +201,11 @@ std::optional<ScopeHeader> scope_header(std::string_view bytes, const std::vecto
                 : "correct the head, or export again");
     }
     // "Name" alone over names may be a column of names; over times it runs forward.
-    const auto first_time = number_of(row.front());
+    const auto first_time = scope_number(row.front());
     if (!says_more && found.names_line == 0 && !twice) {
         const std::vector<std::string> next =
             found.first_row + 1 < content.size() ? head.cells(found.first_row + 1) : row;
-        const auto second_time = number_of(next.front());
+        const auto second_time = scope_number(next.front());
         if (!second_time || !(*second_time > *first_time)) return std::nullopt;
     }
     read_channels(names, units, *first_time, found);

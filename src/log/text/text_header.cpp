@@ -211,10 +211,10 @@ namespace {
 
 constexpr std::size_t rows_in_a_row = 3;  // so many rows make a table
 
-class Lines {
+class HeaderLines {
   public:
-    Lines(std::string_view bytes, const std::vector<TextLine>& content, const CellRules& rules,
-          std::size_t columns)
+    HeaderLines(std::string_view bytes, const std::vector<TextLine>& content, const CellRules& rules,
+                std::size_t columns)
         : bytes_(bytes), content_(content), rules_(rules), columns_(columns) {}
 
     [[nodiscard]] std::vector<std::string> cells(std::size_t line) const {
@@ -271,7 +271,7 @@ class Lines {
 
 // LabVIEW: "Delta_X" and a step for each channel, in seconds where "X_Dimension" is Time. Files with
 // X_Columns "No" have no other clock.
-std::optional<double> read_step(const Lines& lines, std::size_t first_row, char decimal_mark) {
+std::optional<double> read_step(const HeaderLines& lines, std::size_t first_row, char decimal_mark) {
     std::optional<double> step;
     for (std::size_t line = 0; line < first_row; ++line) {
         const std::vector<std::string> cells = lines.cells(line);
@@ -293,7 +293,7 @@ std::optional<double> read_step(const Lines& lines, std::size_t first_row, char 
 
 Preamble find_preamble(std::string_view bytes, const std::vector<TextLine>& content, const CellRules& rules,
                        std::size_t columns) {
-    const Lines lines(bytes, content, rules, columns);
+    const HeaderLines lines(bytes, content, rules, columns);
     Preamble found;
     if (lines.cells(0).size() == columns) return found;
     found.first_row = lines.first_row();
