@@ -17,7 +17,7 @@ namespace ripplenotch {
 
 namespace {
 
-constexpr double smoothing_s = 0.05;  // as models smooth speeds (measured_motion.hpp)
+constexpr double sweep_smoothing_s = 0.05;  // as models smooth speeds (measured_motion.hpp)
 
 std::vector<double> integrated_velocity(const TraceView& log) {
     std::vector<double> turns(log.size(), 0.0);
@@ -50,7 +50,7 @@ OutputAngle output_angle(const TraceView& log) {
 }
 
 std::vector<double> smoothed_speed(const TraceView& log) {
-    const auto width = static_cast<std::size_t>(smoothing_s * log.sample_rate.value()) | 1U;
+    const auto width = static_cast<std::size_t>(sweep_smoothing_s * log.sample_rate.value()) | 1U;
     return moving_mean(log.velocity_deg_s, width);
 }
 
