@@ -97,14 +97,8 @@ struct Declared {
     std::function<ExitCode()> work;
 };
 
-// "help identify", "help effects" and "version", as people type them elsewhere; "features --merge" is a
-// command of its own.
+// "help identify", "help effects" and "version", as people type them elsewhere.
 CommandWords in_our_words(CommandWords words) {
-    const auto merge = std::find(words.begin(), words.end(), "--merge");
-    if (!words.empty() && words.front() == "features" && merge != words.end()) {
-        words.erase(merge);
-        words.front() = "merge";
-    }
     if (words.empty() || is_command(words.front())) return words;
     if (words.front() == "help" && words.size() == 2 && words[1] == "effects")
         return {"diagnose", "--effects"};

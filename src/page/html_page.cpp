@@ -134,14 +134,6 @@ bool is_number(std::string_view cell) {
            (!cell.empty() && cell.find_first_not_of("0123456789+-.e, ") == std::string_view::npos);
 }
 
-// Only addresses of the web or of a file are links; other schemes may run code.
-bool is_page_address(std::string_view address) {
-    const std::size_t colon = address.find(':');
-    if (colon == std::string_view::npos || address.find('/') < colon) return !address.empty();
-    const std::string_view scheme = address.substr(0, colon);
-    return scheme == "http" || scheme == "https" || scheme == "file";
-}
-
 // As a content security policy names a script.
 std::string script_hash(std::string_view script) {
     Sha256 hash;
@@ -181,10 +173,6 @@ class Writer {
         fmt::format_to(std::back_inserter(text_), format, std::forward<Args>(args)...);
     }
     static std::string shown(std::string_view text) { return html_escaped(visible_text(text)); }
-    static std::string linked(std::string_view text, std::string_view address) {
-        if (!is_page_address(address)) return shown(text);
-        return fmt::format("<a href=\"{}\">{}</a>", shown(address), shown(text));
-    }
 
     void head(const std::string& title) {
         std::string scripts = "'none'";
@@ -302,16 +290,10 @@ class Writer {
             put("<th{}>{}</th>", words ? " class=\"words\"" : "", shown(one.header[c]));
         }
         put("</tr></thead>\n<tbody>\n");
-        auto link = one.links.begin();
-        for (std::size_t r = 0; r < one.rows.size(); ++r) {
+        for (const std::vector<std::string>& row : one.rows) {
             put("<tr>");
-            for (std::size_t c = 0; c < one.rows[r].size(); ++c) {
-                const std::string& cell = one.rows[r][c];
-                const bool leads = link != one.links.end() && link->row == r && link->column == c;
-                put("<td{}>{}</td>", is_number(cell) ? "" : " class=\"words\"",
-                    leads ? linked(cell, link->address) : shown(cell));
-                if (leads) ++link;
-            }
+            for (const std::string& cell : row)
+                put("<td{}>{}</td>", is_number(cell) ? "" : " class=\"words\"", shown(cell));
             put("</tr>\n");
         }
         put("</tbody>\n</table></div>\n");

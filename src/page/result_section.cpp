@@ -36,76 +36,6 @@ namespace ripplenotch {
 
 namespace {
 
-std::string text_in(const Json& row, const char* name) {
-    const auto found = row.find(name);
-    return found != row.end() && found->is_string() ? found->get<std::string>() : "";
-}
-
-std::string joint_in(const Json& row) {
-    const std::string robot = text_in(row, "robot"), joint = text_in(row, "joint");
-    return robot.empty() ? joint : robot + " " + joint;
-}
-
-std::string day_in(const Json& row, const char* name) { return text_in(row, name).substr(0, 10); }
-
-std::string number_in(const Json& row, const char* name, const char* format) {
-    const auto found = row.find(name);
-    return found != row.end() && found->is_number() ? fmt::format(fmt::runtime(format), found->get<double>())
-                                                    : "-";
-}
-
-// One day, or the days between which it lies.
-std::string since(const Json& row) {
-    const std::string day = day_in(row, "date"), early = day_in(row, "earliest"),
-                      late = day_in(row, "latest");
-    if (text_in(row, "kind") == "drift") return "all the time";
-    return early == late ? day : fmt::format("{} ({} to {})", day, early, late);
-}
-
-void add_log(PageTable& table, std::vector<std::string>& cells, const Json& row, const char* log,
-             const char* page) {
-    const std::string address = text_in(row, page);
-    if (!address.empty()) table.links.push_back({table.rows.size(), cells.size(), address});
-    cells.push_back(text_in(row, log));
-}
-
-// An alert a row: joint, cause, since when, surest sign, and the logs before and after it with links to
-// their reports.
-PageTable alert_table(const Json& alerts) {
-    PageTable table{"Alerts",
-                    {"joint", "alert", "since", "surest sign", "change", "%", "p", "of its kind",
-                     "last log before", "first log after"},
-                    {}};
-    for (const Json& row : alerts) {
-        const std::string drift = text_in(row, "kind") == "drift" ? "drift: " : "";
-        std::vector<std::string> cells = {joint_in(row),
-                                          drift + text_in(row, "cause"),
-                                          since(row),
-                                          text_in(row, "descriptor"),
-                                          number_in(row, "size", "{:+.3g}"),
-                                          number_in(row, "percent", "{:+.1f}"),
-                                          number_in(row, "p", "{:.1g}"),
-                                          number_in(row, "kin", "{:g}")};
-        add_log(table, cells, row, "last_log_before", "last_page_before");
-        add_log(table, cells, row, "first_log_after", "first_page_after");
-        table.rows.push_back(std::move(cells));
-    }
-    return table;
-}
-
-// A log a row, of the joints whose course is shown, each with a link to its report.
-PageTable course_table(const Json& courses) {
-    PageTable table{"Logs of the joints that are drawn", {"joint", "descriptor", "date", "value", "log"}, {}};
-    for (const Json& row : courses) {
-        std::vector<std::string> cells = {joint_in(row), text_in(row, "descriptor"), day_in(row, "date"),
-                                          number_in(row, "value", "{:.4g}")};
-        add_log(table, cells, row, "log", "page");
-        table.rows.push_back(std::move(cells));
-    }
-    table.folded = true;
-    return table;
-}
-
 constexpr std::size_t most_switches = 10, fewest_for_figure = 20, bars = 20;
 
 using Keys = std::vector<std::pair<std::string, std::string>>;
@@ -603,7 +533,7 @@ bool is_ledger(const std::string& kind, const std::string& name) {
                                   Shown{"diagnosis", "ambiguous"},
                                   Shown{"diagnosis", "unexplained"},
                                   Shown{"diagnosis", "undecidable"},
-                                  Shown{"trend", "odd"}};
+                                  Shown{"trend", "alerts"}};
     const bool chosen =
         std::any_of(shown.begin(), shown.end(), [&](const Shown& s) { return s.kind == kind; });
     return chosen && std::none_of(shown.begin(), shown.end(),
@@ -647,13 +577,6 @@ bool add_known_table(PageSection& section, const std::string& kind, const std::s
         section.tables.push_back(table_of(name, rows));
         section.tables.back().title = "Every value of the bands";
         section.tables.back().folded = true;
-    } else if (kind == "trend" && name == "alerts") {
-        section.tables.push_back(alert_table(rows));
-        section.tables.push_back(table_of(name, rows));
-        section.tables.back().title = "Every value of the alerts";
-        section.tables.back().folded = true;
-    } else if (kind == "trend" && name == "courses") {
-        section.tables.push_back(course_table(rows));
     } else if (kind == "metrics" && name == "switches") {
         if (auto drawn = switch_figure(rows)) section.figures.push_back(std::move(*drawn));
         section.tables.push_back(largest_switches(rows));
@@ -718,7 +641,7 @@ PageSection section_of_result(const std::string& text, const std::string& source
             section.figures.push_back(map_figure(source, fit));
     } else if (kind == "table") {
         section.figures.push_back(table_figure(table_from_json(text, source)));
-    } else if (kind == "trend" && json.contains("months")) {
+    } else if (kind == "trend") {
         section.figures.push_back(trend_figure(trend_from_json(text, source)));
     } else if (diagnosis) {
         section.verdict = diagnosis_sentence(*diagnosis);

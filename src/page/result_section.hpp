@@ -13,8 +13,6 @@ namespace ripplenotch {
 
 // Tables of results that people read across: columns chosen and named, four digits.
 
-// Tables of a trend that lead to the reports of the logs.
-
 /// The methods of a comparison under the labels A, B, C in the order given (a control keeps its name), with
 /// the meaning of each label below, and the reason why a method does not fit where that was requested;
 /// columns that no method fills are left out.

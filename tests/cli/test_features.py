@@ -1,19 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""ripplenotch features and merge: a line for each log and joint, shards that are done once, and the same bytes however."""
+"""ripplenotch features: a line for each log and joint, and files of lines put together."""
 
 import csv
-import datetime
-import io
 import json
-import os
 import pathlib
-import random
-import signal
-import subprocess
-import time
 
 import commands
-from commands import SHORT, TOOL, run
+from commands import run
 
 GEAR = ["--gear-ratio", "100", "--orders", "1,2"]
 JOINT = ["--gear-ratio", "100", "--inertia", "1.2", "--ripple", "1:0.5Nm:30deg", "--ripple", "2:0.8Nm:10deg",
@@ -37,18 +30,6 @@ class Case(commands.Case):
         lines = [json.loads(line) for line in done.stdout.splitlines()]
         self.assertEqual(len(lines), 1)
         return lines[0]
-
-    def small_fleet(self, logs, most_rows=None):
-        """Small logs that differ, and a list of them."""
-        first = self.log("base.csv", friction=SHARP, motion=["--motion", "multisine,frequency=0.3Hz,amplitude=60deg,duration=3s"], rate="200Hz")
-        rows = first.read_text().splitlines()
-        names = []
-        for number in range(logs):
-            name = f"R{number % 3}_{datetime.date(2000, 1, 1) + datetime.timedelta(days=number)}.csv"
-            (self.folder / name).write_text("\n".join([rows[0], *rows[1 + number % 50:][:most_rows]]) + "\n")
-            names.append(name)
-        (self.folder / "list.txt").write_text("\n".join(names) + "\n")
-        return names
 
 
 class Values(Case):
@@ -143,12 +124,6 @@ class Conditions(Case):
         line = self.line(stamped, *GEAR)
         self.assertEqual((line["date"], line["date_source"]), ("2026-01-01T00:00:00Z", "log"))
 
-    def test_the_files_day_is_taken_only_where_asked_for(self):
-        path = self.log()
-        os.utime(path, (1767225600, 1767225600))
-        self.assertIsNone(self.line(path, *GEAR)["date"])
-        self.assertEqual(self.line(path, *GEAR, "--date-from-file")["date"], "2026-01-01T00:00:00Z")
-
     def test_temperature_is_a_number_or_the_mean_of_a_column(self):
         path = self.log()
         self.assertEqual(self.line(path, *GEAR, "--temperature", "31.5")["temperature_degc"], 31.5)
@@ -189,138 +164,18 @@ class ManyLogs(Case):
         self.assertEqual(len({line["joint"] for line in lines}), 2, done.stdout + done.stderr)
         self.assertEqual(lines[0]["coulomb_friction_nm"], lines[1]["coulomb_friction_nm"])
 
-    def test_csv_holds_what_the_lines_hold(self):
-        path = self.log()
-        line = self.line(path, *GEAR)
-        row, = csv.DictReader(io.StringIO(run("features", path, *GEAR, "--csv").stdout))
-        self.assertEqual(float(row["coulomb_friction_nm"]), line["coulomb_friction_nm"])
-        self.assertEqual(float(row["coulomb_friction_ci95_nm_high"]), line["coulomb_friction_ci95_nm"][1])
-
-    def test_fields_of_a_list_are_those_of_the_lines(self):
-        self.log()
-        (self.folder / "list.txt").write_text("log.csv\tdate=2026-01-05\trobot=R9\ttemperature_degc=40\n\n")
-        done = run("features", "--manifest", "list.txt", *GEAR, cwd=self.folder)
-        line = json.loads(done.stdout)
-        self.assertEqual((line["robot"], line["date"], line["temperature_degc"]), ("R9", "2026-01-05T00:00:00Z", 40))
-
-    def test_lists_that_are_none_are_refused_with_their_line(self):
-        for text, words in (("a.csv\na.csv\n", "list.txt:2: 'a.csv' stands in line 1 already"), ("", "lists no log"),
-                            ("a.csv\twhen=now\n", "list.txt:1: 'when=now'"), ("a.csv\tdate=2026-02-30\n", "2026-02-30")):
-            (self.folder / "list.txt").write_text(text)
-            done = run("features", "--manifest", "list.txt", cwd=self.folder)
-            self.assertEqual(done.returncode, 3)
-            self.assertIn(words, done.stderr)
-
-
-class Shards(Case):
-    WORDS = ["--manifest", "list.txt", *GEAR, "--date-from-name", "{robot}_%Y-%m-%d.csv"]
-
-    def shard(self, i, n, folder="shards", *more):
-        return run("features", *self.WORDS, "--shard", f"{i}/{n}", "-o", folder, *more, cwd=self.folder)
-
-    def whole(self):
-        done = run("features", *self.WORDS, cwd=self.folder)
-        self.assertEqual(done.stdout.count("\n"), len((self.folder / "list.txt").read_text().split()))
-        return done.stdout
-
-    def test_shards_in_any_number_and_order_give_the_bytes_of_one_run(self):
-        names = self.small_fleet(11)
-        (self.folder / names[4]).write_text("nothing\n")
-        whole = self.whole()
-        for n in (1, 3, 11, 17):
-            order = list(range(1, n + 1))
-            random.Random(n).shuffle(order)
-            for i in order:
-                self.assertEqual(self.shard(i, n, f"shards{n}").returncode, 0)
-            merged = run("merge", f"shards{n}", cwd=self.folder)
-            self.assertEqual((merged.returncode, merged.stdout), (0, whole), n)
-            self.assertIn("1 of 11 lines have an error", merged.stderr)
-
-    def test_a_complete_shard_is_not_done_twice(self):
-        names = self.small_fleet(4)
-        self.shard(1, 2)
-        for name in names:
-            (self.folder / name).unlink()
-        done = self.shard(1, 2, "shards", "-v")
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertIn("complete already", done.stderr)
-        self.assertNotIn("error", (self.folder / "shards/shard-000001-of-000002.ndjson").read_text())
-
-    def test_what_is_missing_is_told_and_merge_refuses_it(self):
-        self.small_fleet(6)
-        for i in (2, 5):
-            self.shard(i, 6)
-        done = run("features", "--missing", "shards", "--shards", "6", cwd=self.folder)
-        self.assertEqual(done.stdout.split(), ["1", "3", "4", "6"])
-        merged = run("merge", "shards", cwd=self.folder)
-        self.assertEqual(merged.returncode, 3)
-        self.assertIn("of 6 shards 4 are missing: 1, 3 to 4, 6", merged.stderr)
-
-    def test_merge_refuses_a_double_a_mixture_and_changed_lines(self):
-        self.small_fleet(4)
-        for i in (1, 2):
-            self.shard(i, 2)
-        shards = self.folder / "shards"
-        record, lines = shards / "shard-000001-of-000002.done.json", shards / "shard-000001-of-000002.ndjson"
-        (shards / "copy.done.json").write_bytes(record.read_bytes())
-        (shards / "copy.ndjson").write_bytes(lines.read_bytes())
-        self.assertIn("both are shard 1", run("merge", "shards", cwd=self.folder).stderr)
-        (shards / "copy.done.json").unlink()
-        self.assertEqual(run("merge", "shards", cwd=self.folder).returncode, 0)
-        for field, value, words in (("manifest_sha256", "0" * 64, "two lists"), ("version", "9.9", "version 9.9"),
-                                    ("settings", "ripplenotch features --orders 3", "--orders 3")):
-            kept = record.read_text()
-            record.write_text(json.dumps({**json.loads(kept), field: value}))
-            done = run("merge", "shards", cwd=self.folder)
-            self.assertEqual(done.returncode, 3)
-            self.assertIn(words, done.stderr)
-            record.write_text(kept)
-        lines.write_text(lines.read_text().replace("R0", "R8"))
-        self.assertIn("do shard 1/2 again", run("merge", "shards", cwd=self.folder).stderr)
-        self.assertEqual(self.shard(1, 2).returncode, 0)
-        self.assertEqual(run("merge", "shards", cwd=self.folder).stdout, self.whole())
-
-    def test_a_folder_of_another_job_is_left_alone(self):
-        self.small_fleet(4)
-        self.shard(1, 2)
-        done = self.shard(1, 2, "shards", "--hold-bad-values")
+    def test_files_of_lines_are_put_together_and_read_once(self):
+        first, second = self.log("R1_2026-03-09.csv", seed=1), self.log("R2_2026-03-09.csv", seed=2)
+        words = [*GEAR, "--date-from-name", "{robot}_%Y-%m-%d.csv"]
+        whole = run("features", first, second, *words).stdout
+        for path in (first, second):
+            run("features", path, *words, "-o", path.with_suffix(".ndjson"))
+        lines = [path.with_suffix(".ndjson") for path in (first, second)]
+        done = run("features", "--merge", *lines)
+        self.assertEqual((done.returncode, done.stdout), (0, whole), done.stderr)
+        done = run("features", "--merge", *lines, lines[0])
+        self.assertEqual((done.returncode, done.stdout), (3, ""))
+        self.assertIn("already", done.stderr)
+        done = run("features", "--merge", first)
         self.assertEqual(done.returncode, 3)
-        self.assertIn("another job", done.stderr)
-        self.assertEqual(self.shard(1, 2, "shards", "--hold-bad-values", "--force").returncode, 0)
-
-    def test_kill_at_any_moment_then_resume_gives_the_same_bytes(self):
-        self.small_fleet(24)
-        whole = self.whole()
-        draw = random.Random(21)
-        kills = int(os.environ.get("RIPPLENOTCH_KILLS", "3" if SHORT else "12"))
-        begin = time.perf_counter()
-        self.shard(1, 4, "timed")
-        once = time.perf_counter() - begin
-        done = 0
-        for _ in range(kills):
-            for i in range(1, 5):
-                worker = subprocess.Popen([TOOL, "features", *self.WORDS, "--shard", f"{i}/4", "-o", "shards"], cwd=self.folder,
-                                          stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-                time.sleep(draw.uniform(0, 1.2 * once))
-                worker.send_signal(signal.SIGKILL)
-                worker.wait()
-            done += 1
-        left = run("features", "--missing", "shards", "--shards", "4", cwd=self.folder).stdout.split()
-        for i in left:
-            self.assertEqual(self.shard(i, 4).returncode, 0)
-        merged = run("merge", "shards", cwd=self.folder)
-        self.assertEqual((merged.returncode, merged.stdout, done), (0, whole, kills))
-        there = {path.name: path.read_bytes() for path in (self.folder / "shards").iterdir()}
-        # In the moment in which a file is replaced a kill may leave the new one, whole (docs/reliability.md).
-        for name in [name for name in there if ".part-" in name]:
-            self.assertEqual(there.pop(name), there[name.partition(".part-")[0]])
-        self.assertEqual(sorted(there), sorted(f"shard-{i:06}-of-000004{end}" for i in range(1, 5) for end in (".ndjson", ".done.json")))
-
-    def test_requests_that_make_no_sense_are_refused(self):
-        self.small_fleet(2)
-        for words, said in ((["--shard", "1/2", "-o", "x"], "--manifest"), ([*self.WORDS, "--shard", "3/2", "-o", "x"], "3/2"),
-                            ([*self.WORDS, "--shard", "1/2"], "-o DIR"), (["--missing", "x"], "--shards"), ([], "LOG"),
-                            ([*self.WORDS, "more.csv"], "more.csv")):
-            done = run("features", *words, cwd=self.folder)
-            self.assertEqual(done.returncode, 2, words)
-            self.assertIn(said, done.stderr)
+        self.assertIn("line 1", done.stderr)

@@ -9,7 +9,7 @@ import shutil
 import subprocess
 import unittest
 
-from commands import DATA, TOOL, SharedCase, good, run
+from commands import DATA, TOOL, SharedCase, run
 
 FEWER = "glibc.cpu.hwcaps=-AVX512F,-AVX2,-FMA,-AVX,-BMI2"
 EMULATOR = next(filter(None, map(shutil.which, ("qemu-x86_64-static", "qemu-x86_64"))), None)
@@ -49,7 +49,6 @@ COMMANDS = {
     "filter by a map": ("filter", MOVE, "--method", "oscillator,map=map.json"),
     "export a map": ("export", "map.json", "--to", "c-header"),
     "features": ("features", "made.csv", *GEAR),
-    "merge": ("merge", "shards"),
     "trend": ("trend", str(DATA / "fleet.ndjson"), "--json"),
     "report": ("report", "table.json", "--no-plotly"),
     "effects": ("diagnose", "--effects"),
@@ -67,8 +66,6 @@ class Processors(SharedCase):
         (folder / "made.csv").write_bytes(cls.run_tool(*MADE))
         (folder / "table.json").write_bytes(cls.run_tool(*COMMANDS["design"]))
         (folder / "map.json").write_bytes(cls.run_tool("map", MOVE, *GEAR, "--json"))
-        (folder / "list.txt").write_text("made.csv\n")
-        good("features", "--manifest", "list.txt", "--shard", "1/1", "-o", "shards", *GEAR, cwd=folder)
         cls.here = {name: cls.run_tool(*words) for name, words in COMMANDS.items()}
 
     @classmethod

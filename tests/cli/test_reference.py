@@ -83,7 +83,6 @@ class Reference(unittest.TestCase):
         for words in (["-V"], ["version"]):
             self.assertEqual(run(*words).stdout, run("--version").stdout)
         self.assertEqual(run("help", "effects").stdout, run("diagnose", "--effects").stdout)
-        self.assertEqual(run("features", "--merge", "--help").stdout, run("merge", "--help").stdout)
         done = run("help", "nonsense")
         self.assertEqual((done.returncode, done.stdout), (2, ""))
         self.assertIn("there is no command 'nonsense'", done.stderr)

@@ -10,7 +10,7 @@ import unittest
 
 import commands
 from commands import SOURCE, TOOL, good, run, sanitized
-from prove_trend import fleet
+import fleet
 
 
 def trend(*words, text=None):
@@ -48,11 +48,11 @@ class Findings(Case):
         for joint in made:
             alerts = [alert for alert in told["alerts"] if alert["robot"] == joint.robot]
             self.assertTrue(alerts, joint.event.words)
-            right = [alert for alert in alerts if alert["cause"] in joint.event.causes]
+            right = [alert for alert in alerts if alert["descriptor"] in joint.event.descriptors]
             named += bool(right)
             self.assertTrue(any(joint.logs_between(joint.event.day, alert["date"]) <= 1 for alert in alerts), joint.event.words)
         self.assertGreaterEqual(named, 15)
-        sizes = [alert["percent"] for alert in told["alerts"] if alert["cause"] == "ripple of order 2"]
+        sizes = [alert["percent"] for alert in told["alerts"] if alert["descriptor"] == "ripple_2_amplitude_nm"]
         self.assertTrue(all(16 < size < 24 for size in sizes), sizes)
 
     def test_joints_to_which_nothing_happens_raise_no_more_than_the_rate(self):
@@ -60,13 +60,6 @@ class Findings(Case):
         told = self.trend(lines_of(fleet.fleet(60, 52, 77, events=False)))
         self.assertLess(len(told["alerts"]), 4)
         self.assertAlmostEqual(told["expected_false_alarms"], 0.001 * told["joint_months"], delta=1e-4)
-
-    def test_a_rate_of_one_in_two_is_one_in_two_at_most(self):
-        # Each joint may raise one by chance with probability 0.5 at most (16 of 60 +/- 3 deviations is far below 42).
-        told = self.trend(lines_of(fleet.fleet(60, 52, 78, events=False)), "--false-alarms", "1/12")
-        joints = {alert["robot"] for alert in told["alerts"]}
-        self.assertLess(len(joints), 42)
-        self.assertGreater(len(joints), 8, "a test that never raises anything is no test")
 
     def test_warmth_that_is_not_told_is_no_wear_where_it_is_told(self):
         made = fleet.fleet(10, 52, 9, events=False)
@@ -85,8 +78,8 @@ class Findings(Case):
                     line["coulomb_friction_ci95_nm"] = [factor * end for end in line["coulomb_friction_ci95_nm"]]
         told = self.trend(lines_of(made))
         for joint in made:
-            kinds = [(alert["kind"], alert["cause"]) for alert in told["alerts"] if alert["robot"] == joint.robot]
-            self.assertIn(kinds[:1], ([("drift", "Coulomb friction")], [("drift", "friction")]))
+            kinds = [(alert["kind"], alert["descriptor"]) for alert in told["alerts"] if alert["robot"] == joint.robot]
+            self.assertEqual(kinds[:1], [("drift", "coulomb_friction_nm")])
 
     def test_two_changes_of_one_joint_are_two_alerts(self):
         joint, = fleet.fleet(1, 52, 12, events=False)
@@ -99,10 +92,10 @@ class Findings(Case):
                     if line[name + "_deg"] is not None:
                         line[name + "_deg"] += 60
                         line[name + "_ci95_deg"] = [end + 60 for end in line[name + "_ci95_deg"]]
-        causes = [alert["cause"] for alert in self.trend(joint.lines)["alerts"]]
-        self.assertEqual(len(causes), 2, causes)
-        self.assertIn("friction", causes[0].lower())
-        self.assertIn("phase", causes[1])
+        signs = [alert["descriptor"] for alert in self.trend(joint.lines)["alerts"]]
+        self.assertEqual(len(signs), 2, signs)
+        self.assertEqual(signs[0], "coulomb_friction_nm")
+        self.assertIn("phase", signs[1])
 
     def test_another_gear_is_named(self):
         joint, = fleet.fleet(1, 52, 13, events=False)
@@ -111,19 +104,7 @@ class Findings(Case):
                 line["gear_ratio"] += 20
                 line["gear_ratio_ci95"] = [end + 20 for end in line["gear_ratio_ci95"]]
         alert, *_ = self.trend(joint.lines)["alerts"]
-        self.assertIn("gear ratio", alert["cause"])
-
-    def test_a_joint_unlike_its_kind_is_listed_and_comes_first(self):
-        made = fleet.fleet(12, 30, 14, events=False)
-        odd = made[7]
-        for line in odd.lines:
-            if line["coulomb_friction_nm"] is not None:
-                line["coulomb_friction_nm"] *= 3
-                line["coulomb_friction_ci95_nm"] = [3 * end for end in line["coulomb_friction_ci95_nm"]]
-        told = self.trend(lines_of(made))
-        self.assertIn((odd.robot, "coulomb_friction_nm"), {(one["robot"], one["descriptor"]) for one in told["odd"]})
-        if not told["alerts"]:
-            self.assertEqual(told["joints"][0]["robot"], odd.robot)
+        self.assertEqual(alert["descriptor"], "gear_ratio")
 
     def test_logs_of_another_motion_are_left_out_and_said_to_be(self):
         joint, = fleet.fleet(1, 52, 15, events=False)
@@ -136,7 +117,7 @@ class Findings(Case):
 
 class Example(Case):
     def test_the_example_of_the_pages_is_what_its_script_makes(self):
-        done = subprocess.run([sys.executable, SOURCE / "scripts/prove_trend/fleet.py"], capture_output=True, text=True)
+        done = subprocess.run([sys.executable, SOURCE / "tests/support/fleet.py"], capture_output=True, text=True)
         self.assertEqual((SOURCE / "data/fleet.ndjson").read_text(), done.stdout)
 
 
@@ -177,14 +158,12 @@ class Outputs(Case):
         super().setUp()
         self.lines = lines_of(fleet.fleet(4, 40, 31, events=True))
 
-    def test_text_json_and_lines_tell_the_same_alerts(self):
+    def test_text_and_json_tell_the_same_alerts(self):
         text, told = trend("-", text=text_of(self.lines)).stdout, self.trend(self.lines)
-        lines = [json.loads(line) for line in trend("-", "--ndjson", text=text_of(self.lines)).stdout.splitlines()]
-        self.assertEqual(lines, told["alerts"])
-        self.assertTrue(lines)
-        for alert in lines:
+        self.assertTrue(told["alerts"])
+        for alert in told["alerts"]:
             self.assertIn(f"{alert['robot']} {alert['joint']}", text)
-            self.assertIn(alert["cause"], text)
+            self.assertIn(alert["descriptor"], text)
         self.assertIn(told["verdict"], text)
 
     def test_report_shows_a_trend(self):
@@ -193,12 +172,12 @@ class Outputs(Case):
         good("report", path, "-o", page, "--no-plotly")
         self.assertIn("alerts", page.read_text())
 
-    def test_the_figure_has_a_map_and_a_course_for_each_alert(self):
+    def test_the_figure_has_a_course_for_each_alert(self):
         path = self.folder / "trend.figure.json"
         done = trend("-", "--plot", path, text=text_of(self.lines))
         self.assertEqual(done.returncode, 0, done.stderr)
         panels = json.loads(path.read_text())["panels"]
-        self.assertEqual(len(panels), 1 + min(10, len(self.trend(self.lines)["alerts"])))
+        self.assertEqual(len(panels), min(10, len(self.trend(self.lines)["alerts"])))
 
 
 class BadInput(Case):
@@ -231,17 +210,8 @@ class BadInput(Case):
         self.assertIn("a trend needs 10", notes["R0000"])
         self.assertEqual(notes["R0001"], "")
 
-    def test_a_joint_that_ends_where_another_begins_is_told(self):
-        lines = [{**line, "robot": "R0", "joint": "arm_2" if line["date"] > "2025-05-01" else "J2"} for line in self.lines[:26]]
-        notes = self.trend(lines)["notes"]
-        self.assertTrue(any("'R0 J2' ends" in note and "'R0 arm_2' begins" in note for note in notes), notes)
-
     def test_lines_that_stand_twice_count_once(self):
         marked = [{**line, "sha256": f"{i:064}"} for i, line in enumerate(self.lines)]
         once, twice = self.trend(marked), self.trend(marked + marked[:4])
         self.assertEqual(once["descriptors"], twice["descriptors"])
         self.assertTrue(any("count once" in note for note in twice["notes"]))
-
-    def test_rates_that_are_none_are_refused(self):
-        for rate in ("0", "1", "x", "1/0", "-1/1000"):
-            self.assertEqual(trend("-", "--false-alarms=" + rate, text=text_of(self.lines)).returncode, 2, rate)

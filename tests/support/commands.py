@@ -69,7 +69,6 @@ COMMANDS = {
     "export": "export --method lowpass,cutoff=13Hz,order=1 --sample-rate 1kHz --to c-header",
     "diagnose --effects": "diagnose --effects",
     "trend": "trend {data}/fleet.ndjson",
-    "merge": "merge shards",
     "report": "report result.json",
 }
 OF_A_LOG = [name for name, words in COMMANDS.items() if "{log}" in words]

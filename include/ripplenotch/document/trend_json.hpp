@@ -16,10 +16,7 @@ namespace ripplenotch {
 /// The whole text of trend.json, schema ripplenotch/trend/1; same trend, same bytes.
 [[nodiscard]] std::string trend_text(const Trend& trend, const Provenance& provenance);
 
-/// An alert a line, for what reads lines: the fields of "alerts" in trend.json.
-[[nodiscard]] std::string alert_lines(const Trend& trend);
-
-/// Reads back what a picture of it needs: joints with their months, alerts, and the courses of the worst.
+/// Reads back what a picture of it needs: joints, alerts, and the courses of the first.
 /// Throws DataError that names `source`, the field, what it holds and what was expected.
 [[nodiscard]] Trend trend_from_json(std::string_view text, const std::string& source);
 

@@ -15,9 +15,6 @@
 
 namespace ripplenotch {
 
-// The result of one log for one joint, in one line: descriptors (the term of ISO 13379) with their intervals,
-// the conditions that they were measured under, and a reason for each that is not identifiable from this log.
-
 /// A figure that a joint keeps from log to log unless something happens to it.
 struct Descriptor {
     std::string stem;             ///< "coulomb_friction", "ripple_2_amplitude"
@@ -52,10 +49,9 @@ struct FeatureLine {
     std::string robot, joint;         ///< empty when unknown
     std::string version;              ///< version of the tool
     std::optional<std::string> date;  ///< "2026-01-05T12:30:00Z"
-    std::string date_source;          ///< "log", "name", "manifest", "file"; or why there is none
+    std::string date_source;          ///< "log", "name"; or why there is none
     std::optional<double> temperature_degc;
-    std::string
-        temperature_source;  ///< "column motor_temp", "--temperature", "manifest"; or why there is none
+    std::string temperature_source;  ///< "column motor_temp", "--temperature"; or why there is none
     std::size_t rows = 0;
     double duration_s = 0.0;
     MotionMix mix;
@@ -64,18 +60,11 @@ struct FeatureLine {
     int error_code = 0;  ///< the exit code that it would have been
 
     [[nodiscard]] bool failed() const { return !error.empty(); }
-    /// nullptr where there is none of this name.
-    [[nodiscard]] const Descriptor* find(const std::string& name) const;
 };
 
 /// A descriptor without a value, by its name in a line, split into stem and unit. Throws DataError where no
 /// descriptor has this name, and gives the right name where only the unit is another.
 [[nodiscard]] Descriptor descriptor_named(const std::string& name);
-
-/// Whether a torque sensor of another gain shows another value: amplitudes and coefficients in Nm.
-[[nodiscard]] bool scales_with_torque(const Descriptor& descriptor);
-
-// When a log was recorded, and on which robot, according to its name; and dates as numbers.
 
 /// "2026-01-05T12:30:00Z" of seconds since 1970 in universal time.
 [[nodiscard]] std::string date_text(double seconds);
@@ -108,10 +97,9 @@ struct Features {
     std::vector<Descriptor> descriptors;  ///< always the same ones, but for those of the orders of ripple
 };
 
-/// `found`: the result of identify for the log. `stated`: the gear that the user states; its ratio and orders
-/// are
-/// those of the ripple then, and else those that were found. Samples beyond 2^14 are thinned out evenly.
-/// Throws DataError: fewer samples than values to be fitted, or times that do not increase.
+/// `found`: the result of identify for the log. `stated`: the gear that the user states, whose ratio and
+/// orders are those of the ripple then, and else those that were found. Samples beyond 2^14 are thinned out
+/// evenly. Throws DataError: fewer samples than values to be fitted, or times that do not increase.
 [[nodiscard]] Features features_of(const TraceView& log, const Identification& found,
                                    const std::optional<GearAccount>& stated);
 

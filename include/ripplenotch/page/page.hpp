@@ -16,19 +16,12 @@ struct PageFact {
     std::string name, value;
 };
 
-/// A cell that leads to another page.
-struct PageLink {
-    std::size_t row = 0, column = 0;
-    std::string address;  ///< with blanks and the like as %20
-};
-
 struct PageTable {
     std::string title;
     std::vector<std::string> header;
     std::vector<std::vector<std::string>> rows;  ///< as many cells as the header
     bool folded = false;                         ///< shown on demand: a ledger
     std::vector<PageFact> legend = {};           ///< meaning of the labels in the first column
-    std::vector<PageLink> links = {};            ///< by row, then by column
 };
 
 /// Good: the data decide. Doubtful: they do not. Bad: a filter amplifies an order.

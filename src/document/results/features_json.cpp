@@ -2,7 +2,6 @@
 #include "ripplenotch/document/features_json.hpp"
 
 #include <algorithm>
-#include <array>
 
 #include "document/fields/fields.hpp"
 #include "ripplenotch/core/error.hpp"
@@ -117,25 +116,6 @@ void describe(Archive& archive, Is<FeatureLine> auto& line) {
         write_descriptors(archive, line);
 }
 
-template <class Archive>
-void describe(Archive& archive, Is<ShardRecord> auto& record) {
-    archive.derived("schema", [] { return "ripplenotch/shard/1"; });
-    archive("version", record.version);
-    archive("settings", record.settings);
-    archive("manifest_sha256", record.manifest_sha256);
-    archive("shard", record.shard.number);
-    archive("shards", record.shard.of);
-    archive("logs", record.logs);
-    archive("lines", record.lines);
-    archive("failed", record.failed);
-    archive("sha256", record.sha256);
-    if constexpr (Archive::reading) {
-        const Shard& shard = record.shard;
-        if (shard.number < 1 || shard.number > shard.of || shard.of > most_shards)
-            raise<DataError>("{} is {}, expected 1 to {}", archive.where("shard"), shard.number, shard.of);
-    }
-}
-
 FeatureLine feature_line_from_json(std::string_view text, const std::string& source) {
     const Json json = read_json(text, source, features_line);
     if (!json.is_object()) raise<DataError>("{}: expected {}", source, features_line);
@@ -158,82 +138,8 @@ std::vector<FeatureLine> feature_lines_from_text(std::string_view text, const st
     return lines;
 }
 
-std::string shard_record_text(const ShardRecord& record) { return to_text(to_json(record)); }
-
-ShardRecord shard_record_from_json(std::string_view text, const std::string& source) {
-    const Json json = parse_document(text, source, "shard");
-    ShardRecord record;
-    JsonReader reader(json, source, "");
-    describe(reader, record);
-    reader.finish();
-    return record;
-}
-
-namespace {
-
-std::string cell_of(const Json& json) {
-    if (json.is_null()) return "";
-    std::string text = json.is_string() ? json.get<std::string>()
-                                        : json.dump(-1, ' ', false, Json::error_handler_t::replace);
-    if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
-    std::string quoted = "\"";
-    for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-    return quoted + "\"";
-}
-
-// Intervals as two columns; the order of first appearance.
-std::vector<std::pair<std::string, Json>> cells_of(const FeatureLine& line) {
-    std::vector<std::pair<std::string, Json>> cells;
-    const Json json = to_json(line);
-    for (const auto& [name, value] : json.items()) {
-        if (name == "schema" || name == "not_told" || name == "error" || name == "error_code") continue;
-        if (value.is_array()) {
-            cells.emplace_back(name + "_low", value[0]);
-            cells.emplace_back(name + "_high", value[1]);
-        } else {
-            cells.emplace_back(name, value);
-        }
-    }
-    std::string reasons;
-    if (const auto told = json.find("not_told"); told != json.end())
-        for (const auto& [name, reason] : told->items())
-            reasons += (reasons.empty() ? "" : "; ") + name + ": " + reason.get<std::string>();
-    cells.emplace_back("not_told", reasons);
-    cells.emplace_back("error", line.error);
-    return cells;
-}
-
-}  // namespace
-
 std::string feature_line_text(const FeatureLine& line) {
     return visible_json(to_json(line).dump(-1, ' ', false, Json::error_handler_t::replace)) + "\n";
-}
-
-std::string features_csv(std::span<const FeatureLine> lines) {
-    std::vector<std::string> names;
-    std::vector<std::vector<std::pair<std::string, Json>>> rows;
-    for (const FeatureLine& line : lines) {
-        rows.push_back(cells_of(line));
-        for (const auto& [name, value] : rows.back())
-            if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
-    }
-    // What explains the others stands behind them.
-    for (const std::string last : {"not_told", "error"}) {
-        std::erase(names, last);
-        names.push_back(last);
-    }
-    std::string text;
-    for (std::size_t i = 0; i < names.size(); ++i) text += (i == 0 ? "" : ",") + names[i];
-    text += "\n";
-    for (const auto& row : rows) {
-        for (std::size_t i = 0; i < names.size(); ++i) {
-            const auto cell =
-                std::find_if(row.begin(), row.end(), [&](const auto& one) { return one.first == names[i]; });
-            text += (i == 0 ? "" : ",") + (cell == row.end() ? std::string() : cell_of(cell->second));
-        }
-        text += "\n";
-    }
-    return text;
 }
 
 }  // namespace ripplenotch

@@ -8,14 +8,13 @@
 
 #include "document/fields/fields.hpp"
 #include "ripplenotch/core/error.hpp"
-#include "ripplenotch/core/visible_text.hpp"
 #include "ripplenotch/fleet/features.hpp"
 
 namespace ripplenotch {
 
 namespace {
 
-constexpr AtMost most_rows{200000};  // of a table: joints times months
+constexpr AtMost most_rows{200000};
 
 // What belongs to a joint as a row of a table: trend.json is flat, since a page shows it so.
 template <class Part>
@@ -98,13 +97,6 @@ void describe(JsonWriter& json, const DatedDescriptor& one) {
     describe(json, one.changed);
 }
 
-void describe(JsonWriter& json, const OddDescriptor& odd) {
-    json("descriptor", odd.name);
-    json("baseline", odd.baseline, six);
-    json("median_of_kind", odd.of_kind, six);
-    json("deviations", odd.deviations, six);
-}
-
 void describe(JsonWriter& json, const DescriptorTrend& one) {
     json("descriptor", one.name);
     json("lines", one.lines);
@@ -120,27 +112,21 @@ void describe(JsonWriter& json, const DescriptorTrend& one) {
 // A picture needs no more of an alert than is read of it.
 template <class Archive>
 void describe(Archive& archive, Is<JointChange> auto& change) {
-    archive("cause", change.cause);
     std::string kind = change.drift ? "drift" : "step";
     archive("kind", kind);
     describe_date(archive, "date", change.date);
-    describe_date(archive, "earliest", change.earliest);
-    describe_date(archive, "latest", change.latest);
     if constexpr (Archive::reading) {
         change.drift = kind == "drift";
         if (archive.has("descriptor"))
             change.descriptors.push_back({archive.text("descriptor"), 0.0, {}, {}});
-        archive.ignore({"p", "limit", "kin", "size", "size_ci95_low", "size_ci95_high", "percent",
-                        "last_log_before", "last_page_before", "first_log_after", "first_page_after"});
+        archive.ignore({"p", "limit", "size", "size_ci95_low", "size_ci95_high", "percent", "last_log_before",
+                        "first_log_after"});
     } else {
         archive("p", change.p, six);
         archive("limit", change.limit, six);
-        archive("kin", change.kin);
         if (!change.descriptors.empty()) describe(archive, change.descriptors.front());
         archive("last_log_before", change.last_log);
-        archive("last_page_before", change.last_page, null_if_empty);
         archive("first_log_after", change.first_log);
-        archive("first_page_after", change.first_page, null_if_empty);
     }
 }
 
@@ -150,14 +136,6 @@ void describe(auto& archive, Is<CourseValue> auto& one) {
     describe_date(archive, "date", one.value.date);
     archive("value", one.value.value, six);
     archive("log", one.value.log);
-    archive.derived(
-        "page", [&] { return one.value.page; }, null_if_empty);
-}
-
-void describe(auto& archive, Is<JointMonth> auto& month) {
-    archive("month", month.month);
-    archive("deviations", month.deviations, six);
-    archive("descriptor", month.descriptor);
 }
 
 void describe(auto& archive, IsRow auto& row) {
@@ -206,32 +184,27 @@ template <class Archive>
 void describe(Archive& archive, Is<Trend> auto& trend) {
     std::vector<Row<JointChange>> alerts;
     std::vector<Row<CourseValue>> courses;
-    std::vector<Row<JointMonth>> months;
     if constexpr (!Archive::reading) {
         alerts = rows_of(trend, &JointTrend::changes);
         courses = course_rows(trend);
-        months = rows_of(trend, &JointTrend::course);
     }
     archive.derived("verdict", [&] { return trend_verdict(trend); });
-    archive.derived("false_alarms_per_joint_month", [&] { return trend.options.false_alarms; });
+    archive.derived("false_alarms_per_joint_month", [] { return false_alarms_per_joint_month; });
     archive.derived(
         "expected_false_alarms", [&] { return trend.expected_false_alarms; }, six);
     archive("joint_months", trend.joint_months, six);
-    archive.derived("seed", [&] { return trend.options.seed; });
+    archive.derived("seed", [&] { return trend.seed; });
     archive.derived("lines", [&] { return trend.lines; });
     archive.derived("failed_lines", [&] { return trend.failed; });
     archive.derived("notes", [&] { return trend.notes; });
     archive("alerts", alerts, most_rows);
     archive("courses", courses, most_rows);
     archive.derived("changed", [&] { return changed_rows(trend); });
-    archive.derived("odd", [&] { return rows_of(trend, &JointTrend::odd); });
     archive("joints", trend.joints, most_rows);
     archive.derived("descriptors", [&] { return rows_of(trend, &JointTrend::descriptors); });
-    archive("months", months, most_rows);
     if constexpr (Archive::reading) {
         JointsByName joints;
         for (JointTrend& joint : trend.joints) joints[{joint.robot, joint.joint}] = &joint;
-        for (auto& row : months) joint_of(archive, "months", joints, row).course.push_back(row.part);
         for (auto& row : alerts) joint_of(archive, "alerts", joints, row).changes.push_back(row.part);
         for (auto& row : courses) add_course(archive, joint_of(archive, "courses", joints, row), row.part);
     }
@@ -241,7 +214,7 @@ std::string trend_verdict(const Trend& trend) {
     std::size_t changed = 0, looked_at = 0;
     for (const JointTrend& joint : trend.joints) {
         changed += joint.changes.empty() ? 0 : 1;
-        looked_at += joint.course.empty() ? 0 : 1;
+        looked_at += joint.looked_at() ? 1 : 0;
     }
     const std::string chance =
         fmt::format("chance alone would give {:.2g} alerts at most in {:.4g} joint-months",
@@ -250,7 +223,9 @@ std::string trend_verdict(const Trend& trend) {
     if (changed == 0) return fmt::format("None of {} joints changed; {}.", looked_at, chance);
     const JointTrend& first = trend.joints.front();
     const std::string worst =
-        first.changes.empty() ? "" : fmt::format(", first {}: {}", first.name(), first.changes.front().cause);
+        first.changes.empty() || first.changes.front().descriptors.empty()
+            ? ""
+            : fmt::format(", first {}: {}", first.name(), first.changes.front().descriptors.front().name);
     return fmt::format("{} of {} joints changed{}; {}.", changed, looked_at, worst, chance);
 }
 
@@ -260,13 +235,6 @@ std::string trend_text(const Trend& trend, const Provenance& provenance) {
 
 Trend trend_from_json(std::string_view text, const std::string& source) {
     return result_of<Trend>(text, source, "trend");
-}
-
-std::string alert_lines(const Trend& trend) {
-    std::string text;
-    for (const Row<JointChange>& row : rows_of(trend, &JointTrend::changes))
-        text += visible_json(to_json(row).dump(-1, ' ', false, Json::error_handler_t::replace)) + "\n";
-    return text;
 }
 
 }  // namespace ripplenotch

@@ -81,9 +81,8 @@ void noise_floor(const FeatureSource& from, Descriptor& one) {
 }
 
 struct DescriptorKind {
-    std::string_view stem;    ///< "ripple_N_amplitude": with an order in the place of N
-    std::string_view unit;    ///< as it ends the name
-    bool scales_with_torque;  ///< whether a torque sensor of another gain shows another value
+    std::string_view stem;  ///< "ripple_N_amplitude": with an order in the place of N
+    std::string_view unit;  ///< as it ends the name
     void (*estimate)(const FeatureSource& from, Descriptor& one);
 
     [[nodiscard]] bool is_of_order() const { return stem.starts_with("ripple_N"); }
@@ -91,17 +90,17 @@ struct DescriptorKind {
 
 /// All descriptors, in the order of a line of features. docs/commands/features.md says what they are.
 constexpr std::array descriptor_kinds = {
-    DescriptorKind{"gear_ratio", "", false, gear_ratio},
-    DescriptorKind{"ripple_N_amplitude", "nm", true, ripple_amplitude},
-    DescriptorKind{"ripple_N_phase", "deg", false, ripple_phase},
-    DescriptorKind{"coulomb_friction", "nm", true, fitted<&JointFit::coulomb_friction>},
-    DescriptorKind{"viscous_friction", "nm_per_deg_s", true, fitted<&JointFit::viscous_friction>},
-    DescriptorKind{"load_friction", "nm_per_nm", false, fitted<&JointFit::load_friction>},
-    DescriptorKind{"lost_motion", "deg", false, fitted<&JointFit::lost_motion>},
-    DescriptorKind{"inertia", "kgm2", true, fitted<&JointFit::inertia>},
-    DescriptorKind{"gravity", "nm", true, fitted<&JointFit::gravity>},
-    DescriptorKind{"sensor_zero", "nm", true, fitted<&JointFit::sensor_zero>},
-    DescriptorKind{"noise_floor", "nm", true, noise_floor},
+    DescriptorKind{"gear_ratio", "", gear_ratio},
+    DescriptorKind{"ripple_N_amplitude", "nm", ripple_amplitude},
+    DescriptorKind{"ripple_N_phase", "deg", ripple_phase},
+    DescriptorKind{"coulomb_friction", "nm", fitted<&JointFit::coulomb_friction>},
+    DescriptorKind{"viscous_friction", "nm_per_deg_s", fitted<&JointFit::viscous_friction>},
+    DescriptorKind{"load_friction", "nm_per_nm", fitted<&JointFit::load_friction>},
+    DescriptorKind{"lost_motion", "deg", fitted<&JointFit::lost_motion>},
+    DescriptorKind{"inertia", "kgm2", fitted<&JointFit::inertia>},
+    DescriptorKind{"gravity", "nm", fitted<&JointFit::gravity>},
+    DescriptorKind{"sensor_zero", "nm", fitted<&JointFit::sensor_zero>},
+    DescriptorKind{"noise_floor", "nm", noise_floor},
 };
 
 /// Those of an order for one order after the other.
@@ -142,12 +141,6 @@ std::string without_order(const std::string& stem) {
 
 }  // namespace
 
-const Descriptor* FeatureLine::find(const std::string& name) const {
-    const auto found = std::find_if(descriptors.begin(), descriptors.end(),
-                                    [&](const Descriptor& one) { return one.name() == name; });
-    return found == descriptors.end() ? nullptr : &*found;
-}
-
 Descriptor descriptor_named(const std::string& name) {
     std::string near;
     for (const DescriptorKind& kind : descriptor_kinds) {
@@ -160,13 +153,6 @@ Descriptor descriptor_named(const std::string& name) {
     }
     if (!near.empty()) raise<DataError>("'{}' is in another unit; this tool's lines have {}", name, near);
     raise<DataError>("'{}' is no descriptor of this tool", name);
-}
-
-bool scales_with_torque(const Descriptor& descriptor) {
-    const std::string stem = without_order(descriptor.stem);
-    return std::any_of(descriptor_kinds.begin(), descriptor_kinds.end(), [&](const DescriptorKind& kind) {
-        return kind.stem == stem && kind.scales_with_torque;
-    });
 }
 
 namespace {

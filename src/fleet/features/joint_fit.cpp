@@ -38,12 +38,6 @@ FitOptions fit_options(std::size_t samples, int most_iterations) {
 
 }  // namespace
 
-/// One value of the fit as a descriptor.
-struct JointFit::Wanted {
-    std::string effect, parameter;
-    double carrier = 1.0;  ///< rms torque in Nm of a value of 1
-};
-
 JointFit::JointFit(const FittedSamples& samples, const MotionFacts& facts, std::optional<GearAccount> gear)
     : motion_(samples.motion),
       torque_nm_(samples.torque_nm),
@@ -159,10 +153,11 @@ const FittedValue* JointFit::fitted(const std::string& effect, const std::string
     return nullptr;
 }
 
-void JointFit::estimate(Descriptor& one, const Wanted& wanted, std::string reason) const {
+void JointFit::estimate(Descriptor& one, const std::string& effect, const std::string& parameter,
+                        double carrier, std::string reason) const {
     one.reason = std::move(reason);
     if (!one.reason.empty()) return;
-    const FittedValue* value = fitted(wanted.effect, wanted.parameter);
+    const FittedValue* value = fitted(effect, parameter);
     if (value == nullptr) {
         one.reason = "the motion of this log does not show it";
     } else if (!value->standard_error || !value->ci95 || !std::isfinite(value->value)) {
@@ -172,7 +167,7 @@ void JointFit::estimate(Descriptor& one, const Wanted& wanted, std::string reaso
     } else {
         const double half = 0.5 * (value->ci95->high - value->ci95->low);
         const double widest = std::max(widest_of_value * std::abs(value->value),
-                                       widest_of_torque * facts_.mix.torque_rms_nm / wanted.carrier);
+                                       widest_of_torque * facts_.mix.torque_rms_nm / carrier);
         if (!(half <= widest)) {
             one.reason =
                 fmt::format("known to +/- {:.2g} only, with a best value of {:.2g}", half, value->value);
@@ -201,19 +196,18 @@ std::string JointFit::one_speed() const {
 
 void JointFit::coulomb_friction(Descriptor& one) const {
     const bool winds = fitted("hysteresis", "torque_nm") != nullptr;
-    estimate(one,
-             {winds ? "hysteresis" : "coulomb-friction", "torque_nm", std::sqrt(facts_.mix.moving_share)},
+    estimate(one, winds ? "hysteresis" : "coulomb-friction", "torque_nm", std::sqrt(facts_.mix.moving_share),
              one_speed());
 }
 
 void JointFit::viscous_friction(Descriptor& one) const {
-    estimate(one, {"viscous-friction", "coefficient_nm_per_deg_s", facts_.speed_rms_deg_s}, one_speed());
+    estimate(one, "viscous-friction", "coefficient_nm_per_deg_s", facts_.speed_rms_deg_s, one_speed());
 }
 
 void JointFit::load_friction(Descriptor& one) const {
     const std::string reason = one_way();
     const bool is_told = fitted("load-friction", "torque_nm") != nullptr || !reason.empty();
-    estimate(one, {"load-friction", "torque_nm", std::max(load_rms_nm().value_or(0.0), 1e-9)},
+    estimate(one, "load-friction", "torque_nm", std::max(load_rms_nm().value_or(0.0), 1e-9),
              is_told ? reason : "the load of the joint is too small against its friction");
 }
 
@@ -226,18 +220,18 @@ void JointFit::lost_motion(Descriptor& one) const {
 }
 
 void JointFit::inertia(Descriptor& one) const {
-    estimate(one, {"inertia", "inertia_kgm2", facts_.acceleration_rms_rad_s2}, "");
+    estimate(one, "inertia", "inertia_kgm2", facts_.acceleration_rms_rad_s2, "");
 }
 
 void JointFit::gravity(Descriptor& one) const {
     const bool far = facts_.mix.travel_deg >= least_travel_deg;
-    estimate(one, {"gravity", "amplitude_nm", std::sqrt(0.5)},
+    estimate(one, "gravity", "amplitude_nm", std::sqrt(0.5),
              far ? ""
                  : fmt::format("the joint travels {:.3g} deg, and a weight needs {:g}", facts_.mix.travel_deg,
                                least_travel_deg));
 }
 
-void JointFit::sensor_zero(Descriptor& one) const { estimate(one, {"offset", "torque_nm", 1.0}, one_way()); }
+void JointFit::sensor_zero(Descriptor& one) const { estimate(one, "offset", "torque_nm", 1.0, one_way()); }
 
 // Second differences, of which the few at reversals and jumps do not count: their median.
 double JointFit::noise_nm() const {

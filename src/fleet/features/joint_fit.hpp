@@ -35,7 +35,6 @@ class JointFit {
     [[nodiscard]] double noise_nm() const;
 
   private:
-    struct Wanted;
     void add_term(const std::string& spec);
     void build();
     void refine();
@@ -43,7 +42,9 @@ class JointFit {
     [[nodiscard]] std::vector<unsigned char> near_samples() const;
     [[nodiscard]] std::string one_way() const;
     [[nodiscard]] std::string one_speed() const;
-    void estimate(Descriptor& one, const Wanted& wanted, std::string reason) const;
+    /// `carrier`: rms torque in Nm of a value of 1.
+    void estimate(Descriptor& one, const std::string& effect, const std::string& parameter, double carrier,
+                  std::string reason) const;
     [[nodiscard]] const FittedValue* fitted(const std::string& effect, const std::string& parameter) const;
 
     const Motion& motion_;

@@ -20,8 +20,6 @@ namespace ripplenotch {
 
 namespace {
 
-// Internal: whether lines of features belong together.
-
 void require_one_version(std::span<const FeatureLine> lines) {
     for (const FeatureLine& line : lines)
         if (line.version != lines.front().version)
@@ -44,11 +42,6 @@ void require_some_time(const std::vector<const FeatureLine*>& lines) {
             "all {} logs are of {}; a trend needs logs of different days (--date-from-name of "
             "'features' takes them from the names)",
             logs.size(), *dates.begin());
-}
-
-std::string name_and_day(const JointHistory& history, bool first) {
-    const FeatureLine& line = first ? *history.lines.front() : *history.lines.back();
-    return fmt::format("'{}' {} on {}", history.name(), first ? "begins" : "ends", line.date->substr(0, 10));
 }
 
 // The lines that can stand in a history: read, with a date, each log and joint once. Throws DataError where
@@ -92,20 +85,7 @@ std::vector<const FeatureLine*> dated_lines(std::span<const FeatureLine> lines,
     return dated;
 }
 
-// A joint that ends where another one of the same robot begins may have a new name.
-void note_new_names(const std::vector<JointHistory>& histories, std::vector<std::string>& notes) {
-    if (histories.size() < 2) return;
-    for (const JointHistory& old : histories) {
-        for (const JointHistory& young : histories) {
-            if (old.robot != young.robot || old.lines.size() < 3 || young.lines.size() < 3) continue;
-            if (!(*old.lines.back()->date < *young.lines.front()->date)) continue;
-            notes.push_back(fmt::format("{} and {}: if this is one joint, give its lines one name",
-                                        name_and_day(old, false), name_and_day(young, true)));
-        }
-    }
-}
-
-constexpr double seconds_a_day = 86400.0;
+constexpr double seconds_a_day = 86400.0, days_a_month = 365.25 / 12.0;
 constexpr double comparable = 2.5;          // speeds that differ by more are another job of the joint
 constexpr double fewest_share = 0.6;        // share of the lines that have to contain a descriptor
 constexpr std::size_t lines_for_bend = 20;  // chosen, not derived
@@ -185,7 +165,6 @@ void add_series(JointHistory& history) {
             Series& series = at->second;
             if (is_new) {
                 series.name = one.name();
-                series.torque = scales_with_torque(one);
                 order.push_back(one.name());
             }
             if (!one.value) {
@@ -194,8 +173,6 @@ void add_series(JointHistory& history) {
             }
             series.rows.push_back(row);
             series.value.push_back(*one.value);
-            series.error.push_back(one.ci95 ? (one.ci95->high - one.ci95->low) / (2.0 * normal_95_errors)
-                                            : 0.0);
         }
     }
     for (const std::string& name : order) {
@@ -230,9 +207,6 @@ std::vector<JointHistory> joint_histories(std::span<const FeatureLine> lines,
     for (auto& [key, own] : by_joint) {
         JointHistory& history = histories.emplace_back();
         std::tie(history.robot, history.joint) = key;
-        std::sort(own.begin(), own.end(), [](const FeatureLine* a, const FeatureLine* b) {
-            return std::tie(*a->date, a->log, a->sha256) < std::tie(*b->date, b->log, b->sha256);
-        });
         history.lines = own;
         leave_out_other_motions(history);
         for (const FeatureLine* line : history.lines)
@@ -245,7 +219,6 @@ std::vector<JointHistory> joint_histories(std::span<const FeatureLine> lines,
         add_conditions(history);
         add_series(history);
     }
-    note_new_names(histories, notes);
     return histories;
 }
 

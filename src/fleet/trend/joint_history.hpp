@@ -10,14 +10,11 @@
 
 namespace ripplenotch {
 
-inline constexpr double days_a_month = 365.25 / 12.0;
-
 /// One descriptor in the rows that contain it.
 struct Series {
     std::string name;
-    bool torque = false;  ///< scales with the gain of the torque sensor
     std::vector<std::size_t> rows;
-    std::vector<double> value, error;  ///< error: standard, 0 where it is not known
+    std::vector<double> value;
 };
 
 struct Condition {
@@ -35,7 +32,6 @@ struct JointHistory {
     std::vector<std::string> notes;
 
     [[nodiscard]] double months() const;
-    [[nodiscard]] std::string name() const { return robot.empty() ? joint : robot + " " + joint; }
 };
 
 /// The histories of all joints, by robot and joint. Throws what trend_of() throws for its lines; `notes`

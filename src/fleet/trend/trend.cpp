@@ -4,10 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/matrices/least_squares.hpp"
-#include "fleet/trend/cause.hpp"
-#include "fleet/trend/kinds.hpp"
-#include "ripplenotch/core/error.hpp"
+#include "fleet/trend/change_test.hpp"
 #include "ripplenotch/core/number.hpp"
 
 namespace ripplenotch {
@@ -25,90 +22,106 @@ std::uint64_t seed_of(const JointHistory& history, std::uint64_t seed, std::size
     return hash;
 }
 
-JointChange told(const JointHistory& history, const std::vector<Regression>& known,
-                 const ScatterOfSeries& scatter, const FoundChange& found) {
-    const std::vector<ChangedSeries> changed = changed_series(history, known, scatter, found);
+JointChange told(const JointHistory& history, const std::vector<FoundChange>& known,
+                 const FoundChange& found) {
     JointChange change;
     change.drift = found.drift;
-    change.cause = cause_of(history, known, found, changed);
-    const auto date = [&](std::size_t row) { return *history.lines[row]->date; };
-    change.date = date(found.drift ? history.lines.size() - 1 : found.row);
-    change.earliest = date(found.drift ? 0 : found.earliest);
-    change.latest = date(found.drift ? history.lines.size() - 1 : found.latest);
-    change.p = found.p;
-    change.limit = found.limit;
     const std::size_t first = found.drift ? history.lines.size() - 1 : found.row;
     const std::size_t last = found.drift || found.row == 0 ? 0 : found.row - 1;
+    change.date = *history.lines[first]->date;
+    change.p = found.p;
+    change.limit = found.limit;
     change.first_log = history.lines[first]->log;
-    change.first_date = date(first);
     change.last_log = history.lines[last]->log;
-    change.last_date = date(last);
-    std::vector<ChangedSeries> sure = changed;
-    std::stable_sort(sure.begin(), sure.end(), [](const ChangedSeries& a, const ChangedSeries& b) {
-        return a.extra.t_squared > b.extra.t_squared;
-    });
-    for (const ChangedSeries& one : sure) {
-        if (one.extra.t_squared < least_t_squared) continue;
-        const Series& series = history.series[one.series];
-        ChangedDescriptor part{series.name,
-                               one.extra.size,
-                               {one.extra.size - normal_95_errors * one.extra.error,
-                                one.extra.size + normal_95_errors * one.extra.error},
-                               {}};
-        if (std::abs(one.baseline) > 0.0 && !series.name.ends_with("_phase_deg"))
-            part.percent = 100.0 * one.extra.size / std::abs(one.baseline);
-        change.descriptors.push_back(std::move(part));
+    std::vector<std::pair<double, ChangedDescriptor>> parts;
+    for (const Series& series : history.series) {
+        const Regression regression = regression_of(history, series, known);
+        const auto extra = regression.extra(change_column(history, found, series.rows));
+        if (!extra) continue;
+        const double half = normal_95_errors * extra->error, baseline = std::abs(regression.first_value());
+        ChangedDescriptor part{series.name, extra->size, {extra->size - half, extra->size + half}, {}};
+        if (baseline > 0.0 && !series.name.ends_with("_phase_deg"))
+            part.percent = 100.0 * extra->size / baseline;
+        parts.emplace_back(extra->t_squared, std::move(part));
     }
+    std::stable_sort(parts.begin(), parts.end(),
+                     [](const auto& a, const auto& b) { return a.first > b.first; });
+    for (auto& [t_squared, part] : parts)
+        if (change.descriptors.empty() || t_squared >= least_t_squared)
+            change.descriptors.push_back(std::move(part));
     return change;
 }
 
 std::vector<DescriptorTrend> told_descriptors(const JointHistory& history,
                                               const std::vector<FoundChange>& changes) {
-    const std::vector<Regression> all = regressions(history, changes);
     std::vector<DescriptorTrend> told;
     FoundChange drift;
     drift.drift = true;
-    const double span_months =
-        history.day.empty() ? 0.0 : (history.day.back() - history.day.front()) / days_a_month;
-    for (std::size_t s = 0; s < all.size(); ++s) {
-        const Series& series = history.series[s];
-        DescriptorTrend one;
+    const double span_months = history.months();
+    for (const Series& series : history.series) {
+        const Regression regression = regression_of(history, series, changes);
+        DescriptorTrend& one = told.emplace_back();
         one.name = series.name;
         one.lines = series.rows.size();
-        one.baseline = all[s].first_value();
-        double squares = 0.0;
-        for (std::size_t i = 0; i < series.rows.size(); ++i) {
-            const double left = all[s].residual()[i] / all[s].weights()[i];
-            squares += left * left;
-        }
-        one.spread = std::sqrt(squares / std::max(all[s].freedom(), 1.0));
-        if (const auto slope = all[s].extra(change_column(history, drift, series.rows));
+        one.baseline = regression.first_value();
+        one.spread = regression.deviation();
+        if (const auto slope = regression.extra(change_column(history, drift, series.rows));
             slope && span_months > 0.0) {
             one.slope_per_month = slope->size / span_months;
             one.slope_ci95 = Interval{(slope->size - normal_95_errors * slope->error) / span_months,
                                       (slope->size + normal_95_errors * slope->error) / span_months};
         }
-        told.push_back(std::move(one));
     }
     told.insert(told.end(), history.untold.begin(), history.untold.end());
     return told;
 }
 
+// The surest descriptor of a change over all logs, less what its conditions explain; the changes stay.
+std::vector<AdjustedValue> course_of(const JointHistory& history, const std::vector<FoundChange>& changes,
+                                     const std::string& name) {
+    const auto series = std::find_if(history.series.begin(), history.series.end(),
+                                     [&](const Series& one) { return one.name == name; });
+    if (series == history.series.end()) return {};
+    const Regression regression = regression_of(history, *series, changes);
+    std::vector<double> value = regression.residual();
+    for (double& one : value) one += regression.first_value();
+    for (std::size_t c = 0; c < changes.size(); ++c) {
+        std::vector<FoundChange> others = changes;
+        others.erase(others.begin() + static_cast<std::ptrdiff_t>(c));
+        const auto column = change_column(history, changes[c], series->rows);
+        const auto extra = regression_of(history, *series, others).extra(column);
+        for (std::size_t i = 0; i < column.size() && extra; ++i) value[i] += extra->size * column[i];
+    }
+    std::vector<AdjustedValue> course;
+    for (std::size_t i = 0; i < value.size(); ++i) {
+        const FeatureLine& line = *history.lines[series->rows[i]];
+        course.push_back({*line.date, value[i], line.log});
+    }
+    return course;
+}
+
+// The surest sign that a joint changed; 0 where it did not.
+double surest_change(const JointTrend& joint) {
+    double surest = 0.0;
+    for (const JointChange& change : joint.changes)
+        for (const ChangedDescriptor& one : change.descriptors)
+            surest = std::max(surest, std::abs(one.size) / std::max(one.ci95.high - one.ci95.low, 1e-300));
+    return surest;
+}
+
 // Each test spends most of the false-alarm probability that remains after those before it, so that all of
 // them together have that of the rate.
-std::vector<FoundChange> find_changes(const JointHistory& history, const ScatterOfSeries& scatter,
-                                      const TrendOptions& options, std::vector<JointChange>& changes) {
+std::vector<FoundChange> find_changes(const JointHistory& history, std::uint64_t seed,
+                                      std::vector<JointChange>& changes) {
     std::vector<FoundChange> found;
-    double left = std::min(0.5, options.false_alarms * history.months());
+    double left = std::min(0.5, false_alarms_per_joint_month * history.months());
     if (!(left > 0.0)) return found;
     while (found.size() < most_changes) {
         const double limit = spent_at_once * left;
         left -= limit;
-        const std::vector<Regression> known = regressions(history, found);
-        const auto next =
-            next_change(history, known, scatter, limit, seed_of(history, options.seed, found.size()));
+        const auto next = next_change(history, found, limit, seed_of(history, seed, found.size()));
         if (!next) break;
-        changes.push_back(told(history, known, scatter, *next));
+        changes.push_back(told(history, found, *next));
         found.push_back(*next);
     }
     std::stable_sort(changes.begin(), changes.end(),
@@ -116,8 +129,7 @@ std::vector<FoundChange> find_changes(const JointHistory& history, const Scatter
     return found;
 }
 
-JointTrend trend_of_joint(const JointHistory& history, const ScatterOfSeries& scatter,
-                          const TrendOptions& options) {
+JointTrend trend_of_joint(const JointHistory& history, std::uint64_t seed) {
     JointTrend joint;
     joint.robot = history.robot;
     joint.joint = history.joint;
@@ -136,35 +148,32 @@ JointTrend trend_of_joint(const JointHistory& history, const ScatterOfSeries& sc
         joint.notes.push_back("all its logs are of one moment");
         return joint;
     }
-    const std::vector<FoundChange> found = find_changes(history, scatter, options, joint.changes);
+    const std::vector<FoundChange> found = find_changes(history, seed, joint.changes);
     joint.descriptors = told_descriptors(history, found);
-    tell_courses(history, found, joint);
+    for (JointChange& change : joint.changes)
+        if (!change.descriptors.empty())
+            change.course = course_of(history, found, change.descriptors.front().name);
     return joint;
 }
 
 }  // namespace
 
-Trend trend_of(std::span<const FeatureLine> lines, const TrendOptions& options) {
-    if (!(options.false_alarms > 0.0 && options.false_alarms <= 0.5))
-        raise<UsageError>("--false-alarms {} is not between 0 and 0.5", shortest(options.false_alarms));
+Trend trend_of(std::span<const FeatureLine> lines, std::uint64_t seed) {
     Trend trend;
-    trend.options = options;
+    trend.seed = seed;
     trend.lines = lines.size();
     trend.failed = static_cast<std::size_t>(
         std::count_if(lines.begin(), lines.end(), [](const FeatureLine& line) { return line.failed(); }));
-    const std::vector<JointHistory> histories = joint_histories(lines, trend.notes);
-    const std::vector<ScatterOfSeries> scatter = scatter_of_kin(histories);
-    for (std::size_t h = 0; h < histories.size(); ++h) {
-        trend.joints.push_back(trend_of_joint(histories[h], scatter[h], options));
+    for (const JointHistory& history : joint_histories(lines, trend.notes)) {
+        trend.joints.push_back(trend_of_joint(history, seed));
         const JointTrend& joint = trend.joints.back();
-        const bool looked_at =
-            std::any_of(joint.descriptors.begin(), joint.descriptors.end(),
-                        [](const DescriptorTrend& one) { return one.baseline.has_value(); });
-        if (!looked_at) continue;
+        if (!joint.looked_at()) continue;
         trend.joint_months += joint.months;
-        trend.expected_false_alarms += std::min(0.5, options.false_alarms * joint.months);
+        trend.expected_false_alarms += std::min(0.5, false_alarms_per_joint_month * joint.months);
     }
-    compare_kinds(trend.joints);
+    std::stable_sort(trend.joints.begin(), trend.joints.end(), [](const JointTrend& a, const JointTrend& b) {
+        return surest_change(a) > surest_change(b);
+    });
     return trend;
 }
 

@@ -34,24 +34,24 @@ TORQUES = ("ripple_1_amplitude_nm", "ripple_2_amplitude_nm", "coulomb_friction_n
 
 
 class Event:
-    def __init__(self, words, causes, descriptors, change):
-        self.words, self.causes, self.descriptors, self.change = words, causes, descriptors, change
+    def __init__(self, words, descriptors, change):
+        self.words, self.descriptors, self.change = words, descriptors, change
         self.day = None
 
     def at(self, day):
-        made = Event(self.words, self.causes, self.descriptors, self.change)
+        made = Event(self.words, self.descriptors, self.change)
         made.day = day.isoformat() + "T00:00:00Z"
         return made
 
 
 EVENTS = (
-    Event("Coulomb friction +10 %", ("Coulomb friction", "friction"), ("coulomb_friction_nm",),
+    Event("Coulomb friction +10 %", ("coulomb_friction_nm",),
           lambda name, value: value * 1.1 if name == "coulomb_friction_nm" else value),
-    Event("ripple of order 2 +20 %", ("ripple of order 2",), ("ripple_2_amplitude_nm",),
+    Event("ripple of order 2 +20 %", ("ripple_2_amplitude_nm",),
           lambda name, value: value * 1.2 if name == "ripple_2_amplitude_nm" else value),
-    Event("lost motion +0.05 deg", ("lost motion",), ("lost_motion_deg",),
+    Event("lost motion +0.05 deg", ("lost_motion_deg",),
           lambda name, value: value + 0.05 if name == "lost_motion_deg" else value),
-    Event("gain of the torque sensor +2 %", ("gain of the torque sensor",), TORQUES,
+    Event("gain of the torque sensor +2 %", TORQUES,
           lambda name, value: value * 1.02 if name in TORQUES else value),
 )
 
@@ -86,7 +86,7 @@ def line(draw, robot, day, base, event):
     load, speed = draw.uniform(5.0, 15.0), draw.uniform(20.0, 60.0)
     made = {"schema": "ripplenotch/features/1", "version": VERSION, "log": f"{robot}/{day}.csv", "sha256": "", "robot": robot,
             "joint": "J2", "date": f"{day}T00:00:00Z", "date_source": "name", "temperature_degc": round(20.0 + 25.0 * warm, 2),
-            "temperature_source": "manifest", "rows": 20000, "duration_s": 20.0, "moving_share": 0.9, "forward_share": 0.5,
+            "temperature_source": "column motor_temp", "rows": 20000, "duration_s": 20.0, "moving_share": 0.9, "forward_share": 0.5,
             "speed_p10_deg_s": 0.3 * speed, "speed_p50_deg_s": speed, "speed_p90_deg_s": 1.8 * speed, "travel_deg": 180.0,
             "torque_rms_nm": 1.2 * load, "reversals": 20, "load_rms_nm": load}
     reasons = {}
