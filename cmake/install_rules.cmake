@@ -14,10 +14,6 @@ if(RIPPLENOTCH_MAN_PAGES)
     install(FILES ${man_pages} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT runtime)
     install(FILES ${RIPPLENOTCH_REFERENCE}/ripplenotch.bash COMPONENT runtime
             DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME ripplenotch)
-    install(FILES ${RIPPLENOTCH_REFERENCE}/_ripplenotch COMPONENT runtime
-            DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions)
-    install(FILES ${RIPPLENOTCH_REFERENCE}/ripplenotch.fish COMPONENT runtime
-            DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
 endif()
 # What src/cli found of plotly.js.
 if(EXISTS ${PROJECT_BINARY_DIR}/share/ripplenotch/plotly-cartesian.min.js)

@@ -24,7 +24,5 @@ foreach(line IN LISTS lines)
     list(APPEND RIPPLENOTCH_MAN_PAGES ripplenotch-${command}.1)
 endforeach()
 ripplenotch_reference_file(complete-bash ripplenotch.bash)
-ripplenotch_reference_file(complete-zsh _ripplenotch)
-ripplenotch_reference_file(complete-fish ripplenotch.fish)
 # When it is installed: an edit of the program prints none of them.
 add_custom_target(ripplenotch_reference DEPENDS ${reference_files})

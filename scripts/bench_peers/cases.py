@@ -2,6 +2,7 @@
 """What is compared: logs, commands, rounds. Results are plain dictionaries, so that they can be kept and printed again."""
 
 import json
+import os
 import pathlib
 import shlex
 import shutil
@@ -11,6 +12,7 @@ from dataclasses import asdict
 from . import measure
 from .measure import Side
 
+os.environ["RIPPLENOTCH_SYNC"] = "none"  # the others do not wait for the disk either
 TABLE_WORDS = ["--gear-ratio", "40", "--orders", "1,2", "--sample-rate", "2kHz", "--speed", "20:200:20", "--q", "5",
                "--width", "digital", "--above", "pass"]
 # An array says neither names nor units; the CSV logs' header says both.
@@ -44,7 +46,7 @@ class Bench:
 
     def filter(self, log, *words):
         out = self.out(TOOL, log)
-        return Side(TOOL, [self.tool, "filter", log, "--table", self.table, "-o", out, "-q", "--no-sync", *words], out)
+        return Side(TOOL, [self.tool, "filter", log, "--table", self.table, "-o", out, "-q", *words], out)
 
     def peer(self, name, words, log, most_runs=1000):
         return Side(name, [word if word != "OUT" else self.out(name, log) for word in words], self.out(name, log), most_runs)
@@ -120,7 +122,7 @@ class Bench:
     def analyse(self, found, words, motion, rows):
         out = self.folder / "out_analysis.json"
         name = " ".join([words[0], *words[2:]])
-        runs, failed = measure.in_turn(self.run_once, [Side(name, [self.tool, *words, "-q", "--no-sync", "-o", out], out)], self.rounds, self.say)
+        runs, failed = measure.in_turn(self.run_once, [Side(name, [self.tool, *words, "-q", "-o", out], out)], self.rounds, self.say)
         found[f"{name}, {motion}, {rows} rows"] = {"rows": rows, "failed": failed, "runs": [asdict(one) for one in runs.get(name, [])]}
 
     def simulated(self, rows, wanted=("one speed", "moves")):

@@ -34,9 +34,8 @@ class Workshop:
     def commands(self):
         """Name, words, and the files that the command writes."""
         return {
-            "filter": (("filter", "log.csv", "--table", "table.json", "--no-sync", "-o", "out.csv", "--metrics", "out.json"),
+            "filter": (("filter", "log.csv", "--table", "table.json", "-o", "out.csv", "--metrics", "out.json"),
                        ("out.csv", "out.json")),
-            "filter, synced": (("filter", "log.csv", "--table", "table.json", "-o", "out.csv"), ("out.csv",)),
             "filter, in place of an old file": (("filter", "log.csv", "--table", "table.json", "--force", "-o", "old.csv"),
                                                 ("old.csv",)),
             "identify": (("identify", "log.csv", "-o", "out.json"), ("out.json",)),

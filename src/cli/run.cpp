@@ -124,7 +124,7 @@ void declare_program(CLI::App& app) {
     app.set_help_flag("-h,--help", "print this help and end");
     app.add_option_function<std::string>(
            "--generate", [](const std::string& /*kind*/) {},
-           fmt::format("print a man page or a shell's completion: {}", generated_kinds))
+           fmt::format("print a man page or the completion for bash: {}", generated_kinds))
         ->type_name("KIND");
     app.footer(
         "Begin with: ripplenotch report LOG -o page.html\nEach command explains itself: ripplenotch COMMAND "
@@ -157,9 +157,9 @@ class ShortHelp : public CLI::Formatter {
 // shown only where it is asked for.
 void group_options(CLI::App& command, bool whole) {
     constexpr std::array<std::string_view, 3> gear = {"--gear-ratio", "--orders", "--joint-file"};
-    constexpr std::array<std::string_view, 9> output = {
-        "--output",  "--improved-model",    "--json", "--plot", "--force", "--no-sync", "--quiet",
-        "--verbose", "--require-conclusive"};
+    constexpr std::array<std::string_view, 8> output = {
+        "--output", "--improved-model", "--json",    "--plot",
+        "--force",  "--quiet",          "--verbose", "--require-conclusive"};
     const auto is_one = [](const auto& names, const std::string& name) {
         return std::find(names.begin(), names.end(), name) != names.end();
     };
@@ -168,7 +168,7 @@ void group_options(CLI::App& command, bool whole) {
     for (CLI::Option* option : command.get_options()) {
         if (option->get_positional()) continue;
         const std::string longest = option->get_lnames().empty() ? "" : "--" + option->get_lnames().back();
-        if (reads && (longest == "--input-format" || longest == "--from")) reading = true;
+        if (reads && (longest == "--format" || longest == "--from")) reading = true;
         if (reading) {
             option->group(std::string(reading_group));
             hidden = !whole;
@@ -216,9 +216,11 @@ void declare(CLI::App& app, const CommandWords& words, bool all, bool whole, std
 
 // A word that is not understood would leave vectors on in silence.
 void check_environment() {
-    const char* const vectors = std::getenv("RIPPLENOTCH_VECTORS");
-    if (vectors != nullptr && *vectors != '\0' && std::string_view(vectors) != "none")
-        raise<UsageError>("RIPPLENOTCH_VECTORS={}: it is none, or not set at all", vectors);
+    for (const char* const name : {"RIPPLENOTCH_SYNC", "RIPPLENOTCH_VECTORS"}) {
+        const char* const value = std::getenv(name);
+        if (value != nullptr && *value != '\0' && std::string_view(value) != "none")
+            raise<UsageError>("{}={}: it is none, or not set at all", name, value);
+    }
 }
 
 // Throws what goes wrong, in declaring options too: which names clash depends on the version of the library.

@@ -70,9 +70,9 @@ class TorqueOnly(Case):
     def test_each_of_several_logs_has_its_speed(self):
         text = (self.folder / "bench.csv").read_text()
         (self.folder / "other.csv").write_text(text)
-        found = self.json_of("identify", "bench.csv", "other.csv", "--speed", "10rpm,10rpm")
+        found = self.json_of("identify", "bench.csv", "other.csv", "--constant-speed", "10rpm,10rpm")
         self.assertAlmostEqual(found["lines"][0]["order_output"], 100, delta=0.1)
-        for words in (["identify", "bench.csv", "--speed", "10rpm,20rpm"], ["spectrum", "bench.csv", "--speed", "10rpm,20rpm"]):
+        for words in (["identify", "bench.csv", "--constant-speed", "10rpm,20rpm"], ["spectrum", "bench.csv", "--constant-speed", "10rpm,20rpm"]):
             done = self.run_tool(*words)
             self.assertEqual((done.returncode, "read 2 speeds" in done.stderr), (2, True), done.stderr)
 

@@ -17,6 +17,7 @@ from commands import DATA, TOOL, Case
 
 
 LOWPASS = ("--method", "lowpass,cutoff=13rad/s,order=1")
+NOT_SYNCED = {"RIPPLENOTCH_SYNC": "none"}
 GEAR = ("--gear-ratio", "100", "--orders", "1,2")
 
 
@@ -78,13 +79,13 @@ class ChangingLogs(InFolder):
                 log.writelines(f"{turn * 4 + k / 1000:.3f},{cell}" for k, cell in enumerate(cells))
         whole = (self.folder / "long.csv").read_bytes()
         begin, refused = time.monotonic(), 0
-        self.assertEqual(self.run_tool("filter", "long.csv", *LOWPASS, "--no-sync", "-o", "out.csv").returncode, 0)
+        self.assertEqual(self.run_tool("filter", "long.csv", *LOWPASS, "-o", "out.csv", environment=NOT_SYNCED).returncode, 0)
         a_run_s = time.monotonic() - begin  # more under a sanitizer, or beside other work
         for run in range(30):
             (self.folder / "long.csv").write_bytes(whole)
             (self.folder / "out.csv").unlink(missing_ok=True)
-            running = subprocess.Popen([TOOL, "filter", "long.csv", *LOWPASS, "--no-sync", "-o", "out.csv"],
-                                       cwd=self.folder, stderr=subprocess.PIPE, text=True)
+            running = subprocess.Popen([TOOL, "filter", "long.csv", *LOWPASS, "-o", "out.csv"],
+                                       cwd=self.folder, env={**os.environ, **NOT_SYNCED}, stderr=subprocess.PIPE, text=True)
             try:
                 running.wait(run / 25 * a_run_s)
             except subprocess.TimeoutExpired:
@@ -244,10 +245,10 @@ class Places(InFolder):
 
     @unittest.skipUnless(shutil.which("strace"), "no strace here, which counts the calls")
     def test_a_result_is_on_the_disk_before_it_has_its_name(self):
-        for words, synced in (((), True), (("--no-sync",), False)):
+        for settings, synced in (({}, True), (NOT_SYNCED, False)):
             traced = subprocess.run(["strace", "-f", "-e", "trace=fsync,linkat,rename", TOOL, "filter", "log.csv", *LOWPASS,
-                                     "--force", "-o", "out.csv", *words], cwd=self.folder, capture_output=True, text=True,
-                                    env={**os.environ, "ASAN_OPTIONS": "detect_leaks=0"})  # they are not looked for under strace
+                                     "--force", "-o", "out.csv"], cwd=self.folder, capture_output=True, text=True,
+                                    env={**os.environ, **settings, "ASAN_OPTIONS": "detect_leaks=0"})  # they are not looked for under strace
             calls = [name for line in traced.stderr.splitlines() for name in ("fsync", "linkat", "rename") if name + "(" in line]
             self.assertEqual(traced.returncode, 0, traced.stderr)
             if synced:

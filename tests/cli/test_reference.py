@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Man pages and completions are made of what --help is made of: the same options, no more and no fewer; and the programs
+"""Man pages and the completion for bash are made of what --help is made of: the same options, no more and no fewer; and the programs
 that read them take them."""
 
 import re
@@ -43,22 +43,6 @@ class Reference(unittest.TestCase):
             with self.subTest(command):
                 branch = script.split(f"\n        {command})\n")[1].split("\n            ;;\n")[0]
                 self.assertEqual(set(re.search(r'options="(.*)"', branch)[1].split()), options_of_help(command))
-
-    def test_zsh_has_the_options_of_the_help(self):
-        script = printed("complete-zsh")
-        for command in commands():
-            with self.subTest(command):
-                branch = script.split(f"\n        {command})\n")[1].split("\n            ;;\n")[0]
-                names = re.findall(r"^ +'(?:\([^)]*\)|\*)(-[\w-]+)\[", branch, re.M)
-                self.assertEqual(set(names), options_of_help(command))
-
-    def test_fish_has_the_options_of_the_help(self):
-        lines = [line for line in printed("complete-fish").splitlines() if "__fish_seen_subcommand_from" in line]
-        for command in commands():
-            with self.subTest(command):
-                own = [line.split(f"from {command}'")[1].split(" -d ")[0] for line in lines if f"from {command}'" in line]
-                names = {("--" if kind == "l" else "-") + name for line in own for kind, name in re.findall(r" -([ls]) (\S+)", line)}
-                self.assertEqual(names, options_of_help(command))
 
     def test_exit_codes_are_those_of_the_docs(self):
         page = (SOURCE / "docs/commands/README.md").read_text().split("## Exit codes")[1]
@@ -132,15 +116,3 @@ class ManByGroff(unittest.TestCase):
     def kinds(self):
         return ["man"] + [f"man-{command}" for command in commands()]
     test_it_finds_nothing_wrong = checked_by("groff", "-man", "-ww", "-z")
-
-
-class Zsh(unittest.TestCase):
-    def kinds(self):
-        return ["complete-zsh"]
-    test_it_reads_it = checked_by("zsh", "-n")
-
-
-class Fish(unittest.TestCase):
-    def kinds(self):
-        return ["complete-fish"]
-    test_it_reads_it = checked_by("fish", "-n")

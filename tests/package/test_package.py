@@ -59,8 +59,7 @@ class Contents(unittest.TestCase):
         self.assertGreater(len(commands), 10)
         pages = {f"usr/share/man/man1/{name}.1.gz" for name in ["ripplenotch", *(f"ripplenotch-{name}" for name in commands)]}
         own = {f"usr/share/doc/ripplenotch/{name}" for name in ("README.md", "copyright", "changelog.gz", "changelog.Debian.gz")}
-        completions = {"usr/share/bash-completion/completions/ripplenotch", "usr/share/zsh/vendor-completions/_ripplenotch",
-                       "usr/share/fish/vendor_completions.d/ripplenotch.fish"}
+        completions = {"usr/share/bash-completion/completions/ripplenotch"}
         expected = (pages | own | completions | of_tree("docs", "*", "usr/share/doc/ripplenotch/docs")
                     | {"usr/bin/ripplenotch", "usr/share/lintian/overrides/ripplenotch"})
         # Where npm had plotly.js.

@@ -78,9 +78,9 @@ class ByteSource {
 /// process quietly by SIGPIPE's default action.
 class ByteSink {
   public:
-    /// How a finished file takes its place. `synced`: with its bytes and its name on the disk.
+    /// How a finished file takes its place.
     struct Overwrite {
-        bool allowed = false, synced = true;
+        bool allowed = false;
         static const Overwrite no, yes;
     };
     /// Throws FileError when the path exists and overwriting was not asked for, or cannot be written.
@@ -100,7 +100,8 @@ class ByteSink {
     [[nodiscard]] bool can_rewrite() const { return file_ != nullptr; }
     /// Replaces bytes at an offset from the start; only when can_rewrite().
     void rewrite(std::size_t offset, std::string_view bytes);
-    /// Puts the file in its place; of a pipe, hears what it has to say against the bytes. Throws FileError.
+    /// Puts the file in its place, with its bytes and its name on the disk unless RIPPLENOTCH_SYNC is none in
+    /// the environment; of a pipe, hears what it has to say against the bytes. Throws FileError.
     void finish();
 
   private:
@@ -115,8 +116,8 @@ class ByteSink {
     int descriptor_ = -1;
     Overwrite overwrite_;
 };
-inline constexpr ByteSink::Overwrite ByteSink::Overwrite::no{false, true};
-inline constexpr ByteSink::Overwrite ByteSink::Overwrite::yes{true, true};
+inline constexpr ByteSink::Overwrite ByteSink::Overwrite::no{false};
+inline constexpr ByteSink::Overwrite ByteSink::Overwrite::yes{true};
 
 /// Writes a finished text in one go, with the same promises.
 void write_all(const std::string& path, std::string_view bytes, ByteSink::Overwrite overwrite);

@@ -135,7 +135,6 @@ struct ReadOptions {
     bool hold_bad_values = false;         ///< replace nan and empty cells by the sample before, and count
     std::size_t skip_lines = 0;           ///< at the top of a text log, passed on and not read
     std::optional<std::string> records;   ///< fields of a raw dump: "f8,f4,f4" (--layout)
-    std::uint64_t skip_bytes = 0;         ///< at the start of a raw dump
     std::optional<std::string> clock;     ///< of messages: "log" when they were recorded, "header" their own
     std::optional<std::string> join;   ///< of signals with clocks of their own: "nearest", "hold", "linear"
     std::map<Role, Shaft> sides;       ///< of velocity and position (--side)

@@ -297,10 +297,10 @@ bool run_job(const FilterRequest& request, const FilterJob& job, JointMethods& m
     std::unique_ptr<LogWriter> writer;
     if (!request.plot.instead_of(job.output)) {
         const LogFormat& log_format = find_log_format(stream.reader().layout().format);
-        writer = rewrite_log(
-            job.output, stream.reader(), output_format(job.output, request.output_format, log_format),
-            write_options(request, stream.torque_decimals()),
-            ByteSink::Overwrite{request.in_place || request.common.force, !request.common.no_sync});
+        writer = rewrite_log(job.output, stream.reader(),
+                             output_format(job.output, request.output_format, log_format),
+                             write_options(request, stream.torque_decimals()),
+                             ByteSink::Overwrite{request.in_place || request.common.force});
     }
     const WatchedWriter* watched = nullptr;
     if (request.plot.wanted()) {

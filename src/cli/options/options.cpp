@@ -221,7 +221,7 @@ namespace {
 Word in_command_line(std::string_view word) {
     if (word.size() < 2 || word.front() != '-') return Word::stays;
     if (word[1] != '-') return letters(word);
-    for (const std::string_view flag : {"--force", "--no-sync", "--quiet", "--verbose", "--json"})
+    for (const std::string_view flag : {"--force", "--quiet", "--verbose", "--json"})
         if (word == flag) return Word::goes;
     for (const std::string_view option : {"--output", "--improved-model", "--plot"}) {
         if (word == option) return Word::goes_with_the_next;
@@ -309,7 +309,6 @@ bool ends_with_json(std::string_view path) { return path.size() > 5 && path.ends
 
 void attach_manner(Options& options, CommonOptions& common) {
     options.flag("--force", common.force, "overwrite existing files");
-    options.flag("--no-sync", common.no_sync, "do not wait until written files are on the disk");
     options.flag("-q,--quiet", common.quiet, "no warnings on standard error");
     options.flag("-v,--verbose", common.verbose, "print the decisions on standard error");
 }
@@ -503,7 +502,7 @@ std::string one_of(std::initializer_list<std::string_view> all, const std::strin
 }  // namespace
 
 void attach_log(Options& options, ReadOptions& log) {
-    options.text("--format,--input-format", log.format, "NAME",
+    options.text("--format", log.format, "NAME",
                  fmt::format("format of the log: {} (default: found out from its first bytes)",
                              name_list(log_formats())));
     options.number("--sample-rate", log.sample_rate, Dimension::frequency,
@@ -542,7 +541,7 @@ void attach_log_columns(Options& options, ReadOptions& log) {
         "--side", [&log](Text text) { read_sides(text, log.sides); }, "SIDE",
         "where motion is measured: motor (before the gear) or joint; or by column, velocity=motor");
     options.parsed(
-        options.has("--speed") ? "--constant-speed" : "--constant-speed,--speed",
+        "--constant-speed",
         [&log](Text text) {
             log.constant_speeds.clear();
             for (const std::string& piece : split_commas(text))
@@ -572,7 +571,6 @@ void attach_log_columns(Options& options, ReadOptions& log) {
     options.text(
         "--layout", log.records, "FIELDS",
         "of a record of a raw dump (--format raw): 'f8:time_s,f4:velocity_deg_s,<i2*0.01:torque_nm'");
-    options.count("--skip-bytes", log.skip_bytes, 0, 1 << 30, "bytes before the first record of a raw dump");
     options.parsed(
         "--clock",
         [&log](Text text) {

@@ -136,8 +136,8 @@ struct CommonOptions {
     std::string joint = {};
     std::shared_ptr<JointMessages> messages = {};
     std::string output = "-";
-    bool json = false, quiet = false, verbose = false, force = false, no_sync = false;
-    [[nodiscard]] ByteSink::Overwrite overwrite() const { return {force, !no_sync}; }
+    bool json = false, quiet = false, verbose = false, force = false;
+    [[nodiscard]] ByteSink::Overwrite overwrite() const { return {force}; }
 };
 /// What -o may be called. Names that promise another kind of file are refused (core/output_name.hpp).
 struct OutputNames {
@@ -149,7 +149,7 @@ struct OutputNames {
 [[nodiscard]] std::vector<std::string> heading_of(const Provenance& provenance);
 void attach_common(Options& options, CommonOptions& common, const OutputNames& names);
 void attach_json(Options& options, CommonOptions& common);
-/// How it writes and what it says: --force, --no-sync, --quiet and --verbose.
+/// How it writes and what it says: --force, --quiet and --verbose.
 void attach_manner(Options& options, CommonOptions& common);
 [[nodiscard]] bool ends_with_json(std::string_view path);
 

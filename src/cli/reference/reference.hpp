@@ -39,18 +39,15 @@ struct Reference {
 /// Of an app whose commands have all declared their options.
 [[nodiscard]] Reference reference_of(const CLI::App& app);
 
-/// What --generate prints, for the ending of a message: "man, man-COMMAND, complete-bash, ...".
-inline constexpr std::string_view generated_kinds =
-    "man, man-COMMAND, complete-bash, complete-zsh, complete-fish";
+/// What --generate prints, for the ending of a message: "man, man-COMMAND, complete-bash".
+inline constexpr std::string_view generated_kinds = "man, man-COMMAND, complete-bash";
 
-/// A man page ("man", "man-identify") or a shell's completion ("complete-bash"). Throws UsageError for a kind
-/// that there is not.
+/// A man page ("man", "man-identify") or the completion for bash ("complete-bash"). Throws UsageError for a
+/// kind that there is not.
 [[nodiscard]] std::string generated(const Reference& reference, std::string_view kind);
 
 /// In the man macros of troff. `command`: null for the program's own page.
 [[nodiscard]] std::string man_page(const Reference& reference, const CommandEntry* command);
 [[nodiscard]] std::string bash_completion(const Reference& reference);
-[[nodiscard]] std::string zsh_completion(const Reference& reference);
-[[nodiscard]] std::string fish_completion(const Reference& reference);
 
 }  // namespace ripplenotch

@@ -25,7 +25,7 @@ struct ReportRequest {
     std::vector<std::string> results;
     std::string output = "-";
     std::optional<std::string> title, plotly;
-    bool no_plotly = false, force = false, no_sync = false, quiet = false;
+    bool no_plotly = false, force = false, quiet = false;
 };
 
 // Where the build and the installation put it, as seen from the program itself.
@@ -78,8 +78,7 @@ ExitCode run_report(const ReportRequest& request, const Options& options) {
         for (PageSection& section : sections_of_result(read_all(path), path == "-" ? "standard input" : path))
             page.sections.push_back(std::move(section));
     }
-    write_all(request.output, html_page(page, plotly_js_of(request)),
-              ByteSink::Overwrite{request.force, !request.no_sync});
+    write_all(request.output, html_page(page, plotly_js_of(request)), ByteSink::Overwrite{request.force});
     return ExitCode::done;
 }
 
@@ -96,7 +95,6 @@ std::function<ExitCode()> attach_report(Options& options) {
                  "plotly.js to put into the page, instead of the installed one");
     options.flag("--no-plotly", request->no_plotly, "pictures by gnuplot instead of interactive plots");
     options.flag("--force", request->force, "overwrite existing files");
-    options.flag("--no-sync", request->no_sync, "do not wait until the page is on the disk");
     options.flag("-q,--quiet", request->quiet, "no warnings on standard error");
     attach_gear(options, request->gear);
     attach_log(options, request->reading);

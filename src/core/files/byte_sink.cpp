@@ -269,7 +269,9 @@ void TemporaryFile::close(const std::string& path) {
         raise<FileError>("{}: cannot write: {}", path, system_reason());
 }
 
-void TemporaryFile::take_place(const std::string& path, bool overwrite, bool synced) {
+void TemporaryFile::take_place(const std::string& path, bool overwrite) {
+    const char* const asked = std::getenv("RIPPLENOTCH_SYNC");
+    const bool synced = asked == nullptr || std::string_view(asked) != "none";
     if (synced && !synced_to_disk(descriptor_))
         raise<FileError>("{}: cannot write to the disk: {}", path, system_reason());
     // Where writing is put off until the file is closed (NFS), that is the last moment to hear of a failure.
@@ -423,7 +425,7 @@ void ByteSink::finish() {
     write_waiting();
     if (reserved_ > written_ && ::ftruncate(descriptor_, static_cast<off_t>(written_)) != 0)
         raise<FileError>("{}: cannot write: {}", path_, system_reason());
-    file_->take_place(target_, overwrite_.allowed, overwrite_.synced);
+    file_->take_place(target_, overwrite_.allowed);
 }
 
 // What a device or a pipe has to say against the bytes, it says when it is closed.

@@ -54,9 +54,10 @@ class TemporaryFile {
     void forget_name();
     /// A name that surely nobody sees keeps: the file goes with its last descriptor.
     [[nodiscard]] int release_without_name();
-    /// Closes the file and gives it its name, in the folder that it was made in. `synced`: not before its
-    /// bytes are on the disk, and its name is when this returns. Throws FileError; nothing is left then.
-    void take_place(const std::string& path, bool overwrite, bool synced);
+    /// Closes the file and gives it its name, in the folder that it was made in: not before its bytes are on
+    /// the disk, and its name is when this returns, but where RIPPLENOTCH_SYNC is none in the environment.
+    /// Throws FileError; nothing is left then.
+    void take_place(const std::string& path, bool overwrite);
 
   private:
     [[nodiscard]] bool open_without_name(const std::string& folder, mode_t mode);

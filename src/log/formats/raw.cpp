@@ -151,19 +151,11 @@ std::vector<std::string> layouts_that_fit(const RawLayout& layout, std::uint64_t
     return texts;
 }
 
-/// A source whose first bytes have been read already, without those to be skipped.
+/// A source whose first bytes have been read already.
 class Behind final : public ByteSource {
   public:
-    Behind(std::unique_ptr<ByteSource> source, std::string first_bytes, std::uint64_t skip)
-        : ByteSource(Name{source->name()}), source_(std::move(source)), first_(std::move(first_bytes)) {
-        std::string piece(std::min<std::uint64_t>(skip, std::size_t{1} << 16), '\0');
-        for (std::uint64_t left = skip; left > 0;) {
-            const std::size_t got =
-                read(piece.data(), static_cast<std::size_t>(std::min<std::uint64_t>(left, piece.size())));
-            if (got == 0) raise<UsageError>("--skip-bytes {}: {} has {} bytes", skip, name(), skip - left);
-            left -= got;
-        }
-    }
+    Behind(std::unique_ptr<ByteSource> source, std::string first_bytes)
+        : ByteSource(Name{source->name()}), source_(std::move(source)), first_(std::move(first_bytes)) {}
     std::size_t read(char* into, std::size_t size) override {
         if (given_ == first_.size()) return source_->read(into, size);
         const std::size_t taken = first_.copy(into, size, given_);
@@ -177,20 +169,20 @@ class Behind final : public ByteSource {
     std::size_t given_ = 0;
 };
 
-void require_whole_records(const RawLayout& layout, const ByteSource& source, std::uint64_t skip) {
-    if (source.size() <= skip) return;  // a pipe says at its end
-    const std::uint64_t bytes = source.size() - skip, rest = bytes % layout.record_size;
-    if (rest == 0) return;
+void require_whole_records(const RawLayout& layout, const ByteSource& source) {
+    const std::uint64_t bytes = source.size(), rest = bytes % layout.record_size;
+    if (rest == 0) return;  // of a pipe the size is 0; it says at its end
     const auto fits = layouts_that_fit(layout, bytes);
     raise<DataError>(
         "{}: read {} bytes, expected records of {} bytes (--layout {}): {} whole ones and {} bytes of one "
         "more. If "
-        "the dump was cut off: head -c {} {} | ripplenotch ... -. {}{}",
-        source.name(), bytes, layout.record_size, layout.text, bytes / layout.record_size, rest,
-        skip + bytes - rest, source.name(),
-        fits.empty() ? "No layout like it fits; a head before the records is left out by --skip-bytes"
-                     : fmt::format("Layouts near it that fit: {}", fmt::join(fits, " or ")),
-        fits.empty() && skip == 0 ? fmt::format(" {}", rest) : "");
+        "the dump was cut off: head -c {} {} | ripplenotch ... -. {}",
+        source.name(), bytes, layout.record_size, layout.text, bytes / layout.record_size, rest, bytes - rest,
+        source.name(),
+        fits.empty() ? fmt::format("No layout like it fits; a head before the records is left out by tail -c "
+                                   "+{} {} | ripplenotch ... -",
+                                   rest + 1, source.name())
+                     : fmt::format("Layouts near it that fit: {}", fmt::join(fits, " or ")));
 }
 
 Records make_raw(std::unique_ptr<ByteSource> source, std::string first_bytes, const ReadOptions& options) {
@@ -201,20 +193,17 @@ Records make_raw(std::unique_ptr<ByteSource> source, std::string first_bytes, co
             source->name());
     }
     const RawLayout layout = parse_raw_layout(*options.records);
-    require_whole_records(layout, *source, options.skip_bytes);
+    require_whole_records(layout, *source);
     RecordTable table;
     table.format = "raw";
     table.fields = layout.fields;
     table.named = layout.named;
     table.record_size = layout.record_size;
-    table.options =
-        fmt::format("--layout '{}'{}", layout.text,
-                    options.skip_bytes > 0 ? fmt::format(" --skip-bytes {}", options.skip_bytes) : "");
+    table.options = fmt::format("--layout '{}'", layout.text);
     for (std::size_t f = 0; layout.named && f < table.fields.size(); ++f) {
         if (table.fields[f].name.empty()) table.fields[f].name = fmt::format("column {}", f + 1);
     }
-    return {std::make_unique<Behind>(std::move(source), std::move(first_bytes), options.skip_bytes),
-            std::move(table)};
+    return {std::make_unique<Behind>(std::move(source), std::move(first_bytes)), std::move(table)};
 }
 
 }  // namespace
