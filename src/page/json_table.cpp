@@ -111,8 +111,6 @@ Spoken spoken(std::string name) {
     return {name, unit};
 }
 
-namespace {}  // namespace
-
 std::string value_text(const Json& json) {
     if (json.is_null()) return "-";
     if (json.is_string()) return json.get<std::string>();

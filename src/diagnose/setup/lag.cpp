@@ -426,8 +426,6 @@ std::vector<double> window_times(const std::vector<const SmoothedSeries*>& serie
     return times_s;
 }
 
-namespace {}  // namespace
-
 double search_range_s(std::span<const double> time_s, const AlignmentOptions& options) {
     if (options.range) return options.range->value();
     return std::min(1.0, 0.1 * (time_s.back() - time_s.front()));

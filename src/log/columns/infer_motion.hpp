@@ -11,8 +11,6 @@
 
 #include "log/columns/column_name.hpp"
 #include "log/columns/decide_layout.hpp"
-#include "log/text/text_cells.hpp"
-#include "log/text/text_dialect.hpp"
 #include "ripplenotch/log/layout.hpp"
 
 namespace ripplenotch {
@@ -34,19 +32,6 @@ struct MotionEvidence {
 [[nodiscard]] MotionEvidence motion_evidence(const std::vector<double>& time_s,
                                              const std::vector<double>& velocity,
                                              const std::vector<double>& position);
-
-// How the cells of a text log are separated and its decimals marked: the reading under which most lines are
-// rows of equally many numbers.
-
-struct GuessedRules {
-    CellRules rules;
-    std::size_t columns = 0;  ///< cells in a row; 0 when no reading makes rows of it
-    std::size_t numbers = 0;  ///< numeric cells in a row, on average, rounded up
-};
-
-/// `first` may be a header; `rows` are the lines compared. What `options` state is taken as stated.
-[[nodiscard]] GuessedRules guess_rules(std::string_view bytes, const TextLine& first,
-                                       const std::vector<TextLine>& rows, const ReadOptions& options);
 
 /// What is known of a velocity or position column before its values are looked at.
 struct MotionColumn {

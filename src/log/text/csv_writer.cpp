@@ -3,12 +3,44 @@
 
 #include <fmt/format.h>
 
+#include <cstring>
+
 #include "log/columns/units.hpp"
 #include "ripplenotch/core/error.hpp"
 
 namespace ripplenotch {
 
 namespace {
+
+/// Copies of pieces of one text, one behind the other. Most pieces are short, and copying a fixed number of
+/// bytes is one instruction or two, so where it can it copies more than a piece: there must be room for
+/// `over` bytes behind it.
+class PieceCopier {
+  public:
+    static constexpr std::size_t over = 32;
+
+    explicit PieceCopier(std::string_view text)
+        : text_(text.data()), short_until_(text.size() < over ? 0 : text.size() - over + 1) {}
+    /// The bytes from where it is, until `to`; returns the end of the copy.
+    char* copy_until(std::size_t to, char* into) {
+        const std::size_t size = to - done_;
+        const char* const from = text_ + done_;
+        if (size <= over && done_ < short_until_) [[likely]]
+            std::memcpy(into, from, over);
+        else
+            std::memcpy(into, from, size);
+        done_ = to;
+        return into + size;
+    }
+    /// Goes on behind what stands before `to`.
+    void skip_until(std::size_t to) { done_ = to; }
+    [[nodiscard]] std::size_t done() const { return done_; }
+
+  private:
+    const char* text_;
+    std::size_t short_until_;  ///< from there on a short piece would reach behind the text
+    std::size_t done_ = 0;
+};
 
 /// Some rows at a time, so that there is never room for more than some of the longest numbers.
 class RowRewriter {

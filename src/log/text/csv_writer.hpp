@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "log/text/csv_reader.hpp"
@@ -34,6 +35,30 @@ struct CellText {
         if (decimal_mark != '.') std::replace(into, end, '.', decimal_mark);
         return end;
     }
+};
+
+// Internal to the log room: text put together piece by piece in a string that is used again and again.
+
+/// Text is written at end(), where ensure() has seen to it that there is room.
+class TextRoom {
+  public:
+    /// Keeps what `room` holds of size: making a string longer fills it, which takes as long as the text.
+    TextRoom(std::string& room, std::size_t expected) : room_(room) {
+        if (room_.size() < expected) room_.resize(expected);
+    }
+
+    /// Room for so many bytes at what it returns, the end of what has been written.
+    [[nodiscard]] char* ensure(std::size_t size) {
+        if (used_ + size > room_.size()) room_.resize(2 * (used_ + size));
+        return room_.data() + used_;
+    }
+    /// What has been written ends here.
+    void written_until(const char* end) { used_ = static_cast<std::size_t>(end - room_.data()); }
+    [[nodiscard]] std::string_view text() const { return {room_.data(), used_}; }
+
+  private:
+    std::string& room_;
+    std::size_t used_ = 0;
 };
 
 // Internal to the log room: a block's bytes with other numbers in the places of its torques, or behind its

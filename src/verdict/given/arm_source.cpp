@@ -129,8 +129,6 @@ ArmSource read_arm_source(std::string_view words) {
     }
 }
 
-namespace {}  // namespace
-
 ArmLog ArmReading::view() const {
     ArmLog arm;
     for (const Log& log : logs) {
