@@ -1,19 +1,20 @@
-#include "ripplenotch/core/files.hpp"
-
-#include <unistd.h>
-
+// SPDX-License-Identifier: MIT
+// Files read and written, and the names that they may have.
 #include <sys/stat.h>
 
+#include <unistd.h>
 #include <filesystem>
 #include <fstream>
 #include <random>
 #include <thread>
 
 #include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/files.hpp"
 #include "support/catch.hpp"
 
 using namespace ripplenotch;
 using Catch::Contains;
+
 namespace fs = std::filesystem;
 
 namespace {
@@ -250,4 +251,28 @@ TEST_CASE("SHA-256 agrees with the standard's own examples") {
     abc.update("bc");
     CHECK(abc.hex() == "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
     CHECK(Sha256().hex() == "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+}
+
+TEST_CASE("a name that promises another kind of file is refused with those that fit") {
+    for (const char* name : {"x.csv", "a.b/x.CSV", "x.json.csv", ".hidden.csv"}) {
+        CHECK_THROWS_AS(check_output_name(name, "a track", ".txt .json"), UsageError);
+        CHECK_NOTHROW(check_output_name(name, "a track", ".json .csv"));
+    }
+    CHECK_THROWS_WITH(check_output_name("x.svg", "a track", ".csv .npy .json"),
+                      Contains("-o x.svg: a track is not written as a picture; name it .csv, .npy or .json"));
+    CHECK_THROWS_WITH(check_output_name("x.json", "a log", ".csv .npy"),
+                      Contains("as JSON; name it .csv or .npy"));
+    CHECK_THROWS_WITH(check_output_name("x.txt", "a report", ".html"), Contains("as text; name it .html"));
+}
+
+TEST_CASE("names that promise nothing are free") {
+    for (const char* name : {"-", "", "x", "run.log", "x.dat", "a.csv/x", ".csv", "/dev/null", "x.2", "x."})
+        CHECK_NOTHROW(check_output_name(name, "a track", ".json"));
+}
+
+TEST_CASE("an ending fits as a whole only") {
+    CHECK_THROWS_AS(check_output_name("x.h", "a page", ".html .htm"), UsageError);
+    CHECK_THROWS_AS(check_output_name("x.htm", "a page", ".html"), UsageError);
+    CHECK_NOTHROW(check_output_name("x.h", "a header", ".html .h"));
+    CHECK_NOTHROW(check_output_name("x.h", "a header", ".h .hpp"));
 }

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
-// What a log turns out to be when it is read: rate, gaps, holds, and whether the clock agrees with the
-// motion.
+// What is found out about a recording.
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <random>
 
+#include "log/account/held_samples.hpp"
 #include "log_support.hpp"
 #include "support/catch.hpp"
 
@@ -13,6 +15,9 @@ using Catch::Contains;
 using Catch::Matchers::WithinAbs;
 using Catch::Matchers::WithinRel;
 using test::read_trace;
+
+// What a log turns out to be when it is read: rate, gaps, holds, and whether the clock agrees with the
+// motion.
 
 namespace {
 
@@ -184,4 +189,248 @@ TEST_CASE("a log without clock, velocity or rows is examined without a figure", 
     std::fill(trace.velocity_deg_s.begin(), trace.velocity_deg_s.end(), nan);
     CHECK(read_trace(trace).recording.clock.mean_rate.value() == 0.0);
     CHECK_FALSE(read_trace(trace).clock_factor);
+}
+
+// Is a position this joint's? By scale, sign, wrap and standing still; and where the log contradicts itself.
+
+using Verdict = AngleFacts::Verdict;
+
+namespace {
+
+struct Row {
+    double time_s, velocity_deg_s, position_deg;
+};
+
+Trace swing(const std::function<void(std::size_t, Row&)>& change, std::size_t rows = 30000) {
+    std::mt19937_64 random(7);
+    std::normal_distribution<double> noise;
+    Trace trace;
+    for (std::size_t k = 0; k < rows; ++k) {
+        const double t = static_cast<double>(k) / 1000.0, w = 0.9;
+        Row row{t, 100.0 * w * std::cos(w * t) + 0.3 * noise(random),
+                100.0 * std::sin(w * t) + 0.002 * noise(random)};
+        change(k, row);
+        trace.time_s.push_back(row.time_s);
+        trace.velocity_deg_s.push_back(row.velocity_deg_s);
+        trace.torque_nm.push_back(noise(random));
+        trace.position_deg.push_back(row.position_deg);
+    }
+    return trace;
+}
+
+Recording recording_of(const std::function<void(std::size_t, Row&)>& change) {
+    return read_trace(swing(change)).recording;
+}
+
+}  // namespace
+
+TEST_CASE("a position is judged by scale, sign and motion, and what was decided is told", "[log]") {
+    struct Case {
+        Verdict verdict;
+        std::string told;
+        std::function<void(std::size_t, Row&)> change;
+    };
+    const std::vector<Case> cases = {
+        {Verdict::agrees, "", [](std::size_t, Row&) {}},
+        {Verdict::agrees, "", [](std::size_t, Row& row) { row.position_deg += 1e4; }},
+        {Verdict::agrees, "clock is wrong", [](std::size_t, Row& row) { row.position_deg *= 1.475; }},
+        {Verdict::scaled, "times as much", [](std::size_t, Row& row) { row.position_deg *= 0.3; }},
+        {Verdict::scaled, "gear ratio", [](std::size_t, Row& row) { row.position_deg *= 100.0; }},
+        {Verdict::scaled, "gear ratio", [](std::size_t, Row& row) { row.position_deg *= -100.0 * -1.0; }},
+        {Verdict::scaled, "57.3", [](std::size_t, Row& row) { row.velocity_deg_s *= 0.0174533; }},
+        {Verdict::reversed, "opposite signs", [](std::size_t, Row& row) { row.position_deg *= -1.0; }},
+        {Verdict::stands, "position is constant", [](std::size_t, Row& row) { row.position_deg = 7.0; }},
+        {Verdict::unrelated, "another joint",
+         [](std::size_t, Row& row) { row.position_deg = 60 * std::sin(2.3 * row.time_s); }},
+        {Verdict::unrelated, "another joint", [](std::size_t, Row& row) { row.velocity_deg_s = 0.0; }},
+        {Verdict::agrees, "",
+         [](std::size_t, Row& row) { row.position_deg = std::round(row.position_deg / 0.5) * 0.5; }},
+        {Verdict::agrees, "",
+         [](std::size_t k, Row& row) {
+             if (k % 500 == 9) row.position_deg = -7e4;
+         }},
+        {Verdict::agrees, "",
+         [](std::size_t k, Row& row) {
+             if (k % 500 == 9) row.velocity_deg_s = 1e4;
+         }},
+        {Verdict::too_little_motion, "",
+         [](std::size_t, Row& row) {
+             row.position_deg *= 0.005;
+             row.velocity_deg_s *= 0.005;
+         }},
+    };
+    for (std::size_t i = 0; i < cases.size(); ++i) {
+        INFO(i);
+        const Recording recording = recording_of(cases[i].change);
+        CHECK(recording.angle.verdict == cases[i].verdict);
+        CHECK_FALSE(recording.angle.contradicted);
+        CHECK_FALSE(recording.angle.reason().empty());
+        if (cases[i].told.empty()) {
+            CHECK(recording.warnings.empty());
+        } else {
+            REQUIRE(recording.warnings.size() == 1);
+            CHECK_THAT(recording.warnings.front().text, Contains(cases[i].told));
+        }
+    }
+}
+
+TEST_CASE("what is read is the joint's angle: turned, left out, or carried on by the velocity", "[log]") {
+    const Trace plain = swing([](std::size_t, Row&) {});
+    const Log reversed = read_trace(swing([](std::size_t, Row& row) { row.position_deg *= -1.0; }));
+    for (std::size_t k = 0; k < plain.size(); k += 100)
+        CHECK(reversed.trace.position_deg[k] == plain.position_deg[k]);
+    CHECK(read_trace(swing([](std::size_t, Row& row) {
+              row.position_deg *= 100.0;
+          })).trace.position_deg.empty());
+
+    const Trace stops = swing([](std::size_t k, Row& row) {
+        if (k >= 20000) row.position_deg = 12.0;
+    });
+    const Log log = read_trace(stops);
+    REQUIRE(log.recording.angle.contradicted);
+    const std::size_t row = log.recording.angle.contradicted->row;
+    CHECK(row > 20000);
+    CHECK(row < 21500);
+    CHECK_THAT(log.recording.warnings.front().text, Contains(fmt::format("data row {}", row + 1)));
+    CHECK(log.trace.position_deg[row - 1] == 12.0);
+    for (std::size_t k = row; k < plain.size(); k += 100) {
+        const double moved = log.trace.position_deg[k] - log.trace.position_deg[row];
+        CHECK(moved == Approx(plain.position_deg[k] - plain.position_deg[row]).margin(0.2));
+    }
+}
+
+TEST_CASE("the verdict on a position is the same whatever the blocks", "[log]") {
+    const Trace trace = swing([](std::size_t k, Row& row) {
+        if (k < 17000) row.velocity_deg_s = row.position_deg = 0.0;  // at rest in the opening
+        row.position_deg *= 0.3;
+    });
+    for (const std::size_t block : {1U, 999U, 30000U}) {
+        const Log log = read_trace(trace, block);
+        CHECK(log.recording.angle.verdict == Verdict::scaled);
+        CHECK(log.trace.position_deg.empty());
+    }
+}
+
+namespace {
+
+struct Rows {
+    std::vector<double> velocity_deg_s, torque_nm, position_deg;
+    [[nodiscard]] TraceView view(std::size_t first, std::size_t count) const {
+        const TraceView all{{}, velocity_deg_s, velocity_deg_s, torque_nm, position_deg};
+        return all.part(first, count);
+    }
+};
+
+/// Every third row repeats the one before.
+Rows every_third(std::size_t size) {
+    std::mt19937 engine(2);
+    Rows rows;
+    for (std::size_t k = 0; k < size; ++k) {
+        const bool repeats = k > 0 && k % 3 == 0;
+        rows.velocity_deg_s.push_back(repeats ? rows.velocity_deg_s.back()
+                                              : 20.0 + 0.01 * static_cast<double>(k));
+        rows.torque_nm.push_back(repeats ? rows.torque_nm.back() : static_cast<double>(engine() % 1000));
+    }
+    return rows;
+}
+
+}  // namespace
+
+TEST_CASE("held rows and the longest hold are the same however a log is cut into blocks", "[log]") {
+    std::mt19937 engine(3);
+    Rows rows = every_third(500);
+    for (std::size_t k = 301; k < 305; ++k) {
+        rows.velocity_deg_s[k] = rows.velocity_deg_s[300];
+        rows.torque_nm[k] = rows.torque_nm[300];
+    }
+    HeldCounter whole;
+    whole.count(rows.view(0, 500), true);
+    CHECK(whole.held().longest == 5);  // rows 300 to 304 repeat row 299
+    for (std::size_t i = 0; i < 50; ++i) {
+        HeldCounter held;
+        for (std::size_t first = 0; first < 500;) {
+            const std::size_t end = std::min<std::size_t>(500, first + 1 + engine() % 40);
+            held.count(rows.view(first, end - first), first == 0);
+            first = end;
+        }
+        CHECK(held.held().count == whole.held().count);
+        CHECK(held.held().longest == whole.held().longest);
+    }
+    HeldCounter plain;
+    plain.count(every_third(500).view(0, 500), true);
+    CHECK(plain.held().count == 499 / 3);
+}
+
+TEST_CASE("a torque that is held at a commanded speed counts, with and without a position", "[log]") {
+    std::mt19937 engine(4);
+    std::normal_distribution<double> noise;
+    for (const bool position : {false, true}) {
+        Rows rows;
+        for (std::size_t k = 0; k < 4000; ++k) {
+            rows.velocity_deg_s.push_back(60.0);
+            rows.torque_nm.push_back(k % 2 == 1 ? rows.torque_nm.back() : noise(engine));
+            const double now = 0.06 * static_cast<double>(k);
+            if (position) rows.position_deg.push_back(k % 2 == 1 ? rows.position_deg.back() : now);
+        }
+        HeldCounter held;
+        held.count(rows.view(0, 4000), true);
+        CHECK(held.held().count == 2000);
+        CHECK(held.held().longest == 1);
+    }
+}
+
+TEST_CASE("the row after a gap holds nothing", "[log]") {
+    Rows rows = every_third(30);
+    HeldCounter held;
+    held.count(rows.view(0, 15), true);
+    held.count(rows.view(15, 15), true);  // row 15 repeats row 14
+    CHECK(held.held().count == 8);
+}
+
+TEST_CASE("rows that are written several times are held whatever the steps of the torque", "[log]") {
+    std::mt19937 engine(5);
+    std::normal_distribution<double> noise;
+    for (const bool position : {false, true}) {
+        Rows held_rows, coarse_rows;
+        for (std::size_t k = 0; k < 8000; ++k) {
+            const auto updates = static_cast<double>(k - k % 4);
+            held_rows.velocity_deg_s.push_back(30.0 + 0.002 * updates);
+            held_rows.torque_nm.push_back(k % 4 != 0 ? held_rows.torque_nm.back()
+                                                     : 0.25 * std::round(8.0 * noise(engine)));
+            if (position) held_rows.position_deg.push_back(0.03 * updates);
+            // Steps of the velocity and of the position, but every row measured.
+            coarse_rows.velocity_deg_s.push_back(30.0 + 0.1 * std::round(0.02 * static_cast<double>(k)));
+            coarse_rows.torque_nm.push_back(0.25 * std::round(noise(engine)));
+            if (position) coarse_rows.position_deg.push_back(0.1 * std::round(0.3 * static_cast<double>(k)));
+        }
+        HeldCounter held, coarse;
+        held.count(held_rows.view(0, 8000), true);
+        coarse.count(coarse_rows.view(0, 8000), true);
+        CHECK(held.held().count == 6000);
+        CHECK(held.held().longest == 3);
+        CHECK(held.held().moving == 7999);
+        CHECK(coarse.held().count == 0);
+    }
+}
+
+TEST_CASE("without a velocity the joint moves where its position does", "[log]") {
+    std::mt19937 engine(7);
+    std::normal_distribution<double> noise;
+    std::vector<double> time_s, slope, torque_nm, position_deg;
+    for (std::size_t k = 0; k < 8000; ++k) {
+        const bool rests = k >= 4000;
+        time_s.push_back(0.001 * static_cast<double>(k));
+        slope.push_back(0.0);
+        torque_nm.push_back(k % 4 != 0 ? torque_nm.back() : 0.25 * std::round(8.0 * noise(engine)));
+        position_deg.push_back(rests ? 120.0 : 0.03 * static_cast<double>(k - k % 4));
+    }
+    for (const std::size_t block : {std::size_t{7}, std::size_t{8000}}) {
+        HeldCounter held(true);
+        const TraceView all{{}, time_s, slope, torque_nm, position_deg};
+        for (std::size_t first = 0; first < 8000; first += block)
+            held.count(all.part(first, std::min(block, 8000 - first)), first == 0);
+        CHECK(held.held().count == 3000);
+        CHECK(held.held().longest == 3);
+        CHECK(held.held().moving == 4000);
+    }
 }

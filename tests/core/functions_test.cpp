@@ -1,21 +1,25 @@
 // SPDX-License-Identifier: MIT
-#include "ripplenotch/core/portable_math.hpp"
-
+// Functions of numbers that are the same on every machine.
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <complex>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 #include <numbers>
 #include <random>
 #include <vector>
 
+#include "core/vectors/dot.hpp"
+#include "ripplenotch/core/biquad.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 #include "support/catch.hpp"
 #include "support/vectors.hpp"
 
 using namespace ripplenotch;
 using namespace ripplenotch::testing;
+using namespace ripplenotch::literals;
 
 namespace {
 constexpr double degree_rad = std::numbers::pi / 180.0;
@@ -277,4 +281,142 @@ TEST_CASE("elementary functions keep their bits") {
     CHECK(portable::log(10.0) == 0x1.26bb1bbb55515p+1);  // 2.30258509299404568401799145468..., one unit below
     CHECK(portable::exp(1.0) == 0x1.5bf0a8b14576ap+1);   // 2.71828182845904523536028747135..., one unit above
     CHECK(portable::tanh(1.0) == Approx(0.76159415595576488812).epsilon(4e-16));
+}
+
+// Sums over columns are what their plain loops are, and the same bits on every width of vectors.
+
+namespace {
+
+using Numbers = std::vector<double>;
+
+Numbers noise(std::size_t count, std::mt19937_64& random) {
+    std::uniform_real_distribution<double> between(-3.0, 3.0);
+    Numbers values(count);
+    for (double& value : values) value = between(random);
+    return values;
+}
+
+bool same_bits(const Numbers& a, const Numbers& b) {
+    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
+}
+
+// Everything that these functions make of the same columns.
+Numbers made_of(const Numbers& a, const Numbers& b, const Numbers& c, const Numbers& d) {
+    const std::size_t n = a.size();
+    Numbers made{dot(a.data(), b.data(), n)};
+    double sums[4] = {1.0, 2.0, 3.0, 4.0};
+    add_dots({a.data(), b.data()}, {c.data(), d.data()}, n, sums);
+    made.insert(made.end(), std::begin(sums), std::end(sums));
+    Numbers scaled = c;
+    add_scaled(0.37, a.data(), scaled.data(), n);
+    made.insert(made.end(), scaled.begin(), scaled.end());
+    Numbers one = c, other = d;
+    add_scaled_pair({0.37, -1.2, 0.11, 2.3}, {a.data(), b.data()}, {one.data(), other.data()}, n);
+    made.insert(made.end(), one.begin(), one.end());
+    made.insert(made.end(), other.begin(), other.end());
+    return made;
+}
+
+}  // namespace
+
+TEST_CASE("sums of products give the same bits on every width of vectors, and what a plain loop gives") {
+    std::mt19937_64 random(41);
+    for (const std::size_t n : {1U, 2U, 3U, 4U, 5U, 7U, 8U, 9U, 15U, 16U, 17U, 31U, 64U, 1001U}) {
+        const Numbers a = noise(n, random), b = noise(n, random), c = noise(n, random), d = noise(n, random);
+        std::vector<Numbers> made;
+        for (const bool wide : widths()) {
+            const Width here(wide);
+            made.push_back(made_of(a, b, c, d));
+        }
+        INFO(n << " numbers");
+        CHECK(same_bits(made.front(), made.back()));
+        Numbers plain{0.0, 1.0, 2.0, 3.0, 4.0};
+        for (std::size_t k = 0; k < n; ++k) {
+            plain[0] += a[k] * b[k];
+            plain[1] += a[k] * c[k];
+            plain[2] += a[k] * d[k];
+            plain[3] += b[k] * c[k];
+            plain[4] += b[k] * d[k];
+            plain.push_back(c[k] + 0.37 * a[k]);
+        }
+        for (std::size_t k = 0; k < n; ++k) plain.push_back(c[k] + 0.37 * a[k] + 0.11 * b[k]);
+        for (std::size_t k = 0; k < n; ++k) plain.push_back(d[k] - 1.2 * a[k] + 2.3 * b[k]);
+        // Products of up to 9, summed in another order.
+        for (std::size_t i = 0; i < plain.size(); ++i)
+            CHECK(made.front()[i] == Approx(plain[i]).margin(1e-11));
+    }
+}
+
+TEST_CASE("errors of a prediction are those of a plain loop to the last bit, on every width of vectors") {
+    std::mt19937_64 random(42);
+    for (const std::size_t memory : {0U, 1U, 3U, 50U}) {
+        const Numbers weights = noise(memory, random);
+        for (const std::size_t n : {1U, 4U, 15U, 16U, 17U, 40U, 333U}) {
+            const Numbers signal = noise(memory + n, random);
+            Numbers plain;
+            for (std::size_t k = memory; k < signal.size(); ++k) {
+                double sum = 0.0;
+                for (std::size_t i = 0; i < memory; ++i) sum += weights[i] * signal[k - 1 - i];
+                plain.push_back(signal[k] - sum);
+            }
+            for (const bool wide : widths()) {
+                const Width here(wide);
+                Numbers errors(n);
+                prediction_errors(signal.data() + memory, n, weights.data(), memory, errors.data());
+                INFO(n << " numbers, memory of " << memory << ", " << (wide ? "wide" : "narrow"));
+                CHECK(same_bits(errors, plain));
+            }
+        }
+    }
+}
+
+namespace {
+// A stable section with poles at radius r and angle theta, zeros on the circle at phi, unity gain at DC.
+Biquad section(double r, double theta, double phi) {
+    Biquad f{1.0, -2.0 * std::cos(phi), 1.0, -2.0 * r * std::cos(theta), r * r};
+    const double gain = dc_gain(f);
+    return {f.b0 / gain, f.b1 / gain, f.b2 / gain, f.a1, f.a2};
+}
+}  // namespace
+
+TEST_CASE("the response of a section is what a sine measures on it") {
+    const Biquad f = section(0.9, 0.3, 0.5);
+    const double hz = 37.0, rate = 1000.0;
+    BiquadState s;
+    std::complex<double> in = 0.0, out = 0.0;
+    for (int k = 0; k < 3000; ++k) {
+        const double phase = 2.0 * std::numbers::pi * hz * k / rate;
+        const double y = step(f, s, std::cos(phase));
+        if (k >= 2000) {  // 37 whole periods, long after the transient (0.9^2000)
+            in += std::cos(phase) * std::polar(1.0, -phase);
+            out += y * std::polar(1.0, -phase);
+        }
+    }
+    CHECK(std::abs(out / in - response(f, Hertz(hz), SampledAt(Hertz(rate)))) < 1e-9);
+}
+
+TEST_CASE("group delay is the negative slope of the phase") {
+    const Cascade cascade = {section(0.9, 0.3, 0.5), section(0.7, 0.9, 1.2)};
+    for (double hz = 1.0; hz < 450.0; hz += 7.3) {
+        const double h = 1e-4;
+        const auto ratio = response(cascade, Hertz(hz + h), SampledAt(1000_Hz)) /
+                           response(cascade, Hertz(hz - h), SampledAt(1000_Hz));
+        const double slope = -std::arg(ratio) / (2.0 * std::numbers::pi * 2.0 * h);
+        CHECK(group_delay(cascade, Hertz(hz), SampledAt(1000_Hz)).value() == Approx(slope).margin(1e-8));
+    }
+}
+
+TEST_CASE("a ramp lags by the group delay at zero frequency") {
+    const Cascade cascade = {section(0.95, 0.2, 0.3)};
+    BiquadState s;
+    double y = 0.0;
+    for (int k = 0; k <= 4000; ++k) y = step(cascade[0], s, 0.01 * k);
+    CHECK((0.01 * 4000 - y) / 0.01 / 1000.0 ==
+          Approx(group_delay(cascade, 0_Hz, SampledAt(1000_Hz)).value()).epsilon(1e-9));
+}
+
+TEST_CASE("pole radius is right for complex and for real poles") {
+    CHECK(pole_radius(section(0.93, 1.0, 0.5)) == Approx(0.93).epsilon(1e-12));
+    CHECK(pole_radius(Biquad{1, 0, 0, -(0.9 + 0.5), 0.9 * 0.5}) == Approx(0.9).epsilon(1e-12));
+    CHECK(pole_radius(Biquad{1, 0, 0, 0.9 + 0.5, 0.9 * 0.5}) == Approx(0.9).epsilon(1e-12));
 }
