@@ -247,7 +247,7 @@ std::string log_of(std::mt19937& random) {
     const auto below = [&](std::size_t most) { return random() % most; };
     const char delimiter = std::array{',', ';', '\t', ' '}[below(4)];
     const char mark = delimiter == ';' && below(2) == 0 ? ',' : '.';
-    const std::string end = std::array{"\n", "\r\n", "\r"}[below(3)];
+    const std::string end = std::array{"\n", "\r\n"}[below(2)];
     std::string text = below(5) == 0 ? "" : "time_s,velocity_deg_s,torque_nm,note" + end;
     const std::size_t rows = 20 + below(150);
     for (std::size_t k = 0; k < rows; ++k) {

@@ -288,7 +288,6 @@ TEST_CASE("each dialect of the same rows gives the same trace", "[log]") {
         "time_s,velocity_deg_s,torque_nm\n0,10,2.5\n0.01,11,-0.25\n0.02,12,1e2\n",
         "time_s,velocity_deg_s,torque_nm\n+0,10.,2.5\n.01,+11,-.25\n0.02,12,1.00E+02\n",
         "time_s;velocity_deg_s;torque_nm\r\n0;10;2,5\r\n0,01;11;-0,25\r\n0,02;12;100\r\n",
-        "time_s\tvelocity_deg_s\ttorque_nm\r0\t10\t2.5\r0.01\t11\t-0.25\r0.02\t12\t100\r",
         "time_s velocity_deg_s torque_nm \n 0   10  2.5 \n 0.01  11 -0.25 \n 0.02 12 100 \n",
         "time_s velocity_deg_s torque_nm\n0 10 2,5\n0,01 11 -0,25\n0,02 12 100\n",
         "time_s\tvelocity_deg_s\ttorque_nm\n0\t10\t2,5\n0,01\t11\t-0,25\n0,02\t12\t100\n",

@@ -216,8 +216,6 @@ TEST_CASE("only the characters of the torque change", "[log]") {
           "mid\r\n0,5;1; 501 ;\r\n\r\n1;1;7;\"b;c\"");
     CHECK(rewritten("t_s dq_deg_s tau_Nm \n 0   1  2.5 \n 1   1  -4 \nEOF\n", doubled) ==
           "t_s dq_deg_s tau_Nm \n 0   1  5 \n 1   1  -8 \nEOF\n");
-    CHECK(rewritten("torque_nm,time_s,velocity_deg_s\r1,0,5\r2,1,5\r", doubled) ==
-          "torque_nm,time_s,velocity_deg_s\r2,0,5\r4,1,5\r");
 }
 
 TEST_CASE("decimals are shortest or fixed", "[log]") {
