@@ -13,6 +13,7 @@
 #include "ripplenotch/chart/trend_figure.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/files.hpp"
+#include "ripplenotch/core/progress.hpp"
 #include "ripplenotch/document/features_json.hpp"
 #include "ripplenotch/document/trend_json.hpp"
 #include "ripplenotch/fleet/trend.hpp"

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/matrices/least_squares.hpp"
 #include "fleet/trend/change_test.hpp"
 #include "ripplenotch/core/number.hpp"
 
