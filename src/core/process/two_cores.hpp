@@ -12,20 +12,8 @@
 
 namespace ripplenotch {
 
-/// While one lives, work stays on the thread that has it: an engine keeps every core busy with other
-/// processes, and threads of ours would only wait for each other.
-class OneCore {
-  public:
-    OneCore() { ++alive; }
-    ~OneCore() { --alive; }
-    OneCore(const OneCore&) = delete;
-    OneCore& operator=(const OneCore&) = delete;
-    inline static thread_local int alive = 0;
-};
-
 /// That this process may run on.
 inline int cores_here() {
-    if (OneCore::alive > 0) return 1;
     cpu_set_t cores;
     return ::sched_getaffinity(0, sizeof cores, &cores) == 0 ? CPU_COUNT(&cores) : 1;
 }
