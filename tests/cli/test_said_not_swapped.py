@@ -27,7 +27,7 @@ class NamesOfJson(Told):
             "design", "--gear-ratio", 100, "--sample-rate", "1kHz", "--speed", "18:90:18", "--json").stdout)
         for name in COMMANDS:
             # What these write with -o is another thing.
-            if name in (*WRITES_A_LOG, "diagnose", "diagnose --effects", "export", "merge", "report", "features"):
+            if name in (*WRITES_A_LOG, "diagnose", "diagnose --effects", "export", "report", "features"):
                 continue
             words = asked(name)
             with self.subTest(words=words):
