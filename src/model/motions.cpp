@@ -154,7 +154,7 @@ const MotionKind ramp_motion{
 // A polynomial with position, speed and acceleration given at both ends (here: standstill) has six
 // coefficients and degree five. A seventh coefficient adds a multiple of u^3 (1 - u)^3, the one polynomial of
 // degree six that changes none of the six end values; it moves the moment of greatest speed off the middle.
-// docs/motions/poly6.md has the figures.
+// docs/motions/README.md has the figures.
 struct Shape {
     double position, velocity, acceleration;  ///< a move from 0 to 1 in unit time
 };
