@@ -13,8 +13,7 @@ from . import measure
 from .measure import Side
 
 os.environ["RIPPLENOTCH_SYNC"] = "none"  # the others do not wait for the disk either
-TABLE_WORDS = ["--gear-ratio", "40", "--orders", "1,2", "--sample-rate", "2kHz", "--speed", "20:200:20", "--q", "5",
-               "--width", "digital", "--above", "pass"]
+TABLE_WORDS = ["--gear-ratio", "40", "--orders", "1,2", "--sample-rate", "2kHz", "--speed", "20:200:20", "--q", "5"]
 # An array says neither names nor units; the CSV logs' header says both.
 COLUMNS = ["--columns", "time,velocity,torque", "--unit", "velocity=deg/s"]
 TOOL = "ripplenotch"

@@ -173,37 +173,4 @@ Figure table_figure(const CandidateTable& table) {
             {centre_panel(table), std::move(worst), std::move(delay)}};
 }
 
-Figure frontier_figure(const std::string& title, const std::string& sentence,
-                       std::span<const FrontierPoint> points) {
-    Panel panel{.title = "", .x = {"delay at 0 Hz", "ms"}, .y = {"least attenuation of a line", "dB"}};
-    Curve frontier{"best that each delay buys", Ink::blue, CurveStyle::line, {}, {}};
-    Curve designs{"designs", Ink::blue, CurveStyle::points, {}, {}};
-    std::vector<FrontierPoint> own;
-    for (const FrontierPoint& point : points)
-        if (point.name.empty()) own.push_back(point);
-    std::sort(own.begin(), own.end(),
-              [](const FrontierPoint& a, const FrontierPoint& b) { return a.delay_ms < b.delay_ms; });
-    for (const FrontierPoint& point : own) {
-        for (Curve* curve : {&frontier, &designs}) {
-            curve->x.push_back(point.delay_ms);
-            curve->y.push_back(point.attenuation_db);
-        }
-        if (point.chosen) {
-            panel.lines.push_back({"recommended", NamedLine::Run::at_x, point.delay_ms, Ink::vermilion});
-        }
-    }
-    panel.curves = {std::move(frontier), std::move(designs)};
-    std::size_t rival = 1;
-    for (const FrontierPoint& point : points) {
-        if (point.name.empty()) continue;
-        panel.curves.push_back({point.name,
-                                series_ink(rival),
-                                series_style(rival, CurveStyle::points),
-                                {point.delay_ms},
-                                {point.attenuation_db}});
-        ++rival;
-    }
-    return {"frontier", title, sentence, {std::move(panel)}};
-}
-
 }  // namespace ripplenotch

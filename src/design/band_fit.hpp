@@ -4,7 +4,6 @@
 // those of the sampled sections in closed form, which is what makes thousands of trial bands cheap; the table
 // that comes out is measured again on its own coefficients.
 
-#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -24,28 +23,23 @@ struct QRule {
     std::optional<double> delay_s;
 };
 
-/// Notches for one centre speed: their Q per order.
+/// Notches for one centre speed.
 struct Tuning {
     double center_deg_s = 0.0;
-    std::vector<double> q;
-    std::vector<double> warped;   ///< tan(pi f / fs) at the centres
-    std::vector<double> damping;  ///< 1/Q of the analogue filter that the sampled one is the image of
+    double q = widest_q;
+    std::vector<double> warped;  ///< tan(pi f / fs) at the centres
 };
 
 class BandFit {
   public:
-    /// `spec` without bands; its gear ratio, orders, rate, depth, width, ratio_error and amplitudes count.
-    /// `together`: the ripple of all orders counts, by their amplitudes; else each order does. Only then can
-    /// orders have a Q each (`q_by_amplitude`), within widest_q and narrowest_q; else all have the rule's.
-    struct Shape {
-        bool together = false, q_by_amplitude = false;
-    };
-    BandFit(const TableSpec& spec, const Shape& how);
+    /// `spec` without bands; its gear ratio, orders, rate, depth and ratio_error count. Q is that of the
+    /// analogue prototype.
+    explicit BandFit(const TableSpec& spec);
 
     /// Empty when the rule's delay cannot be met with narrowest_q.
     [[nodiscard]] std::optional<Tuning> tune(double center_deg_s, const QRule& rule) const;
-    /// The largest gain of the ripple over from..to and the interval of the gear ratio: of all orders by
-    /// their amplitudes, else of the line that is attenuated least.
+    /// The largest gain of the ripple over from..to and the interval of the gear ratio: of the line that is
+    /// attenuated least.
     [[nodiscard]] double worst_gain(const Tuning& tuning, double from_deg_s, double to_deg_s) const;
     /// Whether that is at most `most_gain`.
     [[nodiscard]] bool holds(const Tuning& tuning, double from_deg_s, double to_deg_s,
@@ -66,14 +60,6 @@ class BandFit {
 
   private:
     [[nodiscard]] Tuning tuned(double center_deg_s, double q) const;
-    [[nodiscard]] double q_each(std::size_t order, double q) const;
-    struct Centre {
-        double warped;            ///< tan(pi f / fs)
-        double half_angle, sine;  ///< pi f / fs and the sine of its double, for the digital rule
-    };
-    [[nodiscard]] Centre centre(double warped) const;
-    [[nodiscard]] double damping(const Centre& centre, double q) const;
-    [[nodiscard]] double least_q(const std::vector<Centre>& centres) const;
     /// Square of the gain at one speed, with the nominal gear ratio.
     [[nodiscard]] double power(const Tuning& tuning, double speed_deg_s) const;
     [[nodiscard]] double speed_in(double from_deg_s, double to_deg_s, int point) const;
@@ -81,9 +67,6 @@ class BandFit {
     [[nodiscard]] double delay_samples(double warped, double damping) const;
 
     const TableSpec& spec_;
-    bool shaped_;
-    std::vector<double> shape_;   ///< Q of each order relative to the rule's
-    std::vector<double> weight_;  ///< share of each order in the ripple's power; empty without amplitudes
     std::vector<double> hz_per_deg_s_;
     double floor_gain_;  ///< at a notch's centre
 };
@@ -95,15 +78,12 @@ inline constexpr double gain_worth_a_band_db = 0.25;  // chosen, not derived
 /// Loss of attenuation by rounding of edges and Q; searches aim this much higher.
 inline constexpr double rounding_db = 0.002;
 
-inline constexpr double delay_as_exact = 1e-4;  ///< share of a delay to which it is searched
-
 class BandSearch {
   public:
     /// `spec` (kept by reference) without bands; covers goal.from .. goal.to with Q by `goal.q`, if stated.
     BandSearch(const TableSpec& spec, const DesignGoal& goal);
 
     [[nodiscard]] const BandFit& fit() const { return fit_; }
-    [[nodiscard]] bool together() const { return together_; }
     [[nodiscard]] QRule rule(std::optional<double> delay_s) const;
     /// Fewest bands; empty when no number (up to most_bands_ever) holds it.
     [[nodiscard]] std::optional<std::size_t> bands(double attenuation_db, const QRule& rule) const;
@@ -112,13 +92,6 @@ class BandSearch {
     /// hold without a test and does not change the result.
     [[nodiscard]] std::optional<double> attenuation_db(std::size_t bands, const QRule& rule,
                                                        double known_db = 0.0, double held_db = 0.0) const;
-    /// Delays that are known to be too short and to be sufficient: not tested again.
-    struct KnownDelays {
-        double short_s = 0.0, enough_s = std::numeric_limits<double>::infinity();
-    };
-    /// Least delay with which so many bands hold it, up to delay_as_exact; empty when they do not with any.
-    [[nodiscard]] std::optional<double> delay_s(double attenuation_db, std::size_t bands,
-                                                KnownDelays known) const;
     /// As many bands as add gain_worth_a_band_db each.
     [[nodiscard]] std::size_t bands_worth_it(const QRule& rule) const;
 
@@ -127,9 +100,8 @@ class BandSearch {
     };
     /// The notches at the lowest speed whose step response settles soonest.
     [[nodiscard]] Settling soonest() const;
-    /// Delay at the lowest speed of the narrowest and of the widest notches.
+    /// Delay at the lowest speed of the narrowest notches.
     [[nodiscard]] double least_delay_s() const { return fit_.delay_s(*fit_.tune(from_, {narrowest_q, {}})); }
-    [[nodiscard]] double most_delay_s() const { return fit_.delay_s(*fit_.tune(from_, {widest_q, {}})); }
 
     /// The bands that hold `attenuation_db`, as a measured table.
     [[nodiscard]] CandidateTable table(double attenuation_db, const QRule& rule) const;
@@ -137,15 +109,9 @@ class BandSearch {
   private:
     TableSpec spec_;
     BandFit fit_;
-    bool together_;
     double from_, to_;
     std::optional<double> q_;
 };
-
-/// What a band holds: of its ripple together, or of each order.
-[[nodiscard]] inline double held_db(const Band& band, bool together) {
-    return together ? band.held_attenuation_db : band.least_attenuation_db();
-}
 
 /// A band with its notches as they are written: Q to seven digits, never so that it delays more.
 [[nodiscard]] Band band_of(const TableSpec& spec, int number, DegPerSec from, DegPerSec to,

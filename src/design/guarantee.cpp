@@ -23,21 +23,13 @@ std::string plain(double value) { return fmt::format("{:.4g}", value); }
 double db_of(double gain) { return -20.0 * portable::log10(gain); }
 
 void check_goal(const TableSpec& spec, const DesignGoal& goal) {
-    if (!goal.attenuation_db() && !goal.max_delay)
+    if (!goal.min_attenuation_db && !goal.max_delay)
         raise<UsageError>("nothing is asked of the table: no attenuation and no delay");
-    if (goal.min_attenuation_db && goal.min_ripple_reduction_db)
-        raise<UsageError>("--min-attenuation and --min-ripple-reduction: give one of them");
-    if (goal.min_ripple_reduction_db && spec.amplitude_nm.empty())
-        raise<UsageError>(
-            "--min-ripple-reduction counts orders by their amplitudes; give --amplitudes, or a joint.json "
-            "that "
-            "has them");
     check_ripple(spec);
     if (goal.q && !(*goal.q > 0.0)) raise<UsageError>("notch Q {} is not above 0", shortest(*goal.q));
-    if (goal.most_bands && *goal.most_bands < 1)
-        raise<UsageError>("{} bands are fewer than one", *goal.most_bands);
-    if (goal.attenuation_db() && !(*goal.attenuation_db() > 0.0 && *goal.attenuation_db() <= 120.0)) {
-        raise<UsageError>("an attenuation of {} dB is outside 0 to 120 dB", shortest(*goal.attenuation_db()));
+    if (goal.min_attenuation_db && !(*goal.min_attenuation_db > 0.0 && *goal.min_attenuation_db <= 120.0)) {
+        raise<UsageError>("an attenuation of {} dB is outside 0 to 120 dB",
+                          shortest(*goal.min_attenuation_db));
     }
     if (goal.max_delay && !(goal.max_delay->value() > 0.0))
         raise<UsageError>("a delay of {} ms is not above 0", shortest(1e3 * goal.max_delay->value()));
@@ -66,10 +58,6 @@ void check_speeds(const TableSpec& spec, const DesignGoal& goal) {
     }
 }
 
-std::string_view limit_name(const DesignGoal& goal) {
-    return goal.together() ? "--min-ripple-reduction" : "--min-attenuation";
-}
-
 std::string delay_text(double delay_s) { return fmt::format("{} ms", plain(1e3 * delay_s)); }
 
 // Notches of every width that a design may take are too slow at the lowest speed.
@@ -88,7 +76,7 @@ std::string delay_text(double delay_s) { return fmt::format("{} ms", plain(1e3 *
 // Not even a band of one single speed holds the attenuation: reports the reason.
 [[noreturn]] void refuse_attenuation(const TableSpec& spec, const DesignGoal& goal, const BandSearch& search,
                                      const QRule& rule) {
-    const double wanted = *goal.attenuation_db();
+    const double wanted = *goal.min_attenuation_db;
     const auto best_db = [&](double speed) {
         const auto tuning = search.fit().tune(speed, rule);
         return tuning ? db_of(search.fit().worst_gain(*tuning, speed, speed)) : 0.0;
@@ -97,10 +85,10 @@ std::string delay_text(double delay_s) { return fmt::format("{} ms", plain(1e3 *
     if (best_db(speed) >= wanted) speed = goal.to.value();
     const double best = best_db(speed);
     if (best >= wanted) {
-        refuse("{} {} dB takes more than {} bands; ask for less, or for fewer speeds", limit_name(goal),
+        refuse("{} {} dB takes more than {} bands; ask for less, or for fewer speeds", "--min-attenuation",
                plain(wanted), most_bands_ever);
     }
-    const std::string notches = fmt::format("notches of Q {}", plain(search.fit().tune(speed, rule)->q[0]));
+    const std::string notches = fmt::format("notches of Q {}", plain(search.fit().tune(speed, rule)->q));
     const std::string within =
         goal.max_delay && !goal.q ? fmt::format(" within --max-delay {}", delay_text(goal.max_delay->value()))
                                   : "";
@@ -108,27 +96,13 @@ std::string delay_text(double delay_s) { return fmt::format("{} ms", plain(1e3 *
         refuse(
             "{} {} dB cannot be held at {} deg/s{}: on a gear ratio that may be {} % off, "
             "{} hold {:.1f} dB at most; measure the ratio better, or leave more delay",
-            limit_name(goal), plain(wanted), plain(speed), within, plain(100.0 * spec.ratio_error), notches,
-            best);
+            "--min-attenuation", plain(wanted), plain(speed), within, plain(100.0 * spec.ratio_error),
+            notches, best);
     }
-    refuse("{} {} dB cannot be held at {} deg/s{}: {}{} hold {:.1f} dB at their centre", limit_name(goal),
+    refuse("{} {} dB cannot be held at {} deg/s{}: {}{} hold {:.1f} dB at their centre", "--min-attenuation",
            plain(wanted), plain(speed), within, notches,
            spec.depth_db < infinite_depth_db ? fmt::format(" and --depth {} dB", plain(spec.depth_db)) : "",
            best);
-}
-
-[[noreturn]] void refuse_bands(const DesignGoal& goal, const BandSearch& search, const QRule& rule,
-                               std::size_t needed) {
-    const auto most = static_cast<std::size_t>(*goal.most_bands);
-    const double wanted = *goal.attenuation_db();
-    std::string instead;
-    if (const auto held = search.attenuation_db(most, rule))
-        instead = fmt::format("; so many hold {:.1f} dB", std::floor(10.0 * *held) / 10.0);
-    const auto delay = goal.q ? std::nullopt : search.delay_s(wanted + rounding_db, most, {});
-    if (delay)
-        instead += fmt::format(", or {} dB with {:.1f} ms of delay", plain(wanted), 1e3 * *delay + 0.05);
-    refuse("{} {} dB{} takes {} bands, more than --max-bands {}{}", limit_name(goal), plain(wanted),
-           rule.delay_s ? fmt::format(" within {}", delay_text(*rule.delay_s)) : "", needed, most, instead);
 }
 
 // The delay that the Qs are chosen for, and why.
@@ -158,7 +132,7 @@ void check_held(const CandidateTable& table, const DesignGoal& goal) {
         if (goal.max_delay && !(band.dc_delay.value() <= goal.max_delay->value() * (1.0 + 1e-9)))
             refuse_delay(table.spec(), band.from.value(), goal.max_delay->value(), band.dc_delay.value(),
                          plain(band.notches.front().notch.q));
-        if (goal.attenuation_db() && !(held_db(band, goal.together()) >= *goal.attenuation_db()))
+        if (goal.min_attenuation_db && !(band.least_attenuation_db() >= *goal.min_attenuation_db))
             throw std::logic_error("a designed band does not hold what it was designed for");
     }
 }
@@ -170,28 +144,23 @@ DesignChoice choose_bands(const TableSpec& spec, const DesignGoal& goal) {
     std::size_t count = 0;
     double held_db = 0.0;
     std::string reason;
-    if (goal.attenuation_db()) {
-        held_db = *goal.attenuation_db() + rounding_db;
+    if (goal.min_attenuation_db) {
+        held_db = *goal.min_attenuation_db + rounding_db;
         const auto needed = search.bands(held_db, rule);
         if (!needed) refuse_attenuation(spec, goal, search, rule);
-        if (goal.most_bands && *needed > static_cast<std::size_t>(*goal.most_bands))
-            refuse_bands(goal, search, rule, *needed);
         count = *needed;
-        reason =
-            fmt::format("the fewest bands that hold {} dB {}", plain(*goal.attenuation_db()), budget.reason);
-    } else if (goal.most_bands) {
-        count = static_cast<std::size_t>(*goal.most_bands);
-        reason = fmt::format("the most attenuation that {} bands hold {}", count, budget.reason);
+        reason = fmt::format("the fewest bands that hold {} dB {}", plain(*goal.min_attenuation_db),
+                             budget.reason);
     } else {
         count = search.bands_worth_it(rule);
         reason = fmt::format("the most attenuation {} until a further band adds less than {} dB",
                              budget.reason, plain(gain_worth_a_band_db));
     }
     const auto held = search.attenuation_db(count, rule, 0.0, held_db);
-    if (!held) refuse("{} bands hold nothing {}; allow more with --max-bands", count, budget.reason);
+    if (!held) refuse("{} bands hold nothing {}", count, budget.reason);
     CandidateTable table = search.table(*held, rule);
     check_held(table, goal);
-    return {std::move(table), reason, Seconds(budget.delay_s.value_or(0.0))};
+    return {std::move(table), reason};
 }
 
 // The highest Q, so the least delay, with which a band holds the attenuation; 0 when none does.
@@ -213,8 +182,8 @@ Band fixed_band(const TableSpec& spec, const DesignGoal& goal, const BandFit& fi
     const std::string label =
         fmt::format("band {} ({}-{} deg/s)", number, plain(from.value()), plain(to.value()));
     QRule rule;
-    if (goal.attenuation_db()) {
-        const double wanted = *goal.attenuation_db();
+    if (goal.min_attenuation_db) {
+        const double wanted = *goal.min_attenuation_db;
         rule.q =
             highest_q(fit, from.value(), to.value(), portable::pow(10.0, -(wanted + rounding_db) / 20.0));
         if (*rule.q == 0.0) {
@@ -223,7 +192,7 @@ Band fixed_band(const TableSpec& spec, const DesignGoal& goal, const BandFit& fi
             refuse(
                 "{}: notches as wide as Q {} hold {:.1f} dB, less than {} {} dB; make the "
                 "band narrower, or leave the bands to the design",
-                label, plain(widest_q), held_db(widest, goal.together()), limit_name(goal), plain(wanted));
+                label, plain(widest_q), widest.least_attenuation_db(), "--min-attenuation", plain(wanted));
         }
     } else {
         rule.delay_s = goal.max_delay->value();
@@ -238,7 +207,7 @@ Band fixed_band(const TableSpec& spec, const DesignGoal& goal, const BandFit& fi
         refuse(
             "{}: holding {} dB takes Q {}, which delays by {}, more than --max-delay {}; make the band "
             "narrower, or leave the bands to the design",
-            label, plain(goal.attenuation_db().value_or(0.0)), plain(band.notches[0].notch.q),
+            label, plain(goal.min_attenuation_db.value_or(0.0)), plain(band.notches[0].notch.q),
             delay_text(band.dc_delay.value()), delay_text(goal.max_delay->value()));
     }
     return band;
@@ -247,21 +216,18 @@ Band fixed_band(const TableSpec& spec, const DesignGoal& goal, const BandFit& fi
 DesignChoice choose_widths(const TableSpec& spec, const DesignGoal& goal) {
     TableSpec open = spec;
     open.bands.clear();
-    const BandFit fit(open, {.together = goal.together(), .q_by_amplitude = true});
+    const BandFit fit(open);
     std::vector<Band> bands;
     for (std::size_t i = 0; i < spec.bands.size(); ++i) bands.push_back(fixed_band(spec, goal, fit, i));
     open.q = bands.front().notches.front().notch.q;
     CandidateTable table = CandidateTable::from_bands(open, std::move(bands));
     check_held(table, goal);
-    if (goal.attenuation_db()) {
-        return {std::move(table),
-                fmt::format("the least delay with which each of these bands holds {} dB",
-                            plain(*goal.attenuation_db())),
-                Seconds(0.0)};
+    if (goal.min_attenuation_db) {
+        return {std::move(table), fmt::format("the least delay with which each of these bands holds {} dB",
+                                              plain(*goal.min_attenuation_db))};
     }
-    return {std::move(table),
-            fmt::format("the most attenuation of these bands within {}", delay_text(goal.max_delay->value())),
-            *goal.max_delay};
+    return {std::move(table), fmt::format("the most attenuation of these bands within {}",
+                                          delay_text(goal.max_delay->value()))};
 }
 
 }  // namespace
@@ -277,7 +243,7 @@ DesignChoice design_for(TableSpec spec, const DesignGoal& goal) {
 }
 
 std::optional<DegPerSec> slowest_within(const TableSpec& spec, Seconds delay) {
-    const BandFit fit(spec, {});
+    const BandFit fit(spec);
     const auto within = [&](double speed) {
         return fit.delay_s(*fit.tune(speed, {narrowest_q, std::nullopt})) <= delay.value();
     };

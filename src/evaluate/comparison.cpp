@@ -109,8 +109,7 @@ std::optional<double> least_db(const MethodFigures& figures) {
     return least;
 }
 
-std::string ripple(const MethodFigures& a, const MethodFigures& b, const Comparison& comparison) {
-    if (comparison.match && comparison.match->low_pass == b.method) return comparison.match->clause;
+std::string ripple(const MethodFigures& a, const MethodFigures& b) {
     if (a.ripple_rms_nm && b.ripple_rms_nm) {
         return fmt::format("and has a remaining ripple of {:.3g} Nm rms against {:.3g}", *a.ripple_rms_nm,
                            *b.ripple_rms_nm);
@@ -180,7 +179,6 @@ const MethodFigures* Comparison::rival() const {
     for (const MethodFigures& figures : methods) {
         const MethodPart part = part_of(figures);
         if (&figures == subject() || part == MethodPart::control) continue;
-        if (match && match->low_pass == figures.method) return &figures;
         if (rival == nullptr && part == MethodPart::rival) rival = &figures;
         if (other == nullptr) other = &figures;
     }
@@ -198,7 +196,7 @@ std::string differences(const Comparison& comparison) {
     if (a->settle_ms && b->settle_ms) parts.push_back(settling(*a, *b, rival));
     if (const std::string text = lag(*a, *b, parts.empty() ? rival : ""); !text.empty())
         parts.push_back(text);
-    if (const std::string text = ripple(*a, *b, comparison); !text.empty()) parts.push_back(text);
+    if (const std::string text = ripple(*a, *b); !text.empty()) parts.push_back(text);
     return fmt::format("{} {}.{}", name, fmt::join(parts, ", "), nearest(*a, name, comparison));
 }
 

@@ -100,7 +100,7 @@ def measure(tool):
         for count in (SHORT, LONG):
             make_logs(folder, log[:count])
         subprocess.run([tool, "design", "--gear-ratio", "40", "--orders", "1,2", "--sample-rate", "2kHz", "--speed", "20:200:20",
-                        "--q", "5", "--width", "digital", "--above", "pass", "-o", folder / "table.json"], check=True)
+                        "--q", "5", "-o", folder / "table.json"], check=True)
         return {case: per_row(tool, folder, words) for case, words in CASES.items()}
 
 

@@ -241,21 +241,6 @@ TEST_CASE("torque before and after keeps its peaks over two million samples, and
     CHECK_THAT(figure.sentence, Contains("2 changes"));
 }
 
-TEST_CASE("a frontier runs by delay whatever the order of its designs, the choice named") {
-    const std::vector<FrontierPoint> points{{80.0, 40.0, false, ""},
-                                            {20.0, 15.0, true, ""},
-                                            {40.0, 28.0, false, ""},
-                                            {60.0, 20.0, false, "low-pass"}};
-    const Figure figure = frontier_figure("Frontier", "", points);
-    check_figure(figure);
-    const Panel& panel = figure.panels.front();
-    CHECK(panel.curves[0].x == std::vector<double>{20.0, 40.0, 80.0});
-    REQUIRE(panel.lines.size() == 1);
-    CHECK(panel.lines[0].name == "recommended");  // its numbers stand in the sentence
-    CHECK(panel.lines[0].value == 20.0);
-    CHECK(panel.curves[2].name == "low-pass");
-}
-
 TEST_CASE("a filter's figure opens where it takes off most, with every sample of half a second") {
     TorqueCourse course;
     for (int k = 0; k < 5000; ++k) {

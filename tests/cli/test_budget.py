@@ -112,7 +112,7 @@ class Ledger(Budget):
     def test_compare_prints_lag_and_ledger_for_every_method(self):
         words = ["compare", "--step", "10Nm", "--ramp", "20Nm/s", "--speed", "90deg/s", "--sample-rate", "1kHz",
                  "--gear-ratio", "100", "--orders", "1,2", "--method", "switching,table=table.json",
-                 "--method", "tracking", "--crossover", "12Hz", "--ledger"]
+                 "--method", "tracking", "--crossover", "12Hz", "-v"]
         found = json.loads(self.good(*words, "--json").stdout)
         self.assertEqual([len(m["ledger"]) for m in found["methods"]], [1, len(self.table["bands"]), 6])
         self.assertEqual(found["methods"][0]["phase_lag_deg"], 0)

@@ -9,7 +9,7 @@ from prove_trust import documents
 
 LONGEST_S = 10.0 if sanitized(TOOL) else 2.0  # a sanitizer takes time of its own: 2.1 s were seen
 
-KINDS = ("comparison", "diagnosis", "effects", "export", "figure", "frontier", "info", "joint", "joints", "metrics", "model",
+KINDS = ("comparison", "diagnosis", "effects", "export", "figure", "info", "joint", "joints", "metrics", "model",
          "recommendation", "simulation", "spectrum", "table", "track")
 
 

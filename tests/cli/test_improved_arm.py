@@ -99,7 +99,7 @@ class Improved(SharedCase):
             models = [json.loads((self.folder / name).read_text()) for name in (f"all_{joint}.json", f"{joint}.json")]
             self.assertEqual(*(json.dumps(without_head(model)) for model in models))
         (self.folder / "every.json").write_text(json.dumps(every))
-        page = self.run_tool("report", "every.json", "-o", "every.html", "--no-plotly")
+        page = self.run_tool("report", "every.json", "-o", "every.html", "-q")
         self.assertEqual(page.returncode, 0, page.stderr)
         for one in every["joints"]:
             self.assertIn(f'Missing effects: every.json, joint {one["joint"]}', (self.folder / "every.html").read_text())

@@ -305,7 +305,7 @@ class Compensators(Case):
         write_log(self.log, 1)
         self.made(self.log)
         page = self.folder / "page.html"
-        done = run("report", self.map, "-o", page, "--no-plotly")
+        done = run("report", self.map, "-o", page, "-q")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("Cross-validated: order 1 falls from", page.read_text())
         self.assertIn("Ripple over speed", page.read_text())
@@ -330,7 +330,7 @@ class Exports(Case):
 
     def exported(self, to, name):
         path = self.folder / name
-        done = run("export", self.map, "--to", to, "-o", path, "--verify")
+        done = run("export", self.map, "--to", to, "-o", path)
         self.assertEqual(done.returncode, 0, done.stderr)
         return path, done
 

@@ -103,7 +103,7 @@ class Code(Case):
     def test_verify_runs_it_beside_the_method_over_a_million_samples(self):
         for method in "tracking,gear-ratio=100,orders=1:2", "oscillator,gear-ratio=100,orders=1:2", RICH:
             for precision, most in MOST.items():
-                text = self.export(method, "--verify", to=f"c-header,precision={precision}").stdout
+                text = self.export(method, to=f"c-header,precision={precision}").stdout
                 self.assertIn("1000000 samples", text)
                 self.assertLess(float(text.split("largest difference")[1].split()[0]), most, f"{method} in {precision}")
 
@@ -114,4 +114,4 @@ class Code(Case):
             orders = "" if more.startswith("orders") else ",orders=1:2"
             self.assertIn(said, self.export(f"oscillator,gear-ratio=100{orders},{more}", code=2).stderr)
         self.assertIn("use c-header", self.export("tracking,gear-ratio=100,orders=1", to="scipy", code=2).stderr)
-        self.assertIn("limits are on coefficients", self.export("tracking,gear-ratio=100,orders=1", "--min-depth-db", "20", code=2).stderr)
+        self.assertIn("--tolerance is for coefficients", self.export("tracking,gear-ratio=100,orders=1", "--tolerance", "1", code=2).stderr)

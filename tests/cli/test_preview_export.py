@@ -111,20 +111,20 @@ class PreviewIsExport(commands.Case):
                 self.assert_same("switching,table=table.json,below=fade",
                                  f"c-header,precision=double,speed-unit={unit},speed-side={side}", 1e-9, factor * ratio)
         self.assertIn("motor_speed_rpm", (self.folder / "notch.h").read_text())
-        self.good("export", "--method", "tracking,gear-ratio=100,orders=1:2", "--sample-rate", "1kHz", "-o", "track.h", "--verify", "-q",
+        self.good("export", "--method", "tracking,gear-ratio=100,orders=1:2", "--sample-rate", "1kHz", "-o", "track.h", "-q",
                   "--to", "c-header,precision=double,speed-unit=rpm,speed-side=motor")
         text = (self.folder / "track.h").read_text()
         self.assertIn("motor_speed_rpm", text)
         self.assertNotIn("speed_deg_s", text)
 
     def test_what_would_run_otherwise_is_refused_with_what_runs(self):
-        for words, said in ((("--transition", "reset"), "one of keep-state-variable"), (("--transition", "kep"), "none of parallel, keep"),
-                            (("--to", "c-header,form=df1"), "--transition keep"),
-                            (("--to", "c-header,form=df2t"), "--transition parallel"),
-                            (("--to", "c-header,precision=q31"), "range=200Nm"),
-                            (("--to", "c-header,range=3Nm"), "q31")):
-            target = () if "--to" in words else ("--to", "c-header")
-            done = self.run_tool("export", "table.json", *target, *words)
-            self.assertEqual(done.returncode, 2, words)
+        for method, target, said in ((",transition=reset", "c-header", "one of keep-state-variable"),
+                                     (",transition=kep", "c-header", "none of parallel, keep"),
+                                     ("", "c-header,form=df1", "transition=keep"),
+                                     ("", "c-header,form=df2t", "transition=parallel"),
+                                     ("", "c-header,precision=q31", "range=200Nm"),
+                                     ("", "c-header,range=3Nm", "q31")):
+            done = self.run_tool("export", "--method", f"switching,table=table.json{method}", "--to", target)
+            self.assertEqual(done.returncode, 2, (method, target))
             self.assertIn(said, done.stderr.decode())
 

@@ -50,7 +50,7 @@ COMMANDS = {
     "export a map": ("export", "map.json", "--to", "c-header"),
     "features": ("features", "made.csv", *GEAR),
     "trend": ("trend", str(DATA / "fleet.ndjson"), "--json"),
-    "report": ("report", "table.json", "--no-plotly"),
+    "report": ("report", "table.json", "-q"),
     "effects": ("diagnose", "--effects"),
     "diagnose": ("diagnose", "--model", "model.json", "made.csv", "--json"),
 }

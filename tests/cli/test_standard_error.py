@@ -21,7 +21,7 @@ class Streams(Case):
         (("info", "broken.csv"), 3),
         (("spectrum", "log.csv", "--track", "--gear-ratio", "100", "--orders", "1", "-o", "-"), 0),
         (("filter", "log.csv", "--method", "lowpass,cutoff=13Hz,order=1", "-v", "-o", "-"), 0),
-        (("export", "--method", "lowpass,cutoff=13Hz,order=1", "--sample-rate", "1kHz", "--to", "c-header", "--verify", "-o", "-"), 0),
+        (("export", "--method", "lowpass,cutoff=13Hz,order=1", "--sample-rate", "1kHz", "--to", "c-header", "-o", "-"), 0),
     )
 
     def setUp(self):
@@ -99,7 +99,7 @@ class Visible(Case):
                      '{"schema": "ripplenotch/model/1", "gear_ratio": 100, "effects": [{"effect": "\\u001b[2J"}]}',
                      '{"schema": "ripplenotch/model/1", "gear_ratio": "\\u001b[2J\\u202e", "effects": []}', "\x1b[2J", "\u009b31m"):
             self.write("x.json", text)
-            for words in (("report", "x.json", "--no-plotly"), ("export", "x.json", "--to", "c-header"), ("design", "x.json"),
+            for words in (("report", "x.json", "-q"), ("export", "x.json", "--to", "c-header"), ("design", "x.json"),
                           ("simulate", "--model", "x.json", "--motion", "constant,speed=60deg/s,duration=1s", "--sample-rate", "1kHz")):
                 done = self.shown(*words)
                 # One line where it is refused; a document that report can show is no reason for a word.
@@ -137,4 +137,4 @@ class Visible(Case):
     def test_an_escape_in_a_figure_cannot_reach_a_page(self):
         figure = ('{"schema": "ripplenotch/metrics/1", "command": "\\u001b[2J", "verdict": "\\u001b[2J\u202e", "\\u001b[2J": "\u009b"}')
         self.write("x.json", figure)
-        self.assertEqual(self.shown("report", "x.json", "--no-plotly").returncode, 0)
+        self.assertEqual(self.shown("report", "x.json", "-q").returncode, 0)

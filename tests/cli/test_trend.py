@@ -169,7 +169,7 @@ class Outputs(Case):
     def test_report_shows_a_trend(self):
         path, page = self.folder / "trend.json", self.folder / "page.html"
         trend("-", "-o", path, text=text_of(self.lines))
-        good("report", path, "-o", page, "--no-plotly")
+        good("report", path, "-o", page, "-q")
         self.assertIn("alerts", page.read_text())
 
     def test_the_figure_has_a_course_for_each_alert(self):

@@ -26,8 +26,7 @@ Json written(const Comparison& comparison) {
 TEST_CASE("what was not measured is null, never zero and never missing") {
     const Json json = written(one_method());
     CHECK(json["schema"] == "ripplenotch/comparison/1");
-    for (const char* name : {"best", "step_nm", "ramp_nm_s", "gear_ratio", "match"})
-        CHECK(json.at(name).is_null());
+    for (const char* name : {"best", "step_nm", "ramp_nm_s", "gear_ratio"}) CHECK(json.at(name).is_null());
     const Json& method = json["methods"][0];
     for (const char* name :
          {"settle_ms", "overshoot_percent", "ramp_delay_ms", "dc_delay_ms", "ripple_rms_nm",
@@ -47,8 +46,6 @@ TEST_CASE("what was measured stands under the promised names") {
     comparison.lines = GearAccount{GearRatio(100.0), {Order(1.0), Order(2.0)}, {}, {}, ""};
     comparison.on_log = true;
     comparison.windows = 12;
-    comparison.match =
-        LowPassMatch{"fixed", "lowpass,cutoff=2Hz,order=1", "at equal ripple", 1, Hertz(2.0), 0.5, {}};
     const Json json = written(comparison);
     const Json& method = json["methods"][0];
     CHECK(method["settle_ms"] == Json({{"0.5", 147.0}, {"1", 130.0}, {"2", 114.0}, {"5", 92.0}}));
@@ -57,8 +54,4 @@ TEST_CASE("what was measured stands under the promised names") {
     CHECK(method["switches"] == 0);
     CHECK(json["orders"] == Json({1.0, 2.0}));
     CHECK(json["windows"] == 12);
-    CHECK(json["match"]["low_pass"] == "lowpass,cutoff=2Hz,order=1");
-    CHECK(json["match"]["cutoff_hz"] == 2.0);
-    CHECK(json["match"]["ripple_rms_nm"] == 0.5);
-    CHECK(json["match"]["attenuation_db"].is_null());
 }

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "ripplenotch/evaluate/comparison.hpp"
-
 #include <cmath>
 #include <numbers>
 #include <random>
 
 #include "evaluate/contenders.hpp"
+#include "ripplenotch/evaluate/comparison.hpp"
 #include "ripplenotch/evaluate/contender.hpp"
 #include "ripplenotch/evaluate/recommendation.hpp"
 #include "support/catch.hpp"
@@ -80,59 +79,6 @@ TEST_CASE("a gap restarts every method, so that nothing rings across it") {
     CHECK(run_on.methods[0].residual_rms_nm.value() > 3.0 * split.methods[0].residual_rms_nm.value());
 }
 
-TEST_CASE("a low-pass matched on a log leaves the ripple asked for") {
-    const Trace log = steady_log(80.0, 0.05);
-    const std::vector<Contender> subject = {contender("fixed,centers=25Hz:50Hz,q=1")};
-    const double target = *measure_on_log(subject, {log.view()}, paper_lines).methods[0].ripple_rms_nm;
-    for (const int order : {1, 2, 4}) {
-        const auto cutoff = cutoff_for_ripple(target, order, {log.view()}, paper_lines);
-        REQUIRE(cutoff.has_value());
-        const std::vector<Contender> matched = {make_contender(low_pass_spec(*cutoff, order))};
-        const LogLevels levels = measure_on_log(matched, {log.view()}, paper_lines);
-        CHECK(*levels.methods[0].ripple_rms_nm == Approx(target).epsilon(1e-4));
-    }
-}
-
-TEST_CASE("no low-pass is found for more ripple than the log has") {
-    const Trace log = steady_log(80.0, 0.0);
-    CHECK_FALSE(cutoff_for_ripple(5.0, 1, {log.view()}, paper_lines).has_value());
-}
-
-TEST_CASE("without a log, the matched low-pass has the combined attenuation asked for") {
-    for (const int order : {1, 2, 3, 8}) {
-        for (const double wanted_db : {3.0, 22.0, 60.0}) {
-            const double gain = std::pow(10.0, -wanted_db / 20.0);
-            const auto cutoff = cutoff_for_gain(gain, order, paper_lines, 1000_Hz, 90_deg_s);
-            REQUIRE(cutoff.has_value());
-            const Cascade cascade =
-                contender(low_pass_spec(*cutoff, order).text()).frozen(1000_Hz, 0_deg_s)->cascade;
-            CHECK(ripple_gain(cascade, paper_lines, 1000_Hz, 90_deg_s).value() == Approx(gain).epsilon(1e-5));
-        }
-    }
-    // The paper's own low-pass: 21.7 dB at 25 Hz is a first-order filter at 13 rad/s.
-    const GearAccount first{GearRatio(100.0), {Order(1.0)}, {}, {}, ""};
-    const Cascade papers = contender("lowpass,cutoff=13rad/s,order=1").frozen(1000_Hz, 0_deg_s)->cascade;
-    const double gain = ripple_gain(papers, first, 1000_Hz, 90_deg_s).value();
-    CHECK(gain == Approx(0.082).margin(0.001));
-    CHECK(cutoff_for_gain(gain, 1, first, 1000_Hz, 90_deg_s)->value() ==
-          Approx(13.0 / (2.0 * std::numbers::pi)).epsilon(1e-6));
-}
-
-TEST_CASE("amplitudes weigh the lines against each other") {
-    GearAccount lines = paper_lines;
-    lines.amplitude_nm = {0.0, 1.0};
-    const GearAccount second{GearRatio(100.0), {Order(2.0)}, {}, {}, ""};
-    CHECK(cutoff_for_gain(0.1, 1, lines, 1000_Hz, 90_deg_s)->value() ==
-          Approx(cutoff_for_gain(0.1, 1, second, 1000_Hz, 90_deg_s)->value()).epsilon(1e-9));
-}
-
-TEST_CASE("no low-pass equals a complete null or a gain of one and more") {
-    CHECK_FALSE(cutoff_for_gain(0.0, 1, paper_lines, 1000_Hz, 90_deg_s).has_value());
-    CHECK_FALSE(cutoff_for_gain(1.01, 1, paper_lines, 1000_Hz, 90_deg_s).has_value());
-    CHECK_THROWS_WITH(cutoff_for_gain(0.1, 1, paper_lines, 40_Hz, 90_deg_s),
-                      Catch::Contains("half the sample rate"));
-}
-
 TEST_CASE("the moving speed of a log is the median of what moves") {
     Trace log = steady_log(90.0, 0.0);
     for (std::size_t k = 0; k < 15000; ++k) log.velocity_deg_s[k] = 0.1;
@@ -143,15 +89,102 @@ TEST_CASE("the moving speed of a log is the median of what moves") {
     CHECK(median_moving_speed(log.view()).value() == 0.0);
 }
 
-TEST_CASE("where no low-pass is equal, the match says why and names none") {
-    const LowPassMatch null = match_at_speed("fixed", 0.0, 1, paper_lines, 1000_Hz, 90_deg_s);
-    CHECK_FALSE(null.low_pass.has_value());
-    CHECK_THAT(null.clause, Catch::Contains("completely") && Catch::Contains("--match-attenuation"));
-    const LowPassMatch steep = match_at_speed("120 dB", 1e-6, 1, paper_lines, 1000_Hz, 90_deg_s);
-    CHECK_FALSE(steep.low_pass.has_value());
-    CHECK_THAT(steep.clause, Catch::Contains("120.00 dB") && Catch::Contains("0.01 to 490 Hz"));
-    const Trace log = steady_log(80.0, 0.0);
-    const LowPassMatch loud = match_on_log("fixed", 5.0, 1, {log.view()}, paper_lines);
-    CHECK_FALSE(loud.low_pass.has_value());
-    CHECK_THAT(loud.clause, Catch::Contains("remaining ripple of 5 Nm rms"));
+namespace {
+
+MethodFigures figures(const std::string& method, std::optional<double> settle_ms,
+                      std::optional<double> lag_ms) {
+    MethodFigures f;
+    f.method = method;
+    if (settle_ms) f.settle_ms = {*settle_ms, 0.0, 0.0, 0.0};
+    f.ramp_delay_ms = lag_ms;
+    return f;
+}
+
+Comparison of(std::vector<MethodFigures> methods) {
+    Comparison comparison;
+    comparison.methods = std::move(methods);
+    return comparison;
+}
+
+}  // namespace
+
+TEST_CASE("the verdict holds the first method that is no low-pass against the first low-pass") {
+    const Comparison comparison =
+        of({figures("none", 0.0, 0.0), figures("lowpass,cutoff=13Hz", 65.0, 12.2),
+            figures("fixed,centers=25Hz", 130.0, 25.0), figures("switching", 1.0, 1.0)});
+    CHECK(comparison.subject()->method == "fixed,centers=25Hz");
+    CHECK(comparison.rival()->method == "lowpass,cutoff=13Hz");
+    CHECK(verdict(comparison) ==
+          "fixed,centers=25Hz settles 2.0 times slower than lowpass,cutoff=13Hz (130 against 65 ms to 0.5 "
+          "%), lags 12.8 ms "
+          "more (25.0 against 12.2 ms).");
+}
+
+TEST_CASE("the verdict does not make much of little") {
+    CHECK(verdict(of({figures("a", 100.0, 10.0), figures("b", 100.0, 10.0)})) ==
+          "a settles as fast as b (100 against 100 ms to 0.5 %), lags as much (10.0 against 10.0 ms).");
+    CHECK(verdict(of({figures("a", 100.0, 10.0), figures("b", 103.0, 10.02)})) ==
+          "a settles about as fast as b (100 against 103 ms to 0.5 %), lags as much (10.0 against 10.0 ms).");
+    CHECK(verdict(of({figures("a", 0.0, 0.0), figures("b", 103.0, 10.0)})) ==
+          "a settles 103 ms earlier than b (0 against 103 ms to 0.5 %), lags 10.0 ms less (0.0 against 10.0 "
+          "ms).");
+}
+
+TEST_CASE("the verdict says only what was measured") {
+    CHECK(verdict(of({figures("none", 0.0, 0.0)})) == "Only the control ran; there is nothing to compare.");
+    CHECK(verdict(of({figures("none", 0.0, 0.0), figures("a", std::nullopt, 38.04)})) == "a lags 38.0 ms.");
+    CHECK(verdict(of({figures("a", std::nullopt, 10.0), figures("b", std::nullopt, 20.0)})) ==
+          "a lags 10.0 ms less than b (10.0 against 20.0 ms).");
+    Comparison comparison = of({figures("a", 100.0, std::nullopt), figures("b", 200.0, std::nullopt)});
+    comparison.methods[0].ripple_rms_nm = 0.01;
+    comparison.methods[1].ripple_rms_nm = 0.2;
+    CHECK(verdict(comparison) ==
+          "a settles 2.0 times faster than b (100 against 200 ms to 0.5 %), and has a remaining ripple of "
+          "0.01 Nm "
+          "rms against 0.2.");
+}
+
+TEST_CASE("the verdict counts a method's weakest line, and does not put a number on a complete null") {
+    Comparison comparison = of({figures("a", std::nullopt, 1.0), figures("b", std::nullopt, 2.0)});
+    comparison.methods[0].attenuation = {{1.0, 25.0, 200.0}, {2.0, 50.0, 200.0}};
+    comparison.methods[1].attenuation = {{1.0, 25.0, 21.74}, {2.0, 50.0, 27.7}};
+    CHECK_THAT(verdict(comparison),
+               Catch::Contains("and attenuates its weakest line by more than 200 dB against 21.7 dB."));
+    comparison.methods[0].attenuation = {{1.0, 25.0, std::nullopt}};
+    CHECK_THAT(verdict(comparison), !Catch::Contains("dB"));
+}
+
+TEST_CASE("a long method is told by its name, or by what tells it from others of that name") {
+    const std::string crossfade = "switching,table=a/long/path/to/table.json,transition=crossfade";
+    const std::string parallel = "switching,table=a/long/path/to/table.json,transition=parallel";
+    const std::string tracking = "tracking,q=2,gear-ratio=100,orders=1:2";
+    CHECK(verdict(of({figures(crossfade, 100.0, {}), figures(parallel, 50.0, {})})) ==
+          "switching,transition=crossfade settles 2.0 times slower than switching,transition=parallel (100 "
+          "against "
+          "50 ms to 0.5 %).");
+    CHECK(verdict(of({figures(crossfade, 100.0, {}), figures(tracking, 50.0, {})})) ==
+          "switching settles 2.0 times slower than tracking (100 against 50 ms to 0.5 %).");
+}
+
+TEST_CASE("where the truth is known, the verdict names the method that comes nearest to it") {
+    Comparison comparison = of({figures("none", std::nullopt, 0.0), figures("a", std::nullopt, 20.0),
+                                figures("b", std::nullopt, 10.0), figures("c", std::nullopt, 0.0)});
+    const std::string before = "a lags 10.0 ms more than b (20.0 against 10.0 ms).";
+    CHECK(verdict(comparison) == before);
+    comparison.methods[0].error_rms_nm = 0.9;
+    comparison.methods[1].error_rms_nm = 0.7834;
+    comparison.methods[2].error_rms_nm = 0.7;
+    comparison.methods[3].error_rms_nm = 0.0281;
+    CHECK(verdict(comparison) ==
+          before + " Smallest error against the true torque: c, 0.0281 Nm rms; a 0.783.");
+    comparison.methods[0].error_rms_nm = 0.01;  // where filtering harms, the raw torque is the answer
+    CHECK(verdict(comparison) ==
+          before + " Smallest error against the true torque: none, 0.01 Nm rms; a 0.783.");
+    comparison.methods[1].error_rms_nm = 0.001;
+    CHECK(verdict(comparison) == before + " Smallest error against the true torque: a, 0.001 Nm rms.");
+    // Of one method there is no nearest.
+    comparison = of({figures("none", std::nullopt, 0.0), figures("a", std::nullopt, 20.0)});
+    comparison.methods[0].error_rms_nm = 0.9;
+    comparison.methods[1].error_rms_nm = 0.1;
+    CHECK(verdict(comparison) == "a lags 20.0 ms.");
 }

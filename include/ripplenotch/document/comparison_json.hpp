@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "ripplenotch/core/gear_account.hpp"
-#include "ripplenotch/design/guarantee.hpp"
 #include "ripplenotch/document/provenance.hpp"
 #include "ripplenotch/evaluate/comparison.hpp"
 #include "ripplenotch/evaluate/ledger.hpp"
@@ -18,15 +17,6 @@ namespace ripplenotch {
 
 /// The whole text of metrics.json, schema ripplenotch/metrics/1; same metrics, same bytes.
 [[nodiscard]] std::string metrics_to_json(const FilterMetrics& metrics, const Provenance& provenance);
-
-// The trade-off curve of design --frontier, as JSON and CSV.
-
-/// The whole text, schema ripplenotch/frontier/1; same frontier, same bytes.
-[[nodiscard]] std::string frontier_to_json(const Frontier& frontier, const GearAccount& gear,
-                                           const Provenance& provenance);
-
-/// bands, attenuation_db, delay_ms, q_least, q_largest, settle_ms, overshoot_percent, recommended (0 or 1).
-[[nodiscard]] std::string frontier_to_csv(const Frontier& frontier);
 
 // What recommend found, as JSON.
 

@@ -28,7 +28,6 @@ struct ExportReport {
     std::size_t bands = 0, sections_per_band = 0;
     std::vector<std::string> warnings;
     std::string usage;       ///< one line to paste; may be empty
-    bool verified = false;   ///< what follows is known
     std::string arithmetic;  ///< "float32, state-variable form"
     std::vector<SectionCheck> checks;
     std::vector<std::string> violations;

@@ -15,7 +15,7 @@ namespace ripplenotch {
 /// What a table was asked to hold, empty for one that was spelled out, and whose ripple it is for. For
 /// readers: no command depends on it.
 struct DesignNote {
-    std::optional<double> min_attenuation_db, min_ripple_reduction_db;
+    std::optional<double> min_attenuation_db;
     std::optional<Seconds> max_delay;
     std::string reason;
     std::optional<DegPerSec> slowest;  ///< below it no notch that a design may take is within max_delay

@@ -75,17 +75,6 @@ struct JudgedMethod {
     [[nodiscard]] bool meets() const { return shortfalls.empty(); }
 };
 
-/// How a low-pass was made equal to a method, or why none is.
-struct LowPassMatch {
-    std::string subject;                  ///< the method, or "22 dB" when the attenuation was given
-    std::optional<std::string> low_pass;  ///< "lowpass,cutoff=2.1Hz,order=1"; empty when none is equal
-    std::string clause;                   ///< "at equal ...", or a sentence with the reason why there is none
-    int order = 1;
-    std::optional<Hertz> cutoff;
-    std::optional<double> ripple_rms_nm;   ///< the ripple that was matched on a log ...
-    std::optional<double> attenuation_db;  ///< ... and without one: attenuation of all lines together
-};
-
 struct Comparison {
     Hertz sample_rate;
     DegPerSec speed;  ///< for delays and attenuation; on a log its median moving speed
@@ -95,21 +84,19 @@ struct Comparison {
     std::optional<DegPerSec> no_notch_below;  ///< no notch of any method can keep it there
     std::optional<GearAccount>
         lines;  ///< amplitudes weigh them where there is no log; without, all are alike
-    std::optional<LowPassMatch> match;
     std::vector<MethodFigures> methods;
     bool on_log = false;
     DegPerSec slowest, fastest;         ///< |v| of the log
     std::size_t rows = 0, windows = 0;  ///< rows of the log; windows that RippleMeter measured
     double measured_share = 0.0;
     std::string why_none;              ///< LogLevels::why_none
-    std::string best_sentence;         ///< on a log: which method is best, or why that cannot be told
+    std::string best_sentence;         ///< on a log: recommendation_verdict() of its methods
     std::optional<JudgedMethod> best;  ///< empty where it cannot be told, or none is within the limits
 
     /// The method that the others are compared with: the first contender, else the first rival. Null when
     /// only the control runs.
     [[nodiscard]] const MethodFigures* subject() const;
-    /// The matched low-pass, else the first of the rivals, else the first other method; null when there is no
-    /// other.
+    /// The first of the rivals, else the first other method; null when there is no other.
     [[nodiscard]] const MethodFigures* rival() const;
 };
 

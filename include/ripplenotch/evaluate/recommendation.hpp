@@ -13,42 +13,6 @@
 
 namespace ripplenotch {
 
-// The low-pass that removes as much ripple as a method does, so that their delays can be compared like for
-// like. The paper compares its notch with one.
-
-/// Without a log. `gain` (0 < gain < 1) is output over input rms of the ripple, all lines together at one
-/// speed; the cut-off that gives it, or empty when no cut-off above 1e-5 sample rates does. Lines not below
-/// half the sample rate are left out. Throws UsageError when none is left.
-[[nodiscard]] std::optional<Hertz> cutoff_for_gain(double gain, int order, const GearAccount& lines,
-                                                   Hertz sample_rate, DegPerSec speed);
-
-/// Root of the sum over lines of (amplitude times gain of the cascade)^2, over the same without the cascade.
-/// Empty when no line is below half the sample rate.
-[[nodiscard]] std::optional<double> ripple_gain(std::span<const Biquad> cascade, const GearAccount& lines,
-                                                Hertz sample_rate, DegPerSec speed);
-
-/// On a log: the cut-off of the low-pass with a remaining ripple of `ripple_rms_nm` over the measured
-/// windows, to one part in 1e5; found by filtering the log repeatedly. Empty when it lies outside the
-/// cut-offs tried (1e-5 to 0.49 sample rates).
-[[nodiscard]] std::optional<Hertz> cutoff_for_ripple(double ripple_rms_nm, int order, const ComparedLog& log,
-                                                     const GearAccount& lines);
-
-/// "lowpass,cutoff=2.069Hz,order=1": seven digits, so that the printed method is the one measured.
-[[nodiscard]] Spec low_pass_spec(Hertz cutoff, int order);
-
-/// Output over input rms of all lines together, from attenuations that were measured one by one; empty when
-/// none was.
-[[nodiscard]] std::optional<double> combined_gain(const MethodFigures& figures, const GearAccount& lines);
-
-/// Gains below this (140 dB) count as a complete null, which no low-pass equals.
-inline constexpr double complete_null_gain = 1e-7;
-
-/// The result of --match-lowpass: the low-pass, or why there is none. `subject` is for the text.
-[[nodiscard]] LowPassMatch match_at_speed(const std::string& subject, double gain, int order,
-                                          const GearAccount& lines, Hertz sample_rate, DegPerSec speed);
-[[nodiscard]] LowPassMatch match_on_log(const std::string& subject, double ripple_rms_nm, int order,
-                                        const ComparedLog& log, const GearAccount& lines);
-
 // The band of the torque, and what a method does to a torque without ripple.
 
 /// The frequencies in which a log's torque moves.
@@ -140,8 +104,8 @@ inline constexpr std::size_t fewest_judged_windows = 7;
 /// One sentence, or two, with numbers: the recommended method, its performance, and the next best.
 [[nodiscard]] std::string recommendation_verdict(const Recommendation& found);
 
-/// Judges the methods of a comparison on its log, as measured already, and fills in its best one.
-/// `contenders` are as its methods. The judgement is that of recommend(), on all rows.
+/// recommend() among the methods of a comparison, which have been measured on all rows of its log: fills in
+/// the best one and recommendation_verdict(). `contenders` are as its methods.
 void judge(Comparison& comparison, std::span<const Contender> contenders, const ComparedLog& log,
            const RecommendationLimits& limits);
 

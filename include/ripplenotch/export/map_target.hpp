@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// An export target of a ripple map is a record: one file in src/export/map_targets, one line in
+// An export target of a ripple map is a record in a file of src/export/map_targets, and a line in
 // map_targets.def. Law tests run over the list.
 
 #include <functional>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// An export target is a record: one file in src/export/targets, one line in targets.def, one page in
+// An export target is a record in a file of src/export/targets, a line in targets.def, and a page in
 // docs/export. Law tests run over the list.
 
 #include <functional>

@@ -25,17 +25,13 @@ struct SectionCheck {
     Hertz center;                         ///< as designed
     bool is_notch = true;                 ///< false: a section of a low-pass, which has no depth
     std::optional<double> shift_percent;  ///< shift of the centre, from the values read; empty: it has none
+    double designed_gain = 0.0;           ///< at the centre of a notch
     double q = 0.0;                       ///< Q of the poles read
     double response_depth_db = 0.0;       ///< at the designed centre, from the coefficients read
     std::optional<double> depth_db;       ///< the same, from running it; empty when it cannot be run
     std::optional<double> dc_error_db;    ///< error of the gain at 0 Hz, from running it
     std::optional<double> mean_error_nm;  ///< on the load of 8 Nm, from running it
     double pole_radius = 0.0;             ///< below 1 is stable
-};
-
-struct ExportLimits {
-    std::optional<double> shift_percent, depth_db, dc_error_db, pole_radius;
-    [[nodiscard]] bool any() const { return shift_percent || depth_db || dc_error_db || pole_radius; }
 };
 
 /// Centre (where the zeros are, or the poles of a low-pass), Q, depth and largest pole radius of a transfer
@@ -47,8 +43,9 @@ struct ExportLimits {
 [[nodiscard]] std::vector<SectionCheck> verify_export(const FilterSet& filters, const LoadedFilters& loaded,
                                                       const std::string& source);
 
-/// One sentence for each section that is past a limit, or not stable.
+/// One sentence for each section that is not stable, and with a tolerance for each whose centre has moved by
+/// more per cent of its frequency, or whose gain there or at 0 Hz is off by more per cent of the input.
 [[nodiscard]] std::vector<std::string> export_violations(const std::vector<SectionCheck>& checks,
-                                                         const ExportLimits& limits);
+                                                         std::optional<double> tolerance_percent);
 
 }  // namespace ripplenotch

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 // ripplenotch compare: several methods side by side on a log, a step or a ramp.
 
-#include "cli/compare/compare.hpp"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -27,7 +25,6 @@
 #include "ripplenotch/chart/comparison_figure.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
-#include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/core/progress.hpp"
 #include "ripplenotch/core/visible_text.hpp"
 #include "ripplenotch/design/guarantee.hpp"
@@ -45,9 +42,24 @@ namespace ripplenotch {
 
 namespace {
 
-// A comparison as people read it.
+// The methods of a comparison and the ripple it looks at, from what was typed and the files it names.
 
-// A delay ledger as people read it.
+struct Field {
+    std::vector<Contender> contenders;            ///< the control first, unless it was typed elsewhere
+    std::shared_ptr<const CandidateTable> table;  ///< of the first method that needs one
+    /// Whose ripple all of them are measured by: that of the options and the joint file, else of the first
+    /// method that follows the gear, else of the first table. Empty when nothing says where the ripple is.
+    std::optional<GearAccount> gear;
+};
+
+// What the methods of a comparison cost a control loop, and whether that is within the user's limits.
+
+struct CostRequest {
+    std::optional<Hertz> crossover;
+    Gates gates;
+};
+
+// A comparison as people read it.
 
 std::string ledger_place(const LedgerEntry& entry) {
     if (entry.band > 0)
@@ -340,11 +352,6 @@ std::string comparison_view(const CommonOptions& common, const Comparison& compa
     }
     text += paragraph(common, differences(comparison), before) + "\n" + rows_of(named) + "\n" +
             conditions(common, named);
-    if (comparison.match && !comparison.match->low_pass) {
-        std::string sentence = comparison.match->clause;
-        sentence.front() = 'N';  // all of them begin with "no low-pass"
-        text += paragraph(common, sentence + ".");
-    }
     return text + legend(comparison) + ledger_text(named);
 }
 
@@ -459,13 +466,11 @@ void leave_out_refused(Field& field, Hertz sample_rate, const CommonOptions& com
 void attach_costs(Options& options, CostRequest& request) {
     options.number("--crossover", request.crossover, Dimension::frequency,
                    "the control loop's: phase lag and gain there, e.g. 12Hz");
-    options.flag("--ledger", request.ledger,
-                 "delay, settling and phase lag of every band of every method; on a log every switch");
     attach_gates(options, request.gates);
 }
 
 // Phase lag and gain at the crossover, the ledger, and from which speed on a delay limit is kept, as asked.
-void add_costs(Comparison& comparison, const CostRequest& request, const Field& field) {
+void add_costs(Comparison& comparison, const CostRequest& request, const Field& field, bool ledger) {
     comparison.crossover = request.crossover;
     if (request.gates.max_delay && comparison.lines) {
         TableSpec notches;
@@ -485,18 +490,17 @@ void add_costs(Comparison& comparison, const CostRequest& request, const Field& 
             figures.phase_lag_deg = at.phase_lag_deg;
             figures.crossover_db = at.gain_db;
         }
-        if (request.ledger)
+        if (ledger)
             figures.ledger = delay_ledger(contender, comparison.sample_rate, {request.crossover, true});
-        if (!request.ledger) figures.switch_ledger.clear();
+        if (!ledger) figures.switch_ledger.clear();
         if (request.gates.max_delay && contender.made_for()) {
             figures.within_from = within_from(contender, comparison.sample_rate, *request.gates.max_delay);
         }
     }
 }
 
-}  // namespace
-
-// The control is there to be compared with, not to be held to anything.
+// One sentence for each limit that a method breaks. The control is there to be compared with, not to be held
+// to anything.
 std::vector<std::string> violations(const Comparison& comparison, const CostRequest& request,
                                     const Field& field) {
     std::vector<std::string> found;
@@ -514,8 +518,6 @@ std::vector<std::string> violations(const Comparison& comparison, const CostRequ
     return found;
 }
 
-namespace {
-
 constexpr double default_step_nm = 10.0,
                  default_ramp_nm_s = 20.0;  // the paper's; on a log nobody need say them
 
@@ -526,57 +528,10 @@ struct CompareRequest {
     std::string log, truth;
     std::vector<std::string> methods;
     GearOptions gear;
-    std::optional<double> step_nm, ramp_nm_s, match_attenuation_db;
+    std::optional<double> step_nm, ramp_nm_s;
     std::optional<DegPerSec> speed;
     CostRequest costs;
-    bool match_low_pass = false;
-    int match_order = 1;
 };
-
-const MethodFigures& match_subject(const Comparison& comparison) {
-    const MethodFigures* const subject = comparison.subject();
-    if (subject == nullptr || part_of(*subject) == MethodPart::rival) {
-        raise<UsageError>(
-            "--match-lowpass needs a method to match that is neither none nor a low-pass; or give "
-            "--match-attenuation, for example 22dB");
-    }
-    return *subject;
-}
-
-bool wants_match(const CompareRequest& asked) { return asked.match_low_pass || asked.match_attenuation_db; }
-
-std::optional<double> asked_gain(const CompareRequest& request) {
-    if (!request.match_attenuation_db) return std::nullopt;
-    if (!(*request.match_attenuation_db > 0.0)) {
-        raise<UsageError>("--match-attenuation {} dB is not above 0 dB",
-                          shortest(*request.match_attenuation_db));
-    }
-    return portable::pow(10.0, -*request.match_attenuation_db / 20.0);
-}
-
-std::string asked_text(const CompareRequest& request) {
-    return fmt::format("{} dB", shortest(*request.match_attenuation_db));
-}
-
-void add_match_at_speed(Comparison& comparison, const CompareRequest& request) {
-    if (!comparison.lines) raise_no_gear("--match-lowpass");
-    auto gain = asked_gain(request);
-    const std::string subject = gain ? asked_text(request) : match_subject(comparison).method;
-    if (!gain) gain = combined_gain(match_subject(comparison), *comparison.lines);
-    if (!gain) {
-        raise<UsageError>(
-            "--match-lowpass: at {:.6g} deg/s no ripple line is between 0 and half the sample rate; give "
-            "another --speed",
-            comparison.speed.value());
-    }
-    comparison.match = match_at_speed(subject, *gain, request.match_order, *comparison.lines,
-                                      comparison.sample_rate, comparison.speed);
-    if (!comparison.match->low_pass) return;
-    const Contender low_pass = make_contender(parse_spec(*comparison.match->low_pass));
-    comparison.methods.push_back(measure_on_signals(low_pass, comparison.sample_rate, comparison.speed,
-                                                    comparison.step_nm, comparison.ramp_nm_s,
-                                                    &*comparison.lines));
-}
 
 Comparison compare_on_signals(const CompareRequest& request, const Field& field) {
     if (!request.truth.empty()) raise<UsageError>("--truth goes with a LOG");
@@ -607,7 +562,6 @@ Comparison compare_on_signals(const CompareRequest& request, const Field& field)
                                                         comparison.lines ? &*comparison.lines : nullptr));
         Progress::current().add(1);
     }
-    if (wants_match(request)) add_match_at_speed(comparison, request);
     return comparison;
 }
 
@@ -639,20 +593,6 @@ void add_methods(Comparison& comparison, const std::vector<Contender>& contender
     comparison.windows = levels->windows;
     comparison.why_none = levels->why_none;
     comparison.measured_share = levels->measured_share;
-}
-
-void add_match_on_log(Comparison& comparison, const CompareRequest& request, const ComparedLog& log) {
-    if (!comparison.lines) raise_no_gear("--match-lowpass");
-    if (comparison.windows == 0) {
-        raise<DataError>("--match-lowpass: the log has no window in which its ripple can be measured");
-    }
-    const auto gain = asked_gain(request);
-    const auto& raw = comparison.methods.front();  // the control
-    const std::string subject = gain ? asked_text(request) : match_subject(comparison).method;
-    const double target = gain ? *gain * *raw.ripple_rms_nm : *match_subject(comparison).ripple_rms_nm;
-    comparison.match = match_on_log(subject, target, request.match_order, log, *comparison.lines);
-    if (!comparison.match->low_pass) return;
-    add_methods(comparison, {make_contender(parse_spec(*comparison.match->low_pass))}, log, request.common);
 }
 
 // The torque that a perfect sensor would have given, row by row: another log of the same motion.
@@ -715,13 +655,8 @@ Comparison compare_on_log(const CompareRequest& request, Field& field, Provenanc
              "no gear ratio is known, so no ripple was measured; "
              "give --gear-ratio or --joint-file");
     add_methods(comparison, field.contenders, compared, request.common);
-    compared.watch = {};  // what is matched is measured more than once
-    if (wants_match(request)) add_match_on_log(comparison, request, compared);
-    std::vector<Contender> all = field.contenders;
-    if (comparison.match && comparison.match->low_pass)
-        all.push_back(make_contender(parse_spec(*comparison.match->low_pass)));
     const Gates& gates = request.costs.gates;
-    judge(comparison, all, compared, {gates.max_delay, gates.min_attenuation_db});
+    judge(comparison, field.contenders, compared, {gates.max_delay, gates.min_attenuation_db});
     return comparison;
 }
 
@@ -734,7 +669,7 @@ JointResult compare_once(const CompareRequest& request, const std::string& comma
     ComparedCourse course;
     Comparison comparison = request.log.empty() ? compare_on_signals(request, field)
                                                 : compare_on_log(request, field, provenance, course);
-    add_costs(comparison, request.costs, field);
+    add_costs(comparison, request.costs, field, request.common.verbose);
     const std::string unit = provenance.recordings.empty() ? "Nm" : provenance.recordings.front().torque_unit;
     JointResult result{in_torque_unit(request.common.json ? comparison_text(comparison, provenance)
                                                           : comparison_view(request.common, comparison),
@@ -745,10 +680,7 @@ JointResult compare_once(const CompareRequest& request, const std::string& comma
                          comparison = std::move(comparison), course = std::move(course)] {
         draw_plot(request.plot, request.common, provenance, [&] {
             if (!course.empty()) return course.figure(request.log, comparison);
-            std::vector<Contender> shown = field.contenders;
-            if (comparison.match && comparison.match->low_pass)
-                shown.push_back(make_contender(parse_spec(*comparison.match->low_pass)));
-            return comparison_figure(comparison, shown);
+            return comparison_figure(comparison, field.contenders);
         });
         say_warnings(request.common, broken);
     };
@@ -788,12 +720,6 @@ std::function<ExitCode()> attach_compare(Options& options) {
                    "torque ramp to measure the delay on");
     options.text("--truth", request->truth, "LOG",
                  "the same log without ripple and noise: each method's error against its torque");
-    options.flag(
-        "--match-lowpass", request->match_low_pass,
-        "find the low-pass that attenuates the ripple as much as the first other method, and compare it too");
-    options.count("--match-order", request->match_order, 1, 20, "order of that low-pass");
-    options.number("--match-attenuation", request->match_attenuation_db, Dimension::decibel,
-                   "find the low-pass of this ripple attenuation instead");
     attach_costs(options, request->costs);
     attach_plot(options, request->plot, request->common);
     attach_log(options, request->log_options);

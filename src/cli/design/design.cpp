@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -23,7 +22,6 @@
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/visible_text.hpp"
 #include "ripplenotch/design/guarantee.hpp"
-#include "ripplenotch/document/comparison_json.hpp"
 #include "ripplenotch/document/table_json.hpp"
 #include "ripplenotch/verdict/gear_choice.hpp"
 
@@ -38,39 +36,27 @@ struct DesignRequest {
     PlotRequest plot;
     std::string joint;
     GearOptions gear;
-    std::optional<double> ratio_error_percent, depth_db, q, max_bands;
-    /// Goals, and only checks where bands and Q are stated: of each order, or of all together.
-    std::optional<double> min_attenuation_db, min_ripple_reduction_db;
-    std::optional<Seconds> max_delay;  ///< the same
+    std::optional<double> depth_db, q;
+    /// Goals, and only checks where bands and Q are stated.
+    std::optional<double> min_attenuation_db;
+    std::optional<Seconds> max_delay;
     std::optional<DegPerSec> hysteresis;
     std::vector<double> amplitudes_nm;
-    std::optional<Hertz> sample_rate, spacing;
+    std::optional<Hertz> sample_rate;
     std::optional<std::string> speed, bands;
-    double settle_band_percent = 0.5;
-    std::string width = "analog", below = "pass", above = "hold", form;
-    bool frontier = false;
 
     /// Something is left to the tool: it chooses bands, Q, or both.
-    [[nodiscard]] bool has_goal() const {
-        return frontier || ((min_attenuation_db || min_ripple_reduction_db || max_delay) && !only_checks());
-    }
+    [[nodiscard]] bool has_goal() const { return (min_attenuation_db || max_delay) && !only_checks(); }
     /// Limits are what the stated table is held against.
     [[nodiscard]] bool only_checks() const {
         const bool widths = speed && std::count(speed->begin(), speed->end(), ':') > 1;
-        return q && (bands || spacing || widths) && !frontier;
+        return q && (bands || widths);
     }
 };
 
-OutsideRule rule_of(const std::string& name) {
-    if (name == "hold") return OutsideRule::hold;
-    return name == "fade" ? OutsideRule::fade : OutsideRule::pass;
-}
-
-// --spacing is that of the lowest order's centres, which is how the paper states its table: 5 Hz is 18 deg/s
-// at 1:100.
+// The spacing is that of the lowest order's centres, as the paper states its table: 5 Hz is 18 deg/s at
+// 1:100.
 DegPerSec width_of_spacing(Hertz spacing, const TableSpec& spec) {
-    if (!(spacing.value() > 0.0))
-        raise<UsageError>("--spacing {} Hz is not above 0", shortest(spacing.value()));
     return DegPerSec(360.0 * spacing.value() / (spec.orders.front().value() * spec.gear_ratio.value()));
 }
 
@@ -85,8 +71,7 @@ std::vector<std::pair<DegPerSec, DegPerSec>> bands_seen(const DesignRequest& req
     if (!(joint.fastest.value() > 0.0)) {
         raise<UsageError>("{} has no line that follows the speed; give --speed FROM:TO:WIDTH", joint.source);
     }
-    const double width = request.spacing ? width_of_spacing(*request.spacing, spec).value()
-                                         : two_digits(width_of_spacing(Hertz(5.0), spec)).value();
+    const double width = two_digits(width_of_spacing(Hertz(5.0), spec)).value();
     double from = std::floor(joint.slowest.value());
     double to = joint.fastest.value();
     // A joint seen at one speed only gets one band around it.
@@ -117,9 +102,7 @@ std::vector<std::pair<DegPerSec, DegPerSec>> bands_seen(const DesignRequest& req
 std::vector<std::pair<DegPerSec, DegPerSec>> bands_of(const DesignRequest& request, const TableSpec& spec,
                                                       const std::optional<GearStatement>& joint) {
     if (request.bands) {
-        if (request.speed || request.spacing) {
-            raise<UsageError>("--bands lists the bands; it cannot be combined with --speed or --spacing");
-        }
+        if (request.speed) raise<UsageError>("--bands lists the bands; it cannot be combined with --speed");
         return parse_speed_bands(*request.bands, "--bands");
     }
     if (!request.speed) {
@@ -128,19 +111,14 @@ std::vector<std::pair<DegPerSec, DegPerSec>> bands_of(const DesignRequest& reque
             "no speeds to design for; give --speed FROM:TO:WIDTH (18:180:18) or --bands FROM:TO,FROM:TO");
     }
     const SpeedRange range = parse_speed_range(*request.speed, "--speed");
-    if (range.width && request.spacing) {
+    if (!range.width) {
         raise<UsageError>(
-            "--speed {} already states how wide a band is; leave out its third number or --spacing",
+            "--speed {} does not state how wide a band is; write FROM:TO:WIDTH, or state what the table has "
+            "to "
+            "hold with --min-attenuation or --max-delay",
             *request.speed);
     }
-    if (!range.width && !request.spacing) {
-        raise<UsageError>(
-            "--speed {} does not state how wide a band is; write FROM:TO:WIDTH, add --spacing 5Hz, or state "
-            "what the table has to hold with --min-attenuation or --max-delay",
-            *request.speed);
-    }
-    return bands_by_spacing({range.from, range.to},
-                            range.width ? *range.width : width_of_spacing(*request.spacing, spec));
+    return bands_by_spacing({range.from, range.to}, *range.width);
 }
 
 void fill_gear_of_table(TableSpec& spec, const DesignRequest& request, const GearChoice& choice,
@@ -160,18 +138,12 @@ void fill_gear_of_table(TableSpec& spec, const DesignRequest& request, const Gea
     if (!request.sample_rate && !joint)
         raise<UsageError>("the sample rate is missing; give --sample-rate, for example 1kHz");
     spec.sample_rate = request.sample_rate ? *request.sample_rate : joint->sample_rate;
-    if (request.ratio_error_percent) {
-        if (!(*request.ratio_error_percent >= 0.0))
-            raise<UsageError>("--ratio-error {} % is negative", shortest(*request.ratio_error_percent));
-        spec.ratio_error = *request.ratio_error_percent / 100.0;
-    } else if (joint) {
-        spec.ratio_error = joint->ratio_error;  // none of a ratio that was given
-    }
+    if (joint) spec.ratio_error = joint->ratio_error;  // none of a ratio that was given
 }
 
 // FROM:TO alone, or nothing: then the goal decides how many bands there are.
 bool leaves_bands(const DesignRequest& request) {
-    if (!request.has_goal() || request.bands || request.spacing) return false;
+    if (!request.has_goal() || request.bands) return false;
     return !request.speed || !parse_speed_range(*request.speed, "--speed").width;
 }
 
@@ -195,10 +167,6 @@ TableSpec design_spec(const DesignRequest& request, const GearChoice& gear) {
     spec.hysteresis = hysteresis_of(request, joint);
     spec.q = request.q.value_or(spec.q);
     if (request.depth_db) spec.depth_db = *request.depth_db;
-    spec.width = request.width == "digital" ? WidthRule::digital : WidthRule::analog;
-    spec.settle_band_percent = request.settle_band_percent;
-    spec.below = rule_of(request.below);
-    spec.above = rule_of(request.above);
     if (!leaves_bands(request)) spec.bands = bands_of(request, spec, joint);
     return spec;
 }
@@ -224,19 +192,8 @@ DesignGoal design_goal(const DesignRequest& request, const TableSpec& spec, cons
     const auto joint = gear.facts();
     DesignGoal goal;
     goal.min_attenuation_db = request.min_attenuation_db;
-    goal.min_ripple_reduction_db = request.min_ripple_reduction_db;
     goal.max_delay = request.max_delay;
     goal.q = request.q;
-    if (request.max_bands) {
-        if (!(*request.max_bands >= 1.0 && *request.max_bands <= 1000.0) ||
-            *request.max_bands != std::floor(*request.max_bands)) {
-            raise<UsageError>("--max-bands {} is not a whole number from 1 to 1000",
-                              shortest(*request.max_bands));
-        }
-        if (!spec.bands.empty())
-            raise<UsageError>("--max-bands is for bands that the tool chooses; these are listed");
-        goal.most_bands = static_cast<int>(*request.max_bands);
-    }
     if (!spec.bands.empty()) return goal;
     if (request.speed) {
         const SpeedRange range = parse_speed_range(*request.speed, "--speed");
@@ -251,10 +208,6 @@ DesignGoal design_goal(const DesignRequest& request, const TableSpec& spec, cons
     return goal;
 }
 
-constexpr std::array<std::string_view, 2> width_names = {"analog", "digital"};
-constexpr std::array<std::string_view, 3> rule_names = {"pass", "hold", "fade"};
-constexpr std::array<std::string_view, 3> form_names = {"text", "csv", "json"};
-
 // The options that would give this table without a joint.json and without arithmetic.
 std::string as_if_options(const TableSpec& spec) {
     const std::string bands = joined(spec.bands, ",", [](const auto& band) {
@@ -263,24 +216,10 @@ std::string as_if_options(const TableSpec& spec) {
     std::string line = fmt::format("--gear-ratio {} --orders {} --sample-rate {}Hz --bands {}",
                                    shortest(spec.gear_ratio.value()), joined(spec.orders, ","),
                                    shortest(spec.sample_rate.value()), bands);
-    if (spec.ratio_error > 0.0) line += fmt::format(" --ratio-error {}", shortest(100.0 * spec.ratio_error));
     if (spec.hysteresis.value() > 0.0)
         line += fmt::format(" --hysteresis {}deg/s", shortest(spec.hysteresis.value()));
     if (!spec.amplitude_nm.empty()) line += " --amplitudes " + joined(spec.amplitude_nm, ",");
     return line;
-}
-
-// Asked for by name, else by --json, else by the name of the output file.
-std::string form_of(const DesignRequest& request) {
-    if (request.common.json) {
-        if (!request.form.empty() && request.form != "json") {
-            raise<UsageError>("--json and --format {} ask for two different outputs", request.form);
-        }
-        return "json";
-    }
-    if (!request.form.empty()) return request.form;
-    const std::string& path = request.common.output;
-    return ends_with_json(path) ? "json" : path.ends_with(".csv") ? "csv" : "text";
 }
 
 // Limits that the caller set: what breaks them is said, and the table is written all the same.
@@ -294,12 +233,6 @@ std::vector<std::string> violations_of(const DesignRequest& request, const Candi
         if (request.max_delay && band.dc_delay > *request.max_delay) {
             sentences.push_back(fmt::format("{} delays by {:.1f} ms, more than --max-delay {:.6g}ms", label,
                                             delay_ms, 1e3 * request.max_delay->value()));
-        }
-        if (request.min_ripple_reduction_db && band.held_attenuation_db < *request.min_ripple_reduction_db) {
-            sentences.push_back(
-                fmt::format("{} attenuates the ripple of all orders by as little as {:.1f} dB, less than "
-                            "--min-ripple-reduction {}dB",
-                            label, band.held_attenuation_db, shortest(*request.min_ripple_reduction_db)));
         }
         for (std::size_t i = 0; request.min_attenuation_db && i < band.notches.size(); ++i) {
             const double worst_db = band.worst_attenuation_db[i];
@@ -323,44 +256,17 @@ struct Drawn {
 Drawn draw(const DesignRequest& request, const TableSpec& spec, const GearChoice& gear) {
     DesignNote note;
     note.gear = gear.of();
-    if (!request.has_goal()) {
-        if (request.max_bands)
-            raise<UsageError>("--max-bands needs something to hold: --min-attenuation or --max-delay");
-        return {CandidateTable::design(spec), std::move(note)};
-    }
+    if (!request.has_goal()) return {CandidateTable::design(spec), std::move(note)};
     const DesignGoal goal = design_goal(request, spec, gear);
     DesignChoice choice = design_for(spec, goal);
     note.min_attenuation_db = goal.min_attenuation_db;
-    note.min_ripple_reduction_db = goal.min_ripple_reduction_db;
     note.max_delay = goal.max_delay;
     note.reason = choice.reason;
     if (goal.max_delay) note.slowest = slowest_within(spec, *goal.max_delay);
     return {std::move(choice.table), std::move(note)};
 }
 
-ExitCode print_frontier(const DesignRequest& request, const std::string& form, const TableSpec& spec,
-                        const GearChoice& gear, const Provenance& provenance) {
-    const Frontier frontier = design_frontier(spec, design_goal(request, spec, gear));
-    const std::string text = form == "json"  ? frontier_to_json(frontier, gear.of().value(), provenance)
-                             : form == "csv" ? frontier_to_csv(frontier)
-                                             : frontier_to_text(frontier);
-    write_text(request.common.output, text, request.common.overwrite());
-    draw_plot(request.plot, request.common, provenance, [&] {
-        std::vector<FrontierPoint> points;
-        for (std::size_t i = 0; i < frontier.points.size(); ++i) {
-            const TradePoint& point = frontier.points[i];
-            points.push_back(
-                {1e3 * point.delay.value(), point.attenuation_db, i == frontier.recommended, ""});
-        }
-        const Seconds chosen = frontier.points[frontier.recommended].delay;
-        return frontier_figure("Attenuation against delay",
-                               recommended_sentence(frontier) + " " + crossover_sentence(chosen), points);
-    });
-    return ExitCode::done;
-}
-
 ExitCode run_design(const DesignRequest& request, const std::string& command_line) {
-    const std::string form = form_of(request);
     Provenance provenance{{}, command_line};
     GearOptions options = request.gear;
     if (!request.joint.empty()) {
@@ -370,13 +276,14 @@ ExitCode run_design(const DesignRequest& request, const std::string& command_lin
     const GearChoice gear(options);
     if (gear.joint()) provenance.inputs.push_back(input_record(gear.joint()->path));
     const TableSpec spec = design_spec(request, gear);
-    if (request.frontier) return print_frontier(request, form, spec, gear, provenance);
     const Drawn drawn = draw(request, spec, gear);
     say(request.common, fmt::format("designed as if with {}", as_if_options(drawn.table.spec())));
     say_warnings(request.common, alias_warnings(drawn.table));
-    const std::string text = form == "json"  ? table_to_json(drawn.table, provenance, drawn.note)
-                             : form == "csv" ? table_to_csv(drawn.table)
-                                             : table_to_text(drawn.table, drawn.note);
+    const std::string& path = request.common.output;
+    const std::string text = request.common.json || ends_with_json(path)
+                                 ? table_to_json(drawn.table, provenance, drawn.note)
+                             : path.ends_with(".csv") ? table_to_csv(drawn.table)
+                                                      : table_to_text(drawn.table, drawn.note);
     write_text(request.common.output, text, request.common.overwrite());
     draw_plot(request.plot, request.common, provenance, [&] { return table_figure(drawn.table); });
     const auto broken = violations_of(request, drawn.table);
@@ -394,41 +301,23 @@ std::function<ExitCode()> attach_design(Options& options) {
                    "rate at which the filter will run");
     options.text("--speed", request->speed, "FROM:TO[:WIDTH]",
                  "bands of equal width in deg/s, e.g. 18:180:18; without WIDTH for a goal to divide");
-    options.number("--spacing", request->spacing, Dimension::frequency,
-                   "instead of WIDTH: distance of the lowest order's centres");
     options.text("--bands", request->bands, "FROM:TO,...",
                  "bands one by one in deg/s, e.g. 18:36,36:60,60:100");
     options.number(
         "--min-attenuation", request->min_attenuation_db, Dimension::decibel,
         "choose bands and Q that attenuate every order by this at every speed, e.g. 20dB; where both are "
         "stated, exit code 1 when an order is attenuated less");
-    options.number("--min-ripple-reduction", request->min_ripple_reduction_db, Dimension::decibel,
-                   "the same for the ripple of all orders together, by their amplitudes");
     options.number("--hysteresis", request->hysteresis, Dimension::speed,
                    "hysteresis: the filter leaves a band only when the speed is this far outside it "
                    "(default: three times the noise of the speed in JOINT, else 0)");
     options.duration("--max-delay", request->max_delay,
                      "choose bands and Q whose DC delay is no longer, e.g. 20ms; where both are stated, exit "
                      "code 1 when a band's is");
-    options.number("--max-bands", request->max_bands, Dimension::none, "no more bands than this are chosen");
-    options.flag("--frontier", request->frontier,
-                 "the trade-off curve between attenuation, delay and bands, instead of a table");
-    options.number("--ratio-error", request->ratio_error_percent, Dimension::none,
-                   "per cent by which the gear ratio may be off (default: the interval in JOINT, else 0)");
     options.number(
         "--quality,--q", request->q, Dimension::none,
         "or --q: centre over -3 dB width (default: 0.25, the paper's twin-T, or what a goal takes)");
     options.number("--depth", request->depth_db, Dimension::decibel,
                    "attenuation at the centre; a full null when left out");
-    options.choice("--width", request->width, width_names,
-                   "whose width Q is: the analogue prototype's or the sampled "
-                   "filter's");
-    options.number("--settle-band", request->settle_band_percent, Dimension::none,
-                   "per cent of a step within which it counts as settled");
-    options.choice("--below", request->below, rule_names, "rule below the first band");
-    options.choice("--above", request->above, rule_names, "rule above the last band");
-    options.choice("--format", request->form, form_names,
-                   "form of the result (default: by the name of -o, else text)");
     attach_plot(options, request->plot, request->common);
     attach_common(options, request->common, {"a table", ".txt .csv .json"});
     return [request, &options] { return run_design(*request, options.command_line()); };

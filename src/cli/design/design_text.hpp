@@ -15,20 +15,8 @@
 
 namespace ripplenotch {
 
-// A trade-off curve as people read it.
-
-/// The curve, one row a point with the recommended one marked, and one line that says why it.
-[[nodiscard]] std::string frontier_to_text(const Frontier& frontier);
-
 /// "No notch of Q 5 or less is within 20 ms below 4.3 deg/s."
 [[nodiscard]] std::string slowest_sentence(Seconds delay, DegPerSec slowest);
-
-/// "Recommended: 40.4 dB with 82.6 ms in 32 bands: ...", with the reason.
-[[nodiscard]] std::string recommended_sentence(const Frontier& frontier);
-
-/// What a delay asks of the control loop: "At a crossover of 1 Hz this delay costs a loop 30 deg of phase;
-/// ..."
-[[nodiscard]] std::string crossover_sentence(Seconds delay, std::string_view aside = "");
 
 // Speed ranges as people type them: "18:180:18", "0.3rad/s:3rad/s", "18:36,36:60,60:100deg/s".
 

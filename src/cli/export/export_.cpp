@@ -2,8 +2,6 @@
 // `export`: tables and filters to firmware and tools, read back and run there. The trailing underscore is
 // C++'s: export is a keyword.
 
-#include "cli/export/export_.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -39,12 +37,22 @@
 
 namespace ripplenotch {
 
-void write_export(const Written& written, const CommonOptions& common, bool binary) {
+namespace {
+
+// What every export does with the file that it made: writes it, reads it again, reports what came through.
+
+void write_export(const Written& written, const CommonOptions& common, bool binary = false) {
     ByteSink sink(common.output, common.overwrite(), binary);
     sink.write(written.bytes);
     sink.finish();
     say_warnings(common, written.warnings);
 }
+
+// What was written, as it stands in the file; that of a pipe or a device, which cannot be read again, as it
+// was in memory.
+struct ReadBack {
+    std::string bytes, source;  // source: "notch.h", "standard output"
+};
 
 ReadBack read_back(const Written& written, const CommonOptions& common) {
     const bool file = std::filesystem::is_regular_file(common.output);
@@ -52,13 +60,11 @@ ReadBack read_back(const Written& written, const CommonOptions& common) {
             common.output == "-" ? "standard output" : common.output};
 }
 
-namespace {
-
 // What was found out about it: on standard output, unless the file itself went there.
 void tell_check(const std::string& text, const CommonOptions& common) {
     if (common.output != "-") {
         write_text("-", text, ByteSink::Overwrite::no);
-    } else if (!common.quiet) {
+    } else if (common.verbose) {
         talk_lines(text);
     }
 }
@@ -76,7 +82,6 @@ struct CodeExport {
     const Contender& method;
     Hertz sample_rate;
     std::string to;
-    bool verify = false;
     CommonOptions common;
 };
 
@@ -155,7 +160,7 @@ CodeCheck run_beside(const CodeExport& request, const LoadedCode& code) {
     return check;
 }
 
-// Writes its code; with verify reads it back and runs it beside the method itself over a million samples.
+// Writes its code, reads it back and runs it beside the method itself over a million samples.
 // Throws UsageError for a target that takes coefficients only.
 ExitCode export_code(const CodeExport& request, const std::string& command_line) {
     if (request.common.json) raise<UsageError>("--json: export of a method as code has no JSON result yet");
@@ -169,7 +174,6 @@ ExitCode export_code(const CodeExport& request, const std::string& command_line)
     const auto design = running_design(*request.method.method, request.method.settings, request.sample_rate);
     const Written written = write_method_code(*design, settings, generated_by({{}, command_line}));
     write_export(written, request.common);
-    if (!request.verify) return ExitCode::done;
     const ReadBack again = read_back(written, request.common);
     const LoadedCode code = read_method_code(again.bytes, again.source, *design, settings);
     const CodeCheck check = run_beside(request, code);
@@ -186,7 +190,6 @@ ExitCode export_code(const CodeExport& request, const std::string& command_line)
 /// What export does with a map: the options that a map has too.
 struct MapExport {
     std::string map, to;
-    bool verify = false;
     CommonOptions common;
     std::optional<std::string> motor_of;  ///< of another joint than the map's own
 };
@@ -233,7 +236,6 @@ ExitCode export_map(const MapExport& request, const std::string& command_line) {
     const Written written =
         target.write(map, settings, generated_by({{input_record(request.map)}, command_line}));
     write_export(written, request.common);
-    if (!request.verify) return ExitCode::done;
     const ReadBack again = read_back(written, request.common);
     const LoadedMap loaded = target.read(again.bytes, again.source, map, settings);
     tell_check(check_text(again.source, std::string(target.name), loaded, verify_map_export(map, loaded)),
@@ -292,13 +294,12 @@ constexpr std::size_t most_violations_said = 5;
 
 struct ExportRequest {
     std::string table, to;
-    std::optional<std::string> method, transition;
+    std::optional<std::string> method;
     GearOptions gear;
     std::optional<Hertz> sample_rate;
     int band = 0;
-    bool verify = false;
     std::optional<std::string> motor_of;
-    ExportLimits limits;
+    std::optional<double> tolerance_percent;
     CommonOptions common;
 };
 
@@ -338,30 +339,17 @@ void check_export(const ExportRequest& request) {
             "--method needs --sample-rate, the rate at which the filter will run, for example 1kHz");
     if (switches(request) && request.sample_rate)
         raise<UsageError>("a table has its own sample rate; --sample-rate goes with other methods");
-    if (request.transition && request.method)
-        raise<UsageError>(
-            "--transition is for a table; of a method it is a key: switching,table=...,transition={}",
-            *request.transition);
     if (request.common.json && request.common.output == "-")
         raise<UsageError>(
             "the exported file and --json would both go to standard output; name a file with -o");
-    for (const auto& [name, value] : {std::pair{"--max-centre-shift-percent", request.limits.shift_percent},
-                                      std::pair{"--min-depth-db", request.limits.depth_db},
-                                      std::pair{"--max-dc-error-db", request.limits.dc_error_db},
-                                      std::pair{"--max-pole-radius", request.limits.pole_radius}}) {
-        if (value && !(*value >= 0.0)) raise<UsageError>("{} {} is below 0", name, shortest(*value));
-    }
-    if (request.limits.depth_db && *request.limits.depth_db > deepest_measured_db) {
-        raise<UsageError>("--min-depth-db {}: no more than {} dB is measured",
-                          shortest(*request.limits.depth_db), shortest(deepest_measured_db));
-    }
+    if (request.tolerance_percent && !(*request.tolerance_percent >= 0.0))
+        raise<UsageError>("--tolerance {} is below 0", shortest(*request.tolerance_percent));
 }
 
 Contender method_of(const ExportRequest& request) {
     const GearChoice gear(request.gear);
     if (request.method) return choose_method(*request.method, std::nullopt, gear);
-    return choose_method(request.transition ? "switching,transition=" + *request.transition : "switching",
-                         request.table, gear);
+    return choose_method("switching", request.table, gear);
 }
 
 FilterSet filters_of(const Contender& method, const std::optional<Hertz>& sample_rate) {
@@ -390,8 +378,7 @@ void verify(const ExportRequest& request, const Target& target, const Settings& 
     const LoadedFilters loaded = target.read(again.bytes, again.source, filters, settings);
     report.checks = verify_export(filters, loaded, again.source);
     report.arithmetic = arithmetic_name(loaded.bands.front().front().arithmetic);
-    report.verified = true;
-    report.violations = export_violations(report.checks, request.limits);
+    report.violations = export_violations(report.checks, request.tolerance_percent);
 }
 
 void say_violations(const ExportReport& report) {
@@ -407,17 +394,15 @@ void say_violations(const ExportReport& report) {
 ExitCode run_export(const ExportRequest& request, const std::string& command_line) {
     check_export(request);
     if (is_map(request.table))
-        return export_map({request.table, request.to, request.verify, request.common, request.motor_of},
-                          command_line);
+        return export_map({request.table, request.to, request.common, request.motor_of}, command_line);
     if (request.motor_of) raise<UsageError>("--motor-of is for maps, and {} is none", request.table);
     const Spec spec = parse_spec(request.to);
     const Target& target = find_target(spec.name);
     const Contender method = method_of(request);
     if (has_code(method.method->name)) {
-        if (request.limits.any())
-            raise<UsageError>("limits are on coefficients, and those of this method change");
-        return export_code({method, *request.sample_rate, request.to, request.verify, request.common},
-                           command_line);
+        if (request.tolerance_percent)
+            raise<UsageError>("--tolerance is for coefficients, and those of this method change");
+        return export_code({method, *request.sample_rate, request.to, request.common}, command_line);
     }
     if (ends_with_json(request.common.output) && target.name != "json")
         raise<UsageError>("-o {}: {} is no JSON; use --to json, or name the file otherwise",
@@ -441,7 +426,6 @@ ExitCode run_export(const ExportRequest& request, const std::string& command_lin
                         filters.sections_per_band(),
                         written.warnings,
                         {},
-                        false,
                         {},
                         {},
                         {}};
@@ -449,11 +433,11 @@ ExitCode run_export(const ExportRequest& request, const std::string& command_lin
         report.usage =
             target.usage(filters, settings, request.common.output == "-" ? "FILE" : request.common.output);
     if (!report.usage.empty()) say(request.common, report.usage);
-    if (request.verify || request.limits.any()) verify(request, target, settings, filters, written, report);
+    verify(request, target, settings, filters, written, report);
 
     if (request.common.json) {
         write_text("-", export_report_to_json(report, provenance), ByteSink::Overwrite::no);
-    } else if (report.verified) {
+    } else {
         tell_check(export_report_to_text(report), request.common);
     }
     say_violations(report);
@@ -471,10 +455,6 @@ std::function<ExitCode()> attach_export(Options& options) {
                  fmt::format("instead of a table: {} with its keys, as filter has them, for example "
                              "switching,table=table.json,hysteresis=1deg/s",
                              exported_methods()));
-    options.text(
-        "--transition", request->transition, "NAME",
-        "of a table: what becomes of the filters' memories at a switch, as the key of method switching "
-        "(default: as there)");
     attach_gear(options, request->gear);
     options.text("--motor-of", request->motor_of, "JOINT",
                  "of a map: the ripple of this other joint's motor, which goes by the position and speed of "
@@ -483,16 +463,10 @@ std::function<ExitCode()> attach_export(Options& options) {
                    "with --method: rate at which the filter will run");
     options.count("--band", request->band, 0, 1000000,
                   "only this band of the table, to run at every speed; 0 is the whole table");
-    options.flag("--verify", request->verify,
-                 "read the file again, run it in the target's arithmetic, and print what came through");
-    options.number("--max-centre-shift-percent", request->limits.shift_percent, Dimension::none,
-                   "exit code 1 when a centre has moved by more");
-    options.number("--min-depth-db", request->limits.depth_db, Dimension::decibel,
-                   "exit code 1 when a notch is less deep at its designed centre");
-    options.number("--max-dc-error-db", request->limits.dc_error_db, Dimension::decibel,
-                   "exit code 1 when the gain error at 0 Hz is larger");
-    options.number("--max-pole-radius", request->limits.pole_radius, Dimension::none,
-                   "exit code 1 when a pole is further out; 1 and beyond is always refused");
+    options.number("--tolerance", request->tolerance_percent, Dimension::none,
+                   "per cent, e.g. 0.1: exit code 1 when a centre has moved by more, or the gain error there "
+                   "or at 0 Hz is "
+                   "larger");
     attach_common(options, request->common, {});
     return [request, &options] { return run_export(*request, options.command_line()); };
 }
@@ -505,10 +479,9 @@ const Command commands::export_ = {
     .description =
         "Writes a table of design, or one filter, in the form that a target takes: a C header, CMSIS-DSP, "
         "SciPy, "
-        "MATLAB,\nROS, servo drives, JSON. With --verify the "
-        "written "
-        "file is read again,\nrun in the target's arithmetic, and measured.\n"
-        "ripplenotch export table.json --to c-header -o notch.h --verify --min-depth-db 60",
+        "MATLAB,\nROS, servo drives, JSON. The written file is read again, run in the target's arithmetic, "
+        "and "
+        "measured.\nripplenotch export table.json --to c-header -o notch.h --tolerance 0.1",
     .attach = attach_export,
 };
 

@@ -231,6 +231,34 @@ class Maker {
 
 }  // namespace
 
+bool TargetChoice::holds(const Contender& method) const {
+    if (method.method->name == "map") return maps != nullptr;
+    if (filters == nullptr) return false;
+    if (method.method->needs_table) return filters->switches;
+    if (method.method->steady == nullptr) return is_code_target(spec.name) && has_code(method.method->name);
+    return !filters->notches_only ||
+           std::holds_alternative<std::vector<NotchSpec>>(method.method->steady(method.settings));
+}
+
+std::optional<RippleMap> TargetChoice::held(const RippleMap& map) const {
+    if (maps == nullptr || map.orders.empty()) return std::nullopt;
+    const Settings settings(fmt::format("target {}", spec.name), spec, maps->keys);
+    const RippleMap kept = maps->read(maps->write(map, settings, {}).bytes, "the target", map, settings).held;
+    if (kept.form.columns() == map.form.columns()) return std::nullopt;
+    return kept;
+}
+
+std::string TargetChoice::command(const Contender& method, Hertz sample_rate) const {
+    const bool is_map = method.method->name == "map";
+    const std::string_view endings = is_map ? maps->endings : filters->endings;
+    const std::string file = "ripple" + std::string(endings.substr(0, endings.find(' ')));
+    const std::string from = is_map || method.method->needs_table
+                                 ? (method.files.empty() ? "map.json" : method.files.front())
+                                 : fmt::format("--method {} --sample-rate {}Hz", shell_quoted(method.text),
+                                               shortest(sample_rate.value()));
+    return fmt::format("ripplenotch export {} --to {} -o {}", from, shell_quoted(spec.text()), file);
+}
+
 TriedMethods candidates_for(const CandidateRequest& request) { return Maker(request).all(); }
 
 std::vector<std::string> CommandLines::of(const MethodFigures& figures) const {

@@ -115,7 +115,7 @@ class Run {
         }
     }
 
-    /// The recommended method and the next one, measured on the part of the log that was not learned from.
+    /// What the recommended method does to the log.
     void show_recommended(const Json& advice) {
         if (!advice.contains("take")) return;  // several joints: a section each has been added
         // As recommend found it, in the first part of the log.
@@ -127,17 +127,11 @@ class Run {
             gear_ = {"--gear-ratio", shortest(found["ratio"].get<double>())};
             if (!orders.empty()) gear_ = gear_ + Words{"--orders", orders};
         }
-        Words methods;
-        for (const char* name : {"take", "runner_up"}) {
-            if (!advice[name].is_string()) continue;
-            if (const auto method = with_files(advice[name].get<std::string>(), advice))
-                methods = methods + Words{"--method", *method};
-        }
-        if (methods.empty()) return;
-        const Words from = {"--from", seconds(advice)};
-        try_step(Words{"compare", report_.log} + methods, without_range() + from + gear_, "comparison.json");
+        if (!advice["take"].is_string()) return;
+        const auto method = with_files(advice["take"].get<std::string>(), advice);
+        if (!method) return;
         try_figure(Words{"filter", report_.log, "-o", workspace_.path("filtered.csv"), "--decimals", "6"} +
-                       Words{methods[0], methods[1]},
+                       Words{"--method", *method},
                    report_.reading + gear_, "filtered.json");
     }
 

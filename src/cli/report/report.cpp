@@ -24,8 +24,7 @@ struct ReportRequest {
     GearOptions gear;
     std::vector<std::string> results;
     std::string output = "-";
-    std::optional<std::string> title, plotly;
-    bool no_plotly = false, force = false, quiet = false;
+    bool force = false, quiet = false;
 };
 
 // Where the build and the installation put it, as seen from the program itself.
@@ -42,8 +41,7 @@ std::optional<std::string> installed_plotly() {
 }
 
 std::optional<std::string> plotly_js_of(const ReportRequest& request) {
-    if (request.no_plotly) return std::nullopt;
-    const auto path = request.plotly ? request.plotly : installed_plotly();
+    const auto path = installed_plotly();
     if (!path) {
         CommonOptions common;
         common.quiet = request.quiet;
@@ -66,10 +64,10 @@ ExitCode run_report(const ReportRequest& request, const Options& options) {
     if (request.results.size() > 1 && std::any_of(request.results.begin(), request.results.end(), is_log))
         raise<UsageError>("a report is one of a log, or one of results; read {}",
                           fmt::join(request.results, ", "));
-    Page page{request.title.value_or("ripplenotch report"), {}};
+    Page page{"ripplenotch report", {}};
     for (const std::string& path : request.results) {
         if (is_log(path)) {
-            if (!request.title) page.title = fmt::format("ripplenotch report: {}", path);
+            page.title = fmt::format("ripplenotch report: {}", path);
             page.sections = sections_of_log({path, options.given("--format", "--hold-bad-values"),
                                              options.given("--gear-ratio", "--joint-file"),
                                              options.given("--gear-ratio", "--gear-ratio"), request.quiet});
@@ -85,15 +83,11 @@ ExitCode run_report(const ReportRequest& request, const Options& options) {
 std::function<ExitCode()> attach_report(Options& options) {
     const auto request = std::make_shared<ReportRequest>();
     options.arguments("RESULT", request->results, true,
-                      "a log, of which info, identify, recommend, compare and filter are run; or JSON that "
+                      "a log, of which info, identify, recommend and filter are run; or JSON that "
                       "commands wrote: joint.json, table.json, metrics, comparisons, diagnoses, figures "
                       "(--plot FILE.json); - is standard input");
     options.text("-o,--output", request->output, "FILE", "where the page goes; - is standard output");
     options.writes("-o");
-    options.text("--title", request->title, "TEXT", "of the page");
-    options.text("--plotly", request->plotly, "FILE",
-                 "plotly.js to put into the page, instead of the installed one");
-    options.flag("--no-plotly", request->no_plotly, "pictures by gnuplot instead of interactive plots");
     options.flag("--force", request->force, "overwrite existing files");
     options.flag("-q,--quiet", request->quiet, "no warnings on standard error");
     attach_gear(options, request->gear);

@@ -145,10 +145,10 @@ Json parse_document(std::string_view text, const std::string& source, std::strin
 
 AnyDocument parse_any_document(std::string_view text, const std::string& source) {
     constexpr std::array kinds = {
-        "comparison", "comparisons", "diagnoses",      "diagnosis",       "effects",    "export",
-        "figure",     "frontier",    "info",           "joint",           "joints",     "map",
-        "metrics",    "model",       "recommendation", "recommendations", "simulation", "spectra",
-        "spectrum",   "table",       "track",          "tracks",          "trend"};
+        "comparison", "comparisons",    "diagnoses",       "diagnosis",  "effects", "export",
+        "figure",     "info",           "joint",           "joints",     "map",     "metrics",
+        "model",      "recommendation", "recommendations", "simulation", "spectra", "spectrum",
+        "table",      "track",          "tracks",          "trend"};
     constexpr std::string_view wanted_of_any =
         "a result of ripplenotch such as joint.json or what --json prints";
     Json json = read_json(text, source, wanted_of_any);

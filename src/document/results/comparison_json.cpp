@@ -85,15 +85,6 @@ void describe(JsonWriter& json, const FilterMetrics& metrics) {
     json("switches", stream.switches);
 }
 
-void describe(JsonWriter& json, const TradePoint& point) {
-    json("bands", point.bands);
-    json("attenuation_db", point.attenuation_db);
-    json("delay_ms", point.delay, in_ms);
-    json("q", std::tie(point.least_q, point.largest_q));
-    json("settle_ms", point.settle, in_ms);
-    json("overshoot_percent", point.overshoot_percent);
-}
-
 void describe(JsonWriter& json, const OrderAttenuation& entry) {
     json("order", entry.order);
     json("hz", entry.hz);
@@ -181,16 +172,6 @@ void describe(JsonWriter& json, const MethodFigures& figures) {
     json("switch_ledger", figures.switch_ledger);
 }
 
-void describe(JsonWriter& json, const LowPassMatch& match) {
-    json("subject", match.subject);
-    json("low_pass", match.low_pass);
-    json("order", match.order);
-    json("cutoff_hz", match.cutoff);
-    json("ripple_rms_nm", match.ripple_rms_nm);
-    json("attenuation_db", match.attenuation_db);
-    json("matched", match.clause);
-}
-
 void describe(JsonWriter& json, const Comparison& comparison) {
     const GearAccount no_gear;
     const GearAccount& gear = comparison.lines ? *comparison.lines : no_gear;
@@ -213,52 +194,11 @@ void describe(JsonWriter& json, const Comparison& comparison) {
         json("windows", comparison.windows);
         json("measured_share", comparison.measured_share);
     }
-    json("match", comparison.match);
     json("methods", comparison.methods);
 }
 
 std::string metrics_to_json(const FilterMetrics& metrics, const Provenance& provenance) {
     return to_fitted_text(document_of("metrics", provenance, metrics));
-}
-
-std::string frontier_to_json(const Frontier& frontier, const GearAccount& gear,
-                             const Provenance& provenance) {
-    const TableSpec& spec = frontier.spec;
-    const DesignGoal& goal = frontier.goal;
-    return to_fitted_text(document_of("frontier", provenance, [&](JsonWriter& json) {
-        json("sample_rate_hz", spec.sample_rate);
-        json("gear_ratio", spec.gear_ratio);
-        json("gear", gear);
-        json("gear_ratio_error_percent", spec.ratio_error, in_percent);
-        json("orders", spec.orders);
-        json("amplitude_nm", spec.amplitude_nm, null_if_empty);
-        json("speed_deg_s", std::tie(goal.from, goal.to));
-        json("settle_band_percent", spec.settle_band_percent);
-        json("min_attenuation_db", goal.min_attenuation_db);
-        json("min_ripple_reduction_db", goal.min_ripple_reduction_db, if_any);
-        json("max_delay_ms", goal.max_delay, in_ms);
-        json("max_bands", goal.most_bands);
-        json("points", frontier.points);
-        json.group("recommended", [&](JsonWriter& recommended) {
-            describe(recommended, frontier.points[frontier.recommended]);
-            recommended("point", frontier.recommended);
-            recommended("reason", frontier.reason);
-            recommended("no_notch_below_deg_s", frontier.slowest);
-        });
-    }));
-}
-
-std::string frontier_to_csv(const Frontier& frontier) {
-    std::string csv =
-        "bands,attenuation_db,delay_ms,q_least,q_largest,settle_ms,overshoot_percent,recommended\n";
-    for (std::size_t i = 0; i < frontier.points.size(); ++i) {
-        const TradePoint& point = frontier.points[i];
-        csv += fmt::format("{},{:.2f},{:.3f},{},{},{:.3f},{:.3f},{}\n", point.bands, point.attenuation_db,
-                           1e3 * point.delay.value(), shortest(point.least_q), shortest(point.largest_q),
-                           1e3 * point.settle.value(), point.overshoot_percent,
-                           i == frontier.recommended ? 1 : 0);
-    }
-    return csv;
 }
 
 std::string recommendation_text(const RecommendationReport& report, const Provenance& provenance) {

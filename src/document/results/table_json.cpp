@@ -136,7 +136,6 @@ void describe_table(Archive& archive, auto& spec, auto&& bands, const DesignNote
 
 void describe(JsonWriter& json, const DesignNote& note) {
     json("min_attenuation_db", note.min_attenuation_db);
-    json("min_ripple_reduction_db", note.min_ripple_reduction_db, if_any);
     json("max_delay_ms", note.max_delay, in_ms);
     json("reason", note.reason);
     json("no_notch_below_deg_s", note.slowest);

@@ -55,7 +55,7 @@ Form form_of(const FilterSet& filters, const Settings& settings) {
     if (form != (keeps_past ? Form::df1 : Form::svf)) {
         raise<UsageError>(
             "target c-header: form={} does not run as transition={} is previewed, whose form is {}; take "
-            "--transition {}",
+            "--method switching,table=...,transition={}",
             asked, transition, keeps_past ? "df1" : "svf",
             form == Form::df1   ? "keep"
             : form == Form::svf ? "keep-state-variable"

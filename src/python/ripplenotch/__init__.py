@@ -251,7 +251,7 @@ def design(identification: Identification | Mapping[str, Any] | str | os.PathLik
 
     identification  of `identify`, or a joint.json; None where gear_ratio=, orders= and sample_rate= are given
     options         speed=(from, to, width) in deg/s, or bands=[(from, to), ...], or a goal: min_attenuation="20dB", max_delay="20ms";
-                    q=, depth=, hysteresis=, amplitudes=, ratio_error=, below=, above=, ...
+                    q=, depth=, hysteresis=, amplitudes=, ...
     """
     return _run("design", [] if identification is None else [identification], options, Table)
 

@@ -39,7 +39,7 @@ std::optional<double> order_of(const Line& line, const Identification& found,
     return std::abs(order - whole) <= whole_order_share * order ? whole : order;
 }
 
-// Six digits in per cent, so that --ratio-error says exactly the same.
+// Six digits in per cent, as table.json holds it.
 double ratio_error(const GearRatioFit& fit) {
     const double off = std::max(fit.ci95_high - *fit.value, *fit.value - fit.ci95_low);
     if (!(off > 0.0) || !std::isfinite(off)) return 0.0;
