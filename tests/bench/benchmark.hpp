@@ -4,8 +4,7 @@
 // runs them.
 //
 // Not Catch2's BENCHMARK: it reports the mean wall time of one call. Here the machine is shared, so what
-// counts is processor time, the median of rounds that take all benchmarks in turn, and a rate that
-// scripts/bench-peers can read.
+// counts is processor time, the median of rounds that take all benchmarks in turn.
 
 #include <cstddef>
 #include <cstdint>

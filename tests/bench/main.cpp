@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
-// usage: bench_ripplenotch [--json] [--rounds N] [WORD...]    benchmarks whose name contains a WORD; all when
+// usage: bench_ripplenotch [--rounds N] [WORD...]    benchmarks whose name contains a WORD; all when
 // none is given
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cstdlib>
 #include <ctime>
-#include <nlohmann/json.hpp>
 
 #include "benchmark.hpp"
 
@@ -27,16 +26,13 @@ double processor_seconds() {
 }
 
 struct Request {
-    bool json = false;
     std::size_t rounds = 5;
     std::vector<std::string> words;
 
     Request(int count, char** arguments) {
         for (int i = 1; i < count; ++i) {
             const std::string word = arguments[i];
-            if (word == "--json")
-                json = true;
-            else if (word == "--rounds" && i + 1 < count)
+            if (word == "--rounds" && i + 1 < count)
                 rounds = std::max(1UL, std::strtoul(arguments[++i], nullptr, 10));
             else
                 words.push_back(word);
@@ -76,19 +72,10 @@ std::vector<Measured> run(const Request& request) {
     return all;
 }
 
-void print(const Request& request, const std::vector<Measured>& all) {
-    nlohmann::ordered_json list = nlohmann::ordered_json::array();
-    for (const Measured& one : all) {
-        list.push_back({{"name", one.benchmark->name},
-                        {"work", one.benchmark->work},
-                        {"cpu_s", one.seconds},
-                        {"median_cpu_s", one.median()},
-                        {"million_a_second", one.million_a_second()}});
-        if (request.json) continue;
+void print(const std::vector<Measured>& all) {
+    for (const Measured& one : all)
         fmt::print("{:52} {:10.3f} ms  {:8.3f} ns each  {:9.1f} million a second\n", one.benchmark->name,
                    1e3 * one.median(), 1e9 * one.median() / one.benchmark->work, one.million_a_second());
-    }
-    if (request.json) fmt::print("{}\n", list.dump(1));
 }
 
 }  // namespace
@@ -110,7 +97,6 @@ void keep(double value) { kept = value; }
 
 int main(int count, char** arguments) {
     using namespace ripplenotch::bench;
-    const Request request(count, arguments);
-    print(request, run(request));
+    print(run(Request(count, arguments)));
     return EXIT_SUCCESS;
 }

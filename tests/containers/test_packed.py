@@ -11,9 +11,7 @@ import struct
 import subprocess
 import sys
 import unittest
-import unittest.mock
 
-from commands import SOURCE
 from container_case import LOG, Case, needs, there
 
 
@@ -85,15 +83,6 @@ class Compressed(Case):
         self.assertFalse((self.folder / "out.csv").exists())
 
 
-# DuckDB from npm, as scripts/bench-peers fetches it, is the engine without the program: a line of SQL is all that is asked of it here.
-DUCKDB = SOURCE / "scripts/bench_peers/node_modules/@duckdb/node-api"
-AS_PROGRAM = """#!/usr/bin/env node
-const {{ DuckDBInstance }} = require('{}');
-DuckDBInstance.create().then(db => db.connect()).then(connection => connection.run(process.argv[3]))
-  .then(() => process.exit(0), error => {{ console.error(error); process.exit(1); }});
-"""
-
-
 class Strangers(Case):
     def test_each_names_the_line_that_converts_it(self):
         for name, magic, word in (("run.mf4", b"MDF     4.10", "asammdf"), ("run.tdms", b"TDSm\x0e\0\0\0", "nptdms"),
@@ -126,17 +115,11 @@ class Strangers(Case):
         (self.folder / f"{LOG.stem}.xlsx").rename(self.folder / "run.xlsx")
         self.assert_has_the_rows(self.converted("run.xlsx"))
 
-    @unittest.skipUnless(shutil.which("duckdb") or (DUCKDB.is_dir() and shutil.which("node")), "no duckdb here to write Parquet")
+    @unittest.skipUnless(shutil.which("duckdb"), "no duckdb here to write Parquet")
     def test_parquet_is_converted_by_its_line(self):
-        path = os.environ["PATH"]
-        if not shutil.which("duckdb"):
-            program = self.write("duckdb", AS_PROGRAM.format(DUCKDB).encode())
-            program.chmod(0o755)
-            path = f"{self.folder}:{path}"
-        with unittest.mock.patch.dict(os.environ, PATH=path):
-            subprocess.run(["duckdb", "-c", f"copy (from '{LOG}') to 'run.parquet'"], check=True, cwd=self.folder, timeout=60)
-            self.assertEqual((self.folder / "run.parquet").read_bytes()[:4], b"PAR1")
-            self.assert_has_the_rows(self.converted("run.parquet"))
+        subprocess.run(["duckdb", "-c", f"copy (from '{LOG}') to 'run.parquet'"], check=True, cwd=self.folder, timeout=60)
+        self.assertEqual((self.folder / "run.parquet").read_bytes()[:4], b"PAR1")
+        self.assert_has_the_rows(self.converted("run.parquet"))
 
     @needs("nptdms")
     def test_tdms_is_converted_by_its_line(self):
