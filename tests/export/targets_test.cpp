@@ -66,11 +66,18 @@ std::vector<FilterSet> filters_for(const Target& target) {
     return taken;
 }
 
+/// Its page, or its section of the page of all.
 std::string page_of(const Target& target) {
-    std::ifstream file(source_folder() + "/docs/export/" + std::string(target.name) + ".md");
+    const std::string folder = source_folder() + "/docs/export/", name(target.name);
     std::stringstream text;
-    text << file.rdbuf();
-    return text.str();
+    if (std::ifstream file(folder + name + ".md"); file.good()) {
+        text << file.rdbuf();
+        return text.str();
+    }
+    text << std::ifstream(folder + "README.md").rdbuf();
+    const std::string all = text.str(), head = "\n## " + name + "\n";
+    const std::size_t begin = all.find(head);
+    return begin == all.npos ? "" : all.substr(begin, all.find("\n## ", begin + head.size()) - begin);
 }
 
 }  // namespace
