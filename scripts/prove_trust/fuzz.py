@@ -2,8 +2,7 @@
 """Readers fed with what nobody would write: bytes and structures by libFuzzer within the readers, mutated documents through the
 program itself.
 
-The targets are built by `cmake --workflow --preset fuzz` (clang); where they are missing, only the second is done. A long round
-may be done in parts: --account FILE adds them up, and keeps beside it what the readers have learnt."""
+The targets are built by `cmake --workflow --preset fuzz` (clang); where they are missing, only the second is done."""
 
 import concurrent.futures
 import os
@@ -100,7 +99,7 @@ def prove(options):
     names = options.reader or [*TARGETS, PROGRAM]
     share = {name: SHARES[name] / sum(SHARES[one] for one in names) for name in names}
     with tempfile.TemporaryDirectory() as scratch:
-        folder = options.account.with_suffix(".corpora") if options.account else pathlib.Path(scratch)
+        folder = pathlib.Path(scratch)
         corpora.make(options.tool, options.source, folder)
         (folder / PROGRAM).mkdir(exist_ok=True)
 

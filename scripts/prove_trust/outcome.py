@@ -2,7 +2,6 @@
 """What a part of prove-trust tried and what it found, and the table of it."""
 
 import dataclasses
-import json
 import sys
 
 import page_tables
@@ -26,22 +25,6 @@ def table(rows):
     lines.append(f"| all | {sum(row.runs for row in rows):,} | {sum(row.seconds for row in rows):,.0f} | | "
                  f"{sum(len(row.findings) for row in rows) or 'none'} |")
     return "\n".join(lines)
-
-
-def added_up(path, part, rows):
-    """Rows with the runs of earlier rounds of a part; the file at `path` keeps them. After a finding and its correction the count
-    of that row starts anew."""
-    account = json.loads(path.read_text()) if path.exists() else {}
-    known = {row["what"]: Row(**row) for row in account.get(part, [])}
-    for row in rows:
-        before = known.get(row.what)
-        if before and not before.findings:
-            row.runs += before.runs
-            row.seconds += before.seconds
-        known[row.what] = row
-    account[part] = [dataclasses.asdict(row) for row in known.values()]
-    path.write_text(json.dumps(account, indent=1))
-    return list(known.values())
 
 
 def summary(rows):

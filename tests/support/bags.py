@@ -13,7 +13,6 @@ HEADER = "======================================================================
     "int32 sec\nuint32 nanosec\n"
 JOINT_STATE = "# This is a message that holds data to describe the state of a set of torque controlled joints.\n" \
     "std_msgs/Header header\n\nstring[] name\nfloat64[] position\nfloat64[] velocity\nfloat64[] effort\n" + HEADER
-LAW = "float64 velocity_deg_s\nfloat64 torque_nm\nfloat64 position_deg\n"
 
 
 class Cdr:
