@@ -317,7 +317,7 @@ TEST_CASE("a growing array is finished in a file and through a pipe alike", "[lo
     }
 }
 
-// NumPy files, against files that NumPy 1.24.2 wrote (scripts/make_npy_reference.py).
+// NumPy files, against files that NumPy 1.24.2 wrote.
 
 namespace {
 
