@@ -11,10 +11,10 @@ SEEDS = range(1, 6)
 PHASES = (90, 0)
 GEAR = "gear-ratio=100,orders=1:2"
 TABLE = "switching,table=table1.json"
-TRANSITIONS = ("parallel", "crossfade", "keep", "keep-state-variable", "reset")
+TRANSITIONS = ("parallel", "crossfade", "keep-state-variable")
 OSCILLATOR = f"oscillator,{GEAR}"
 # In the CSV alone.
-VARIANTS = ("hysteresis 1 deg/s", "crossfade", "keep", "reset", "gain scheduled", "minus-ripple", "no fading", "180 deg/s",
+VARIANTS = ("hysteresis 1 deg/s", "crossfade", "gain scheduled", "minus-ripple", "no fading", "180 deg/s",
             "13 Hz, 1st order", "its best Q, 1.4, parallel")
 
 
@@ -79,8 +79,7 @@ def contenders(best_q):
              ("oscillator, warm, 5 % and 5 deg off", lambda phase, has:
                  f"{OSCILLATOR},amplitudes=0.84Nm:0.475Nm,phases={phase + 5}deg:{phase - 5}deg{start[has]}"),
              ("oscillator, warm, gain scheduled", lambda phase, has: f"{warm(phase)},gain=scheduled{start[has]}"),
-             ("oscillator, warm, minus-ripple", lambda phase, has: f"{warm(phase)},output=minus-ripple{start[has]}"),
-             ("subtract", same(f"subtract,{GEAR}"))]
+             ("oscillator, warm, minus-ripple", lambda phase, has: f"{warm(phase)},output=minus-ripple{start[has]}")]
     return rows
 
 
@@ -145,11 +144,11 @@ def figure_11(tool, logs, truth):
     raw = columns((tool.folder / log).read_text())
     outputs = [filtered(tool, method, log) for method in (
         f"{TABLE},transition=parallel", "switching,table=best.json,transition=parallel", f"tracking,{GEAR}", OSCILLATOR,
-        warm(90), f"subtract,{GEAR}")]
+        warm(90))]
     rows = [[f"{raw['time_s'][k]:.3f}", fixed(raw["velocity_deg_s"][k], 2), fixed(truth[k], 4),
              fixed(raw["torque_nm"][k], 4), *(fixed(out[k], 4) for out in outputs)] for k in range(0, len(truth), 5)]
     return {"figure11.csv": csv_text(["time_s", "velocity_deg_s", "true_nm", "raw_nm", "table1_nm", "best_q_nm",
-                                      "tracking_nm", "oscillator_cold_nm", "oscillator_warm_nm", "subtract_nm"], rows)}
+                                      "tracking_nm", "oscillator_cold_nm", "oscillator_warm_nm"], rows)}
 
 
 PHASE_PAIRS = [(p1, p2) for p1 in range(0, 360, 90) for p2 in range(0, 360, 90)]
@@ -188,7 +187,7 @@ def reversal(tool, data):
     methods = ["none", f"{TABLE},transition=parallel", "lowpass,cutoff=3Hz,order=2", "lowpass,cutoff=13rad/s,order=1"]
     methods += [f"tracking,{GEAR},q=1,{low}" for low in ("min=1Hz,fade=0Hz,low=park", "min=1Hz,fade=1Hz",
                                                          "min=2Hz,fade=2Hz")]
-    methods += [f"tracking,{GEAR}", OSCILLATOR, f"subtract,{GEAR}"]
+    methods += [f"tracking,{GEAR}", OSCILLATOR]
     numbers = []
     for method in methods:
         out = filtered(tool, method, "reversal.csv")

@@ -11,7 +11,7 @@ from . import documents
 
 QUANTITIES = ["10Nm", "1kHz", "18deg/s", "1.5e3", "-0.25rad", "2 N m", "5ms", "rpm", "1e308kNm", "12rad/s", "100ns", "0.1kg m^2", "1e-320mHz"]
 SPECS = ["switching,table=table.json", "fixed,centers=25Hz:50Hz,q=0.25", "lowpass,cutoff=13Hz,order=2", "tracking,bandwidth=2Hz",
-         "oscillator,gain=0.1", "subtract", "none", "ripple,order=1,amplitude_nm=0.8"]
+         "oscillator,gain=0.1", "none", "ripple,order=1,amplitude_nm=0.8"]
 ARMS = {
     0: "<robot name='r'><link name='a'/><link name='b'/><link name='tool'/><joint name='j' type='revolute'><parent link='a'/><child link='b'/>"
        "<origin xyz='0 0 0.3' rpy='0 1.57 0'/><axis xyz='0 0 1'/><limit lower='-1' upper='1'/></joint><joint name='k' type='fixed'>"

@@ -116,8 +116,8 @@ def streams(shop):
     start = time.monotonic()
     lost = {("info", "log.csv"): {0: 0, 1: FILE, 2: 0, "full": FILE},
             ("info", "-"): {0: FILE},
-            ("filter", "log.csv", "--table", "table.json"): {0: 0, 1: FILE, 2: 0, "full": FILE},
-            ("filter", "-", "--table", "table.json"): {0: FILE}}
+            ("filter", "log.csv", "--method", "switching,table=table.json"): {0: 0, 1: FILE, 2: 0, "full": FILE},
+            ("filter", "-", "--method", "switching,table=table.json"): {0: FILE}}
     for words, codes in lost.items():
         for stream, code in codes.items():
             got = closed_stream(shop, words, stream)

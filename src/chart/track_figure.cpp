@@ -17,7 +17,7 @@ namespace {
 
 constexpr int steps = 40;
 
-/// Amplitude and error at one speed, the second comb and the joint's turn averaged out.
+/// Amplitude and error at one speed, the second comb averaged out.
 struct At {
     std::complex<double> value;
     double error_nm = 0.0;
@@ -26,12 +26,11 @@ struct At {
 At at_speed(const MapFit& fit, std::size_t order, double speed_deg_s) {
     const MapForm& form = fit.map.form;
     std::vector<double> weights(form.columns());
-    map_weights(fit.map, {speed_deg_s, fit.map.zero_deg, fit.map.loads_nm.middle()}, weights);
+    map_weights(fit.map, {speed_deg_s, fit.map.zero_deg}, weights);
     At found;
     double square = 0.0;
     for (std::size_t c = 0; c < weights.size(); ++c) {
-        const std::size_t within = c % form.columns_a_direction(), speeds = form.speeds_deg_s.size();
-        if (within >= speeds && within < form.load_column()) continue;
+        if (form.is_second_comb(c)) continue;
         found.value += weights[c] * fit.map.values[order][c];
         square += weights[c] * weights[c] * 0.5 * std::norm(fit.errors[order][c]);
     }

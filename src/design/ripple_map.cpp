@@ -14,20 +14,13 @@ constexpr double slowest_blend_deg_s = 0.1;  ///< the sign of a slower speed is 
 
 double radians_of_turns(double turns) { return 2.0 * std::numbers::pi * (turns - std::floor(turns)); }
 
-// The position within the range seen, whole turns of the joint aside.
-double held_position(const MapRange& range, double position_deg) {
-    if (!(range.to > range.from)) return position_deg;
-    const double turns = std::round((position_deg - range.middle()) / 360.0);
-    return std::clamp(position_deg - 360.0 * turns, range.from, range.to);
-}
-
 // One direction's columns, times `share`.
 void add_direction(const RippleMap& map, const MapState& state, double share, std::span<double> weights) {
     const std::vector<double>& knots = map.form.speeds_deg_s;
     const double speed = std::clamp(std::abs(state.speed_deg_s), knots.front(), knots.back());
     std::size_t above = 0;
     while (above + 1 < knots.size() && knots[above] < speed) ++above;
-    for (std::size_t comb = 0; comb < map.form.speed_columns(); comb += knots.size()) {
+    for (std::size_t comb = 0; comb < map.form.columns_a_direction(); comb += knots.size()) {
         if (above == 0) {
             weights[comb] += share;
         } else {
@@ -35,18 +28,6 @@ void add_direction(const RippleMap& map, const MapState& state, double share, st
             weights[comb + above - 1] += share * (1.0 - along);
             weights[comb + above] += share * along;
         }
-    }
-    std::size_t at = map.form.speed_columns();
-    const double angle_deg = held_position(map.positions_deg, state.position_deg) - map.zero_deg;
-    for (std::size_t k = 1; k <= map.form.turn_harmonics; ++k, at += 2) {
-        weights[at] += share * portable::cos_degrees(static_cast<double>(k) * angle_deg);
-        weights[at + 1] += share * portable::sin_degrees(static_cast<double>(k) * angle_deg);
-    }
-    if (map.form.by_load)
-        weights[at++] += share * std::clamp(state.load_nm, map.loads_nm.from, map.loads_nm.to);
-    if (map.form.by_temperature && state.temperature_degc) {
-        const MapRange& seen = map.temperatures_degc;
-        weights[at] += share * (std::clamp(*state.temperature_degc, seen.from, seen.to) - seen.middle());
     }
 }
 
@@ -77,10 +58,8 @@ std::complex<double> map_amplitude(const RippleMap& map, std::size_t order, std:
     std::complex<double> sum = 0.0, second = 0.0;
     const std::size_t each = map.form.columns_a_direction(), knots = map.form.speeds_deg_s.size();
     for (std::size_t d = 0; d < weights.size(); d += each) {
-        const std::size_t combs = d + map.form.speed_columns();
         for (std::size_t c = d; c < d + knots; ++c) sum += weights[c] * values[c];
-        for (std::size_t c = d + knots; c < combs; ++c) second += weights[c] * values[c];
-        for (std::size_t c = combs; c < d + each; ++c) sum += weights[c] * values[c];
+        for (std::size_t c = d + knots; c < d + each; ++c) second += weights[c] * values[c];
     }
     if (map.form.second_comb == 0) return sum;
     return sum + second_comb_phasor(map, order, position_deg) * second;
@@ -104,19 +83,8 @@ RippleMap with_zero(const RippleMap& map, double zero_deg) {
     moved.zero_deg = zero_deg;
     const double by_deg = zero_deg - map.zero_deg;
     const double motor_turns = map.gear_ratio.value() * by_deg / 360.0;
-    const std::size_t each = map.form.columns_a_direction(), first_turn = map.form.speed_columns();
     for (std::size_t i = 0; i < map.orders.size(); ++i) {
         std::vector<std::complex<double>>& z = moved.values[i];
-        for (std::size_t d = 0; d < map.form.directions; ++d) {
-            for (std::size_t k = 1; k <= map.form.turn_harmonics; ++k) {
-                const std::size_t at = d * each + first_turn + 2 * (k - 1);
-                const double angle = static_cast<double>(k) * by_deg;
-                const double c = portable::cos_degrees(angle), s = portable::sin_degrees(angle);
-                const std::complex<double> cosine = z[at], sine = z[at + 1];
-                z[at] = c * cosine + s * sine;
-                z[at + 1] = c * sine - s * cosine;
-            }
-        }
         const auto turned = portable::polar(1.0, -radians_of_turns(map.orders[i].value() * motor_turns));
         const std::complex<double> second = turned * second_comb_phasor(map, i, zero_deg);
         for (std::size_t c = 0; c < z.size(); ++c) z[c] *= map.form.is_second_comb(c) ? second : turned;

@@ -224,10 +224,6 @@ std::unique_ptr<CausalFilter> Contender::start_on_bench(Hertz sample_rate) const
     return without_ripple ? without_ripple->start(sample_rate) : start(sample_rate);
 }
 
-std::unique_ptr<Learner> Contender::learner(Hertz sample_rate) const {
-    return method->learner == nullptr ? nullptr : method->learner(settings, sample_rate);
-}
-
 std::optional<FrozenFilter> Contender::frozen(Hertz sample_rate, DegPerSec speed) const {
     if (method->frozen == nullptr) return std::nullopt;
     return method->frozen(settings, sample_rate, table.get(), speed);
@@ -277,7 +273,6 @@ constexpr std::size_t block_rows = 4096;  // chosen, not derived
 struct Runner {
     std::unique_ptr<CausalFilter> filter;
     std::vector<double> out;
-    std::span<const double> temperature_degc;  ///< temperature over the whole log, or empty
     double error_squares = 0.0;
     std::optional<SwitchLedger> ledger = std::nullopt;  ///< ledger of a method that switches
 };
@@ -310,11 +305,7 @@ void run_block(std::vector<Runner>& runners, RippleMeter& meter, const TraceView
                std::span<const double> truth_nm) {
     for (Runner& runner : runners) {
         runner.out.resize(block.size());
-        const auto warmth = runner.temperature_degc.empty()
-                                ? runner.temperature_degc
-                                : runner.temperature_degc.subspan(block.first_row, block.size());
-        runner.filter->process({block.velocity_deg_s, block.torque_nm, block.position_deg, warmth},
-                               runner.out);
+        runner.filter->process({block.velocity_deg_s, block.torque_nm, block.position_deg}, runner.out);
         if (runner.ledger) runner.ledger->add(block.time_s, runner.out, runner.filter->switches());
         for (std::size_t k = 0; k < truth_nm.size(); ++k) {
             const double error = runner.out[k] - truth_nm[k];
@@ -344,21 +335,6 @@ void for_each_block(const TraceView& trace, const Block& block, const Gap& at_ga
         }
         at = end;
     }
-}
-
-// A filter for the log; a method with a first pass over the whole log has made it.
-std::unique_ptr<CausalFilter> filter_for(const Contender& contender, const ComparedLog& log) {
-    const auto learner = contender.learner(log.trace.sample_rate);
-    if (learner == nullptr) return contender.start(log.trace.sample_rate);
-    std::vector<double> passed;
-    for_each_block(
-        log.trace,
-        [&](const TraceView& block) {
-            passed.resize(block.size());
-            learner->process({block.velocity_deg_s, block.torque_nm, block.position_deg}, passed);
-        },
-        [&] { learner->restart(); });
-    return learner->learned();
 }
 
 }  // namespace
@@ -402,15 +378,12 @@ DegPerSec median_moving_speed(const TraceView& trace) {
 }
 
 std::vector<double> output_on_log(const Contender& contender, const ComparedLog& log) {
-    const auto filter = filter_for(contender, log);
+    const auto filter = contender.start(log.trace.sample_rate);
     std::vector<double> out(log.trace.size());
     for_each_block(
         log.trace,
         [&](const TraceView& block) {
-            std::span<const double> warmth;
-            if (!log.temperatures_degc.empty() && !log.temperatures_degc.front().empty())
-                warmth = log.temperatures_degc.front().subspan(block.first_row, block.size());
-            filter->process({block.velocity_deg_s, block.torque_nm, block.position_deg, warmth},
+            filter->process({block.velocity_deg_s, block.torque_nm, block.position_deg},
                             std::span(out).subspan(block.first_row, block.size()));
         },
         [&] { filter->restart(); });
@@ -421,9 +394,7 @@ LogLevels measure_on_log(std::span<const Contender> contenders, const ComparedLo
                          const GearAccount& lines) {
     std::vector<Runner> runners;
     for (const Contender& contender : contenders) {
-        runners.push_back({filter_for(contender, log), {}, {}});
-        if (runners.size() <= log.temperatures_degc.size())
-            runners.back().temperature_degc = log.temperatures_degc[runners.size() - 1];
+        runners.push_back({contender.start(log.trace.sample_rate), {}});
         if (contender.method->needs_table) runners.back().ledger.emplace(log.truth_nm);
     }
     RippleMeter meter(lines.ratio, lines.orders, log.trace.sample_rate, runners.size() + 1);

@@ -307,9 +307,7 @@ Recommendation recommend(std::span<const Contender> contenders, const ComparedLo
     Progress::current().begin("judging", "methods", contenders.size());
     for (std::size_t i = 0; i < contenders.size(); ++i, Progress::current().add(1)) {
         JudgedMethod method = judged(contenders[i], std::move(levels.methods[i]), log.trace, speeds, found);
-        method.distortion =
-            reference.distortion(contenders[i], i < log.temperatures_degc.size() ? log.temperatures_degc[i]
-                                                                                 : std::span<const double>());
+        method.distortion = reference.distortion(contenders[i]);
         method.error_nm = portable::hypot(
             portable::hypot(method.figures.ripple_rms_nm.value_or(0.0), method.distortion.in_band_nm),
             method.distortion.added_nm);

@@ -117,21 +117,18 @@ std::vector<double> TorqueReference::powers_beside(const std::vector<double>& to
     return powers;
 }
 
-Distortion TorqueReference::distortion(const Contender& contender,
-                                       std::span<const double> temperature_degc) const {
+Distortion TorqueReference::distortion(const Contender& contender) const {
     const Contender& method = contender.without_ripple ? *contender.without_ripple : contender;
-    ComparedLog log = log_;
-    log.temperatures_degc.assign(1, temperature_degc);
-    std::vector<double> out = output_on_log(method, log);
+    std::vector<double> out = output_on_log(method, log_);
     const std::vector<double> beside_nm2 = powers_beside(out);
     double added_nm2 = 0.0;
     for (std::size_t i = 0; i < beside_nm2.size(); ++i)
         added_nm2 += std::max(beside_nm2[i] - beside_nm2_[i], 0.0);
     for (std::size_t k = 0; k < out.size(); ++k) out[k] -= torque_nm_[k];
     std::vector<double> slower = out;
-    low_pass(out, log.trace, band_.to);
+    low_pass(out, log_.trace, band_.to);
     if (band_.from.value() > 0.0) {
-        low_pass(slower, log.trace, band_.from);
+        low_pass(slower, log_.trace, band_.from);
         for (std::size_t k = 0; k < out.size(); ++k) out[k] -= slower[k];
     }
     return {std::sqrt(power(out)), std::sqrt(added_nm2)};

@@ -32,9 +32,9 @@ COLUMNS = ("time_s", "velocity_deg_s", "torque_nm")
 
 # Quiet: the warnings of harm measure the ripple in stretches of the log, whose cost is no cost of a row.
 CASES = {
-    "filter, CSV with 6 decimals": ["filter", "-q", "{log}.csv", "--table", "{table}", "--decimals", "6", "-o", "{out}.csv"],
-    "filter, CSV, shortest digits": ["filter", "-q", "{log}.csv", "--table", "{table}", "--decimals", "shortest", "-o", "{out}.csv"],
-    "filter, npy": ["filter", "-q", "{log}.npy", "--table", "{table}", "-o", "{out}.npy"],
+    "filter, CSV with 6 decimals": ["filter", "-q", "{log}.csv", "--method", "switching,table={table}", "--decimals", "6", "-o", "{out}.csv"],
+    "filter, CSV, shortest digits": ["filter", "-q", "{log}.csv", "--method", "switching,table={table}", "--decimals", "shortest", "-o", "{out}.csv"],
+    "filter, npy": ["filter", "-q", "{log}.npy", "--method", "switching,table={table}", "-o", "{out}.npy"],
     # Through a pipe, whose bytes are not hashed: valgrind knows no instructions for SHA-256, so hashing would be most of it.
     # No line in either log: the short one has two by chance, and what it costs to measure them is no cost of a row.
     "spectrum, npy, segments of 4096": ["spectrum", "-", "--segment", "2.048s", "--false-alarm", "1e-6", "-o", "{out}.csv"],

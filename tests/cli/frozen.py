@@ -29,10 +29,10 @@ BYTES = [
     ("design", f"design {GEAR} --sample-rate 1kHz --speed 18:180:18 --q 0.25 --json -o {{d}}/table.json"),
     ("design orders", f"design {GEAR} --orders 1,2,4 --sample-rate 2kHz --speed 18:180 --min-attenuation 10dB --json -o {{d}}/table4.json"),
     *[(f"filter {method.split(',')[0]}", f"filter {MOVE} --method {method} {GEAR} -o {{d}}/filtered_{k}.csv")
-      for k, method in enumerate(("none", "lowpass,cutoff=10Hz", "fixed,centers=33.3Hz:66.7Hz", "tracking", "oscillator", "subtract"))],
+      for k, method in enumerate(("none", "lowpass,cutoff=10Hz", "fixed,centers=33.3Hz:66.7Hz", "tracking", "oscillator"))],
     ("filter table", f"filter {MOVE} --method switching,table={{d}}/table.json -o {{d}}/filtered_table.csv"),
     *[(f"filter {transition}", f"filter {MOVE} --method switching,table={{d}}/table.json,transition={transition} -o {{d}}/filtered_{transition}.csv")
-      for transition in ("keep", "reset", "crossfade", "parallel", "keep-state-variable")],
+      for transition in ("crossfade", "parallel", "keep-state-variable")],
     ("filter one thread", f"filter {STEADY} --method switching,table={{d}}/table.json --threads 1 -o {{d}}/filtered_one.csv"),
     ("filter to npy", f"filter {STEADY} --method lowpass,cutoff=20Hz -o {{d}}/filtered.npy"),
     ("filter range", f"filter {MOVE} --method lowpass,cutoff=20Hz --from 0.5s --to 1.5s -o {{d}}/filtered_range.csv"),

@@ -201,10 +201,10 @@ class LeftOut(Case):
 
     def test_no_table_or_joint_file(self):
         self.good("design", *GEAR, "--sample-rate", "1kHz", "--speed", "20:180:20", "--q", "1", "-o", "table_j1.json", "--json")
-        words = ("filter", "wide.csv", "--joint", "all", "--table", "table_{joint}.json")
+        words = ("filter", "wide.csv", "--joint", "all", "--method", "switching,table=table_{joint}.json")
         done = self.good(*words, "-o", "all.csv")
         self.assertIn("joint j3 is left out: table_j3.json", done.stderr)
-        self.good("filter", "wide.csv", "--joint", "j1", "--table", "table_j1.json", "-o", "one.csv")
+        self.good("filter", "wide.csv", "--joint", "j1", "--method", "switching,table=table_j1.json", "-o", "one.csv")
         self.assertEqual((self.folder / "all.csv").read_bytes(), (self.folder / "one.csv").read_bytes())
         (self.folder / "table_j1.json").unlink()
         self.assertEqual(self.run_tool(*words, "-o", "none.csv").returncode, 4)

@@ -317,8 +317,8 @@ class Truth(Comparison):
         return [float(line.split(",")[2]) for line in lines]
 
     def test_the_error_is_the_rms_difference_from_the_true_torque(self):
-        reset = "switching,table=table.json,transition=reset"
-        _, rows = self.compare("log.csv", "--truth", "true.csv", *RIPPLE, *methods(reset), cwd=self.folder)
+        switching = "switching,table=table.json,transition=parallel"
+        _, rows = self.compare("log.csv", "--truth", "true.csv", *RIPPLE, *methods(switching), cwd=self.folder)
         for method, row in rows.items():
             done = run("filter", "--method", method, "log.csv", "-o", "out.csv", "--force", "--json",
                        cwd=self.folder)
@@ -326,10 +326,10 @@ class Truth(Comparison):
             expected = math.sqrt(sum((a - b) ** 2 for a, b in zip(out, truth)) / len(out))
             self.assertAlmostEqual(row["error_rms_nm"], expected, places=9)
             jumps = [abs(s["jump_nm"]) for s in json.loads(done.stdout)["switches"]]
-            self.assertEqual(row["largest_jump_nm"], max(jumps) if method == reset else None)
+            self.assertEqual(row["largest_jump_nm"], max(jumps) if method == switching else None)
 
     def test_each_switch_has_its_own_peak_error_and_settling_in_the_ledger(self):
-        method = "switching,table=table.json,transition=keep"
+        method = "switching,table=table.json"
         words = ["log.csv", *RIPPLE, *methods(method)]
         _, rows = self.compare(*words, "--truth", "true.csv", "-v", cwd=self.folder)
         done = run("filter", "--method", method, "log.csv", "-o", "out.csv", "--force", "--json", cwd=self.folder)

@@ -340,7 +340,7 @@ class Goals(Case):
 
     def test_a_designed_table_is_one_that_filter_takes(self):
         design(*GOAL, "--min-attenuation", "20dB", "--max-delay", "20ms", "-o", "table.json", cwd=self.folder)
-        done = self.run_tool("filter", DATA / "paper_move_2s.csv", "--table", "table.json", "-o", "out.csv")
+        done = self.run_tool("filter", DATA / "paper_move_2s.csv", "--method", "switching,table=table.json", "-o", "out.csv")
         self.assertEqual((done.returncode, done.stderr), (0, ""))
 
     def test_the_same_goal_gives_the_same_bytes(self):

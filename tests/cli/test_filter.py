@@ -91,13 +91,13 @@ class Bytes(Case):
 
     def test_the_same_input_gives_the_same_bytes(self):
         table = self.table()
-        runs = {self.good("filter", DATA / "paper_move_2s.csv", "--table", table).stdout for _ in range(3)}
+        runs = {self.good("filter", DATA / "paper_move_2s.csv", "--method", f"switching,table={table}").stdout for _ in range(3)}
         self.assertEqual(len(runs), 1)
 
 
 class Paper(Case):
     def test_table_1_leaves_less_than_a_third_of_a_newton_metre_at_90_deg_s(self):
-        metrics = self.metrics(DATA / "paper_90deg_s.csv", "--table", self.table())
+        metrics = self.metrics(DATA / "paper_90deg_s.csv", "--method", f"switching,table={self.table()}")
         self.assertGreater(metrics["ripple_peak_to_peak_nm"]["raw"], 1.5)
         self.assertLess(metrics["ripple_peak_to_peak_nm"]["filtered"], 0.3)
         self.assertLess(metrics["residual_peak_to_peak_nm"]["filtered"], 0.3)
@@ -105,7 +105,7 @@ class Paper(Case):
             self.assertGreater(entry["attenuation_db"], 25.0)
 
     def test_the_two_second_move_passes_through_the_bands_and_back(self):
-        metrics = self.metrics(DATA / "paper_move_2s.csv", "--table", self.table())
+        metrics = self.metrics(DATA / "paper_move_2s.csv", "--method", f"switching,table={self.table()}")
         ledger = metrics["switches"]
         self.assertEqual(metrics["switch_count"], len(ledger))
         self.assertEqual(ledger[0]["from_band"], 0)
@@ -121,7 +121,7 @@ class Paper(Case):
 
 class Metrics(Case):
     def test_fields_are_those_of_the_page(self):
-        metrics = self.metrics(DATA / "paper_90deg_s.csv", "--table", self.table())
+        metrics = self.metrics(DATA / "paper_90deg_s.csv", "--method", f"switching,table={self.table()}")
         self.assertEqual(metrics["schema"], "ripplenotch/metrics/1")
         self.assertEqual(metrics["sample_rate_hz"], 1000.0)
         self.assertAlmostEqual(metrics["measured_sample_rate_hz"], 1000.0, 6)
@@ -154,7 +154,7 @@ class Metrics(Case):
 
     def test_a_log_at_rest_has_null_figures_and_says_why(self):
         self.table()
-        done = self.good("filter", DATA / "paper_rest.csv", "--table", "table.json", "-o", "out.csv", "--metrics", "m.json")
+        done = self.good("filter", DATA / "paper_rest.csv", "--method", "switching,table=table.json", "-o", "out.csv", "--metrics", "m.json")
         self.assertIn(b"ripple could not be measured", done.stderr)
         metrics = json.loads((self.folder / "m.json").read_text())
         self.assertIsNone(metrics["ripple_peak_to_peak_nm"])
@@ -174,19 +174,17 @@ class Clock(Case):
         source = log.read_text().splitlines()[1:]
         for at in (0, 1500):
             self.assertEqual(float(rows[at].split(",")[2]), float(source[at].split(",")[2]))
-        wide = self.good("filter", log, "--method", LOWPASS, "--gap", "1000", "-o", "wide.csv")
-        self.assertNotIn(b"gap", wide.stderr)
 
     def test_a_table_for_another_rate_is_refused_with_the_remedy_or_warned_about(self):
         self.table("--sample-rate", "500Hz", "--speed", "18:108:18")
         log = self.write("log.csv", log_text(2000))
-        message = self.refused(3, "filter", log, "--table", "table.json", "-o", "out.csv")
+        message = self.refused(3, "filter", log, "--method", "switching,table=table.json", "-o", "out.csv")
         self.assertRegex(message, r"1000 Hz.*500 Hz.*--sample-rate 1000Hz")
         self.assertFalse((self.folder / "out.csv").exists())
         self.table("--sample-rate", "1020Hz", "--speed", "18:108:18")
-        done = self.good("filter", log, "--table", "table.json", "-o", "out.csv")
+        done = self.good("filter", log, "--method", "switching,table=table.json", "-o", "out.csv")
         self.assertIn(b"2 % off", done.stderr)
-        self.good("filter", log, "--table", "table.json", "--sample-rate", "1020Hz", "-o", "stated.csv")
+        self.good("filter", log, "--method", "switching,table=table.json", "--sample-rate", "1020Hz", "-o", "stated.csv")
 
     def test_a_log_without_time_needs_a_rate(self):
         text = "velocity_deg_s,torque_nm\n" + "90,3.5\n" * 500
@@ -230,32 +228,17 @@ class Errors(Case):
             with self.subTest(spec):
                 self.assertIn(word, self.refused(2, "filter", log, "--method", spec, "-o", "out.csv"))
         self.assertIn("--method", self.refused(2, "filter", log))
-        self.assertIn("--table", self.refused(2, "filter", log, "--method", LOWPASS, "--table", "table.json"))
         self.assertEqual(list(self.folder.iterdir()), [])
 
     def test_files_that_are_missing_or_taken_are_exit_code_4_and_nothing_is_lost(self):
         log = DATA / "paper_90deg_s.csv"
         self.assertIn("missing.csv", self.refused(4, "filter", "missing.csv", "--method", LOWPASS))
-        self.assertIn("no.json", self.refused(4, "filter", log, "--table", "no.json"))
+        self.assertIn("no.json", self.refused(4, "filter", log, "--method", "switching,table=no.json"))
         self.write("taken.csv", "mine")
         self.write("taken.json", "mine")
         self.assertIn("--force", self.refused(4, "filter", log, "--method", LOWPASS, "-o", "taken.csv"))
         self.assertIn("--force", self.refused(4, "filter", log, "--method", LOWPASS, "-o", "o.csv", "--metrics", "taken.json"))
         self.assertEqual({p.name: p.read_text() for p in self.folder.iterdir()}, {"taken.csv": "mine", "taken.json": "mine"})
-
-
-class Several(Case):
-    def test_several_logs_go_to_a_folder_under_their_own_names(self):
-        logs = [DATA / "paper_60deg_s.csv", DATA / "paper_120deg_s.csv"]
-        self.good("filter", *logs, "--method", LOWPASS, "--gear-ratio", "100", "--out-dir", "out", "--metrics", "metrics")
-        for log in logs:
-            alone = self.good("filter", log, "--method", LOWPASS).stdout
-            self.assertEqual((self.folder / "out" / log.name).read_bytes(), alone)
-            metrics = json.loads((self.folder / "metrics" / f"{log.stem}.metrics.json").read_text())
-            self.assertEqual(metrics["source"], str(log))
-        self.assertIn("--out-dir", self.refused(2, "filter", *logs, "--method", LOWPASS))
-        self.assertIn("--out-dir", self.refused(2, "filter", *logs, "--method", LOWPASS, "-o", "x.csv"))
-        self.assertIn("paper_60deg_s.csv", self.refused(2, "filter", logs[0], logs[0], "--method", LOWPASS, "--out-dir", "o"))
 
 
 @unittest.skipUnless(LOGS.is_dir(), "the real logs are not on this machine")
@@ -264,7 +247,7 @@ class RealLogs(Case):
         self.good("design", "--gear-ratio", 120, "--orders", "1,2,4", "--sample-rate", "978.28Hz", "--speed", "10:110:2",
                   "--q", "1", "-o", "table.json")
         for joint in ("j1", "j4"):
-            metrics = self.metrics(LOGS / "gpl3" / f"panda_gaz_{joint}.csv", "--table", "table.json")
+            metrics = self.metrics(LOGS / "gpl3" / f"panda_gaz_{joint}.csv", "--method", "switching,table=table.json")
             second = metrics["orders"][1]
             self.assertGreater(second["raw_nm"], 0.25)           # the literature's 0.39 and 0.41 Nm are at other speeds too
             self.assertGreater(second["attenuation_db"], 15.0)
@@ -293,21 +276,6 @@ class Threads(Case):
         for k, comment in ((2, "# between rows, with, commas"), (170_000, "# a line, longer"), (cls.ROWS, "EOF")):
             rows.insert(k, comment)
         cls.text = "\n".join(rows) + "\n"
-
-    def test_exact_changes_the_last_digits_of_fixed_and_lowpass_alone_and_v_says_the_way(self):
-        log, table = self.write("log.csv", log_text(60000)), self.table()
-        torque = lambda done: [float(row.split(",")[2]) for row in done.stdout.decode().splitlines()[1:]]
-        for method in (LOWPASS, "fixed,centers=25Hz:50Hz"):
-            quick = self.good("filter", log, "--method", method, "-v")
-            exact = self.good("filter", log, "--method", method, "-v", "--exact")
-            self.assertIn(b"in blocks of eight samples", quick.stderr)
-            self.assertNotIn(b"blocks of eight", exact.stderr)
-            self.assertNotEqual(quick.stdout, exact.stdout)
-            self.assertLess(max(abs(a - b) for a, b in zip(torque(quick), torque(exact), strict=True)), 4e-12)
-        slow = self.good("filter", log, "--method", "lowpass,cutoff=0.1Hz,order=2", "-v")
-        self.assertIn(b"sample by sample", slow.stderr)
-        self.assertEqual(self.good("filter", log, "--table", table, "--exact").stdout,
-                         self.good("filter", log, "--table", table).stdout)
 
     def test_any_number_of_threads_gives_the_same_bytes_from_file_and_pipe(self):
         rows = self.text.splitlines()
@@ -354,7 +322,7 @@ class Threads(Case):
 
 
 class Harm(Case):
-    """A filter that makes the torque worse is said to, always, and is exit code 1 on request."""
+    """A filter that makes the torque worse is said to."""
 
     def simulated(self, name, inertia, motion):
         self.good("simulate", "--gear-ratio", 100, "--inertia", inertia, "--ripple", "1:0.8Nm:30deg", "--ripple", "2:0.5Nm", "--motion",
@@ -364,31 +332,29 @@ class Harm(Case):
     def test_a_delay_and_a_switch_that_cost_more_than_the_ripple_are_warned_of(self):
         self.table()
         fast = self.simulated("fast.csv", "3kgm2", "sine,amplitude=40deg,frequency=0.6Hz,duration=10s")
-        done = self.run_tool("filter", fast, "--table", "table.json", "-o", "out.csv")
+        done = self.run_tool("filter", fast, "--method", "switching,table=table.json", "-o", "out.csv")
         said = done.stderr.decode()
         self.assertEqual(done.returncode, 0, said)
         self.assertRegex(said, r"its delay moves the torque itself by [\d.]+ Nm rms, more than the 0\.6\d* Nm rms of ripple")
         self.assertRegex(said, r"the switch from band 1 to no filter at [\d.]+ s moves the output by [\d.]+ Nm, .*below=fade")
-        done = self.run_tool("filter", fast, "--table", "table.json", "-o", "out.csv", "--force", "--require-improvement")
-        self.assertEqual(done.returncode, 1)
         self.assertTrue((self.folder / "out.csv").exists())
         # What it moves is the delay on a torque that moves: the lag of the trend, worked out from the two files.
-        metrics = self.metrics(fast, "--table", "table.json")
+        metrics = self.metrics(fast, "--method", "switching,table=table.json")
         self.assertGreater(metrics["distortion_rms_nm"], 1.0)
-        self.assertEqual(self.run_tool("filter", fast, "--table", "table.json", "-o", "out.csv", "--force", "-q").stderr, b"")
+        self.assertEqual(self.run_tool("filter", fast, "--method", "switching,table=table.json", "-o", "out.csv", "--force", "-q").stderr, b"")
 
     def test_a_filter_that_improves_the_torque_says_nothing(self):
         self.table()
         calm = self.simulated("calm.csv", "0.2kgm2", "constant,speed=60deg/s,duration=5s")
-        done = self.run_tool("filter", calm, "--table", "table.json", "-o", "out.csv", "--require-improvement")
+        done = self.run_tool("filter", calm, "--method", "switching,table=table.json", "-o", "out.csv")
         self.assertEqual((done.returncode, done.stderr), (0, b""))
 
     def test_an_order_that_grows_is_named(self):
         # A map with the wrong sign doubles what it should take out.
         log = self.simulated("log.csv", "0.2kgm2", "sine,amplitude=60deg,frequency=0.1Hz,duration=20s")
         opposite = "map,gear-ratio=100,orders=1:2,cosines=-0.6928Nm:-0.5Nm,sines=0.4Nm:0Nm"
-        done = self.run_tool("filter", log, "--method", opposite, "-o", "out.csv", "--require-improvement")
-        self.assertEqual(done.returncode, 1, done.stderr)
+        done = self.run_tool("filter", log, "--method", opposite, "-o", "out.csv")
+        self.assertEqual(done.returncode, 0, done.stderr)
         self.assertRegex(done.stderr.decode(), r"order 1 grew from 0\.(79|8)\d* to 1\.\d+ Nm")
 
     @unittest.skipUnless((LOGS / "gpl3" / "panda_gaz_j1.csv").exists(), "SKIPPED: the folder of real logs is not here")
@@ -398,8 +364,7 @@ class Harm(Case):
         self.good("design", "joint.json", "-o", "table.json", "-q")
         table = json.loads((self.folder / "table.json").read_text())
         self.assertGreater(table["hysteresis_deg_s"], 0.5)
-        done = self.run_tool("filter", log, "--table", "table.json", "-o", "out.csv", "--require-improvement")
-        self.assertEqual(done.returncode, 1)
+        done = self.run_tool("filter", log, "--method", "switching,table=table.json", "-o", "out.csv")
         self.assertIn("more than the", done.stderr.decode())
         # Its noise makes it switch back and forth no more: 458 times without hysteresis.
-        self.assertLess(self.metrics(log, "--table", "table.json")["switch_count"], 100)
+        self.assertLess(self.metrics(log, "--method", "switching,table=table.json")["switch_count"], 100)

@@ -39,10 +39,9 @@ class Joints(Case):
         return log.read_bytes()
 
     def test_one_pass_gives_the_bytes_of_one_joint_after_another(self):
-        for name, words in (("own", ("--table", "{joint}.json")), ("low", ("--method", "lowpass,cutoff=5Hz,order=2")),
+        for name, words in (("own", ("--method", "switching,table={joint}.json")), ("low", ("--method", "lowpass,cutoff=5Hz,order=2")),
                             ("fixed", ("--method", "fixed,centers=20Hz,q=1", "--decimals", "4")),
-                            ("keep", ("--method", "switching,table={joint}.json,transition=keep,hysteresis=2deg/s")),
-                            ("learns", ("--method", "subtract,gear-ratio=100,orders=1:2"))):
+                            ("parallel", ("--method", "switching,table={joint}.json,transition=parallel,hysteresis=2deg/s"))):
             with self.subTest(name):
                 together = self.good("filter", self.log, "--joint", "all", *words).stdout
                 self.assertTrue(together == self.one_after_another(self.log, name, *words), "not the same bytes")
@@ -51,15 +50,15 @@ class Joints(Case):
     def test_any_number_of_threads_gives_the_same_bytes(self):
         log = self.write("long.csv", wide_log(80_000))
         self.assertGreater(log.stat().st_size, 6 << 20)  # threads start behind 4 MiB
-        outputs = {self.good("filter", log, "--joint", "all", "--table", "{joint}.json", "--threads", threads).stdout
+        outputs = {self.good("filter", log, "--joint", "all", "--method", "switching,table={joint}.json", "--threads", threads).stdout
                    for threads in (1, 2, 3)}
         self.assertEqual(len(outputs), 1)
 
     def test_arrays_too(self):
         self.good("filter", self.log, "--joint", "all", "--method", "none", "-o", "wide.npy")
-        together = self.good("filter", "wide.npy", "--joint", "all", "--table", "{joint}.json", "-o", "all.npy")
+        together = self.good("filter", "wide.npy", "--joint", "all", "--method", "switching,table={joint}.json", "-o", "all.npy")
         self.assertEqual(together.stdout, b"")
-        one_by_one = self.one_after_another(self.folder / "wide.npy", "array", "--table", "{joint}.json")
+        one_by_one = self.one_after_another(self.folder / "wide.npy", "array", "--method", "switching,table={joint}.json")
         self.assertTrue((self.folder / "all.npy").read_bytes() == one_by_one, "not the same bytes")
 
     def test_added_columns_bear_the_joints_names(self):
@@ -73,9 +72,9 @@ class Joints(Case):
                   "--method", "none")
 
     def test_each_joint_has_metrics_of_its_own_and_they_are_those_of_one_joint(self):
-        self.good("filter", self.log, "--joint", "all", "--table", "{joint}.json", "--metrics", "m_{joint}.json", "-o", "all.csv")
+        self.good("filter", self.log, "--joint", "all", "--method", "switching,table={joint}.json", "--metrics", "m_{joint}.json", "-o", "all.csv")
         for joint, ratio in (("j1", 100), ("j2", 120), ("j3", 80)):
-            alone = self.good("filter", self.log, "--joint", joint, "--table", f"{joint}.json", "--json", "-o", f"x_{joint}.csv")
+            alone = self.good("filter", self.log, "--joint", joint, "--method", f"switching,table={joint}.json", "--json", "-o", f"x_{joint}.csv")
             first, second = json.loads((self.folder / f"m_{joint}.json").read_text()), json.loads(alone.stdout)
             for metrics in (first, second):
                 metrics.pop("provenance", None)
@@ -97,7 +96,7 @@ class Joints(Case):
             for column, ratio in columns:
                 row[column] = f"{float(row[column]) * ratio / 6:.4f}"
         before = self.write("motors.csv", "\n".join(",".join(row) for row in (head, *rows)) + "\n")
-        words = ("--joint", "all", "--table", "{joint}.json")
+        words = ("--joint", "all", "--method", "switching,table={joint}.json")
         self.good("filter", before, *words, "--metrics", "m_{joint}.json", "-o", "motors_done.csv", "--decimals", "9")
         self.good("filter", self.log, *words, "--metrics", "n_{joint}.json", "-o", "joints_done.csv", "--decimals", "9")
         for joint in ("j1", "j2", "j3"):
@@ -109,7 +108,7 @@ class Joints(Case):
         self.assertLess(max(abs(a - b) for m, n in zip(*torques) for a, b in zip(m, n)), 1e-4)
 
     def test_a_limit_that_one_joint_breaks_is_told_with_its_name(self):
-        done = self.run_tool("filter", self.log, "--joint", "all", "--table", "{joint}.json", "--max-delay", "12ms", "-o", "all.csv")
+        done = self.run_tool("filter", self.log, "--joint", "all", "--method", "switching,table={joint}.json", "--max-delay", "12ms", "-o", "all.csv")
         self.assertEqual(done.returncode, 1, done.stderr)
         self.assertIn("joint j3: ", done.stderr.decode())
 
@@ -118,12 +117,12 @@ class Joints(Case):
                             (("--metrics", "m.json", "-o", "a.csv"), "{joint}"),
                             (("--columns", "torque=j1_torque_nm", "-o", "a.csv"), "--columns")):
             with self.subTest(words[0]):
-                self.assertIn(said, self.refused(2, "filter", self.log, "--joint", "all", "--table", "j1.json", *words))
+                self.assertIn(said, self.refused(2, "filter", self.log, "--joint", "all", "--method", "switching,table=j1.json", *words))
                 self.assertFalse((self.folder / "a.csv").exists())
         for joint in ("j1", "j2", "j3"):  # one that is missing leaves its joint out: test_all_joints.py
             (self.folder / f"{joint}.json").unlink()
-        self.assertIn("j1.json", self.refused(4, "filter", self.log, "--joint", "all", "--table", "{joint}.json", "-o", "a.csv"))
+        self.assertIn("j1.json", self.refused(4, "filter", self.log, "--joint", "all", "--method", "switching,table={joint}.json", "-o", "a.csv"))
         self.assertFalse((self.folder / "a.csv").exists())
         one = self.write("one.csv", "time_s,velocity_deg_s,torque_nm\n0,1,2\n0.001,1,3\n0.002,1,2\n")
-        self.assertIn("{joint}", self.refused(2, "filter", one, "--joint", "all", "--table", "{joint}.json"))
+        self.assertIn("{joint}", self.refused(2, "filter", one, "--joint", "all", "--method", "switching,table={joint}.json"))
         self.assertEqual(self.good("filter", one, "--joint", "all", "--method", "none").stdout, one.read_bytes())

@@ -100,30 +100,6 @@ class Warm(Case):
         self.assertEqual(metrics["method"], "oscillator,orders=2,gear-ratio=100")
 
 
-class TwoPasses(Case):
-    def test_a_pipe_gives_the_bytes_of_the_file_and_leaves_no_temporary_file(self):
-        method = "subtract,gear-ratio=100,orders=1:2"
-        expected, _ = self.filtered("--method", method)
-        temporary = self.folder / "tmp"
-        temporary.mkdir()
-        done = self.run_tool("filter", "-", "--method", method, stdin=MOVE.read_bytes(), text=False, environment={"TMPDIR": str(temporary)})
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertEqual(done.stdout, expected)
-        self.assertEqual(list(temporary.iterdir()), [])
-
-    def test_a_log_that_is_broken_halfway_is_refused_under_the_users_name_for_it(self):
-        lines = MOVE.read_text().splitlines()
-        lines[1500] = lines[1500].replace(",", ",x", 1)
-        done = self.run_tool("filter", "-", "--method", "subtract,gear-ratio=100,orders=1:2", stdin="\n".join(lines) + "\n")
-        self.assertEqual(done.returncode, 3)
-        self.assertIn("standard input:1501", done.stderr)
-
-    def test_compare_learns_from_the_log_too(self):
-        done = self.good("compare", MOVE, "--method", "subtract,gear-ratio=100,orders=1:2", "--json")
-        ripple = [m["ripple_rms_nm"] for m in json.loads(done.stdout)["methods"]]
-        self.assertLess(ripple[1], 0.3 * ripple[0])
-
-
 class Delay(Case):
     def test_the_delay_of_a_tracking_notch_is_listed_by_speed_and_falls_with_it(self):
         _, metrics = self.filtered("--method", "tracking,gear-ratio=100,orders=1:2,q=2.5")

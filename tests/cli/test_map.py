@@ -316,7 +316,7 @@ HARNESS = """#include <stdio.h>
 int main(void) {
     double speed, turns, position;
     while (scanf("%lf %lf %lf", &speed, &turns, &position) == 3)
-        printf("%.17g\\n", (double)ripple_map_torque(speed, turns, position, 0));
+        printf("%.17g\\n", (double)ripple_map_torque(speed, turns, position));
     return 0;
 }
 """

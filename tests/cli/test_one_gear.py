@@ -29,7 +29,7 @@ class Commands(Case):
 
     def every(self, words):
         """Each command with these words: its name, the run, and what it says the gear is."""
-        for method in ("none", "lowpass,cutoff=13rad/s", "tracking", "oscillator", "subtract"):
+        for method in ("none", "lowpass,cutoff=13rad/s", "tracking", "oscillator"):
             yield f"filter {method}", *self.filtered_by(method, words)
             yield f"compare {method}", *self.compared_by(method, words)
         for name in TAKES_A_GEAR:
@@ -243,7 +243,7 @@ class BeforeTheGear(Commands):
         for method in (f"switching,table=table_{ratio}.json", f"tracking,gear-ratio={ratio},orders=1"):
             yield ["filter", log, "--method", method, *out]
             yield ["compare", log, "--method", method, "--json"]
-        yield ["filter", log, "--method", f"subtract,joint=joint_{ratio}.json", *out]
+        yield ["filter", log, "--method", f"tracking,joint=joint_{ratio}.json", *out]
         yield ["simulate", log, "--gear-ratio", ratio, *out]
         yield ["simulate", log, "--model", f"model_{ratio}.json", *out]
         # What is asked is how the log is read; the search for names has its own tests.

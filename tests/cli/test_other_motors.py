@@ -91,13 +91,13 @@ class Removed(Case):
         left = {}
         for name, words in {"raw": ["--method", "none"], "map": ["--method", f"map,map={self.folder}/map.json"],
                             "oscillator": ["--method", f"oscillator,map={self.folder}/map.json"],
-                            "subtract": ["--method", "subtract", *gear, "--other-motors", self.folder / "map.json"]}.items():
+                            "tracking": ["--method", "tracking", *gear, "--other-motors", self.folder / "map.json"]}.items():
             out = self.folder / f"{name}.csv"
             done = run("filter", log, "--joint", "j1", "--from", "14s", *words, "-o", out)
             self.assertEqual(done.returncode, 0, done.stderr)
             left[name] = amplitude(out, "j1", "j2", 2 * ratios[1])
         self.assertGreater(left["raw"], 0.35)
-        for name in "map", "oscillator", "subtract":
+        for name in "map", "oscillator", "tracking":
             self.assertLess(left[name], 0.05, name)
 
     def test_a_log_without_the_other_joint_is_an_error(self):

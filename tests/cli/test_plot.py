@@ -175,8 +175,6 @@ class Plots(Case):
         done = run(*COMMANDS["spectrum"], "--plot", self.folder / "mine.svg")
         self.assertEqual((done.returncode, done.stdout), (4, ""))
         self.assertEqual((self.folder / "mine.svg").read_text(), "mine")
-        done = run("filter", LOG, MOVE, "--method", "none", "--out-dir", self.folder, "--plot", "x.svg")
-        self.assertEqual(done.returncode, 2, done.stderr)
 
     def test_a_result_does_not_know_of_its_picture(self):
         plain, plotted = self.folder / "a.json", self.folder / "b.json"

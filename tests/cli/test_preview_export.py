@@ -12,7 +12,7 @@ from commands import COMPILER, FILTER, SELF_TEST
 FULL_SCALE_NM = 50.0
 # Largest difference from `filter`, Nm. Of fixed point a share of a blend has 15 bits.
 BOUNDS_NM = {"double": 1e-9, "float": 2e-4, "q31": 1e-4}
-TRANSITIONS = {"keep-state-variable": ("svf",), "keep": ("df1",), "parallel": ("svf", "df1", "df2t"),
+TRANSITIONS = {"keep-state-variable": ("svf",), "parallel": ("svf", "df1", "df2t"),
                "crossfade": ("svf", "df1", "df2t")}
 FIXED = """
 #include "notch.h"
@@ -81,8 +81,6 @@ class PreviewIsExport(commands.Case):
             method = f"switching,table=table.json,transition={transition}"
             for precision, bound_nm in BOUNDS_NM.items():
                 fixed = precision.startswith("q")
-                if fixed and transition == "keep":
-                    continue  # its form is direct form I, and fixed point has the state-variable form alone
                 for form in forms[:1] if fixed else forms:
                     keys = f",range={FULL_SCALE_NM}Nm" if fixed else f",form={form}"
                     # Direct forms of low centres lose digits in float, which is why they are not the default.
@@ -118,9 +116,8 @@ class PreviewIsExport(commands.Case):
         self.assertNotIn("speed_deg_s", text)
 
     def test_what_would_run_otherwise_is_refused_with_what_runs(self):
-        for method, target, said in ((",transition=reset", "c-header", "one of keep-state-variable"),
-                                     (",transition=kep", "c-header", "none of parallel, keep"),
-                                     ("", "c-header,form=df1", "transition=keep"),
+        for method, target, said in ((",transition=kep", "c-header", "none of parallel, keep-state-variable"),
+                                     ("", "c-header,form=df1", "transition=parallel"),
                                      ("", "c-header,form=df2t", "transition=parallel"),
                                      ("", "c-header,precision=q31", "range=200Nm"),
                                      ("", "c-header,range=3Nm", "q31")):

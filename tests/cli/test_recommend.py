@@ -140,10 +140,6 @@ class Limits(Recommended):
             for line in self.recommended("--target", target)["take_commands"]:
                 self.paste(line)
 
-    def test_offline_lets_a_method_in_that_sees_the_whole_log(self):
-        self.assertNotIn("subtract", "".join(one["method"] for one in self.recommended()["methods"]))
-        self.assertIn("subtract", "".join(one["method"] for one in self.recommended("--offline")["methods"]))
-
 
 class Honest(Recommended):
     def test_without_ripple_there_is_nothing_to_take(self):

@@ -26,7 +26,7 @@ class Pages(SharedCase):
         for command in (
                 "identify data/paper_60deg_s.csv data/paper_120deg_s.csv data/paper_180deg_s.csv --json -o joint.json",
                 "design joint.json --speed 18:180:18 --json -o table.json",
-                "filter data/paper_move_2s.csv --table table.json -o out.csv --metrics metrics.json --plot torque.json",
+                "filter data/paper_move_2s.csv --method switching,table=table.json -o out.csv --metrics metrics.json --plot torque.json",
                 "spectrum data/paper_90deg_s.csv -o s.csv --plot spectrum.json",
                 "spectrum data/paper_move_2s.csv --map campbell --gear-ratio 100 -o m.csv --plot campbell.json",
                 "compare --step 10Nm --ramp 20Nm/s --speed 90deg/s --sample-rate 1kHz --gear-ratio 100 --orders 1,2 "

@@ -215,24 +215,9 @@ class RawLogs(Told):
 
     def test_a_log_is_not_written_over_itself_even_by_force(self):
         (self.folder / "alias.csv").symlink_to("log.csv")
-        for words in (["-o", "log.csv"], ["-o", "./log.csv"], ["-o", "alias.csv"], ["--out-dir", "."]):
-            self.refused(["filter", "log.csv", *LOW, *words, "--force"], "or use --in-place")
+        for words in (["-o", "log.csv"], ["-o", "./log.csv"], ["-o", "alias.csv"]):
+            self.refused(["filter", "log.csv", *LOW, *words, "--force"], "name another file")
             self.assertEqual((self.folder / "log.csv").read_bytes(), self.raw)
-
-    def test_in_place_writes_what_another_name_would_get(self):
-        expected = self.good("filter", "log.csv", *LOW).stdout.encode()
-        self.good("filter", "log.csv", *LOW, "--in-place")
-        self.assertEqual((self.folder / "log.csv").read_bytes(), expected)
-        (self.folder / "log.csv").write_bytes(self.raw)
-        (self.folder / "two.csv").write_bytes(self.raw)
-        self.good("filter", "log.csv", "two.csv", *LOW, "--in-place", "--metrics", "metrics")
-        for name in ("log", "two"):
-            self.assertEqual((self.folder / f"{name}.csv").read_bytes(), expected)
-            self.assertEqual(json.loads((self.folder / "metrics" / f"{name}.metrics.json").read_text())["source"], f"{name}.csv")
-
-    def test_in_place_is_for_files_and_for_nothing_else(self):
-        self.refused(["filter", "log.csv", *LOW, "--in-place", "-o", "other.csv"], "-o, --out-dir and --in-place: give one of them")
-        self.refused(["filter", "-", *LOW, "--in-place"], "standard input has no name")
 
 
 class Segments(Told):

@@ -170,9 +170,6 @@ class Paths(TwoLogs):
         for threads in (1, 2, 4):
             self.assertEqual(self.said("whole", "filter", "log.csv", *METHOD, *limits, "--threads", threads), expected)
         self.assertEqual(self.said("whole", "filter", "-", *METHOD, *limits, stdin=whole), expected)
-        learns = ["filter", "-", "--method", "subtract,gear-ratio=100,orders=1:2"]
-        self.assertEqual(self.said("whole", *learns, *limits, stdin=whole),
-                         self.said("cut", *learns, stdin=(self.folder / "cut" / "log.csv").read_bytes()))
 
 
 class Clocks(TwoLogs):
@@ -250,7 +247,6 @@ class Words(TwoLogs):
             with self.subTest(text):
                 self.assertIn("--from", self.refused(2, "info", "log.csv", "--from", text))
         self.assertIn("no LOG", self.refused(2, "compare", "--step", "10Nm", "--sample-rate", "1kHz", "--from", "1"))
-        self.assertIn("--in-place", self.refused(2, "filter", "log.csv", *METHOD, "--in-place", "--to", "1"))
         self.write("whole", ["velocity_deg_s,torque_nm", "1,2", "1,3", "1,2"], "untimed.csv")
         self.assertIn("--sample-rate", self.refused(3, "info", "untimed.csv", "--from", "1"))
 

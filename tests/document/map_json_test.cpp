@@ -8,20 +8,15 @@ using namespace ripplenotch;
 
 namespace {
 
-MapFit example_map(bool by_temperature = false) {
+MapFit example_map() {
     MapFit fit;
     fit.map.joint = "j4";
     fit.map.gear_ratio = GearRatio(120.0);
     fit.map.orders = {Order(1.0), Order(2.0)};
-    fit.map.form = {{3.5, 60.0}, 2, 1, true, by_temperature};
-    if (by_temperature) {
-        fit.map.temperatures_degc = {18.25, 41.0};
-        fit.map.temperature_column = "{joint}_degc";
-    }
+    fit.map.form = {{3.5, 60.0}, 2};
     fit.map.zero_deg = -12.5;
     fit.map.speeds_deg_s = {3.5, 60.0};
     fit.map.positions_deg = {-90.0, 45.0};
-    fit.map.loads_nm = {-3.0, 20.0};
     for (std::size_t i = 0; i < 2; ++i) {
         fit.map.values.emplace_back();
         fit.errors.emplace_back();
@@ -55,14 +50,12 @@ TEST_CASE("map.json reads back as it was written, byte for byte, empty maps too"
     two_combs.map.form.second_comb = -1;
     for (auto* columns : {&two_combs.map.values, &two_combs.errors})
         for (auto& order : *columns) order.resize(two_combs.map.form.columns(), {0.5, 0.25});
-    for (const MapFit& fit : {example_map(), example_map(true), two_combs, nothing}) {
+    for (const MapFit& fit : {example_map(), two_combs, nothing}) {
         const std::string text = map_text(fit, {});
         const MapFit again = map_from_json(text, "map.json");
         CHECK(map_text(again, {}) == text);
         CHECK(again.map.form.columns() == fit.map.form.columns());
         CHECK(again.map.form.second_comb == fit.map.form.second_comb);
-        CHECK(again.map.temperatures_degc.to == fit.map.temperatures_degc.to);
-        CHECK(again.map.temperature_column == fit.map.temperature_column);
     }
 }
 
@@ -90,7 +83,8 @@ TEST_CASE("a map that cannot be one is refused with its field") {
     for (const auto& [from, to, field] :
          {std::tuple{"\"gear_ratio\": 120.0", "\"gear_ratio\": 0", "gear_ratio is 0"},
           std::tuple{"\"directions\": 2", "\"directions\": 3", "form.directions is 3, expected 1 to 2"},
-          std::tuple{"\"turn_harmonics\": 1", "\"turn_harmonics\": 2", "coefficients: 20 values, expected"},
+          std::tuple{"\"directions\": 2", "\"directions\": 1", "coefficients: 8 values, expected"},
+          std::tuple{"\"directions\": 2", "\"directions\": 2, \"by_load\": true", "by_load"},
           std::tuple{"\"finding\": \"mapped\"", "\"finding\": \"maped\"", "finding"},
           std::tuple{"\"notes\"", "\"note\"", "notes"}}) {
         CHECK_THROWS_WITH(map_from_json(with(from, to), "map.json"), Catch::Contains(field));

@@ -117,7 +117,7 @@ TEST_CASE(
         CHECK(reference.band().to.value() == Approx(stated ? 5.0 : 2.0).margin(0.2));
         const auto rms_of = [&](const char* text) {
             const Contender method = make_contender(parse_spec(text));
-            return reference.distortion(method, {});
+            return reference.distortion(method);
         };
         CHECK(rms_of("none").in_band_nm == 0.0);
         const Distortion slow = rms_of("lowpass,cutoff=10Hz,order=1");
@@ -132,7 +132,7 @@ TEST_CASE(
                                     TorqueBand{Hertz(0.0), Hertz(1.0), true, false});
     // A resonance of 9 dB at 3 Hz above a band that ends below it adds, however much noise it takes out.
     const Contender rising = make_contender(parse_spec("oscillator,gear-ratio=100,orders=1:2,bandwidth=3Hz"));
-    CHECK(reference.distortion(rising, {}).added_nm > 0.1);
+    CHECK(reference.distortion(rising).added_nm > 0.1);
 }
 
 TEST_CASE("the response of the oscillator within the band is what sines measure") {

@@ -5,10 +5,9 @@
 
 #include <array>
 
-#include "filter/bank/filter_bank.hpp"
 #include "filter/moves.hpp"
-#include "filter/ripple/ripple_kalman.hpp"
-#include "filter/ripple/ripple_keys.hpp"
+#include "filter/ripple_kalman.hpp"
+#include "filter/ripple_keys.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "support/catch.hpp"
 

@@ -95,17 +95,11 @@ struct Tried {
     std::optional<double> promised_db;  ///< what each line falls by, or to the floor; without it only shown
 };
 
-const std::vector<Tried> tried = {
-    {"tracking", 12.0},        {"oscillator", 18.0},          {"oscillator,output=minus-ripple", 12.0},
-    {"subtract", 18.0},        {"oscillator,memory=2", 12.0}, {"tracking,q=2.5", {}},
-    {"subtract,turns=4", 15.0}};
-
-std::vector<double> result(const std::string& text, const Log& log, Hertz rate) {
-    const Samples samples{log.trace.velocity_deg_s, log.trace.torque_nm, log.trace.position_deg};
-    if (find_method(parse_spec(text).name).learner != nullptr)
-        return filtered_in_two_passes(text, samples, rate);
-    return filtered(*start(text, nullptr, rate), samples);
-}
+const std::vector<Tried> tried = {{"tracking", 12.0},
+                                  {"oscillator", 18.0},
+                                  {"oscillator,output=minus-ripple", 12.0},
+                                  {"oscillator,memory=2", 12.0},
+                                  {"tracking,q=2.5", {}}};
 
 void check_log(const std::string& name, const std::string& orders, const std::vector<double>& lines) {
     const std::filesystem::path path = std::filesystem::path(logs_folder()) / "gpl3" / name;
@@ -126,7 +120,8 @@ void check_log(const std::string& name, const std::string& orders, const std::ve
     const bool prints = std::getenv("RIPPLENOTCH_TABLE") != nullptr;
     for (const Tried& entry : tried) {
         const std::string text = fmt::format("{},gear-ratio=120,orders={}", entry.method, orders);
-        const auto out = result(text, log, rate);
+        const auto out = filtered(*start(text, nullptr, rate),
+                                  {log.trace.velocity_deg_s, log.trace.torque_nm, log.trace.position_deg});
         const auto after = sweeps_of(log.trace, out);
         const double changed = change_below_5hz(log.trace.torque_nm, out, rate);
         INFO(name << ' ' << text << " changes " << changed);

@@ -97,16 +97,6 @@ inline std::vector<double> filtered(CausalFilter& filter, const Samples& in) {
     return out;
 }
 
-/// Both passes of a method that looks at the whole log first.
-inline std::vector<double> filtered_in_two_passes(const std::string& text, const Samples& in,
-                                                  Hertz sample_rate = Hertz(1000.0)) {
-    const Spec spec = parse_spec(text);
-    const Method& method = find_method(spec.name);
-    const auto learner = method.learner(Settings("method " + spec.name, spec, method.keys), sample_rate);
-    static_cast<void>(filtered(*learner, in));
-    return filtered(*learner->learned(), in);
-}
-
 /// The comparison of transitions, worked out independently with SciPy: 20 s at 1 kHz, 20 deg/s for 5 s, a
 /// ramp to 40 deg/s in 10 s, hold; torque 10 + 2 sin(theta + 0.3) + sin(2 theta + 1.1) Nm, theta the motor
 /// angle by trapezoids.

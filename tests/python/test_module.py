@@ -139,7 +139,7 @@ class Equal(ModuleCase):
         log = ripplenotch.read(MOVE)
         table = ripplenotch.design(ripplenotch.identify(STEADY), speed=(18, 180, 18))
         (self.folder / "table.json").write_text(table.to_json())
-        for words, options in ((("--table", "table.json"), {"table": table}),
+        for words, options in ((("--method", "switching,table=table.json"), {"table": table}),
                                (("--method", "lowpass,cutoff=13rad/s,order=1"), {"method": "lowpass,cutoff=13rad/s,order=1"}),
                                (("--method", "tracking,q=1", *GEAR, "--orders", "1,2"), {"method": "tracking,q=1", "gear_ratio": 100, "orders": [1, 2]}),
                                (("--method", "oscillator", *GEAR), {"method": "oscillator", "gear_ratio": 100})):
@@ -148,6 +148,7 @@ class Equal(ModuleCase):
             self.same(ripplenotch.filter(MOVE, **options), expected)
             self.same(ripplenotch.filter(self.arrays(), **options), expected)
         self.same(ripplenotch.filter(log, table=table.to_dict()), ripplenotch.filter(log, table=self.folder / "table.json"))
+        self.refused(ripplenotch.UsageError, "expected one of them", ripplenotch.filter, log, "none", table=table)
 
     def test_filter_of_a_numpy_file_is_in_newton_metres(self):
         arrays = self.arrays()

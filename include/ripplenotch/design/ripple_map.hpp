@@ -5,7 +5,6 @@
 
 #include <complex>
 #include <cstddef>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -17,31 +16,18 @@ namespace ripplenotch {
 /// The variables of a map's amplitudes. A wave generator turns gear ratio times in an output turn
 /// against one spline and once more or less against the other: an order n of the map has lines at n Kg and,
 /// with a second comb, at n (Kg +/- 1). Each direction has its own columns, in this order: the amplitude at
-/// each speed (linear between them), then the same of the second comb, then a cosine and a sine of one, two,
-/// ... times the joint's angle, then one in proportion to the load, then one in proportion to the temperature
-/// above the middle of its range.
+/// each speed (linear between them), then the same of the second comb.
 struct MapForm {
     /// Values of |v|, rising; a single one: the same at every speed.
     std::vector<double> speeds_deg_s = {0.0};
     std::size_t directions = 1;  ///< 2: forward (v > 0) and backward have their own amplitudes
-    std::size_t turn_harmonics = 0;
-    bool by_load = false;
-    bool by_temperature = false;
-    int second_comb = 0;  ///< 0: none; 1 or -1: at n (Kg + 1) or at n (Kg - 1)
+    int second_comb = 0;         ///< 0: none; 1 or -1: at n (Kg + 1) or at n (Kg - 1)
 
-    /// Columns of a direction that depend on the speed: these come first.
-    [[nodiscard]] std::size_t speed_columns() const {
+    [[nodiscard]] std::size_t columns_a_direction() const {
         return speeds_deg_s.size() * (second_comb == 0 ? 1 : 2);
     }
     [[nodiscard]] bool is_second_comb(std::size_t column) const {
-        const std::size_t within = column % columns_a_direction();
-        return within >= speeds_deg_s.size() && within < speed_columns();
-    }
-    /// Positions of these within a direction, whether or not there are such columns.
-    [[nodiscard]] std::size_t load_column() const { return speed_columns() + 2 * turn_harmonics; }
-    [[nodiscard]] std::size_t temperature_column() const { return load_column() + (by_load ? 1 : 0); }
-    [[nodiscard]] std::size_t columns_a_direction() const {
-        return temperature_column() + (by_temperature ? 1 : 0);
+        return column % columns_a_direction() >= speeds_deg_s.size();
     }
     [[nodiscard]] std::size_t columns() const { return directions * columns_a_direction(); }
 };
@@ -56,9 +42,6 @@ struct MapRange {
 struct MapState {
     double speed_deg_s = 0.0;   ///< signed
     double position_deg = 0.0;  ///< position of the joint, as in the log
-    double load_nm = 0.0;       ///< its torque
-    /// Temperature in the units of the log's column; if unknown, the middle of the map's range.
-    std::optional<double> temperature_degc = std::nullopt;
 };
 
 /// The ripple is the sum over the orders of Re(z exp(-i n theta)) = Re(z) cos(n theta) + Im(z) sin(n theta),
@@ -69,10 +52,8 @@ struct RippleMap {
     GearRatio gear_ratio;
     std::vector<Order> orders;  ///< lowest first; empty: nothing turns with the motor
     MapForm form;
-    double zero_deg = 0.0;                           ///< joint position at which the motor's angle is 0
-    MapRange speeds_deg_s, positions_deg, loads_nm;  ///< seen by the logs; held at the edges beyond
-    MapRange temperatures_degc = {};                 ///< the same; 0 to 0 where none was stated
-    std::string temperature_column;  ///< column in the logs, with {joint} for the joint's name
+    double zero_deg = 0.0;                 ///< joint position at which the motor's angle is 0
+    MapRange speeds_deg_s, positions_deg;  ///< seen by the logs; speeds are held at the edges beyond
     std::vector<std::vector<std::complex<double>>> values;  ///< by order, then by column; Nm
     std::vector<double> spread_nm;  ///< by order: rms deviation of amplitudes from the map in its logs
     /// Ripple of the motors of other joints in this joint's torque: each goes by the angle and speed of

@@ -102,7 +102,7 @@ struct Comparison {
 
 /// The name of a method among the others of a comparison: as it was typed where that is short; a long one by
 /// its name where no other has it, else with the keys that distinguish it from those:
-/// "switching,transition=reset"; where those are long too, with a letter: "switching B".
+/// "switching,transition=parallel"; where those are long too, with a letter: "switching B".
 [[nodiscard]] std::string short_name(const MethodFigures& figures, const Comparison& comparison);
 
 /// One sentence with numbers: how subject and rival differ in settling, delay and ripple.
@@ -121,8 +121,6 @@ struct ComparedLog {
     TraceView trace;  ///< its sample_rate is the rate that the filters are designed for
     std::span<const double> truth_nm =
         {};  ///< the torque without ripple and noise, row by row, where it is known
-    /// By contender, row by row, degC; no entries, or an empty one, where a method takes none.
-    std::vector<std::span<const double>> temperatures_degc = {};
     /// Receives the output of each method, counted from 0, for each block of the log, in the order of the
     /// rows; may be empty.
     std::function<void(std::size_t method, const TraceView& block, std::span<const double> out_nm,
@@ -134,7 +132,7 @@ struct ComparedLog {
 /// motion.
 [[nodiscard]] DegPerSec median_moving_speed(const TraceView& trace);
 
-/// The output of one method, row by row; of the temperatures the first counts.
+/// The output of one method, row by row.
 [[nodiscard]] std::vector<double> output_on_log(const Contender& contender, const ComparedLog& log);
 
 /// The remaining ripple of the log after each method: all run over the log together, and are measured on the

@@ -38,8 +38,6 @@ struct Contender {
     [[nodiscard]] std::string refusal(Hertz sample_rate) const;
     /// The same for signals that have no ripple: without the ripple known from a map.
     [[nodiscard]] std::unique_ptr<CausalFilter> start_on_bench(Hertz sample_rate) const;
-    /// Null for methods that need no first pass over the log.
-    [[nodiscard]] std::unique_ptr<Learner> learner(Hertz sample_rate) const;
     /// The active linear filter at a constant speed; empty for methods that have none.
     [[nodiscard]] std::optional<FrozenFilter> frozen(Hertz sample_rate, DegPerSec speed) const;
     /// The gear ratio that its filter is made for: its key's or its table's; empty where it has neither.

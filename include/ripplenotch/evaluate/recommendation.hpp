@@ -37,8 +37,7 @@ class TorqueReference {
     [[nodiscard]] const TorqueBand& band() const { return band_; }
     /// Of a method that runs on it, over the rows at which the ripple is known; both band-limited without
     /// phase. A method with a map runs without the ripple known from it.
-    [[nodiscard]] Distortion distortion(const Contender& contender,
-                                        std::span<const double> temperature_degc) const;
+    [[nodiscard]] Distortion distortion(const Contender& contender) const;
 
   private:
     [[nodiscard]] double power(std::span<const double> values) const;

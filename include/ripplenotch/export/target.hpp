@@ -70,7 +70,6 @@ struct CodeInput {
     double torque_nm = 0.0, speed_deg_s = 0.0;
     double motor_turns = 0.0;  ///< the motor's angle; its fraction is enough
     double joint_deg = 0.0;
-    double temperature_degc = 0.0;  ///< for a map that depends on it
 };
 
 /// The written file, read back from the bytes alone and run in the target's arithmetic.

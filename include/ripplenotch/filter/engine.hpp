@@ -21,42 +21,9 @@
 
 namespace ripplenotch {
 
-// The supervisor of the switching filter: from the joint speed to the candidate that should be active (Kim,
-// Kim, Song 2011, fig. 3 and 4), with the rules for speeds that no band covers.
-
 /// The keys of method switching, with the table's own values where they are left out.
 [[nodiscard]] SwitchingDesign switching_design(const Settings& settings, Hertz sample_rate,
                                                const CandidateTable& table);
-
-class Supervisor {
-  public:
-    /// Throws UsageError when the hysteresis is negative.
-    Supervisor(std::span<const Band> bands, const SwitchingDesign& design);
-
-    /// The first sample of a run: takes the region of its speed, with no regard to the past.
-    void start(double velocity_deg_s) noexcept;
-    /// How many of these samples (after the one that was started or switched to) keep the active candidate
-    /// and the region; speeds.size() when all do. They are then accounted for.
-    [[nodiscard]] std::size_t stay(std::span<const double> velocity_deg_s) noexcept;
-    /// The sample at which stay() stopped: enters its region. True when the candidate changed.
-    bool move(double velocity_deg_s) noexcept;
-
-    [[nodiscard]] int candidate() const noexcept { return candidate_; }
-    [[nodiscard]] const SpeedRegion& region() const noexcept { return regions_[at_]; }
-
-  private:
-    [[nodiscard]] std::size_t find(double speed_deg_s) const noexcept;
-    [[nodiscard]] int candidate_in(const SpeedRegion& region) const noexcept;
-    void enter(std::size_t region) noexcept;
-
-    std::vector<SpeedRegion> regions_;
-    double hysteresis_deg_s_;
-    std::size_t dwell_;
-    std::size_t since_switch_ = 0;
-    std::size_t at_ = 0;
-    double low_ = 0.0, high_ = 0.0;  ///< stay while low_ < |v| <= high_
-    int candidate_ = no_candidate;
-};
 
 // The numbers that a method runs on, for exports.
 
@@ -102,15 +69,13 @@ class RowValues {
     virtual std::span<const double> next(std::size_t count) = 0;
 };
 
-/// The processing of one joint. The meter may be null; it gets two signals, raw and filtered torque. So may
-/// the joint's temperature, degC.
+/// The processing of one joint. The meter may be null; it gets two signals, raw and filtered torque.
 struct JointRun {
     CausalFilter* filter = nullptr;
     RippleMeter* meter = nullptr;
     /// The meter gets stretches of a long log only, ever further apart: enough for a warning, at a cost that
     /// grows with the logarithm of the log's length.
     bool sparsely = false;
-    RowValues* temperature = nullptr;
     /// Ripple of the motors of other joints, Nm, taken from the torque before the filter; or null.
     RowValues* other_ripple = nullptr;
 };
@@ -119,9 +84,9 @@ struct JointRun {
 class LogStream {
   public:
     /// Reads the first clock_rows rows (fewer when they are wide) and determines the clock of the log from
-    /// them. A gap is a step of more than `gap_steps` median steps. Throws DataError when there is no time
+    /// them. Throws DataError when there is no time
     /// and no stated rate, fewer than two rows, or time that does not advance.
-    LogStream(std::unique_ptr<LogReader> reader, double gap_steps);
+    explicit LogStream(std::unique_ptr<LogReader> reader);
     ~LogStream();
     LogStream(LogStream&&) noexcept;
 

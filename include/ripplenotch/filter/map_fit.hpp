@@ -66,17 +66,14 @@ inline constexpr double map_false_alarm = 0.01;
 /// Windows of fewer motor turns, or fewer windows, are not enough to leave some out.
 inline constexpr std::size_t fewest_map_windows = 12;
 
-/// Fits each order in windows of 2.5 motor turns along with a cubic trend (docs/methods/subtract.md), then
+/// Fits each order in windows of 2.5 motor turns along with a cubic trend, then
 /// the windows' amplitudes by ridge regression on the columns of a form. An order is included in the map
 /// where a rotation test finds it, at 1 % for all orders together; the form is the smallest one that
 /// cross-validation does not distinguish from the best.
 /// Angles count from `zero_deg`. Logs without a position have none to count from: throws DataError for
-/// several of them. Throws UsageError for no log. `temperatures_degc`: the joint's temperature at each row of
-/// each log, which is included where it improves the map; or nothing.
+/// several of them. Throws UsageError for no log.
 [[nodiscard]] MapFit fit_ripple_map(std::span<const TraceView> logs, const GearAccount& gear,
-                                    double zero_deg = 0.0,
-                                    std::span<const std::vector<double>> temperatures_degc = {},
-                                    double false_alarm = map_false_alarm);
+                                    double zero_deg = 0.0, double false_alarm = map_false_alarm);
 
 /// Another joint of the same arm, whose motor may put ripple into this joint's torque.
 struct OtherMotor {
@@ -93,8 +90,7 @@ struct OtherMotor {
 /// and is in its `doubt`. Throws what fit_ripple_map throws.
 [[nodiscard]] MapFit fit_joint_map(std::span<const TraceView> logs, const GearAccount* own,
                                    std::span<const OtherMotor> others, std::size_t pairs,
-                                   double zero_deg = 0.0,
-                                   std::span<const std::vector<double>> temperatures_degc = {});
+                                   double zero_deg = 0.0);
 
 /// The torques of these logs less the ripple of the other motors that are in the map, by log.
 [[nodiscard]] std::vector<std::vector<double>> without_other_motors(std::span<const TraceView> logs,
@@ -107,9 +103,9 @@ struct OtherMotor {
 /// A filter whose output is the ripple that the map predicts, whatever the torque.
 [[nodiscard]] std::unique_ptr<CausalFilter> map_prediction(const RippleMap& map, Hertz sample_rate);
 
-/// "by speed (3) and direction, with 2 harmonics of the joint's turn"
+/// "by speed (5 of them) and direction, with the second comb at n (Kg + 1)"
 [[nodiscard]] std::string map_form_words(const MapForm& form);
-/// The meaning of `column`: "forward, 10 deg/s", "backward, cosine of 2 joint angles", "per Nm of load".
+/// The meaning of `column`: "forward, 10 deg/s", "backward, any speed, second comb".
 [[nodiscard]] std::string map_column_words(const MapForm& form, std::size_t column);
 
 /// One sentence with numbers.

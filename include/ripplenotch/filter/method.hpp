@@ -18,11 +18,9 @@
 
 namespace ripplenotch {
 
-/// Consecutive samples of one joint; spans of equal length, position and temperature may be empty.
+/// Consecutive samples of one joint; spans of equal length, position may be empty.
 struct Samples {
     std::span<const double> velocity_deg_s, torque_nm, position_deg;
-    /// Temperature of the joint, for methods whose map depends on it.
-    std::span<const double> temperature_degc = {};
 };
 
 /// One change of filter while running.
@@ -46,10 +44,6 @@ class CausalFilter {
     virtual ~CausalFilter() = default;
     /// Filters `in` into `out` (same length; may not overlap). Any split into blocks gives the same bytes.
     virtual void process(const Samples& in, std::span<double> out) = 0;
-    /// To be called before the first sample: takes a faster way to the same filter, where there is one and
-    /// its outputs stay within 1e-12 of the largest |torque| of those without this call. Returns a text on
-    /// the way taken, where there was a choice.
-    virtual std::string hurry() { return {}; }
     /// Forgets the past: the next sample starts settled (after a gap in time).
     virtual void restart() = 0;
     /// Changes of filter since construction, oldest first, at most most_listed_switches of them; empty for
@@ -65,15 +59,6 @@ struct FrozenFilter {
     std::string note;  ///< e.g. "band 5: 90-108 deg/s", "no band: passes"
     /// The filter also moves to where it takes the ripple to be, so that it is linear only while it is right.
     bool follows_ripple = false;
-};
-
-/// The first pass of a method that needs the whole log before it filters. Fed like a filter, it passes the
-/// torque unchanged; then learned() gives the filter for a second pass over the same samples.
-class Learner : public CausalFilter {
-  public:
-    [[nodiscard]] virtual std::unique_ptr<CausalFilter> learned() = 0;
-    /// The results of learning, one sentence each; after learned().
-    [[nodiscard]] virtual std::vector<std::string> notes() const { return {}; }
 };
 
 /// The part of a method in a comparison.
@@ -100,9 +85,6 @@ struct Method {
     bool frozen_is_dear = false;  ///< frozen() is too slow to be called for every window of a log
     /// What can be exported as coefficients; null for methods whose coefficients change while they run.
     SteadyDesign (*steady)(const Settings& settings) = nullptr;
-    /// Null for causal methods. Where there is one, start() gives the filter that has learned nothing: it
-    /// passes.
-    std::unique_ptr<Learner> (*learner)(const Settings& settings, Hertz sample_rate) = nullptr;
 };
 
 [[nodiscard]] std::span<const Method* const> methods();

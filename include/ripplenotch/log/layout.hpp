@@ -191,7 +191,6 @@ struct Layout {
     std::vector<JointColumns> others;          ///< that are read with it, when every joint is
     std::optional<std::size_t> time_fraction;  ///< beside chosen.time: nanoseconds to be added to its seconds
     std::int64_t time_origin = 0;  ///< in the column's own unit: taken off stamps that count from long ago
-    bool reshaped = false;         ///< the rows are not those of the file, which has another shape
     bool time_as_text = false;     ///< stamps like 12:30:00.5 or 2024-05-01T12:30:00.5Z
     StampForm stamp_form;          ///< of these
     bool time_is_steps = false;    ///< the time column holds steps from row to row, which are summed

@@ -97,8 +97,8 @@ class GearChoice {
 /// Maps by the names of their files.
 using MapSource = std::function<RippleMap(const std::string& path)>;
 
-/// `spec_text` as --method takes it; `table` is a table.json for methods that need one and name none. Keys of
-/// the gear that the text leaves out are filled, and joint=FILE is replaced by the keys that it fills, so
+/// `spec_text` as --method takes it; `table` is a table.json for a method that needs one and names none. Keys
+/// of the gear that the text leaves out are filled, and joint=FILE is replaced by the keys that it fills, so
 /// that the contender's text says all. Throws UsageError on a bad specification, on a gear that is missing,
 /// and what load_table, load_joint and refuse_other_gear throw. Maps are read from their files unless `maps`
 /// has them.
@@ -125,7 +125,6 @@ inline constexpr std::string_view joint_mark = "{joint}";
 /// As the command line has it; "{joint}" may stand in the names of methods and files.
 struct MethodRequest {
     std::string method;
-    std::optional<std::string> table;
     GearOptions gear;
     bool needs_gear = false;                                 ///< something was asked about the ripple's place
     std::optional<std::string> other_motors = std::nullopt;  ///< a map whose `others` are subtracted first
@@ -141,8 +140,6 @@ class JointMethods {
     [[nodiscard]] std::shared_ptr<const Contender> of(const std::string& joint) const;
     /// The gear of all joints; empty where each has its own, or none is stated.
     [[nodiscard]] std::optional<GearAccount> common_gear() const;
-    /// Whether the method looks at the whole log before it filters.
-    [[nodiscard]] bool learns() const;
     /// Whether the log is read twice, as far as that is known before its joints are.
     [[nodiscard]] bool needs_log_twice() const;
     /// Whether what the method does depends on how fast the joint turns.

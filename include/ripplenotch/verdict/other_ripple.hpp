@@ -21,16 +21,13 @@ class OtherRipple final : public RowValues {
   public:
     /// Reads `log` by the options that the joint itself is read by. Throws DataError where the log has no
     /// such joint, and what open_log throws.
-    OtherRipple(std::span<const RippleMap> maps, const Spool& log, const ReadOptions& options,
-                double gap_steps);
+    OtherRipple(std::span<const RippleMap> maps, const Spool& log, const ReadOptions& options);
     ~OtherRipple() override;
     OtherRipple(const OtherRipple&) = delete;
     OtherRipple& operator=(const OtherRipple&) = delete;
 
     /// In Nm, of the next rows of the log.
     std::span<const double> next(std::size_t count) override;
-    /// For another pass over the log.
-    void begin_again();
 
   private:
     std::FILE* file_;

@@ -44,13 +44,11 @@ void add_amplitudes(Identification& found, std::span<const Log> logs, std::optio
 [[nodiscard]] Diagnosis diagnose_readings(const Model& model, const Log& log, const Log* validation,
                                           const DiagnosisOptions& options);
 
-/// fit_ripple_map() of the logs of one joint, with the angle of the joint at which the map begins and the
-/// temperatures in degC at each log's rows (empty: of none). `doubt` says so where two readings of the logs
-/// are as possible and both show a map, or none of several does; then it is not conclusive. Where the reading
-/// is settled the motors of other joints are looked for, too (fit_joint_map). Throws what fit_ripple_map
-/// throws.
+/// fit_ripple_map() of the logs of one joint, with the angle of the joint at which the map begins. `doubt`
+/// says so where two readings of the logs are as possible and both show a map, or none of several does; then
+/// it is not conclusive. Where the reading is settled the motors of other joints are looked for, too
+/// (fit_joint_map). Throws what fit_ripple_map throws.
 [[nodiscard]] MapFit map_readings(std::span<const Log> logs, const GearAccount& gear, Degrees zero,
-                                  const std::vector<std::vector<double>>& temperatures_degc = {},
                                   const OtherMotors& others = {});
 
 /// Throws DataError, naming what settles it, where the log may mean several motions: its units are open, or

@@ -36,7 +36,6 @@
 #include "ripplenotch/filter/engine.hpp"
 #include "ripplenotch/log/log.hpp"
 #include "ripplenotch/verdict/gear_choice.hpp"
-#include "ripplenotch/verdict/side_column.hpp"
 
 namespace ripplenotch {
 
@@ -377,29 +376,6 @@ std::optional<GearAccount> common_gear(const std::vector<Contender>& contenders)
     return best->gear;
 }
 
-// The methods as they are on this log: at its temperature, where a map asks for one. The same without a log.
-std::vector<std::string> methods_at(const std::string& log, std::vector<std::string> methods,
-                                    const ReadOptions& options) {
-    if (log.empty()) return methods;
-    ReadOptions read = options;
-    read.takes_motor_units = true;
-    for (std::string& method : methods) method = at_log_temperature(method, log, read);
-    return methods;
-}
-
-// By contender, the temperature that it follows at the rows that read_log_in_part gives; empty for others.
-// Says how many cells were none.
-std::vector<std::vector<double>> temperatures_for(std::span<const Contender> contenders,
-                                                  const std::string& log, const ReadOptions& read,
-                                                  const CommonOptions& common) {
-    std::vector<std::vector<double>> all;
-    std::vector<std::string> notes;
-    for (const Contender& contender : contenders) all.push_back(followed_values(contender, log, read, notes));
-    notes.erase(std::unique(notes.begin(), notes.end()), notes.end());
-    say_warnings(common, notes);
-    return all;
-}
-
 // Throws UsageError when `methods` is empty, and what choose_method and refuse_other_gear throw.
 Field load_contenders(const std::vector<std::string>& methods, const GearOptions& gear,
                       const CommonOptions& common, Provenance& provenance) {
@@ -630,8 +606,6 @@ Comparison compare_on_log(const CompareRequest& request, Field& field, Provenanc
     if (request.plot.wanted() && !truth.empty())
         compared.watch = [&course](auto&&... all) { course.add(all...); };
     leave_out_refused(field, log.recording.clock.nominal_rate, request.common);
-    const auto warmth = temperatures_for(field.contenders, request.log, read, request.common);
-    compared.temperatures_degc.assign(warmth.begin(), warmth.end());
     // The filters are those that the filter command would run.
     compared.trace.sample_rate = log.recording.clock.nominal_rate;
     Comparison comparison;
@@ -662,8 +636,7 @@ Comparison compare_on_log(const CompareRequest& request, Field& field, Provenanc
 
 JointResult compare_once(const CompareRequest& request, const std::string& command_line) {
     Provenance provenance{{}, command_line};
-    Field field = load_contenders(methods_at(request.log, request.methods, request.log_options), request.gear,
-                                  request.common, provenance);
+    Field field = load_contenders(request.methods, request.gear, request.common, provenance);
     if (request.costs.gates.min_attenuation_db && !field.gear) raise_no_gear("--min-attenuation");
     if (field.gear) say(request.common, gear_in_words(*field.gear));
     ComparedCourse course;

@@ -6,11 +6,13 @@
 #include <cmath>
 #include <map>
 #include <memory>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "cli/command.hpp"
+#include "cli/options/joint_runs.hpp"
 #include "cli/options/options.hpp"
 #include "cli/options/verdict_options.hpp"
 #include "cli/talk.hpp"
@@ -22,7 +24,6 @@
 #include "ripplenotch/fleet/features.hpp"
 #include "ripplenotch/verdict/gear_choice.hpp"
 #include "ripplenotch/verdict/readings.hpp"
-#include "ripplenotch/verdict/side_column.hpp"
 
 namespace ripplenotch {
 
@@ -77,8 +78,10 @@ void take_temperature(const std::string& path, const FeatureWork& work, FeatureL
     if (work.temperature_degc) {
         line.temperature_degc = work.temperature_degc, line.temperature_source = "--temperature";
     } else if (work.temperature_column) {
-        line.temperature_degc =
-            mean_of_side_column(path, *work.temperature_column, line.joint, work.read, most_rows_looked_at);
+        const std::vector<double> degc =
+            read_column(path, *work.temperature_column, line.joint, work.read, most_rows_looked_at);
+        line.temperature_degc = std::accumulate(degc.begin(), degc.end(), 0.0) /
+                                static_cast<double>(std::max<std::size_t>(degc.size(), 1));
         line.temperature_source = "column " + *work.temperature_column;
     } else {
         line.temperature_source = "not stated; --temperature names a column or a number";

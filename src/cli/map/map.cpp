@@ -27,7 +27,6 @@
 #include "ripplenotch/verdict/gear_choice.hpp"
 #include "ripplenotch/verdict/other_motors.hpp"
 #include "ripplenotch/verdict/readings.hpp"
-#include "ripplenotch/verdict/side_column.hpp"
 
 namespace ripplenotch {
 
@@ -141,38 +140,22 @@ struct MapRequest {
     GearOptions gear;
     Degrees zero;
     bool require_conclusive = false;
-    std::optional<std::string> temperature;       ///< column of the logs
     bool heads = false;                           ///< what is printed begins with the joint
     std::optional<std::string> joint_files = {};  ///< --joint-file where it names one for each joint
-};
-
-/// Logs of one joint, and its temperature at their rows where a column is stated.
-struct Read {
-    std::vector<Log> logs;
-    std::vector<std::vector<double>> temperatures_degc;
 };
 
 std::size_t rows_of_each(const MapRequest& request) {
     return std::max(most_rows_held / request.logs.size(), most_rows_held / 4);
 }
 
-Read read_map_logs(const MapRequest& request, const GearAccount& gear, Provenance& provenance) {
+std::vector<Log> read_map_logs(const MapRequest& request, const GearAccount& gear, Provenance& provenance) {
     const ReadOptions options = read_options(request.log, gear);
-    Read read;
+    std::vector<Log> logs;
     for (const std::string& path : request.logs) {
-        const std::size_t most = rows_of_each(request);
-        read.logs.push_back(read_log_in_part(path, options, most));
-        const Log& log = read.logs.back();
-        if (request.temperature) {
-            if (path == "-")
-                raise<UsageError>("--temperature: standard input cannot be read twice; name a file");
-            read.temperatures_degc.push_back(
-                side_column(path, *request.temperature, log.trace.joint, options, most));
-            require_beside(read.temperatures_degc.back(), log.trace, path, *request.temperature);
-        }
-        take_log(request.common, path, log, provenance);
+        logs.push_back(read_log_in_part(path, options, rows_of_each(request)));
+        take_log(request.common, path, logs.back(), provenance);
     }
-    return read;
+    return logs;
 }
 
 // The gear of another joint: from its file where --joint-file names one each, else identified, or as
@@ -206,12 +189,12 @@ ExitCode run_map_once(const MapRequest& request, const std::string& command_line
     const std::optional<GearAccount> gear = choice.of();
     if (!gear) raise_no_gear("map");
     say(request.common, gear_in_words(*gear));
-    const Read read = read_map_logs(request, *gear, provenance);
+    const std::vector<Log> logs = read_map_logs(request, *gear, provenance);
     if (choice.joint()) provenance.inputs.push_back(input_record(choice.joint()->path));
-    const std::vector<JointLogs> arm = read_arm(request.logs, read.logs.front().layout,
-                                                read_options(request.log, gear), rows_of_each(request));
+    const std::vector<JointLogs> arm =
+        read_arm(request.logs, logs.front().layout, read_options(request.log, gear), rows_of_each(request));
     const OtherMotors others = motors_of(
-        arm, read.logs, [&](const JointLogs& joint) { return gear_of_other(request, joint, provenance); });
+        arm, logs, [&](const JointLogs& joint) { return gear_of_other(request, joint, provenance); });
     for (const std::string& joint : others.not_known)
         say(request.common,
             fmt::format("joint {}: its gear ratio is not known, so its motor is not looked for in "
@@ -219,12 +202,11 @@ ExitCode run_map_once(const MapRequest& request, const std::string& command_line
                         joint));
     for (const OtherMotor& other : others.motors)
         say(request.common, fmt::format("joint {}: {}", other.joint, gear_in_words(other.gear)));
-    MapFit fit = map_readings(read.logs, *gear, request.zero, read.temperatures_degc, others);
-    fit.map.joint = read.logs.front().trace.joint;
-    fit.map.temperature_column = request.temperature.value_or("");
+    MapFit fit = map_readings(logs, *gear, request.zero, others);
+    fit.map.joint = logs.front().trace.joint;
     for (const std::string& note : fit.notes) say(request.common, note);
     const std::string heading = request.heads ? fit.map.joint + ": " : "";
-    const std::string& unit = read.logs.front().recording.torque_unit;
+    const std::string& unit = logs.front().recording.torque_unit;
     write_result(
         request.common, [&] { return in_torque_unit(map_text(fit, provenance), unit); },
         in_torque_unit(heading + map_report(fit, request.logs), unit));
@@ -300,8 +282,6 @@ std::function<ExitCode()> attach_map(Options& options) {
     attach_gear(options, request->gear);
     options.number("--zero", request->zero, Dimension::angle,
                    "joint position at which the wave generator's angle counts as 0");
-    options.text("--temperature", request->temperature, "COLUMN",
-                 "the joint's temperature: a column in degrees Celsius, {joint} in it for a joint's name");
     options.flag("--require-conclusive", request->require_conclusive,
                  "exit with code 5 when the logs do not settle it");
     attach_plot(options, request->plot, request->common);
@@ -317,7 +297,7 @@ const Command commands::map{
     .summary = "the ripple by motor angle, speed and direction, for a compensator without delay",
     .description =
         "Reads logs of one joint and fits the cosine and sine amplitude of each order, on both combs of a "
-        "harmonic\ndrive, as a function of speed, direction and temperature; the form is chosen by "
+        "harmonic\ndrive, as a function of speed and direction; the form is chosen by "
         "cross-validation. The map\nis empty where no order follows the motor; the amplitude that would have "
         "been found is stated.\n"
         "Example: ripplenotch map log.csv --gear-ratio 100 --orders 1,2 -o map.json",

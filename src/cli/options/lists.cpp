@@ -63,7 +63,7 @@ void FileClaims::writes(std::string_view path, std::string_view as) {
     if (path != "-") written_.push_back({std::string(path), std::string(as)});
 }
 
-void FileClaims::check(std::string_view remedy) const {
+void FileClaims::check() const {
     for (std::size_t i = 0; i < written_.size(); ++i) {
         const Claim& out = written_[i];
         for (std::size_t j = 0; j < i; ++j) {
@@ -74,8 +74,8 @@ void FileClaims::check(std::string_view remedy) const {
         for (const Claim& in : read_) {
             if (!same_file(out.path, in.path)) continue;
             raise<UsageError>(
-                "{} {}: that file is read too ({}), and would be gone for good; name another file{}", out.as,
-                out.path, in.as, remedy);
+                "{} {}: that file is read too ({}), and would be gone for good; name another file", out.as,
+                out.path, in.as);
         }
     }
 }

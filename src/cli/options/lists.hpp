@@ -31,13 +31,12 @@ template <class Entry>
 class FileClaims {
   public:
     /// A file, or a specification with files in it ("switching,table=table.json"): each value of a key may be
-    /// one. `as`: "LOG", "--table".
+    /// one. `as`: "LOG", "--method".
     void reads(std::string_view text, std::string_view as);
     /// Pipes ("-") and what is no file (/dev/null, a folder) collide with nothing.
     void writes(std::string_view path, std::string_view as);
-    /// Throws UsageError where one file is written twice, or written and read. `remedy` follows the words
-    /// "name another file".
-    void check(std::string_view remedy = "") const;
+    /// Throws UsageError where one file is written twice, or written and read.
+    void check() const;
 
   private:
     struct Claim {

@@ -212,7 +212,7 @@ void Options::Implementation::check_files() const {
     for (const std::string& name : files)
         for (const std::string& value : command->get_option(name)->results())
             written.contains(name) ? claims.writes(value, name) : claims.reads(value, name);
-    claims.check(command->get_option_no_throw("--in-place") != nullptr ? ", or use --in-place" : "");
+    claims.check();
 }
 
 namespace {

@@ -7,8 +7,6 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
-#include <map>
-#include <numeric>
 #include <set>
 #include <string>
 
@@ -21,7 +19,6 @@
 #include "ripplenotch/evaluate/comparison.hpp"
 #include "ripplenotch/filter/map_fit.hpp"
 #include "ripplenotch/verdict/gear_choice.hpp"
-#include "ripplenotch/verdict/side_column.hpp"
 
 namespace ripplenotch {
 
@@ -54,11 +51,6 @@ constexpr std::array mapped_settings = {"", ",output=minus-ripple"};
 constexpr std::array table_qs = {std::pair{"table.json", 0.25}, std::pair{"table_narrow.json", 1.0}};
 constexpr std::array low_pass_shares = {0.5, 0.25, 0.1};  ///< of the lowest line at the median speed
 
-double mean(const std::vector<double>& values) {
-    return std::accumulate(values.begin(), values.end(), 0.0) /
-           static_cast<double>(std::max<std::size_t>(values.size(), 1));
-}
-
 double three_digits(double value) { return *parse_number(fmt::format("{:.3g}", value)); }
 
 class Maker {
@@ -86,10 +78,6 @@ class Maker {
         for (const char* const settings : tracking_settings) add(std::string("tracking") + settings);
         for (const auto& [file, q] : table_qs) add_switching(file, q);
         add_steady();
-        if (request_.offline)
-            add("subtract");
-        else
-            leave_out("subtract looks at the whole log first: --offline lets it in");
         return std::move(made_);
     }
 
@@ -112,28 +100,9 @@ class Maker {
         take(choose_method(text, std::nullopt, request_.choice, maps));
     }
 
-    // filter and compare take the temperature from the log's own column, so that no text has to state it; the
-    // oscillator's code has one for good.
-    void add_with(const RippleMap& map, const std::string& text, const MapSource& maps = {}) {
-        if (!map.form.by_temperature) return add(text, maps);
-        const SidesOfLog& warmth = *request_.temperature;
-        if (!maps || (request_.target && text.starts_with("oscillator")))
-            return add(fmt::format("{},temperature={:.1f}", text, mean(warmth.train_degc)), maps);
-        Contender contender = choose_method(at_rows_temperature(text, mean(warmth.judge_degc)), std::nullopt,
-                                            request_.choice, maps);
-        contender.text = text;
-        take(std::move(contender));
-    }
-
     MapFit fitted() {
-        std::vector<std::vector<double>> degc;
-        if (request_.temperature) degc.push_back(request_.temperature->train_degc);
-        MapFit fit = fit_ripple_map({&view_, 1}, request_.gear, 0.0, degc);
+        MapFit fit = fit_ripple_map({&view_, 1}, request_.gear);
         fit.map.joint = request_.train.trace.joint;
-        fit.map.temperature_column = request_.temperature ? request_.temperature->column : "";
-        if (request_.temperature && !fit.map.orders.empty() && !fit.map.form.by_temperature)
-            leave_out(fmt::format("a map by temperature: '{}' does not predict this ripple",
-                                  request_.temperature->column));
         return fit;
     }
 
@@ -157,18 +126,16 @@ class Maker {
         if (const auto held = request_.target ? request_.target->held(map) : std::nullopt) {
             std::string text = "map";
             for (const auto& [key, value] : map_as_keys(*held)) text += "," + key + "=" + value;
-            add_with(*held, text);
+            add(text);
         } else {
             const auto source = [&map](const std::string&) { return map; };
-            add_with(map, fmt::format("map,map={}", map_file), source);
+            add(fmt::format("map,map={}", map_file), source);
             for (const char* const settings : mapped_settings)
-                add_with(map, fmt::format("oscillator,map={}{}", map_file, settings), source);
+                add(fmt::format("oscillator,map={}{}", map_file, settings), source);
         }
-        const std::string column =
-            request_.temperature ? " --temperature " + shell_quoted(request_.temperature->column) : "";
         made_.files.push_back(
-            {std::string(map_file), fmt::format("ripplenotch map {}{}{} -o {}", request_.train_words,
-                                                gear_words(request_.gear), column, map_file)});
+            {std::string(map_file), fmt::format("ripplenotch map {}{} -o {}", request_.train_words,
+                                                gear_words(request_.gear), map_file)});
     }
 
     void add_switching(const std::string& file, double q) {

@@ -44,20 +44,12 @@ struct TriedMethods {
     std::vector<std::string> left_out;  ///< what was not tried, and why, one sentence each
 };
 
-/// A column of the log, at the rows of its two parts.
-struct SidesOfLog {
-    std::string column;
-    std::vector<double> train_degc, judge_degc;
-};
-
 struct CandidateRequest {
     const Log& train;
     std::string train_words;  ///< the log's name, with the options that read this part of it
     const GearChoice& choice;
     GearAccount gear;  ///< that choice comes to
-    bool offline = false;
     std::optional<TargetChoice> target;
-    std::optional<SidesOfLog> temperature;  ///< of the joint, where the map may depend on it
 };
 
 /// The same for every limit, so that looser limits never give a worse answer.

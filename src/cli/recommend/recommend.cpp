@@ -30,7 +30,6 @@
 #include "ripplenotch/export/target.hpp"
 #include "ripplenotch/log/log.hpp"
 #include "ripplenotch/verdict/readings.hpp"
-#include "ripplenotch/verdict/side_column.hpp"
 
 namespace ripplenotch {
 
@@ -159,19 +158,18 @@ struct RecommendRequest {
     const Options* options = nullptr;
     std::optional<std::string> joint;  ///< one of several
     std::string log;
-    std::optional<std::string> target, temperature;
+    std::optional<std::string> target;
     GearOptions gear;
     Gates limits;
     std::optional<std::string> torque_band;
     double train_percent = 60.0;
-    bool offline = false, require_conclusive = false;
+    bool require_conclusive = false;
 };
 
 /// The log, and its parts as --to and --from give them.
 struct Parts {
     Log whole, train, judge;
     ReadOptions train_options, judge_options;
-    std::optional<SidesOfLog> temperature;
 };
 
 void check_recommend(const RecommendRequest& request) {
@@ -222,19 +220,6 @@ Parts read_parts(const RecommendRequest& request, const std::optional<GearAccoun
     parts.train = read_log_in_part(request.log, parts.train_options);
     parts.judge = read_log_in_part(request.log, parts.judge_options);
     return parts;
-}
-
-// The joint's temperature beside the rows of both parts, as map and filter read it.
-void read_temperature(const RecommendRequest& request, Parts& parts) {
-    if (!request.temperature) return;
-    const std::string& joint = parts.whole.trace.joint;
-    std::vector<std::string> notes;
-    parts.temperature = SidesOfLog{
-        *request.temperature, side_column(request.log, *request.temperature, joint, parts.train_options),
-        held_side_column(request.log, *request.temperature, joint, parts.judge_options, notes)};
-    say_warnings(request.common, notes);
-    require_beside(parts.temperature->train_degc, parts.train.trace, request.log, *request.temperature);
-    require_beside(parts.temperature->judge_degc, parts.judge.trace, request.log, *request.temperature);
 }
 
 // The gear that the first part of the log shows; empty, with the reason, where it shows none. That there is
@@ -326,16 +311,11 @@ std::vector<std::string> assumptions(const RecommendRequest& request, const Part
     return all;
 }
 
-// Those that follow the temperature beside the log's rows are given it.
 Recommendation judged_at(const std::vector<Contender>& contenders, const Parts& parts,
                          const GearAccount& gear, const RecommendationLimits& limits,
                          const std::optional<TorqueBand>& band) {
     ComparedLog log{parts.judge.trace.view()};
     log.trace.sample_rate = parts.judge.recording.clock.nominal_rate;
-    for (const Contender& contender : contenders)
-        log.temperatures_degc.push_back(follows_temperature(contender)
-                                            ? std::span<const double>(parts.temperature->judge_degc)
-                                            : std::span<const double>());
     return recommend(contenders, log, gear, limits, ripple_of(parts.whole.trace, gear), band);
 }
 
@@ -367,7 +347,6 @@ RecommendationReport report_of(const RecommendRequest& request, Provenance& prov
     const auto band = stated_band(request.torque_band);
     const GearChoice stated(request.gear);
     Parts parts = read_parts(request, stated.of(), report.split_s, provenance);
-    read_temperature(request, parts);
     if (stated.joint()) provenance.inputs.push_back(input_record(stated.joint()->path));
     GearOptions gear_options = request.gear;
     report.found.limits = {request.limits.max_delay, request.limits.min_attenuation_db};
@@ -384,7 +363,7 @@ RecommendationReport report_of(const RecommendRequest& request, Provenance& prov
     const std::string split = split_words(report.split_s);
     TriedMethods candidates =
         candidates_for({parts.train, shell_quoted(request.log) + request.log_words({}, split), choice,
-                        *report.gear, request.offline, target, parts.temperature});
+                        *report.gear, target});
     report.found = judged_methods(candidates, parts, *report.gear, report.found.limits, band);
     name_other_lines(parts, *report.gear, report.found);
     doubt_readings(parts, *report.gear, report.found);
@@ -439,11 +418,6 @@ std::function<ExitCode()> attach_recommend(Options& options) {
                  "frequencies of the torque that have to pass, e.g. 0:10Hz; left out: found in the log");
     options.text("--target", request->target, "TARGET[,KEY=VALUE...]",
                  "only methods that this export target holds; see docs/export");
-    options.flag("--offline", request->offline,
-                 "the log is filtered afterwards: methods that look at all of it first count, too");
-    options.text("--temperature", request->temperature, "COLUMN",
-                 "the joint's temperature, for the map: a column in degrees Celsius, {joint} in it for a "
-                 "joint's name");
     options.number("--train", request->train_percent, Dimension::none,
                    "per cent of the log that methods learn from; they are evaluated on the rest");
     options.flag("--require-conclusive", request->require_conclusive,

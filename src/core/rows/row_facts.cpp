@@ -13,17 +13,6 @@ namespace {
 
 constexpr std::size_t at_once = 16;
 
-struct Magnitudes {
-    const double* values;
-
-    [[nodiscard]] double at(std::size_t k) const { return std::abs(values[k]); }
-    template <class Lanes>
-    RIPPLENOTCH_INLINED void load_at(Lanes& lanes, std::size_t k) const {
-        load(lanes, values + k);
-        drop_signs(lanes);
-    }
-};
-
 /// From each value to the next.
 struct Steps {
     const double* values;
@@ -67,10 +56,6 @@ std::size_t first(const What& what, std::size_t count, double low, double high) 
 }
 
 }  // namespace
-
-std::size_t first_outside(std::span<const double> values, double low, double high) noexcept {
-    return first(Magnitudes{values.data()}, values.size(), low, high);
-}
 
 std::size_t first_step_outside(std::span<const double> values, double low, double high) noexcept {
     return values.empty() ? 0 : 1 + first(Steps{values.data()}, values.size() - 1, low, high);

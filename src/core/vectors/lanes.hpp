@@ -188,20 +188,6 @@ RIPPLENOTCH_INLINED bool all_set(const BitsOf<TwoAndTwo>& bits) {
     return (both[0] & both[1]) == -1;
 }
 
-/// The four lanes of `from`, each spread over one of `to`.
-RIPPLENOTCH_INLINED void spread(Four (&to)[4], const Four& from) {
-    to[0] = __builtin_shufflevector(from, from, 0, 0, 0, 0);
-    to[1] = __builtin_shufflevector(from, from, 1, 1, 1, 1);
-    to[2] = __builtin_shufflevector(from, from, 2, 2, 2, 2);
-    to[3] = __builtin_shufflevector(from, from, 3, 3, 3, 3);
-}
-RIPPLENOTCH_INLINED void spread(TwoAndTwo (&to)[4], const TwoAndTwo& from) {
-    fill(to[0], from.low[0]);
-    fill(to[1], from.low[1]);
-    fill(to[2], from.high[0]);
-    fill(to[3], from.high[1]);
-}
-
 template <class Kernel, class... Arguments>
 RIPPLENOTCH_WIDE auto in_four_lanes(Arguments... arguments) {
     return Kernel::template run<Four>(arguments...);

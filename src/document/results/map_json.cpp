@@ -14,7 +14,7 @@ namespace ripplenotch {
 
 namespace {
 
-constexpr std::size_t most_speeds = 64, most_turn_harmonics = 8, most_map_orders = 64;
+constexpr std::size_t most_speeds = 64, most_map_orders = 64;
 
 // How many numbers a list may hold, which rise, the first from `least` on.
 struct Rising {
@@ -64,9 +64,6 @@ void describe(Archive& archive, Is<MapForm> auto& form) {
     archive.derived("words", [&] { return map_form_words(form); });
     describe_rising(archive, "speeds_deg_s", form.speeds_deg_s, {0.0, 1, most_speeds});
     archive("directions", form.directions, Limits{1, 2});
-    archive("turn_harmonics", form.turn_harmonics, Limits{0, most_turn_harmonics});
-    archive("by_load", form.by_load);
-    archive("by_temperature", form.by_temperature, if_any);
     if (!archive.holds("second_comb", form.second_comb != 0)) return;
     if constexpr (Archive::reading) {
         const double side = archive.number("second_comb");
@@ -148,10 +145,7 @@ void describe(Archive& archive, Is<MapFit> auto& fit) {
     archive.group("range", [&](Archive& range) {
         range("speed_deg_s", map.speeds_deg_s, lower_first);
         range("position_deg", map.positions_deg, lower_first);
-        range("load_nm", map.loads_nm, lower_first);
-        if (map.form.by_temperature) range("temperature_degc", map.temperatures_degc, lower_first);
     });
-    if (map.form.by_temperature) archive("temperature_column", map.temperature_column);
     describe_rising(archive, "orders", map.orders, {1e-9, 0, most_map_orders});
     archive("spread_nm", map.spread_nm);
     if constexpr (Archive::reading) {

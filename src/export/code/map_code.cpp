@@ -4,15 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <complex>
 
 #include "export/run/map_run.hpp"
-#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
-
-using Products = std::vector<std::pair<std::string, std::string>>;
 
 constexpr double slowest_blend_deg_s = 0.1;
 
@@ -25,32 +23,10 @@ constexpr std::string_view along_code = R"c(    const @real@ size = @abs@(speed_
     if (@abs@(along) > (@real@)0.5) along = along < 0 ? (@real@)-0.5 : (@real@)0.5;
 )c";
 
-// Turns of the joint beyond the middle of its range, whole ones aside, within what was seen.
-constexpr std::string_view held_code =
-    R"c(    @real@ joint = @name@_fma(joint_deg, (@real@)0.002777777777777778, @name@_limits[1]);
-    joint = @name@_beside_whole(joint);
-    if (@abs@(joint) > @name@_limits[2]) joint = joint < 0 ? -@name@_limits[2] : @name@_limits[2];
-)c";
-
-constexpr std::string_view clamped_code =
-    R"c(    const @real@ {0} = {1} < @name@_limits[{2}] ? @name@_limits[{2}] : {1} > @name@_limits[{3}] ? @name@_limits[{3}] : {1};
-)c";
-
 // The joint position that its angle is counted from: the middle of what was seen, or the map's zero.
 double counted_from_deg(const RippleMap& map) {
     const MapRange& seen = map.positions_deg;
     return seen.to > seen.from ? seen.middle() : map.zero_deg;
-}
-
-// A column behind those of the speeds; those of the joint's turn for an angle so counted.
-std::complex<double> from_middle(const RippleMap& map, const std::vector<std::complex<double>>& z,
-                                 std::size_t at) {
-    const std::size_t each = map.form.columns_a_direction(), speeds = map.form.speeds_deg_s.size();
-    const std::size_t within = at % each - speeds;
-    if (within >= 2 * map.form.turn_harmonics) return z[at];
-    const double angle = static_cast<double>(within / 2 + 1) * (counted_from_deg(map) - map.zero_deg);
-    const double c = portable::cos_degrees(angle), s = portable::sin_degrees(angle);
-    return within % 2 == 0 ? c * z[at] + s * z[at + 1] : c * z[at] - s * z[at - 1];
 }
 
 }  // namespace
@@ -66,9 +42,8 @@ RippleMap with_combs_apart(const RippleMap& map) {
         const std::complex<double> turned = second_comb_phasor(map, i, counted_from_deg(map));
         for (std::size_t c = 0; c < map.form.columns(); ++c) {
             if (map.form.is_second_comb(c)) continue;
-            const bool at_speed = c % map.form.columns_a_direction() < knots;
             apart.values[i].push_back(map.values[i][c]);
-            apart.values[map.orders.size() + i].push_back(at_speed ? turned * map.values[i][c + knots] : 0.0);
+            apart.values[map.orders.size() + i].push_back(turned * map.values[i][c + knots]);
         }
     }
     return apart;
@@ -81,17 +56,7 @@ MapTables::MapTables(const RippleMap& stated) : speeds(stated.form.speeds_deg_s)
         slopes.push_back(gap > 0.0 ? 1.0 / gap : 0.0);
         offsets.push_back(gap > 0.0 ? -0.5 * (speeds[k] + speeds[k + 1]) / gap : 0.0);
     }
-    const MapRange& positions = map.positions_deg;
-    const bool held = positions.to > positions.from;
-    const double middle = map.temperatures_degc.middle();
-    limits = {std::max(map.speeds_deg_s.from, slowest_blend_deg_s),
-              -counted_from_deg(map) / 360.0,
-              held ? (positions.to - positions.from) / 720.0 : 0.5,
-              map.loads_nm.from,
-              map.loads_nm.to,
-              middle,
-              map.temperatures_degc.from - middle,
-              map.temperatures_degc.to - middle};
+    limits = {std::max(map.speeds_deg_s.from, slowest_blend_deg_s), -counted_from_deg(map) / 360.0};
     const std::size_t each = map.form.columns_a_direction();
     for (std::size_t d = 0; d < map.form.directions; ++d) {
         for (std::size_t k = 0; k + 1 < speeds.size(); ++k) {
@@ -100,8 +65,6 @@ MapTables::MapTables(const RippleMap& stated) : speeds(stated.form.speeds_deg_s)
             add(map, [c](const auto& z) { return z[c + 1] - z[c]; });
         }
         if (speeds.size() == 1) add(map, [at = d * each](const auto& z) { return z[at]; });
-        for (std::size_t c = speeds.size(); c < each; ++c)
-            add(map, [&, at = d * each + c](const auto& z) { return from_middle(map, z, at); });
     }
 }
 
@@ -115,17 +78,17 @@ void MapTables::add(const RippleMap& map, const Of& of) {
 
 std::size_t MapTables::columns_a_direction(const MapForm& form) {
     const std::size_t speeds = form.speeds_deg_s.size();
-    return form.columns_a_direction() - speeds + (speeds > 1 ? 2 * (speeds - 1) : 1);
+    return speeds > 1 ? 2 * (speeds - 1) : 1;
 }
 
 MapTables::MapTables(TextReader& reader, const RippleMap& map, const CodeStyle& style)
     : speeds(style.read(reader, "speeds", map.form.speeds_deg_s.size())),
       slopes(style.read(reader, "slopes", std::max<std::size_t>(speeds.size(), 2) - 1)),
       offsets(style.read(reader, "offsets", slopes.size())),
-      limits(style.read(reader, "limits", 8)),
+      limits(style.read(reader, "limits", 2)),
       amplitudes(style.read(reader, "amplitudes", MapTables(map).amplitudes.size())) {}
 
-std::string MapCode::arguments(bool with_types, std::string_view torque) const {
+std::string MapCode::arguments(bool with_types) const {
     const MapForm& form = map_.form;
     std::string text;
     const auto add = [&](bool is, std::string_view name, std::string_view value) {
@@ -133,60 +96,26 @@ std::string MapCode::arguments(bool with_types, std::string_view torque) const {
     };
     add(form.speeds_deg_s.size() > 1 || form.directions > 1, "speed_deg_s", "speed_deg_s");
     add(by_joint(), "joint_deg", "joint_deg");
-    add(form.by_load, "torque_nm", torque);
-    add(form.by_temperature, "temperature_degc", "temperature_degc");
     return text;
 }
 
-std::string MapCode::amplitudes_here(std::string_view torque) const {
+std::string MapCode::amplitudes_here() const {
     std::string text;
     if (map_.form.speeds_deg_s.size() == 1 && map_.form.directions == 1) text += "    (void)speed_deg_s;\n";
     if (!by_joint()) text += "    (void)joint_deg;\n";
     if (is_constant()) return text + "    const @real@* const z = @name@_amplitudes;\n";
     return text + fmt::format("    @real@ z[{}];\n    @name@_at({}z);\n", 2 * apart_.orders.size(),
-                              arguments(false, torque));
-}
-
-// The factors of the columns.
-std::string MapCode::factors() const {
-    const MapForm& form = map_.form;
-    std::string text;
-    if (form.speeds_deg_s.size() > 1)
-        text += filled(std::string(along_code), {{"@speeds@", std::to_string(form.speeds_deg_s.size())}});
-    if (form.turn_harmonics > 0)
-        text += std::string(held_code) + "    @real@ c1, s1;\n    @name@_on_circle(joint, &c1, &s1);\n";
-    for (std::size_t k = 2; k <= form.turn_harmonics; ++k) {
-        text += fmt::format(
-            "    const @real@ c{0} = @name@_fma(c1, c{1}, -s1 * s{1}), s{0} = @name@_fma(s1, c{1}, c1 * "
-            "s{1});\n",
-            k, k - 1);
-    }
-    if (form.by_load) text += fmt::format(fmt::runtime(clamped_code), "load", "torque_nm", 3, 4);
-    if (form.by_temperature) {
-        text += "    const @real@ beyond = temperature_degc - @name@_limits[5];\n";
-        text += fmt::format(fmt::runtime(clamped_code), "warmer", "beyond", 6, 7);
-    }
-    return text;
+                              arguments(false));
 }
 
 // A cosine or sine amplitude, as MapRun adds it up.
 std::string MapCode::sum(std::size_t part) const {
     const MapForm& form = apart_.form;
     const std::size_t parts = 2 * apart_.orders.size(), speeds = form.speeds_deg_s.size();
-    Products products;
-    if (speeds > 1) products.emplace_back("along", fmt::format("low[{}]", part + parts));
-    std::size_t at = (speeds > 1 ? 2 * (speeds - 1) : 1) * parts + part;
-    const auto add = [&](const std::string& factor) {
-        products.emplace_back(factor, fmt::format("v[{}]", at));
-        at += parts;
-    };
-    for (std::size_t k = 1; k <= form.turn_harmonics; ++k) {
-        add(fmt::format("c{}", k));
-        add(fmt::format("s{}", k));
-    }
-    if (form.by_load) add("load");
-    if (form.by_temperature) add("warmer");
-    return sum_code(fmt::format("{}[{}]", speeds > 1 ? "low" : "v", part), products);
+    if (speeds == 1) return fmt::format("v[{}]", part);
+    const std::array products = {
+        std::pair<std::string, std::string>("along", fmt::format("low[{}]", part + parts))};
+    return sum_code(fmt::format("low[{}]", part), products);
 }
 
 // The amplitudes of one direction, formatted by `form`: {0} their index, {1} their value.
@@ -229,9 +158,10 @@ std::string MapCode::definitions() const {
     std::string code = fmt::format(
         "\n/* Of each order the amplitudes of cosine and sine, Nm. */\n"
         "static inline void @name@_at({}@real@* z) {{\n",
-        arguments(true, ""));
+        arguments(true));
     // C99 lets declarations follow statements.
-    code += factors();
+    if (form.speeds_deg_s.size() > 1)
+        code += filled(std::string(along_code), {{"@speeds@", std::to_string(form.speeds_deg_s.size())}});
     if (form.directions == 1) {
         code += side(0, "    ", "z[{0}] = {1};");
     } else {

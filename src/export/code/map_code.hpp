@@ -16,9 +16,7 @@ class MapTables {
     std::vector<double> speeds;
     /// Between each speed and the next: 1 / gap, and less the middle times that.
     std::vector<double> slopes, offsets;
-    /// Speed below which the directions blend; for the joint in turns: the negative middle of its range, from
-    /// which it is counted, and half of the range; least and greatest load; for the temperature the middle,
-    /// and least and greatest relative to it.
+    /// Speed below which the directions blend; the joint's angle from which it is counted, in negative turns.
     std::vector<double> limits;
     /// By direction and column, in it by order, cosine before sine. Instead of the speeds' columns, for each
     /// gap the value in its middle and the increment across it.
@@ -48,14 +46,13 @@ class MapCode {
 
     /// Tables, and the function NAME_at where amplitudes are not the same everywhere.
     [[nodiscard]] std::string definitions() const;
-    /// Lines that declare z[], the amplitudes here, cosine before sine. `torque` is the load's expression.
-    [[nodiscard]] std::string amplitudes_here(std::string_view torque) const;
+    /// Lines that declare z[], the amplitudes here, cosine before sine.
+    [[nodiscard]] std::string amplitudes_here() const;
 
   private:
     [[nodiscard]] bool is_constant() const { return map_.form.columns() == 1; }
-    [[nodiscard]] std::string arguments(bool with_types, std::string_view torque) const;
-    [[nodiscard]] bool by_joint() const { return map_.form.turn_harmonics > 0 || map_.form.second_comb != 0; }
-    [[nodiscard]] std::string factors() const;
+    [[nodiscard]] std::string arguments(bool with_types) const;
+    [[nodiscard]] bool by_joint() const { return map_.form.second_comb != 0; }
     [[nodiscard]] std::string sum(std::size_t part) const;
     [[nodiscard]] std::string side(std::size_t direction, std::string_view indent,
                                    std::string_view form) const;

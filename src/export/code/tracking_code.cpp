@@ -116,7 +116,7 @@ std::string step_of(const OscillatorDesign& d, const CodeStyle& style) {
                  d.map ? " speed_deg_s and joint_deg: the joint's\n   velocity and position, where its map "
                          "depends on them."
                        : ""}});
-    if (d.map) text += MapCode(*d.map, style).amplitudes_here("torque_nm");
+    if (d.map) text += MapCode(*d.map, style).amplitudes_here();
     return text + oscillator_step_code(d) + "}\n";
 }
 

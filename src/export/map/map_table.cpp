@@ -16,25 +16,18 @@ RippleMap flat_map(const RippleMap& map, const Settings& settings) {
     flat.form = {};
     flat.form.speeds_deg_s = {map.speeds_deg_s.middle()};
     const double speed = settings.has("speed") ? settings.number("speed") : map.speeds_deg_s.middle();
-    const auto temperature =
-        settings.has("temperature") ? std::optional(settings.number("temperature")) : std::nullopt;
     const std::string direction = settings.text("direction");
-    // The mean over the joint's turn is the map without its harmonics and the second comb.
+    // The mean over the joint's turn is the map without the second comb.
     RippleMap still = map;
-    const std::size_t each = map.form.columns_a_direction(), speeds = map.form.speeds_deg_s.size();
-    for (auto& values : still.values) {
-        for (std::size_t c = 0; c < values.size(); ++c) {
-            const std::size_t within = c % each;
-            if (within >= speeds && within < map.form.load_column()) values[c] = 0.0;
-        }
-    }
+    for (auto& values : still.values)
+        for (std::size_t c = 0; c < values.size(); ++c)
+            if (map.form.is_second_comb(c)) values[c] = 0.0;
     std::vector<double> weights(map.form.columns());
     for (std::size_t i = 0; i < map.orders.size(); ++i) {
         std::complex<double> sum = 0.0;
         for (const double sign : {1.0, -1.0}) {
             if (direction == (sign > 0.0 ? "backward" : "forward")) continue;
-            map_weights(still, {sign * speed, map.positions_deg.middle(), map.loads_nm.middle(), temperature},
-                        weights);
+            map_weights(still, {sign * speed, map.positions_deg.middle()}, weights);
             sum += map_amplitude(still, i, weights, map.positions_deg.middle());
         }
         flat.values[i] = {direction == "both" ? 0.5 * sum : sum};
@@ -50,9 +43,6 @@ std::vector<std::string> flattened(const RippleMap& map, std::string_view target
     lost(map.form.speeds_deg_s.size() > 1, "the dependence on speed is");
     lost(map.form.directions > 1, "the dependence on direction is");
     lost(map.form.second_comb != 0, "the second comb is");
-    lost(map.form.turn_harmonics > 0, "harmonics of the joint's turn are");
-    lost(map.form.by_load, "the dependence on load is");
-    lost(map.form.by_temperature, "the dependence on temperature is");
     return warnings;
 }
 

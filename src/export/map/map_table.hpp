@@ -27,14 +27,7 @@ inline constexpr Key flat_direction_key{.name = "direction",
                                         .choices = flat_directions,
                                         .help = "both: the mean of the two"};
 
-inline constexpr Key flat_temperature_key{
-    .name = "temperature",
-    .at_least = -274.0,
-    .at_most = 1000.0,
-    .help = "in degC, whose amplitudes are taken; the middle of the map's"};
-
-/// The map at one speed and direction, alike at all of them, without the joint's turn, at the middle load and
-/// the stated temperature.
+/// The map at one speed and direction, alike at all of them, and without the second comb.
 [[nodiscard]] RippleMap flat_map(const RippleMap& map, const Settings& settings);
 
 /// The parts of the map that its flat form omits, one sentence each.

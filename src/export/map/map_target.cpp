@@ -41,14 +41,10 @@ MapCheck verify_map_export(const RippleMap& map, const LoadedMap& loaded) {
     for (const double speed : {map.speeds_deg_s.from, map.speeds_deg_s.middle(), map.speeds_deg_s.to}) {
         for (const double sign : {1.0, -1.0}) {
             double share = 0.0;
-            const auto warm = map.form.by_temperature ? std::optional(sign > 0.0 ? map.temperatures_degc.to
-                                                                                 : map.temperatures_degc.from)
-                                                      : std::nullopt;
             for (int k = 0; k < places; ++k) {
                 share += golden_turns;
                 share -= std::floor(share);
-                const MapState state{sign * speed, map.positions_deg.from + share * span_deg,
-                                     map.loads_nm.middle(), warm};
+                const MapState state{sign * speed, map.positions_deg.from + share * span_deg};
                 const double whole = map_torque(map, state), held = map_torque(loaded.held, state);
                 ripple += whole * whole;
                 not_held += (whole - held) * (whole - held);

@@ -24,9 +24,7 @@ constexpr int first_slot = 7;  // subindex of n of slot 0; phi and r follow, and
 constexpr std::array<std::string_view, 2> channels = {"a", "b"}, forms = {"cosine", "sine"},
                                           sides = {"motor", "joint"};
 constexpr std::array keys = {
-    flat_speed_key,
-    flat_direction_key,
-    flat_temperature_key,
+    flat_speed_key, flat_direction_key,
     Key{.name = "channel",
         .kind = KeyKind::choice,
         .default_text = "a",

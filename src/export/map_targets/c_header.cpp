@@ -19,10 +19,9 @@ constexpr std::array keys = {name_key("ripple_map"), precision_key("of numbers a
 
 constexpr std::string_view torque_code = R"c(
 /* Ripple of the joint's torque in Nm: subtract it from the sensor. motor_turns: the motor's angle in turns, 0 where the
-   joint is at the map's zero; the fraction of the turn is enough. joint_deg: the joint's position; only for its own
-   harmonics. torque_nm: the joint's torque; only for the load. temperature_degc is asked for by a map that depends on
-   it. */
-static inline @real@ @name@_torque(@real@ speed_deg_s, @real@ motor_turns, @real@ joint_deg, @real@ torque_nm@temperature@) {
+   joint is at the map's zero; the fraction of the turn is enough. joint_deg: the joint's position; only for the second
+   comb. */
+static inline @real@ @name@_torque(@real@ speed_deg_s, @real@ motor_turns, @real@ joint_deg) {
 )c";
 
 std::vector<double> orders_of(const RippleMap& map) {
@@ -35,12 +34,8 @@ Written write(const RippleMap& map, const Settings& settings, std::span<const st
     const CodeStyle style = style_of(settings);
     const MapCode code(map, style);
     const std::vector<double> orders = orders_of(map);
-    std::string body =
-        style.array("orders", orders) + std::string(turn_code(style.is_float)) + code.definitions() +
-        filled(std::string(torque_code),
-               {{"@temperature@", map.form.by_temperature ? ", @real@ temperature_degc" : ""}});
-    body += code.amplitudes_here("torque_nm");
-    if (!map.form.by_load) body += "    (void)torque_nm;\n";
+    std::string body = style.array("orders", orders) + std::string(turn_code(style.is_float)) +
+                       code.definitions() + std::string(torque_code) + code.amplitudes_here();
     std::vector<std::pair<std::string, std::string>> products;
     for (std::size_t i = 1; i < 2 * orders.size(); ++i)
         products.emplace_back(fmt::format("z[{}]", i), fmt::format("{}{}", i % 2 == 0 ? 'c' : 's', i / 2));
@@ -57,14 +52,12 @@ class TorqueRun {
           shows_(2 * orders.size()),
           map_(map, tables),
           ratio_(map.gear_ratio.value()),
-          zero_deg_(map.zero_deg),
-          middle_degc_(map.temperatures_degc.middle()) {}
+          zero_deg_(map.zero_deg) {}
 
     double operator()(const MapState& state) {
         const double turns = ratio_ * (state.position_deg - zero_deg_) / 360.0;
         order_angles(orders_, static_cast<Real>(turns - std::floor(turns)), shows_);
-        const double temperature = state.temperature_degc.value_or(middle_degc_);
-        const auto& z = map_.at({state.load_nm, state.speed_deg_s, turns, state.position_deg, temperature});
+        const auto& z = map_.at({0.0, state.speed_deg_s, turns, state.position_deg});
         Real ripple = 0;
         for (std::size_t i = 0; i < shows_.size(); ++i) ripple += z[i] * shows_[i];
         return static_cast<double>(ripple);
@@ -73,7 +66,7 @@ class TorqueRun {
   private:
     std::vector<Real> orders_, shows_;
     MapRun<Real> map_;
-    double ratio_, zero_deg_, middle_degc_;
+    double ratio_, zero_deg_;
 };
 
 LoadedMap read(std::string_view bytes, const std::string& source, const RippleMap& map,

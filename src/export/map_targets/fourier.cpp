@@ -17,13 +17,10 @@ constexpr std::string_view explained =
     "(position - "
     "zero)";
 constexpr std::string_view weights =
-    "weight: of a speed, linear between the speeds of its direction and held beyond; of turn_cosine and "
-    "turn_sine k, "
-    "cos and sin of k (position - zero); of load, the torque in Nm";
+    "weight: of a speed, linear between the speeds of its direction and held beyond";
 constexpr std::string_view of_second_comb =
     "; of second_comb_deg_s, as of a speed, with n (theta + second_comb (position - zero)) instead of n "
     "theta";
-constexpr std::string_view of_temperature = "; of temperature, degC beyond the middle of its range";
 
 struct Column {
     std::string_view of;
@@ -33,11 +30,7 @@ struct Column {
 Column column_of(const MapForm& form, std::size_t column) {
     const std::size_t within = column % form.columns_a_direction(), speeds = form.speeds_deg_s.size();
     if (within < speeds) return {"speed_deg_s", form.speeds_deg_s[within]};
-    if (within < form.speed_columns()) return {"second_comb_deg_s", form.speeds_deg_s[within - speeds]};
-    if (form.by_temperature && within == form.temperature_column()) return {"temperature", 1.0};
-    if (within >= form.load_column()) return {"load", 1.0};
-    const std::size_t turn = within - form.speed_columns();
-    return {turn % 2 == 0 ? "turn_cosine" : "turn_sine", static_cast<double>(turn / 2 + 1)};
+    return {"second_comb_deg_s", form.speeds_deg_s[within - speeds]};
 }
 
 std::string direction_of(const MapForm& form, std::size_t column) {
@@ -64,19 +57,12 @@ std::string rows_of(const RippleMap& map) {
 
 Written write(const RippleMap& map, const Settings&, std::span<const std::string> heading) {
     std::string text = comment_lines(heading, "# ");
-    const auto where = [](bool is, std::string_view clause) { return is ? clause : std::string_view(); };
     text +=
-        fmt::format("# {}\n# {}{}{}\n", explained, weights, where(map.form.second_comb != 0, of_second_comb),
-                    where(map.form.by_temperature, of_temperature));
+        fmt::format("# {}\n# {}{}\n", explained, weights, map.form.second_comb != 0 ? of_second_comb : "");
     if (map.form.second_comb != 0) text += fact("second_comb", map.form.second_comb);
     text += fact("gear_ratio", map.gear_ratio.value()) + fact("zero_deg", map.zero_deg);
     text += fact("slowest_deg_s", map.speeds_deg_s.from) + fact("fastest_deg_s", map.speeds_deg_s.to);
     text += fact("position_from_deg", map.positions_deg.from) + fact("position_to_deg", map.positions_deg.to);
-    text += fact("load_from_nm", map.loads_nm.from) + fact("load_to_nm", map.loads_nm.to);
-    if (map.form.by_temperature) {
-        text += fact("temperature_from_degc", map.temperatures_degc.from) +
-                fact("temperature_to_degc", map.temperatures_degc.to);
-    }
     return {text + rows_of(map), {}};
 }
 
@@ -124,13 +110,8 @@ LoadedMap read(std::string_view bytes, const std::string& source, const RippleMa
     found.speeds_deg_s = {fact_in(bytes, "slowest_deg_s", source), fact_in(bytes, "fastest_deg_s", source)};
     found.positions_deg = {fact_in(bytes, "position_from_deg", source),
                            fact_in(bytes, "position_to_deg", source)};
-    found.loads_nm = {fact_in(bytes, "load_from_nm", source), fact_in(bytes, "load_to_nm", source)};
     if (map.form.second_comb != 0)
         found.form.second_comb = fact_in(bytes, "second_comb", source) > 0.0 ? 1 : -1;
-    if (map.form.by_temperature) {
-        found.temperatures_degc = {fact_in(bytes, "temperature_from_degc", source),
-                                   fact_in(bytes, "temperature_to_degc", source)};
-    }
     return {"float64", map, [found](const MapState& state) { return map_torque(found, state); }};
 }
 

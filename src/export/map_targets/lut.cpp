@@ -15,9 +15,7 @@ namespace {
 
 constexpr std::array<std::string_view, 2> forms = {"csv", "c"};
 constexpr std::array keys = {
-    flat_speed_key,
-    flat_direction_key,
-    flat_temperature_key,
+    flat_speed_key, flat_direction_key,
     Key{.name = "entries",
         .default_text = "1024",
         .at_least = 8.0,

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t entries = 1024;
 constexpr double largest_byte = 127.0;
-constexpr std::array keys = {flat_speed_key, flat_direction_key, flat_temperature_key,
+constexpr std::array keys = {flat_speed_key, flat_direction_key,
                              Key{.name = "kt",
                                  .required = true,
                                  .above = 0.0,

@@ -75,7 +75,7 @@ class MapRun {
   private:
     void find_amplitudes(const CodeInput& in) {
         const Real speed = static_cast<Real>(in.speed_deg_s);
-        find_factors(in);
+        find_speed(in);
         if (form_.directions == 1) {
             add_up(table_.data(), z_);
             return;
@@ -87,8 +87,7 @@ class MapRun {
         add_up(table_.data() + half, other_);
         for (std::size_t i = 0; i < z_.size(); ++i) z_[i] = share * (other_[i] - z_[i]) + z_[i];
     }
-    void find_factors(const CodeInput& in) {
-        factors_.clear();
+    void find_speed(const CodeInput& in) {
         if (speeds_.size() > 1) {
             const Real size = std::abs(static_cast<Real>(in.speed_deg_s));
             at_ = 0;
@@ -96,39 +95,16 @@ class MapRun {
             along_ = std::clamp(size * slopes_[at_] + offsets_[at_], static_cast<Real>(-0.5),
                                 static_cast<Real>(0.5));
         }
-        if (form_.turn_harmonics > 0) add_turn(static_cast<Real>(in.joint_deg));
-        if (form_.by_load)
-            factors_.push_back(std::clamp(static_cast<Real>(in.torque_nm), limits_[3], limits_[4]));
-        if (form_.by_temperature) {
-            const Real beyond = static_cast<Real>(in.temperature_degc) - limits_[5];
-            factors_.push_back(std::clamp(beyond, limits_[6], limits_[7]));
-        }
-    }
-    void add_turn(Real joint_deg) {
-        Real joint = joint_deg * static_cast<Real>(0.002777777777777778) + limits_[1];
-        joint = beside_whole(joint);
-        const OnCircle<Real> one = on_circle(std::clamp(joint, -limits_[2], limits_[2]));
-        OnCircle<Real> k = one;
-        for (std::size_t i = 1;; ++i) {
-            factors_.push_back(k.cosine);
-            factors_.push_back(k.sine);
-            if (i == form_.turn_harmonics) return;
-            k = {one.cosine * k.cosine - one.sine * k.sine, one.sine * k.cosine + one.cosine * k.sine};
-        }
     }
     void add_up(const Real* v, std::vector<Real>& sums) const {
-        const std::size_t parts = sums.size(), gaps = speeds_.size() - 1;
+        const std::size_t parts = sums.size();
         const Real* const low = v + 2 * parts * at_;
-        const Real* const more = v + (gaps > 0 ? 2 * gaps : 1) * parts;
-        for (std::size_t i = 0; i < parts; ++i) {
-            Real sum = gaps > 0 ? along_ * low[i + parts] + low[i] : v[i];
-            for (std::size_t k = 0; k < factors_.size(); ++k) sum += factors_[k] * more[k * parts + i];
-            sums[i] = sum;
-        }
+        for (std::size_t i = 0; i < parts; ++i)
+            sums[i] = speeds_.size() > 1 ? along_ * low[i + parts] + low[i] : v[i];
     }
 
     MapForm form_;
-    std::vector<Real> orders_, speeds_, slopes_, offsets_, limits_, table_, z_, other_, sum_, factors_;
+    std::vector<Real> orders_, speeds_, slopes_, offsets_, limits_, table_, z_, other_, sum_;
     std::size_t at_ = 0;
     Real along_ = 0;
 };

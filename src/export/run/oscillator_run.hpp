@@ -17,7 +17,7 @@ namespace ripplenotch {
 
 // The oscillator as its C header computes it, in the header's precision.
 //
-// It is the filter of filter/ripple/ripple_kalman.hpp in other coordinates. There the first state is the
+// It is the filter of filter/ripple_kalman.hpp in other coordinates. There the first state is the
 // torque; here it is torque and ripple together, the measured value. A sample then measures one state alone,
 // and a cold start has no prior on how the two share it: its covariance is diagonal, and no digits are lost
 // to cancelling large correlations. The decay of the amplitudes is applied to their measurement weights, one

@@ -33,33 +33,21 @@ constexpr std::array keys = {
     Key{.name = "form",
         .kind = KeyKind::choice,
         .choices = forms,
-        .help = "svf: state-variable; df1: direct form I; df2t: transposed direct form II (default: that of "
-                "the transition, else svf)"},
+        .help = "svf: state-variable; df1: direct form I; df2t: transposed direct form II (default: svf)"},
     speed_unit_key,
     speed_side_key,
     name_key("ripplenotch"),
 };
 
-// The memory that a transition keeps is that of one form: another would run otherwise than its preview.
+// keep-state-variable keeps the memory of its own form: another would run otherwise than its preview.
 Form form_of(const FilterSet& filters, const Settings& settings) {
     const std::string asked = settings.has("form") ? settings.text("form") : "";
     const Form form = asked == "df1" ? Form::df1 : asked == "df2t" ? Form::df2t : Form::svf;
-    const std::string& transition = filters.switching.transition;
-    if (!filters.by_speed() || runs_all_bands(filters.switching)) return form;
-    if (transition == "reset")
+    if (form != Form::svf && filters.by_speed() && !runs_all_bands(filters.switching)) {
         raise<UsageError>(
-            "target c-header: transition=reset is there to be compared, not to be used; take one "
-            "of keep-state-variable, keep, parallel, crossfade");
-    const bool keeps_past = transition == "keep";
-    if (asked.empty()) return keeps_past ? Form::df1 : Form::svf;
-    if (form != (keeps_past ? Form::df1 : Form::svf)) {
-        raise<UsageError>(
-            "target c-header: form={} does not run as transition={} is previewed, whose form is {}; take "
-            "--method switching,table=...,transition={}",
-            asked, transition, keeps_past ? "df1" : "svf",
-            form == Form::df1   ? "keep"
-            : form == Form::svf ? "keep-state-variable"
-                                : "parallel");
+            "target c-header: form={} does not run as transition={} is previewed, whose form is svf; take "
+            "--method switching,table=...,transition=parallel",
+            asked, filters.switching.transition);
     }
     return form;
 }
@@ -79,8 +67,7 @@ Arithmetic arithmetic_of(const FilterSet& filters, const Settings& settings) {
             precision);
     if (found.form != Form::svf)
         raise<UsageError>(
-            "target c-header: fixed point is written in the state-variable form alone; leave "
-            "form out, and take another transition than keep");
+            "target c-header: fixed point is written in the state-variable form alone; leave form out");
     found.full_scale_nm = settings.number("range");
     found.headroom_bits = headroom_bits(filters);
     return found;

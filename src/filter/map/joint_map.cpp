@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "filter/map/map_runner.hpp"
-#include "filter/ripple/ripple_course.hpp"
+#include "filter/map/ripple_windows.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
@@ -48,10 +48,10 @@ class Backfitting {
           sources_(std::move(sources)),
           pair_false_alarm_(map_false_alarm / static_cast<double>(std::max<std::size_t>(pairs, 1))) {}
 
-    void run(double zero_deg, std::span<const std::vector<double>> temperatures_degc) {
+    void run(double zero_deg) {
         for (std::size_t round = 1; round <= most_rounds; ++round) {
             const std::vector<bool> before = which_mapped();
-            for (Source& source : sources_) fit(source, zero_deg, temperatures_degc);
+            for (Source& source : sources_) fit(source, zero_deg);
             const bool own_alone = std::none_of(sources_.begin(), sources_.end(), [](const Source& one) {
                 return !one.is_own && one.mapped();
             });
@@ -67,7 +67,7 @@ class Backfitting {
         return mapped;
     }
 
-    void fit(Source& source, double zero_deg, std::span<const std::vector<double>> temperatures_degc) const {
+    void fit(Source& source, double zero_deg) const {
         std::vector<std::vector<double>> torques;
         std::vector<TraceView> views;
         for (std::size_t l = 0; l < logs_.size(); ++l) {
@@ -81,8 +81,8 @@ class Backfitting {
             views.push_back(source.motion[l]);
             views.back().torque_nm = torques[l];
         }
-        source.fit = source.is_own ? fit_ripple_map(views, source.gear, zero_deg, temperatures_degc)
-                                   : fit_ripple_map(views, source.gear, 0.0, {}, pair_false_alarm_);
+        source.fit = source.is_own ? fit_ripple_map(views, source.gear, zero_deg)
+                                   : fit_ripple_map(views, source.gear, 0.0, pair_false_alarm_);
         source.ripple.clear();
         if (!source.mapped()) return;
         for (const TraceView& view : views) source.ripple.push_back(map_along(source.fit.map, view));
@@ -156,13 +156,13 @@ bool has_positions(const Source& source) {
 class MapPrediction final : public CausalFilter {
   public:
     MapPrediction(const RippleMap& map, Hertz sample_rate)
-        : runner_(StatedMap{with_zero(map, 0.0)}),
+        : runner_(with_zero(map, 0.0)),
           path_(MotorAngle(map.gear_ratio.value(), sample_rate.value(), MotorAngle::Source::best, 0.0)) {}
     void restart() override { path_.restart(); }
     void process(const Samples& in, std::span<double> out) override {
         for (std::size_t k = 0; k < out.size(); ++k) {
             path_.next(in.velocity_deg_s[k], in.position_deg.empty() ? nullptr : &in.position_deg[k]);
-            runner_.at(in.velocity_deg_s[k], path_.turns(), 0.0);
+            runner_.at(in.velocity_deg_s[k], path_.turns());
             out[k] = runner_.ripple(path_.turns(), path_.step_turns());
         }
     }
@@ -186,7 +186,7 @@ std::vector<double> map_along(const RippleMap& map, const TraceView& log) {
         if (k < log.size() && !log.starts_run(k)) continue;
         const TraceView run = log.part(from, k - from);
         prediction.restart();
-        prediction.process({run.velocity_deg_s, run.torque_nm, run.position_deg, {}},
+        prediction.process({run.velocity_deg_s, run.torque_nm, run.position_deg},
                            std::span(ripple).subspan(from, run.size()));
         from = k;
     }
@@ -194,9 +194,8 @@ std::vector<double> map_along(const RippleMap& map, const TraceView& log) {
 }
 
 MapFit fit_joint_map(std::span<const TraceView> logs, const GearAccount* own,
-                     std::span<const OtherMotor> others, std::size_t pairs, double zero_deg,
-                     std::span<const std::vector<double>> temperatures_degc) {
-    if (others.empty() && own != nullptr) return fit_ripple_map(logs, *own, zero_deg, temperatures_degc);
+                     std::span<const OtherMotor> others, std::size_t pairs, double zero_deg) {
+    if (others.empty() && own != nullptr) return fit_ripple_map(logs, *own, zero_deg);
     std::vector<Source> sources;
     if (own != nullptr) sources.push_back({*own, {logs.begin(), logs.end()}, true});
     for (const OtherMotor& other : others) {
@@ -206,7 +205,7 @@ MapFit fit_joint_map(std::span<const TraceView> logs, const GearAccount* own,
         sources.push_back({other.gear, other.motion});
     }
     Backfitting backfitting(logs, std::move(sources), pairs);
-    backfitting.run(zero_deg, temperatures_degc);
+    backfitting.run(zero_deg);
     std::vector<Source>& all = backfitting.sources();
     const std::size_t first = own != nullptr ? 1 : 0;
     for (std::size_t j = first; j < all.size(); ++j) all[j].fit.map.joint = others[j - first].joint;

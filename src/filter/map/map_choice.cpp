@@ -31,7 +31,6 @@ constexpr double other_order_false_alarm = 0.05;
 constexpr double form_false_alarm = 0.01;
 // Speeds of a map that depends on it. Cross-validation on six joints of a robot: 4, 6 and 8 are alike.
 constexpr std::size_t most_speeds = 5;
-constexpr double least_warming_degc = 1.0;  ///< a narrower range does not determine the effect of a degree
 constexpr double random_draws = 1000.0;
 constexpr Eigen::Index draws_in_tail = 50;  ///< which give its scale to 14 %
 // Orders that are compared with: so far to both sides, beyond the modulation by the joint's turn. Of ten that
@@ -46,10 +45,10 @@ constexpr double most_injected = 10.0;  ///< times the rms amplitude: a test tha
 // spectrum that falls with the third power of the frequency is 11 times smaller.
 constexpr double certain_over_noise = 4.0, certain_over_noise_above = 11.0, one_sided_below = 1.1;
 
-// Columns without information are shrunk, so that a few forms are enough: each of speed, direction, second
-// comb and temperature is in or not. The one with the fewest columns first.
+// Columns without information are shrunk, so that a few forms are enough: each of speed, direction and
+// second comb is in or not. The one with the fewest columns first.
 std::vector<MapForm> candidate_forms(const MapData& data, bool tied) {
-    const MapRange &speeds = data.frame.speeds_deg_s, &degc = data.frame.temperatures_degc;
+    const MapRange& speeds = data.frame.speeds_deg_s;
     std::vector<std::vector<double>> knots = {{speeds.middle()}};
     if (speeds.to > speeds.from) {
         knots.emplace_back();
@@ -62,11 +61,7 @@ std::vector<MapForm> candidate_forms(const MapData& data, bool tied) {
     for (const std::vector<double>& at : knots) {
         for (const std::size_t directions : {1U, 2U}) {
             for (const int comb : {0, 1, -1}) {
-                for (const bool warms : {false, true}) {
-                    if ((comb != 0 && !tied) || (warms && !(degc.to - degc.from > least_warming_degc)))
-                        continue;
-                    forms.push_back({at, directions, 0, false, warms, comb});
-                }
+                if (comb == 0 || tied) forms.push_back({at, directions, comb});
             }
         }
     }

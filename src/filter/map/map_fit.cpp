@@ -14,7 +14,7 @@
 #include <span>
 
 #include "filter/map/map_regression.hpp"
-#include "filter/ripple/ripple_course.hpp"
+#include "filter/map/ripple_windows.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
@@ -30,9 +30,7 @@ namespace {
 constexpr std::size_t most_blocks = 32;
 constexpr std::size_t least_block = 3;  ///< windows, of which the middle one shares none of its samples
 
-// Amplitudes and mean of what `torque_nm` holds along the log.
-std::vector<RippleWindow> windows_of(const TraceView& log, const GearAccount& gear,
-                                     std::span<const double> torque_nm) {
+std::vector<RippleWindow> windows_of(const TraceView& log, const GearAccount& gear) {
     std::vector<double> orders;
     for (const Order order : gear.orders) orders.push_back(order.value());
     MotorPath path(MotorAngle(gear.ratio.value(), log.sample_rate.value(), MotorAngle::Source::best, 0.0));
@@ -43,7 +41,7 @@ std::vector<RippleWindow> windows_of(const TraceView& log, const GearAccount& ge
             path.restart();
         }
         path.next(log.velocity_deg_s[k], log.has_position() ? &log.position_deg[k] : nullptr);
-        windows.add(path, torque_nm[k]);
+        windows.add(path, log.torque_nm[k]);
     }
     return windows.finish();
 }
@@ -54,7 +52,7 @@ MapWindow window_of(const RippleWindow& window, const GearAccount& gear, double 
     one.log = log;
     one.middle = window.middle;
     one.length = window.length;
-    one.state = {360.0 * window.speed_turns_s / ratio, 360.0 * window.middle_turns / ratio, window.torque_nm};
+    one.state = {360.0 * window.speed_turns_s / ratio, 360.0 * window.middle_turns / ratio};
     for (std::size_t i = 0; i < gear.orders.size(); ++i) {
         const double cycles = gear.orders[i].value() * ratio * zero_deg / 360.0;
         const double turned = 2.0 * std::numbers::pi * (cycles - std::floor(cycles));
@@ -95,26 +93,17 @@ void number_blocks(MapData& data) {
 
 }  // namespace
 
-MapData map_data(std::span<const TraceView> logs, const GearAccount& gear, double zero_deg,
-                 std::span<const std::vector<double>> temperatures_degc) {
+MapData map_data(std::span<const TraceView> logs, const GearAccount& gear, double zero_deg) {
     MapData data;
-    for (std::size_t l = 0; l < logs.size(); ++l) {
-        for (const RippleWindow& window : windows_of(logs[l], gear, logs[l].torque_nm))
+    for (std::size_t l = 0; l < logs.size(); ++l)
+        for (const RippleWindow& window : windows_of(logs[l], gear))
             data.windows.push_back(window_of(window, gear, zero_deg, l));
-        if (temperatures_degc.empty()) continue;
-        const auto warmth = windows_of(logs[l], gear, temperatures_degc[l]);
-        for (std::size_t i = 0, from = data.windows.size() - warmth.size(); i < warmth.size(); ++i)
-            data.windows[from + i].state.temperature_degc = warmth[i].torque_nm;
-    }
     data.frame.gear_ratio = gear.ratio;
     data.frame.orders = gear.orders;
     data.frame.zero_deg = zero_deg;
     data.frame.speeds_deg_s =
         range_seen(data.windows, [](const MapState& at) { return std::abs(at.speed_deg_s); });
     data.frame.positions_deg = range_seen(data.windows, [](const MapState& at) { return at.position_deg; });
-    data.frame.loads_nm = range_seen(data.windows, [](const MapState& at) { return at.load_nm; });
-    data.frame.temperatures_degc =
-        range_seen(data.windows, [](const MapState& at) { return at.temperature_degc.value_or(0.0); });
     number_blocks(data);
     return data;
 }
@@ -222,7 +211,7 @@ std::string bound_of(const MapOrderScore& score) {
 }  // namespace
 
 MapFit fit_ripple_map(std::span<const TraceView> logs, const GearAccount& gear, double zero_deg,
-                      std::span<const std::vector<double>> temperatures_degc, double false_alarm) {
+                      double false_alarm) {
     if (logs.empty()) raise<UsageError>("a map needs a log");
     MapFit fit;
     fit.anchored =
@@ -231,7 +220,7 @@ MapFit fit_ripple_map(std::span<const TraceView> logs, const GearAccount& gear, 
         raise<DataError>(
             "a log without a position of the joint has no angle that another log shares; map it alone");
     }
-    const MapData data = map_data(logs, gear, zero_deg, temperatures_degc);
+    const MapData data = map_data(logs, gear, zero_deg);
     fit.windows = data.windows.size();
     fit.blocks = data.blocks;
     fit.map.gear_ratio = gear.ratio;
@@ -262,27 +251,15 @@ std::string map_form_words(const MapForm& form) {
     if (text.empty()) text = "the same at every speed";
     if (form.second_comb != 0)
         text += fmt::format(", with the second comb at n (Kg {} 1)", form.second_comb > 0 ? '+' : '-');
-    if (form.turn_harmonics > 0)
-        text += fmt::format(", with {} harmonic{} of the joint's turn", form.turn_harmonics,
-                            form.turn_harmonics == 1 ? "" : "s");
-    if (form.by_load) text += ", and by load";
-    return text + (form.by_temperature ? ", and by temperature" : "");
+    return text;
 }
 
 std::string map_column_words(const MapForm& form, std::size_t column) {
     const std::size_t each = form.columns_a_direction(), within = column % each;
     const std::size_t speeds = form.speeds_deg_s.size();
-    std::string what;
-    if (within < form.speed_columns()) {
-        what = speeds > 1 ? fmt::format("{:.4g} deg/s", form.speeds_deg_s[within % speeds]) : "any speed";
-        if (within >= speeds) what += ", second comb";
-    } else if (within < form.load_column()) {
-        const std::size_t at = within - form.speed_columns();
-        what = fmt::format("{} of {} joint angle{}", at % 2 == 0 ? "cosine" : "sine", at / 2 + 1,
-                           at / 2 == 0 ? "" : "s");
-    } else {
-        what = form.by_load && within == form.load_column() ? "per Nm of load" : "per degC beyond the middle";
-    }
+    std::string what =
+        speeds > 1 ? fmt::format("{:.4g} deg/s", form.speeds_deg_s[within % speeds]) : "any speed";
+    if (within >= speeds) what += ", second comb";
     if (form.directions == 1) return what;
     return (column < each ? "forward, " : "backward, ") + what;
 }

@@ -31,9 +31,8 @@ struct MapData {
     std::size_t blocks = 0;
 };
 
-/// Angles count from `zero_deg`. Temperatures are of each log's rows, or empty where none is stated.
-[[nodiscard]] MapData map_data(std::span<const TraceView> logs, const GearAccount& gear, double zero_deg,
-                               std::span<const std::vector<double>> temperatures_degc);
+/// Angles count from `zero_deg`.
+[[nodiscard]] MapData map_data(std::span<const TraceView> logs, const GearAccount& gear, double zero_deg);
 
 /// Finding, scores, notes and the form of the map, of data that have a window. `false_alarm`: probability
 /// that a log without ripple has a map. Where `fit` is not anchored the joint's own angle is not known, and a

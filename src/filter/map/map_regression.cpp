@@ -11,8 +11,7 @@ namespace {
 
 /// Effective share of half-overlapping windows, the middle counting most.
 constexpr double independent_share = 2.0 / 3.0;
-constexpr double any_share = 3.0;   ///< multiple of the amplitude that no coefficient reaches
-constexpr double warm_share = 0.5;  ///< share of the amplitude that half the range of temperatures changes
+constexpr double any_share = 3.0;            ///< multiple of the amplitude that no coefficient reaches
 constexpr double least_energy_share = 0.05;  ///< share of the noise: a ripple that cannot be seen is not 0
 constexpr double least_noise_share = 1e-8;   ///< share of the energy: a simulation without noise has rounding
 
@@ -75,15 +74,9 @@ Eigen::MatrixXd MapRegression::penalty(const RippleMap& frame) const {
     const std::size_t knots = form.speeds_deg_s.size(), each = form.columns_a_direction();
     const double share_of_each = 1.0 / static_cast<double>(knots * form.directions);
     const double step = energy / std::max(static_cast<double>(knots) - 1.0, 1.0);
-    const double warmer =
-        warm_share / std::max(0.5 * (frame.temperatures_degc.to - frame.temperatures_degc.from), 1e-9);
     for (std::size_t k = 0; k < form.columns(); ++k) {
         const auto c = static_cast<Eigen::Index>(k), across = static_cast<Eigen::Index>(each);
         const std::size_t within = k % each;
-        if (within >= form.speed_columns()) {
-            p(c, c) += 1.0 / (warmer * warmer * energy);
-            continue;
-        }
         p(c, c) += share_of_each / (any_share * any_share * energy);
         if ((within + 1) % knots != 0) alike(c, c + 1, step);
         if (k < each && form.directions > 1) alike(c, c + across, energy * static_cast<double>(knots));

@@ -31,36 +31,28 @@ double largest_amplitude(const RippleMap& map, std::size_t order) {
             const std::complex<double> z = map.values[order][from + column];
             return portable::hypot(z.real(), z.imag());
         };
-        double added = 0.0, at_speed = 0.0;
-        for (std::size_t c = map.form.speed_columns(); c < map.form.load_column(); ++c) added += size(c);
+        double at_speed = 0.0;
         for (std::size_t k = 0; k < knots; ++k)
             at_speed = std::max(at_speed, size(k) + (map.form.second_comb == 0 ? 0.0 : size(k + knots)));
-        largest = std::max(largest, at_speed + added);
+        largest = std::max(largest, at_speed);
     }
     return largest;
 }
 
-MapRunner::MapRunner(StatedMap stated)
-    : stated_(std::move(stated)),
-      weights_(stated_.map.form.columns()),
-      amplitudes_(stated_.map.orders.size()) {}
+MapRunner::MapRunner(RippleMap map)
+    : map_(std::move(map)), weights_(map_.form.columns()), amplitudes_(map_.orders.size()) {}
 
-void MapRunner::warm(double degc) noexcept {
-    if (stated_.follows_rows) stated_.degc = std::round(1000.0 * degc) / 1000.0;
-}
-
-void MapRunner::at(double speed_deg_s, double motor_turns, double torque_nm) noexcept {
-    const RippleMap& map = stated_.map;
-    const double position_deg = 360.0 * motor_turns / map.gear_ratio.value();
-    map_weights(map, {speed_deg_s, position_deg, torque_nm, stated_.degc}, weights_);
+void MapRunner::at(double speed_deg_s, double motor_turns) noexcept {
+    const double position_deg = 360.0 * motor_turns / map_.gear_ratio.value();
+    map_weights(map_, {speed_deg_s, position_deg}, weights_);
     for (std::size_t i = 0; i < amplitudes_.size(); ++i)
-        amplitudes_[i] = map_amplitude(map, i, weights_, position_deg);
+        amplitudes_[i] = map_amplitude(map_, i, weights_, position_deg);
 }
 
 double MapRunner::ripple(double motor_turns, double step_turns) const noexcept {
     double sum = 0.0;
     for (std::size_t i = 0; i < amplitudes_.size(); ++i) {
-        const double order = stated_.map.orders[i].value();
+        const double order = map_.orders[i].value();
         const double share = share_below_rate(order * std::abs(step_turns));
         if (share == 0.0) continue;
         const std::complex<double> on_circle = portable::phasor(radians_of(order * motor_turns));
@@ -69,16 +61,16 @@ double MapRunner::ripple(double motor_turns, double step_turns) const noexcept {
     return sum;
 }
 
-MapMean::MapMean(StatedMap stated, double noise_nm)
-    : runner_(std::move(stated)), noise_nm_(noise_nm), found_(runner_.map().orders.size()) {}
+MapMean::MapMean(RippleMap map, double noise_nm)
+    : runner_(std::move(map)), noise_nm_(noise_nm), found_(runner_.map().orders.size()) {}
 
 void MapMean::restart(bool seek) noexcept {
     seeks_ = seek;
     shift_turns_ = turned_ = 0.0;
 }
 
-double MapMean::ripple(double speed_deg_s, double torque_nm, const MotorAngle& angle) noexcept {
-    runner_.at(speed_deg_s, angle.turns(), torque_nm);
+double MapMean::ripple(double speed_deg_s, const MotorAngle& angle) noexcept {
+    runner_.at(speed_deg_s, angle.turns());
     return seeks_ ? 0.0 : runner_.ripple(angle.turns() + shift_turns_, angle.step_turns());
 }
 

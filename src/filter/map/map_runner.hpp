@@ -10,35 +10,32 @@
 #include <vector>
 
 #include "filter/map/map_settings.hpp"
-#include "filter/ripple/ripple_kalman.hpp"
-#include "filter/ripple/ripple_keys.hpp"
+#include "filter/ripple_kalman.hpp"
+#include "filter/ripple_keys.hpp"
 
 namespace ripplenotch {
 
-/// The largest amplitude that the map has for an order, Nm: of any speed and direction, both combs and all
-/// harmonics of the joint's turn added.
+/// The largest amplitude that the map has for an order, Nm: of any speed and direction, both combs
+/// added.
 [[nodiscard]] double largest_amplitude(const RippleMap& map, std::size_t order);
 
 /// The map counts its angles from position 0. Without allocation after construction.
 class MapRunner {
   public:
-    explicit MapRunner(StatedMap stated);
+    explicit MapRunner(RippleMap map);
 
-    /// Goes to the joint's temperature; a thousandth of a degree counts. Nothing where the map does not
-    /// follow the rows.
-    void warm(double degc) noexcept;
-    /// Goes to a joint's speed, motor angle and torque.
-    void at(double speed_deg_s, double motor_turns, double torque_nm) noexcept;
+    /// Goes to a joint's speed and motor angle.
+    void at(double speed_deg_s, double motor_turns) noexcept;
     /// The amplitude of an order there: cosine and sine part, Nm.
     [[nodiscard]] std::complex<double> amplitude(std::size_t order) const noexcept {
         return amplitudes_[order];
     }
     /// The ripple predicted by the map there. Orders near half the sample rate are ignored.
     [[nodiscard]] double ripple(double motor_turns, double step_turns) const noexcept;
-    [[nodiscard]] const RippleMap& map() const noexcept { return stated_.map; }
+    [[nodiscard]] const RippleMap& map() const noexcept { return map_; }
 
   private:
-    StatedMap stated_;
+    RippleMap map_;
     std::vector<double> weights_;
     std::vector<std::complex<double>> amplitudes_;
 };
@@ -46,16 +43,14 @@ class MapRunner {
 class MapMean {
   public:
     /// `noise_nm` is the unit of the filter.
-    MapMean(StatedMap stated, double noise_nm);
-    /// To be called before ripple() of a row that contains the joint's temperature.
-    void warm(double degc) noexcept { runner_.warm(degc); }
+    MapMean(RippleMap map, double noise_nm);
 
     /// To be called before the first sample of a run. A map that seeks returns 0 until the motor has turned
     /// once.
     void restart(bool seek) noexcept;
     /// The ripple predicted by the map at this sample, Nm; to be subtracted before the filter receives the
     /// sample.
-    [[nodiscard]] double ripple(double speed_deg_s, double torque_nm, const MotorAngle& angle) noexcept;
+    [[nodiscard]] double ripple(double speed_deg_s, const MotorAngle& angle) noexcept;
     /// To be called after the filter has seen a sample: once the motor has turned, finds where the map's
     /// angle is 0 and lets the filter follow the residual of the map from there on.
     void seek(RippleKalman& filter, const MotorAngle& angle) noexcept;

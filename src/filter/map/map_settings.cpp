@@ -23,30 +23,9 @@ std::string list_text(const std::vector<double>& values) { return joined(values,
 
 std::string ends_text(const MapRange& range) { return list_text({range.from, range.to}); }
 
-std::size_t whole_value(const Settings& settings, std::string_view key) {
-    return static_cast<std::size_t>(settings.number(key));
-}
-
 }  // namespace
 
-RippleMap StatedMap::at_temperature() const {
-    if (!map.form.by_temperature) return map;
-    RippleMap there = map;
-    there.form.by_temperature = false;
-    const MapRange& seen = map.temperatures_degc;
-    const double warmer = std::clamp(degc, seen.from, seen.to) - seen.middle();
-    const std::size_t each = map.form.columns_a_direction(), last = map.form.temperature_column();
-    for (std::vector<std::complex<double>>& values : there.values) {
-        for (std::size_t d = map.form.directions; d-- > 0;) {
-            const auto from = values.begin() + static_cast<std::ptrdiff_t>(d * each);
-            for (std::size_t k = 0; k < map.form.speeds_deg_s.size(); ++k) from[k] += warmer * from[last];
-            values.erase(from + static_cast<std::ptrdiff_t>(last));
-        }
-    }
-    return there;
-}
-
-std::optional<StatedMap> map_of(std::string_view method, const Settings& settings,
+std::optional<RippleMap> map_of(std::string_view method, const Settings& settings,
                                 const RippleOrders& ripple) {
     if (!settings.has("cosines") && !settings.has("sines")) return std::nullopt;
     RippleMap map;
@@ -56,18 +35,10 @@ std::optional<StatedMap> map_of(std::string_view method, const Settings& setting
     if (settings.has("speeds")) form.speeds_deg_s = settings.list("speeds");
     if (!std::is_sorted(form.speeds_deg_s.begin(), form.speeds_deg_s.end(), std::less_equal<>()))
         raise<UsageError>("method {}, speeds: each has to be above the one before", method);
-    form.directions = whole_value(settings, "directions");
-    form.turn_harmonics = whole_value(settings, "turn-harmonics");
+    form.directions = static_cast<std::size_t>(settings.number("directions"));
     form.second_comb = static_cast<int>(settings.number("second-comb"));
-    form.by_load = settings.number("by-load") > 0.0;
-    form.by_temperature = settings.number("by-temperature") > 0.0;
     map.speeds_deg_s = {settings.number("slowest"), form.speeds_deg_s.back()};
     map.positions_deg = range_of(settings, "positions");
-    map.loads_nm = range_of(settings, "loads");
-    map.temperatures_degc = range_of(settings, "temperatures");
-    if (form.by_temperature && !settings.has("temperatures"))
-        raise<UsageError>("method {}: by-temperature=1 needs temperatures, the least and the greatest",
-                          method);
     const std::size_t columns = form.columns(), wanted = columns * ripple.orders.size();
     for (const std::string_view key : {"cosines", "sines"}) {
         const std::size_t given = settings.has(key) ? settings.list(key).size() : 0;
@@ -82,16 +53,7 @@ std::optional<StatedMap> map_of(std::string_view method, const Settings& setting
             map.values.back().emplace_back(cosines[c], sines[c]);
     }
     map.spread_nm = per_order(method, settings, "spread", ripple, 0.0);
-    StatedMap stated{std::move(map)};
-    if (!stated.map.form.by_temperature) return stated;
-    if (!settings.has("temperature"))
-        raise<UsageError>(
-            "method {}: its map depends on the joint's temperature, which is not stated; state it in degC, "
-            "temperature=31",
-            method);
-    stated.degc = settings.number("temperature");
-    stated.follows_rows = settings.text("temperature-of") == "rows";
-    return stated;
+    return map;
 }
 
 std::vector<std::pair<std::string, std::string>> map_as_keys(const RippleMap& fitted) {
@@ -112,16 +74,9 @@ std::vector<std::pair<std::string, std::string>> map_as_keys(const RippleMap& fi
         {"sines", list_text(sines)},
         {"speeds", list_text(map.form.speeds_deg_s)},
         {"directions", std::to_string(map.form.directions)},
-        {"turn-harmonics", std::to_string(map.form.turn_harmonics)},
-        {"by-load", map.form.by_load ? "1" : "0"},
         {"slowest", shortest(map.speeds_deg_s.from)},
         {"positions", ends_text(map.positions_deg)},
-        {"loads", ends_text(map.loads_nm)},
         {"spread", list_text(map.spread_nm)}};
-    if (map.form.by_temperature) {
-        keys.emplace_back("by-temperature", "1");
-        keys.emplace_back("temperatures", ends_text(map.temperatures_degc));
-    }
     if (map.form.second_comb != 0) keys.emplace_back("second-comb", std::to_string(map.form.second_comb));
     if (map.speeds_deg_s.to > 0.0) keys.emplace_back("fastest", shortest(map.speeds_deg_s.to));
     return keys;

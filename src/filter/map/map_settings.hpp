@@ -7,13 +7,12 @@
 #include <optional>
 #include <string_view>
 
-#include "filter/ripple/ripple_keys.hpp"
+#include "filter/ripple_keys.hpp"
 #include "ripplenotch/core/spec.hpp"
 #include "ripplenotch/design/ripple_map.hpp"
 
 namespace ripplenotch {
 
-inline constexpr std::array<std::string_view, 2> temperature_of_choices = {"stated", "rows"};
 inline constexpr std::array<std::string_view, 2> beyond_choices = {"refuse", "hold"};
 
 /// `map` never reaches a method: the code that loads files replaces it by the keys that it abbreviates.
@@ -31,9 +30,6 @@ inline constexpr std::array ripple_map_keys = [] {
                    .at_most = most,
                    .whole = true,
                    .help = help};
-    };
-    const auto degc = [](std::string_view name, KeyKind kind, std::string_view help) {
-        return Key{.name = name, .kind = kind, .at_least = -274.0, .at_most = 1000.0, .help = help};
     };
     const auto choice = [](std::string_view name, std::span<const std::string_view> choices,
                            std::string_view help) {
@@ -54,23 +50,12 @@ inline constexpr std::array ripple_map_keys = [] {
         list("speeds", Dimension::speed,
              "joint speeds at which an order has a value; one for all when left out", 0.0),
         whole("directions", 1.0, 2.0, "2: values forward, then values backward"),
-        whole("turn-harmonics", 0.0, 8.0,
-              "after those of the speeds, a cosine and a sine of 1, 2, ... times the joint's own angle"),
-        whole("by-load", 0.0, 1.0, "1: last, a value in proportion to the torque, per Nm"),
-        whole("by-temperature", 0.0, 1.0,
-              "1: behind it, a value per degC beyond the middle of the temperatures"),
         Key{.name = "slowest",
             .dimension = Dimension::speed,
             .default_text = "0deg/s",
             .at_least = 0.0,
             .help = "below it the two directions run into each other"},
         list("positions", Dimension::angle, "least and greatest joint position that was seen"),
-        list("loads", Dimension::torque, "least and greatest torque that was seen"),
-        degc("temperatures", KeyKind::list, "least and greatest temperature that was seen, degC"),
-        degc("temperature", KeyKind::number,
-             "of the joint, degC; for a map that depends on it, by default the mean of the log's column"),
-        choice("temperature-of", temperature_of_choices,
-               "rows: the temperature is that of each row, and the stated one where a row has none"),
         list("spread", Dimension::torque, "by how much each order strays from the map, rms", 0.0),
         Key{.name = "fastest",
             .dimension = Dimension::speed,
@@ -102,19 +87,9 @@ constexpr auto required_map_keys() {
     return keys;
 }
 
-/// A map, counted from position 0, and the temperature that it is taken at.
-struct StatedMap {
-    RippleMap map;
-    double degc = 0.0;  ///< clamped to the range of the map; means nothing where it does not depend on it
-    bool follows_rows = false;  ///< the temperature of each row counts
-
-    /// The map at its temperature: one that does not depend on it.
-    [[nodiscard]] RippleMap at_temperature() const;
-};
-
-/// The map that the keys hold; empty without cosines. Throws UsageError when there are more or fewer values
-/// than orders and form require, or no temperature for a map that depends on it.
-[[nodiscard]] std::optional<StatedMap> map_of(std::string_view method, const Settings& settings,
+/// The map that the keys hold, counted from position 0; empty without cosines. Throws UsageError when there
+/// are more or fewer values than orders and form require.
+[[nodiscard]] std::optional<RippleMap> map_of(std::string_view method, const Settings& settings,
                                               const RippleOrders& ripple);
 
 // Keys of the method oscillator.

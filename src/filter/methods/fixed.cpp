@@ -3,7 +3,7 @@
 // follow speed.
 #include <array>
 
-#include "filter/bank/filter_bank.hpp"
+#include "filter/cascade_filter.hpp"
 #include "filter/method.hpp"
 #include "ripplenotch/design/notch.hpp"
 

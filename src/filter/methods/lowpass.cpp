@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "filter/bank/filter_bank.hpp"
+#include "filter/cascade_filter.hpp"
 #include "filter/method.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/design/notch.hpp"

@@ -27,8 +27,7 @@ class MapFilter final : public CausalFilter {
         for (std::size_t k = 0; k < out.size(); ++k) {
             angle_.next(in.velocity_deg_s[k], in.position_deg.empty() ? nullptr : &in.position_deg[k]);
             reach_.next(angle_.step_turns());
-            if (!in.temperature_degc.empty()) runner_.warm(in.temperature_degc[k]);
-            runner_.at(in.velocity_deg_s[k], angle_.turns(), in.torque_nm[k]);
+            runner_.at(in.velocity_deg_s[k], angle_.turns());
             // Without either, the motor's angle is unknown.
             const bool tied = has_start_ || !in.position_deg.empty();
             const double ripple = tied ? runner_.ripple(angle_.turns(), angle_.step_turns()) : 0.0;
@@ -47,15 +46,15 @@ class MapFilter final : public CausalFilter {
     bool has_start_;
 };
 
-StatedMap map_in(const Settings& settings) {
+RippleMap map_in(const Settings& settings) {
     return *map_of("map", settings, ripple_orders("map", settings));  // its cosines are required
 }
 
 std::unique_ptr<CausalFilter> start(const Settings& settings, Hertz sample_rate, const CandidateTable*) {
-    StatedMap stated = map_in(settings);
-    const MotorAngle angle(stated.map.gear_ratio.value(), sample_rate.value(), angle_source(settings),
+    RippleMap map = map_in(settings);
+    const MotorAngle angle(map.gear_ratio.value(), sample_rate.value(), angle_source(settings),
                            settings.has("start") ? settings.number("start") : 0.0);
-    return std::make_unique<MapFilter>(MapRunner(std::move(stated)), angle,
+    return std::make_unique<MapFilter>(MapRunner(std::move(map)), angle,
                                        MapReach("map", settings, sample_rate.value()), settings.has("start"));
 }
 

@@ -11,12 +11,11 @@
 #include <optional>
 #include <utility>
 
-#include "filter/bank/filter_bank.hpp"
 #include "filter/map/map_runner.hpp"
 #include "filter/map/map_settings.hpp"
 #include "filter/method.hpp"
-#include "filter/ripple/ripple_kalman.hpp"
-#include "filter/ripple/ripple_keys.hpp"
+#include "filter/ripple_kalman.hpp"
+#include "filter/ripple_keys.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
@@ -42,7 +41,7 @@ struct Plan {
     double largest_offset_deg_s = 0.0, largest_slip = 0.0;
     double sample_rate_hz = 0.0;
     double noise_nm = 0.0;
-    std::optional<StatedMap> map;  ///< mean of the amplitudes
+    std::optional<RippleMap> map;  ///< mean of the amplitudes
     bool zero_unknown = false;
     std::optional<MapReach> reach;  ///< speed range of the map
 };
@@ -75,7 +74,7 @@ void plan_priors(Plan& p, const Settings& settings) {
 void plan_map(Plan& p, const Settings& settings) {
     p.map = map_of("oscillator", settings, p.ripple);
     if (!p.map) return;
-    const RippleMap map = p.map->at_temperature();
+    const RippleMap& map = *p.map;
     p.zero_unknown = settings.text("zero") == "unknown";
     p.reach.emplace("oscillator", settings, p.sample_rate_hz);
     p.model.return_turns = settings.number("return");
@@ -137,9 +136,7 @@ class OscillatorFilter final : public CausalFilter {
             if (plan_.reach) plan_.reach->next(angle_.step_turns());
             const bool tied = position != nullptr || plan_.has_start;
             if (mean_ && !started_) mean_->restart(plan_.zero_unknown || !tied);
-            if (mean_ && !in.temperature_degc.empty()) mean_->warm(in.temperature_degc[k]);
-            const double mapped_nm =
-                mean_ ? mean_->ripple(in.velocity_deg_s[k], in.torque_nm[k], angle_) : 0.0;
+            const double mapped_nm = mean_ ? mean_->ripple(in.velocity_deg_s[k], angle_) : 0.0;
             const double beside_nm = in.torque_nm[k] - mapped_nm;
             if (!started_) {
                 begin(beside_nm, in.velocity_deg_s[k], tied && !(mean_ && mean_->seeks()));
@@ -233,7 +230,6 @@ OscillatorDesign oscillator_design(const Settings& settings, Hertz sample_rate) 
     refuse(p.scheduled, "gain=scheduled");
     refuse(p.source == MotorAngle::Source::velocity, "angle=velocity");
     refuse(p.rest_nm.has_value(), "rest");
-    refuse(p.map && p.map->follows_rows, "temperature-of=rows: the code takes one temperature, which");
     for (const double order : p.ripple.orders) {
         if (order == std::floor(order)) continue;
         raise<UsageError>(
@@ -254,7 +250,7 @@ OscillatorDesign oscillator_design(const Settings& settings, Hertz sample_rate) 
     design.jump = p.model.jump;
     design.largest_slip = p.largest_slip;
     design.minus_ripple = p.minus_ripple;
-    if (p.map) design.map = p.map->at_temperature();
+    design.map = p.map;
     return design;
 }
 

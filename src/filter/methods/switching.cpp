@@ -7,10 +7,9 @@
 #include <array>
 #include <cmath>
 #include <iterator>
-#include <utility>
 
 #include "filter/method.hpp"
-#include "filter/run/engine.hpp"
+#include "filter/transitions.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/filter/engine.hpp"
@@ -18,17 +17,6 @@
 namespace ripplenotch {
 namespace {
 
-constexpr const TransitionKind* transition_kinds[] = {
-#define TRANSITION(name) &transitions::name,
-#include "filter/transitions/transitions.def"
-#undef TRANSITION
-};
-const std::array transition_names = [] {
-    std::array<std::string_view, std::size(transition_kinds)> names;
-    std::transform(std::begin(transition_kinds), std::end(transition_kinds), names.begin(),
-                   [](const TransitionKind* kind) { return kind->name; });
-    return names;
-}();
 constexpr std::array<std::string_view, 3> rules = {"pass", "hold", "fade"};
 
 constexpr std::array keys = {
@@ -77,18 +65,105 @@ std::size_t samples(const Settings& settings, std::string_view key, Hertz sample
     return static_cast<std::size_t>(std::ceil(time_s * sample_rate.value() - 1e-6));
 }
 
-std::unique_ptr<Transition> transition(const SwitchingDesign& design, const CandidateTable& table) {
-    Candidates candidates(table.bands());
-    const auto kind =
-        std::find_if(std::begin(transition_kinds), std::end(transition_kinds),
-                     [&](const TransitionKind* known) { return known->name == design.transition; });
-    return (*kind)->make(std::move(candidates), design.crossfade_samples);
+// The supervisor of the switching filter: from the joint speed to the candidate that should be active (Kim,
+// Kim, Song 2011, fig. 3 and 4), with the rules for speeds that no band covers.
+class Supervisor {
+  public:
+    /// Throws UsageError when the hysteresis is negative.
+    Supervisor(std::span<const Band> bands, const SwitchingDesign& design);
+
+    /// The first sample of a run: takes the region of its speed, with no regard to the past.
+    void start(double velocity_deg_s) noexcept;
+    /// How many of these samples (after the one that was started or switched to) keep the active candidate
+    /// and the region; speeds.size() when all do. They are then accounted for.
+    [[nodiscard]] std::size_t stay(std::span<const double> velocity_deg_s) noexcept;
+    /// The sample at which stay() stopped: enters its region. True when the candidate changed.
+    bool move(double velocity_deg_s) noexcept;
+
+    [[nodiscard]] int candidate() const noexcept { return candidate_; }
+    [[nodiscard]] const SpeedRegion& region() const noexcept { return regions_[at_]; }
+
+  private:
+    [[nodiscard]] std::size_t find(double speed_deg_s) const noexcept;
+    [[nodiscard]] int candidate_in(const SpeedRegion& region) const noexcept;
+    void enter(std::size_t region) noexcept;
+
+    std::vector<SpeedRegion> regions_;
+    double hysteresis_deg_s_;
+    std::size_t dwell_;
+    std::size_t since_switch_ = 0;
+    std::size_t at_ = 0;
+    double low_ = 0.0, high_ = 0.0;  ///< stay while low_ < |v| <= high_
+    int candidate_ = no_candidate;
+};
+
+Supervisor::Supervisor(std::span<const Band> bands, const SwitchingDesign& design)
+    : regions_(speed_regions(bands, design.below, design.above)),
+      hysteresis_deg_s_(design.hysteresis.value()),
+      dwell_(design.dwell_samples) {}
+
+std::size_t Supervisor::find(double speed_deg_s) const noexcept {
+    const auto holds_speed = [speed_deg_s](const SpeedRegion& region) {
+        return speed_deg_s <= region.to_deg_s;
+    };
+    const auto found = std::find_if(regions_.begin(), regions_.end(), holds_speed);
+    // A speed that is not a number is in no region; the lowest is the one that does least.
+    return found == regions_.end() ? 0 : static_cast<std::size_t>(found - regions_.begin());
+}
+
+int Supervisor::candidate_in(const SpeedRegion& region) const noexcept {
+    return region.holds ? candidate_ : region.candidate;
+}
+
+void Supervisor::enter(std::size_t region) noexcept {
+    at_ = region;
+    low_ = regions_[at_].from_deg_s - hysteresis_deg_s_;
+    high_ = regions_[at_].to_deg_s + hysteresis_deg_s_;
+}
+
+void Supervisor::start(double velocity_deg_s) noexcept {
+    candidate_ = no_candidate;
+    enter(find(std::abs(velocity_deg_s)));
+    candidate_ = candidate_in(region());
+    since_switch_ = dwell_;  // the first choice is no switch: it need not dwell
+}
+
+std::size_t Supervisor::stay(std::span<const double> velocity_deg_s) noexcept {
+    std::size_t count = 0;
+    const auto stays = [&] {
+        const double speed = std::abs(velocity_deg_s[count]);
+        return speed > low_ && speed <= high_;
+    };
+    while (true) {
+        while (count < velocity_deg_s.size() && stays()) ++count;
+        if (count == velocity_deg_s.size()) break;
+        const bool must_dwell = since_switch_ + count < dwell_;
+        const SpeedRegion& next = regions_[find(std::abs(velocity_deg_s[count]))];
+        if (!must_dwell || candidate_in(next) == candidate_) break;
+        ++count;
+    }
+    since_switch_ = std::min(since_switch_ + count, dwell_);
+    return count;
+}
+
+bool Supervisor::move(double velocity_deg_s) noexcept {
+    const std::size_t next = find(std::abs(velocity_deg_s));
+    const int before = candidate_;
+    candidate_ = candidate_in(regions_[next]);
+    enter(next);
+    if (candidate_ != before) {
+        since_switch_ = std::min<std::size_t>(1, dwell_);
+    } else {
+        since_switch_ = std::min(since_switch_ + 1, dwell_);
+    }
+    return candidate_ != before;
 }
 
 class SwitchingFilter final : public CausalFilter {
   public:
     SwitchingFilter(const CandidateTable& table, const SwitchingDesign& design)
-        : supervisor_(table.bands(), design), transition_(transition(design, table)) {
+        : supervisor_(table.bands(), design),
+          transition_(make_transition(design.transition, table.bands(), design.crossfade_samples)) {
         for (const Band& band : table.bands()) numbers_.push_back(band.number);
     }
 

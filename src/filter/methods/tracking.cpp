@@ -10,7 +10,7 @@
 
 #include "design/tracking_run.hpp"
 #include "filter/method.hpp"
-#include "filter/ripple/ripple_keys.hpp"
+#include "filter/ripple_keys.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"

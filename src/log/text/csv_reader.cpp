@@ -51,7 +51,6 @@ CsvReader::CsvReader(std::unique_ptr<ByteSource> source, std::string first_bytes
     layout_ = decide_layout(source_->name(), "csv", facts_of(first_bytes), options);
     layout_.outside = rows_outside(*source_);
     if (const auto* const made = dynamic_cast<const ReshapedText*>(source_.get())) {
-        layout_.reshaped = true;
         layout_.inferences.push_back(made->shape());
         layout_.warnings.insert(layout_.warnings.end(), made->warnings().begin(), made->warnings().end());
     }

@@ -56,7 +56,7 @@ _COLUMNS = ("time_s", "velocity_deg_s", "torque_nm", "position_deg")
 # Options of several values that stand in the command line once for each.
 _REPEATED = {"accept", "method", "motion", "effect", "rule", "scale", "without"}
 # Options that name a document of the program, and what the file is called that holds one.
-_DOCUMENTS = {"joint_file": "joint.json", "model": "model.json", "residual": "model.json", "table": "table.json"}
+_DOCUMENTS = {"joint_file": "joint.json", "model": "model.json", "residual": "model.json"}
 
 
 class RipplenotchWarning(UserWarning):
@@ -80,7 +80,7 @@ class FileError(Error, OSError):
 
 
 class LimitViolated(Error):
-    """A limit that the caller set does not hold: max_delay, min_attenuation, require_improvement (exit code 1).
+    """A limit that the caller set does not hold: max_delay, min_attenuation (exit code 1).
 
     result: what the function would have returned; None of `filter`
     """
@@ -260,12 +260,17 @@ def filter(log: AnyLog, method: str | None = None, **options: Any) -> np.ndarray
     """The filtered torque of one joint, shape (n,): one value for each row of the log, in Nm.
 
     method   "lowpass,cutoff=13rad/s,order=1", "tracking,q=1", ... (docs/methods); None where a table= is given
-    options  table=, gear_ratio=, orders=, joint_file=, exact=, gap=, max_delay=, min_attenuation=, require_improvement=, and how paths
-             and arrays are read
+    options  table= (of method "switching"), gear_ratio=, orders=, joint_file=, max_delay=, min_attenuation=, and how paths and arrays
+             are read
     """
     as_text = _may_be_npy(log)
     with _Files() as files:
-        words = ["filter", *files.logs([log]), *files.words({"method": method, **options})]
+        logs = files.logs([log])
+        if (table := options.pop("table", None)) is not None:
+            if method is not None:
+                raise UsageError("read method= and table=, expected one of them; the table of a method is its key, switching,table=")
+            method = f"switching,table={files.table(table)}"
+        words = ["filter", *logs, *files.words({"method": method, **options})]
         out = files.call([*words, "--output-format", "csv" if as_text else "npy"])
     rows = io.BytesIO(out)
     names = rows.readline().decode().strip().split(",") if as_text else (table := np.load(rows)).dtype.names
@@ -458,6 +463,10 @@ class _Files:
         if isinstance(value, (Result, Mapping)):
             return self._document("result.json", value)
         return _file(value)
+
+    def table(self, value):
+        """The path of a table, or of a file that is made of its fields."""
+        return self._document("table.json", value) if isinstance(value, (Result, Mapping)) else os.fspath(value)
 
     def words(self, options):
         """Options as words, with files for what is no text."""

@@ -61,16 +61,6 @@ void refuse_other_map(const std::string& method, const std::string& path, const 
                       stated);
 }
 
-void use_table(Spec& spec, const Method& method, const std::optional<std::string>& table) {
-    if (!table) return;
-    if (!method.needs_table) {
-        raise<UsageError>("--table is for methods that switch between bands; method {} has no table",
-                          spec.name);
-    }
-    if (given(spec, "table")) raise<UsageError>("--table and table=... in --method: give one of them");
-    spec.values.insert(spec.values.begin(), {"table", *table});
-}
-
 // map=FILE goes, and the keys that it stands for come; those that are given must be those of the map.
 std::shared_ptr<const RippleMap> use_map(Spec& spec, const Method& method, const MapSource& maps,
                                          const std::vector<double>& asked, std::vector<std::string>& files) {
@@ -106,8 +96,6 @@ std::shared_ptr<const RippleMap> use_map(Spec& spec, const Method& method, const
 // The method with a map that says 0 everywhere.
 std::shared_ptr<const Contender> without_ripple(Spec spec) {
     std::erase_if(spec.values, [](const auto& entry) { return entry.first == "fastest"; });
-    if (given(spec, "by-temperature") && !given(spec, "temperature"))
-        spec.values.emplace_back("temperature", "0");
     for (auto& [key, value] : spec.values) {
         if (key != "cosines" && key != "sines") continue;
         std::string zeros = "0";
@@ -155,7 +143,7 @@ Contender choose_method(const std::string& spec_text, const std::optional<std::s
                         const GearChoice& choice, const MapSource& source) {
     Spec spec = parse_spec(spec_text);
     const Method& method = find_method(spec.name);
-    use_table(spec, method, table);
+    if (table) spec.values.insert(spec.values.begin(), {"table", *table});
     const std::string typed = spec.text();
     std::vector<std::string> maps;
     const auto map = use_map(spec, method, source, choice.asked_orders(), maps);
@@ -228,8 +216,7 @@ std::string with_joint(std::string text, const std::string& joint) {
 }
 
 JointMethods::JointMethods(MethodRequest request) : request_(std::move(request)) {
-    const bool each = names_joint(request_.method) || names_joint(request_.table.value_or("")) ||
-                      names_joint(request_.gear.joint_file.value_or("")) ||
+    const bool each = names_joint(request_.method) || names_joint(request_.gear.joint_file.value_or("")) ||
                       names_joint(request_.other_motors.value_or(""));
     if (!each) common_ = choose("");
 }
@@ -245,8 +232,7 @@ std::shared_ptr<const Contender> JointMethods::choose(const std::string& joint) 
     };
     GearOptions gear = request_.gear;
     gear.joint_file = named(gear.joint_file);
-    Contender method =
-        choose_method(with_joint(request_.method, joint), named(request_.table), GearChoice(gear));
+    Contender method = choose_method(with_joint(request_.method, joint), std::nullopt, GearChoice(gear));
     if (const auto path = named(request_.other_motors)) {
         method.others = load_map(*path).map.others;
         if (method.others.empty())
@@ -266,10 +252,8 @@ const Method& JointMethods::method() const {
     return find_method(std::string_view(request_.method).substr(0, request_.method.find(',')));
 }
 
-bool JointMethods::learns() const { return method().learner != nullptr; }
-
 bool JointMethods::needs_log_twice() const {
-    return learns() || request_.other_motors || (common_ && !common_->others.empty());
+    return request_.other_motors || (common_ && !common_->others.empty());
 }
 
 bool JointMethods::follows_motion() const {

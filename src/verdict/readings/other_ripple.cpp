@@ -72,8 +72,7 @@ class SumOfJoints final : public LogWriter {
 
 }  // namespace
 
-OtherRipple::OtherRipple(std::span<const RippleMap> maps, const Spool& log, const ReadOptions& options,
-                         double gap_steps)
+OtherRipple::OtherRipple(std::span<const RippleMap> maps, const Spool& log, const ReadOptions& options)
     : file_(::fdopen(
           TemporaryFile(temporary_folder() + "/ripplenotch-ripple", std::nullopt).release_without_name(),
           "w+b")) {
@@ -82,7 +81,7 @@ OtherRipple::OtherRipple(std::span<const RippleMap> maps, const Spool& log, cons
                          std::strerror(errno));
     try {
         require_joints(maps, log, options);
-        LogStream stream(open_log(log.open(), reading_of(maps, options)), gap_steps);
+        LogStream stream(open_log(log.open(), reading_of(maps, options)));
         std::vector<std::unique_ptr<CausalFilter>> filters;
         std::vector<JointRun> runs;
         for (const JointColumns& joint : stream.reader().layout().all_chosen()) {
@@ -103,8 +102,6 @@ OtherRipple::OtherRipple(std::span<const RippleMap> maps, const Spool& log, cons
     }
     std::rewind(file_);
 }
-
-void OtherRipple::begin_again() { std::rewind(file_); }
 
 OtherRipple::~OtherRipple() { std::fclose(file_); }
 

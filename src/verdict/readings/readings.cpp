@@ -318,12 +318,12 @@ Diagnosis diagnose_readings(const Model& model, const Log& log, const Log* valid
 namespace {
 
 MapFit map_under(const OtherReading& reading, std::span<const Log> logs, const GearAccount& gear,
-                 Degrees zero, const std::vector<std::vector<double>>& temperatures_degc) {
+                 Degrees zero) {
     std::vector<Trace> traces;
     for (const Log& log : logs) traces.push_back(read_otherwise(log.trace, reading));
     std::vector<TraceView> views;
     for (const Trace& trace : traces) views.push_back(trace.view());
-    return fit_ripple_map(views, gear, zero.value(), temperatures_degc);
+    return fit_ripple_map(views, gear, zero.value());
 }
 
 }  // namespace
@@ -331,18 +331,17 @@ MapFit map_under(const OtherReading& reading, std::span<const Log> logs, const G
 // A reading under which something turns with the motor is confirmed by that; where two have it, or none of
 // several, the log does not decide which one holds.
 MapFit map_readings(std::span<const Log> logs, const GearAccount& gear, Degrees zero,
-                    const std::vector<std::vector<double>>& temperatures_degc, const OtherMotors& others) {
-    MapFit fit = map_under({}, logs, gear, zero, temperatures_degc);
+                    const OtherMotors& others) {
+    MapFit fit = map_under({}, logs, gear, zero);
     const std::string doubt = reading_doubt(logs, [&](const OtherReading& reading) {
-        return !reading.changes_side &&
-               (fit.finding != MapFinding::mapped ||
-                map_under(reading, logs, gear, zero, temperatures_degc).finding == MapFinding::mapped);
+        return !reading.changes_side && (fit.finding != MapFinding::mapped ||
+                                         map_under(reading, logs, gear, zero).finding == MapFinding::mapped);
     });
     if (doubt.empty()) {
         if (others.motors.empty()) return fit;
         std::vector<TraceView> views;
         for (const Log& log : logs) views.push_back(log.trace.view());
-        return fit_joint_map(views, &gear, others.motors, others.pairs(), zero.value(), temperatures_degc);
+        return fit_joint_map(views, &gear, others.motors, others.pairs(), zero.value());
     }
     fit.doubt = fmt::format("Cannot tell: {}. {}:", doubt, assumed_reading(logs));
     fit.conclusive = false;

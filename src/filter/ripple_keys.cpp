@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "filter/ripple/ripple_keys.hpp"
+#include "filter/ripple_keys.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,18 +1,15 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// The course of a ripple's amplitude along a log, selected by cross-validation over windows.
+// Ripple of each order in every few motor turns of a log, by least squares along with a smooth torque.
 
 #include <complex>
 #include <cstddef>
 #include <span>
-#include <string_view>
 #include <vector>
 
-#include "filter/ripple/ripple_keys.hpp"
+#include "filter/ripple_keys.hpp"
 
 namespace ripplenotch {
-
-// Ripple of each order in every few motor turns of a log, by least squares along with a smooth torque.
 
 /// Where a sample stands: motor angle, and how far the motor has turned since the log began, back and forth
 /// added up. A gap in time puts the two sides far apart.
@@ -40,7 +37,6 @@ struct RippleWindow {
     /// Per order: mean square of the same fit half an order to its sides, where no ripple is.
     std::vector<double> background;
     double middle_turns = 0.0;  ///< mean motor angle
-    double torque_nm = 0.0;     ///< mean
 };
 
 struct RippleWindowRule {
@@ -72,21 +68,5 @@ class RippleWindows {
     double first_turns_ = 0.0, first_travelled_ = 0.0, furthest_ = 0.0;
     std::vector<RippleWindow> windows_;
 };
-
-/// How an order's amplitude is taken to run along the log, simplest first.
-enum class Course { nothing, constant, by_direction, by_speed, local };
-[[nodiscard]] std::string_view course_name(Course course);
-
-struct CourseScore {
-    Course course = Course::nothing;
-    double error = 1.0;  ///< power that the course is wrong by, over that of the ripple
-};
-
-/// Tries every course on one order. Each window is predicted from the others, and the residual of its
-/// amplitude beyond the background, weighted by its precision, is the course's error; that of `local`, which
-/// takes the window's own amplitude, is the background. The least wins; a simpler one does unless it is worse
-/// by 5 % and by 1 % of the ripple's power. Afterwards `amplitudes[order]` of every window holds the estimate
-/// of the selected course.
-[[nodiscard]] CourseScore choose_course(std::vector<RippleWindow>& windows, std::size_t order);
 
 }  // namespace ripplenotch

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "filter/run/block_pipeline.hpp"
+#include "filter/block_pipeline.hpp"
 
 #include <condition_variable>
 #include <limits>

@@ -99,6 +99,27 @@ struct RippleRotation {
 /// where ripple and torque cannot be distinguished (at standstill).
 [[nodiscard]] std::vector<double> settled_gain(const RippleModel& model, double step_turns);
 
+// Settled gains of the ripple's Kalman filter over motor speed, computed once.
+
+/// Gains in the frame of ripple_rotation, linear between eight speeds an octave.
+class GainSchedule {
+  public:
+    explicit GainSchedule(const RippleModel& model);
+
+    /// The gain at `step_turns` motor turns a sample, either direction, into `gain` (RippleModel::states
+    /// entries). At standstill the ripple's is 0 and the torque's that of a filter without ripple.
+    void at(double step_turns, std::span<double> gain) const noexcept;
+
+  private:
+    std::size_t states_;
+    std::vector<double> standing_;
+    std::vector<double> gains_;  ///< states_ entries a speed, slowest first
+};
+
+/// The result of GainSchedule::at where only one speed is needed: of the hundred or so gains that a schedule
+/// holds, only the two at neighbouring speeds are computed.
+[[nodiscard]] std::vector<double> scheduled_gain(const RippleModel& model, double step_turns);
+
 // The settled Kalman filter at one speed, written as second-order sections, so that delay and attenuation can
 // be read off as for any other filter.
 

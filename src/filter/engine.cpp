@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "filter/run/engine.hpp"
+#include "ripplenotch/filter/engine.hpp"
 
 #include <algorithm>
 #include <array>
@@ -10,14 +10,12 @@
 #include <vector>
 
 #include "core/rows/row_facts.hpp"
+#include "filter/block_pipeline.hpp"
 #include "filter/method.hpp"
-#include "filter/run/block_pipeline.hpp"
 #include "log/account/account.hpp"
 #include "log/open.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
-#include "ripplenotch/core/portable_math.hpp"
-#include "ripplenotch/filter/engine.hpp"
 
 namespace ripplenotch {
 
@@ -45,12 +43,9 @@ class StreamPass {
         std::vector<double> torque_nm{};  ///< less the ripple of other joints
     };
 
-    /// What else is known at the block's rows; empty where it is not.
-    struct Known {
-        std::span<const double> temperature_degc, other_ripple_nm;
-    };
-    void filter_part(const RowBlock& block, std::size_t joint, const RunPart& part, const Known& known,
-                     std::vector<double>& torque_nm);
+    /// `other_ripple_nm`: at the block's rows; empty where no map of other motors is given.
+    void filter_part(const RowBlock& block, std::size_t joint, const RunPart& part,
+                     std::span<const double> other_ripple_nm, std::vector<double>& torque_nm);
     /// `first`: the place of the rows in the log.
     static void meter_rows(const TraceView& rows, std::size_t first, bool begins_run,
                            std::span<const double> torque_nm, Lane& lane);
@@ -72,19 +67,16 @@ void StreamPass::filter(const RowBlock& block, std::vector<std::vector<double>>&
         Lane& lane = lanes_[j];
         note_motion(block.joints[j], lane);
         torque_nm[j].resize(block.size());
-        Known known;
-        if (lane.run.temperature != nullptr)
-            known.temperature_degc = lane.run.temperature->next(block.size());
-        if (lane.run.other_ripple != nullptr)
-            known.other_ripple_nm = lane.run.other_ripple->next(block.size());
-        for (const RunPart& part : parts) filter_part(block, j, part, known, torque_nm[j]);
+        std::span<const double> other_ripple_nm;
+        if (lane.run.other_ripple != nullptr) other_ripple_nm = lane.run.other_ripple->next(block.size());
+        for (const RunPart& part : parts) filter_part(block, j, part, other_ripple_nm, torque_nm[j]);
         lane.rows += block.size();
         lane.report.held_bad_values += block.held_bad_values;
     }
 }
 
 void StreamPass::filter_part(const RowBlock& block, std::size_t joint, const RunPart& part,
-                             const Known& known, std::vector<double>& torque_nm) {
+                             std::span<const double> other_ripple_nm, std::vector<double>& torque_nm) {
     Lane& lane = lanes_[joint];
     TraceView rows = view_of(block, joint, part.first, part.count);
     const std::span<double> out = std::span(torque_nm).subspan(part.first, part.count);
@@ -95,17 +87,13 @@ void StreamPass::filter_part(const RowBlock& block, std::size_t joint, const Run
     }
     rows.position_deg = lane.position.of(account_.angle(joint), rows);
     if (part.begins_run && lane.rows + part.first > lane.rows_left_out) lane.run.filter->restart();
-    const auto of_part = [&part](std::span<const double> values) {
-        return values.empty() ? values : values.subspan(part.first, part.count);
-    };
     std::span<const double> torque = rows.torque_nm;
-    if (const auto ripple = of_part(known.other_ripple_nm); !ripple.empty()) {
+    if (!other_ripple_nm.empty()) {
         lane.torque_nm.assign(torque.begin(), torque.end());
-        for (std::size_t k = 0; k < ripple.size(); ++k) lane.torque_nm[k] -= ripple[k];
+        for (std::size_t k = 0; k < part.count; ++k) lane.torque_nm[k] -= other_ripple_nm[part.first + k];
         torque = lane.torque_nm;
     }
-    lane.run.filter->process(
-        {rows.velocity_deg_s, torque, rows.position_deg, of_part(known.temperature_degc)}, out);
+    lane.run.filter->process({rows.velocity_deg_s, torque, rows.position_deg}, out);
     note_switches(block, lane);
     if (lane.run.meter != nullptr) meter_rows(rows, lane.rows + part.first, part.begins_run, out, lane);
 }
@@ -165,64 +153,6 @@ std::vector<StreamReport> StreamPass::reports(const Layout& layout) const {
 
 }  // namespace
 
-Supervisor::Supervisor(std::span<const Band> bands, const SwitchingDesign& design)
-    : regions_(speed_regions(bands, design.below, design.above)),
-      hysteresis_deg_s_(design.hysteresis.value()),
-      dwell_(design.dwell_samples) {}
-
-std::size_t Supervisor::find(double speed_deg_s) const noexcept {
-    const auto holds_speed = [speed_deg_s](const SpeedRegion& region) {
-        return speed_deg_s <= region.to_deg_s;
-    };
-    const auto found = std::find_if(regions_.begin(), regions_.end(), holds_speed);
-    // A speed that is not a number is in no region; the lowest is the one that does least.
-    return found == regions_.end() ? 0 : static_cast<std::size_t>(found - regions_.begin());
-}
-
-int Supervisor::candidate_in(const SpeedRegion& region) const noexcept {
-    return region.holds ? candidate_ : region.candidate;
-}
-
-void Supervisor::enter(std::size_t region) noexcept {
-    at_ = region;
-    low_ = regions_[at_].from_deg_s - hysteresis_deg_s_;
-    high_ = regions_[at_].to_deg_s + hysteresis_deg_s_;
-}
-
-void Supervisor::start(double velocity_deg_s) noexcept {
-    candidate_ = no_candidate;
-    enter(find(std::abs(velocity_deg_s)));
-    candidate_ = candidate_in(region());
-    since_switch_ = dwell_;  // the first choice is no switch: it need not dwell
-}
-
-std::size_t Supervisor::stay(std::span<const double> velocity_deg_s) noexcept {
-    std::size_t count = 0;
-    while (true) {
-        count += first_outside(velocity_deg_s.subspan(count), low_, high_);
-        if (count == velocity_deg_s.size()) break;
-        const bool must_dwell = since_switch_ + count < dwell_;
-        const SpeedRegion& next = regions_[find(std::abs(velocity_deg_s[count]))];
-        if (!must_dwell || candidate_in(next) == candidate_) break;
-        ++count;
-    }
-    since_switch_ = std::min(since_switch_ + count, dwell_);
-    return count;
-}
-
-bool Supervisor::move(double velocity_deg_s) noexcept {
-    const std::size_t next = find(std::abs(velocity_deg_s));
-    const int before = candidate_;
-    candidate_ = candidate_in(regions_[next]);
-    enter(next);
-    if (candidate_ != before) {
-        since_switch_ = std::min<std::size_t>(1, dwell_);
-    } else {
-        since_switch_ = std::min(since_switch_ + 1, dwell_);
-    }
-    return candidate_ != before;
-}
-
 std::optional<RunningDesign> running_design(const Method& method, const Settings& settings,
                                             Hertz sample_rate) {
     if (method.name == "tracking") return tracking_design(settings, sample_rate);
@@ -280,9 +210,9 @@ struct LogStream::State {
     Account account;
 };
 
-LogStream::LogStream(std::unique_ptr<LogReader> reader, double gap_steps) {
+LogStream::LogStream(std::unique_ptr<LogReader> reader) {
     Opening opening = read_opening(*reader);
-    Account account(reader->layout(), opening, gap_steps);
+    Account account(reader->layout(), opening);
     account.clock().require();
     state_ = std::make_unique<State>(State{std::move(reader), std::move(opening), std::move(account)});
 }
