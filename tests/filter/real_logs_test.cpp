@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What the methods take out of two joints of a real robot. The logs are not part of the project: without them
 // these cases say so and do nothing. With RIPPLENOTCH_TABLE set in the environment they print the table of
-// docs/studies/methods.md.
+// docs/methods/README.md.
 
 #include <fmt/format.h>
 
