@@ -22,8 +22,12 @@ constexpr std::array known_loops_deg = {0.03, 0.12};
 // What the smoothing and the elasticity of a gear make of the inertia's torque, in shares of the inertia: its
 // first derivative in s and its second in s^2.
 constexpr double jerk_share_s = 0.005, snap_share_s2 = 3e-5;
-constexpr double known_scale_deviation = 0.02;    // a torque constant is known to two per cent
-constexpr double known_gravity_deviation = 0.04;  // of the simulation's own
+constexpr double known_scale_deviation = 0.02;  // a torque constant is known to two per cent
+// Of the sizes of friction that a model states, and of the gravity of a simulation of unknown scale.
+constexpr double known_deviation = 0.04;
+// Of inertia and gravity in a simulation of known scale: its author knows the masses.
+constexpr double known_mass_deviation = 0.01;
+constexpr double fixed_share = 1e-6;  // of a value that is stated: its column stays for the load's sake
 constexpr double least_gravity_nm = 1e-4;
 
 std::vector<double> step_of_direction(const Motion& motion, double width_deg_s) {
@@ -51,22 +55,43 @@ std::vector<std::vector<double>> term_columns(const Term& term, const Situation&
     return unit_columns(*term.effect, values, situation);
 }
 
-// Size of the gravity in a torque by its regression on the motion.
-double gravity_of(const std::vector<double>& torque_nm, const RecordedMotion& recorded,
-                  const std::vector<double>& direction) {
+// Size of the linear values of a term with all values stated; 0 where one is free.
+double stated_size(const Term& term) {
+    double size = 0.0;
+    for (std::size_t p = 0; p < term.values.size(); ++p) {
+        if (!term.values[p]) return 0.0;
+        if (term.effect->parameters[p].linear) size = std::max(size, std::abs(*term.values[p]));
+    }
+    return size;
+}
+
+// Inertia in Nm/(deg/s2) and size of the gravity in a torque, by its regression on the motion.
+std::pair<double, double> inertia_and_gravity_of(const std::vector<double>& torque_nm,
+                                                 const RecordedMotion& recorded,
+                                                 const std::vector<double>& direction) {
     const Motion& motion = recorded.motion();
     std::vector<std::vector<double>> columns = {motion.acceleration_deg_s2,
                                                 std::vector<double>(motion.size(), 1.0), direction,
                                                 motion.velocity_deg_s};
     for (auto& column : cosine_and_sine(motion.position_deg)) columns.push_back(std::move(column));
     const std::vector<double> factors = regress(columns, torque_nm, recorded.usable());
-    return portable::hypot(factors[4], factors[5]);
+    return {factors[0], portable::hypot(factors[4], factors[5])};
 }
 
 }  // namespace
 
 bool Baseline::has(std::string_view name) const {
-    return std::ranges::any_of(columns, [&](const BaseColumn& column) { return column.name == name; });
+    return std::ranges::any_of(
+        columns, [&](const BaseColumn& column) { return column.name == name && !column.has_prior(); });
+}
+
+bool Baseline::is_known(std::string_view name) const {
+    return states(name) || (is_simulated && (name == "gravity" || name == "simulation-scale"));
+}
+
+bool Baseline::states(std::string_view name) const {
+    return std::ranges::any_of(
+        columns, [&](const BaseColumn& column) { return column.name == name && column.has_prior(); });
 }
 
 std::vector<std::vector<double>> ripple_columns(const Motion& motion, std::span<const double> orders,
@@ -87,6 +112,7 @@ Baseline make_baseline(const RecordedMotion& recorded, const KnownSide& known,
     const Situation situation{.motion = motion, .ratio = known.model->gear_ratio};
     Baseline base;
     base.ratio = known.model->gear_ratio;
+    base.is_simulated = known.is_simulated;
     base.direction = step_of_direction(motion, friction_step_deg_s);
     for (const Term& term : known.model->terms)
         if (term.effect->ripple_order) base.orders.push_back(term.values[*term.effect->ripple_order].value());
@@ -94,12 +120,42 @@ Baseline make_baseline(const RecordedMotion& recorded, const KnownSide& known,
         base.columns.push_back({.name = "simulated", .torque_nm = motion.known_nm, .bears_load = true});
     base.inertia_place = base.columns.size();
     base.columns.push_back({.name = "inertia", .torque_nm = motion.acceleration_deg_s2, .bears_load = true});
+    const auto add_known = [&](double factor, const std::vector<double>& column) {
+        base.known_nm.resize(motion.size(), 0.0);
+        add_scaled(factor, column.data(), base.known_nm.data(), column.size());
+    };
     if (!known.is_simulated) {
         for (const Term& term : known.model->terms) {
             const Effect& effect = *term.effect;
+            if (effect.name == "inertia" && term.values[0]) {
+                const double stated = *term.values[0] / degrees_per_radian;
+                add_known(stated, motion.acceleration_deg_s2);
+                base.known_inertia_nm_per_deg_s2 = stated;
+                base.columns[base.inertia_place].deviation = fixed_share * std::abs(stated);
+            }
             if (effect.side != Side::joint || effect.ripple_order || effect.uses_load ||
                 effect.name == "inertia")
                 continue;
+            if (const double size_nm = stated_size(term); size_nm > 0.0) {
+                std::vector<double> values, torque(motion.size(), 0.0);
+                for (const auto& value : term.values) values.push_back(*value);
+                effect.apply(situation, values, torque);
+                add_known(1.0, torque);
+                if (effect.bears_load) continue;  // a mass that is stated is fixed
+                for (auto& column : term_columns(term, situation))
+                    base.columns.push_back({.name = std::string(effect.name),
+                                            .torque_nm = std::move(column),
+                                            .deviation = known_deviation * size_nm});
+                if (effect.name != "coulomb-friction") continue;
+                // How softly it turns over is not stated, which changes its form and not its size.
+                for (const double width_deg : known_loops_deg) {
+                    auto loop = friction_loop(motion.position_deg, width_deg);
+                    add_scaled(-1.0 / size_nm, torque.data(), loop.data(), loop.size());
+                    base.columns.push_back(
+                        {.name = "nuisance", .torque_nm = std::move(loop), .deviation = size_nm});
+                }
+                continue;
+            }
             for (auto& column : term_columns(term, situation))
                 base.columns.push_back({.name = std::string(effect.name),
                                         .torque_nm = std::move(column),
@@ -123,23 +179,26 @@ Baseline make_baseline(const RecordedMotion& recorded, const KnownSide& known,
         {.name = "nuisance", .torque_nm = std::move(snap), .deviation = share(snap_share_s2)});
     if (known.is_simulated && known.is_scale_known) {
         base.known_nm = motion.known_nm;
+        base.is_scale_known = true;
         base.columns.push_back(
             {.name = "nuisance", .torque_nm = motion.known_nm, .deviation = known_scale_deviation});
     }
     if (known.is_simulated) {
-        const double gravity_nm = gravity_of(motion.known_nm, recorded, base.direction);
+        const auto [inertia, gravity_nm] = inertia_and_gravity_of(motion.known_nm, recorded, base.direction);
+        if (known.is_scale_known) {
+            base.columns[base.inertia_place].deviation = known_mass_deviation * std::abs(inertia);
+            base.known_inertia_nm_per_deg_s2 = inertia;
+        }
+        const double mass_deviation = known.is_scale_known ? known_mass_deviation : known_deviation;
         for (auto& column : cosine_and_sine(motion.position_deg))
             base.columns.push_back({.name = "nuisance",
                                     .torque_nm = std::move(column),
-                                    .deviation = known_gravity_deviation * gravity_nm + least_gravity_nm});
+                                    .deviation = mass_deviation * gravity_nm + least_gravity_nm});
     }
     for (const GivenTerm& given : known.given_terms) {
         for (std::size_t value = 0; value < given.torque_nm.size(); ++value) {
             std::vector<double> column = recorded.on_clock(given.torque_nm[value]);
-            if (given.mean[value] != 0.0) {
-                base.known_nm.resize(motion.size(), 0.0);
-                add_scaled(given.mean[value], column.data(), base.known_nm.data(), column.size());
-            }
+            if (given.mean[value] != 0.0) add_known(given.mean[value], column);
             if (given.deviation[value] > stated_deviation)
                 base.columns.push_back({.name = given.name,
                                         .torque_nm = std::move(column),

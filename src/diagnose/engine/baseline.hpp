@@ -33,11 +33,19 @@ struct Baseline {
     std::vector<BaseColumn> columns;
     std::vector<double> known_nm;  ///< torque at the prior means, subtracted; empty where it is 0
     std::size_t inertia_place = 0;
-    std::vector<double> orders;  ///< of the model's ripple, in cycles per motor revolution
+    double known_inertia_nm_per_deg_s2 = 0.0;  ///< that is part of known_nm
+    std::vector<double> orders;                ///< of the model's ripple, in cycles per motor revolution
     GearRatio ratio;
+    bool is_simulated = false;      ///< a simulation holds what is not in the model
+    bool is_scale_known = false;    ///< there is a simulation, and its torque is part of known_nm
     std::vector<double> direction;  ///< of the motion: -1 to 1, over 0.5 deg/s
 
+    /// A free column of this effect.
     [[nodiscard]] bool has(std::string_view name) const;
+    /// Its size is known within a prior: of a mass or of a scale.
+    [[nodiscard]] bool is_known(std::string_view name) const;
+    /// A column of this effect at the user's value.
+    [[nodiscard]] bool states(std::string_view name) const;
 };
 
 /// `inertia_nm_per_deg_s2`, where an estimate is known, bounds what smoothing and an elastic gear make of the

@@ -8,10 +8,13 @@
 namespace ripplenotch::engine {
 namespace {
 
-constexpr std::size_t few_values = 1000;     // a quantized torque has fewer distinct values
-constexpr double coarse_step_nm = 0.04;      // finer steps are as good as none
-constexpr std::size_t fewest_at_limit = 20;  // samples at an end of the range
-constexpr std::size_t longest_repeat = 10;   // equal samples in a row that chance makes
+constexpr std::size_t few_values = 1000;  // a quantized torque has fewer distinct values
+// Share of neighbours that are equal or one step apart: with a step of less than 1.7 times the noise fewer
+// are.
+constexpr double coarse_share = 0.9;
+// Samples at an end of the range: in one stretch; or in several, beside a rare next value.
+constexpr std::size_t fewest_at_limit = 20, fewest_touches = 5, fewest_stretches = 3;
+constexpr std::size_t longest_repeat = 10;  // equal samples in a row that chance makes
 constexpr std::size_t fewest_dropouts = 3, fewest_spikes = 4;
 constexpr std::size_t spike_neighbours = 25;  // samples to each side
 
@@ -19,6 +22,26 @@ double median(std::vector<double> values) {
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
     std::nth_element(values.begin(), middle, values.end());
     return *middle;
+}
+
+bool is_coarse(std::span<const double> torque_nm, double step_nm) {
+    std::size_t near = 0;
+    for (std::size_t k = 1; k < torque_nm.size(); ++k)
+        near += std::abs(torque_nm[k] - torque_nm[k - 1]) < 1.5 * step_nm ? 1 : 0;
+    return static_cast<double>(near) > coarse_share * static_cast<double>(torque_nm.size());
+}
+
+// Whether a torque is cut at `end`, beside which the next value is `inner`.
+bool is_limit(std::span<const double> torque_nm, double end, double inner) {
+    std::size_t count = 0, stretches = 0;
+    for (std::size_t k = 0; k < torque_nm.size(); ++k) {
+        if (torque_nm[k] != end) continue;
+        ++count;
+        stretches += k == 0 || torque_nm[k - 1] != end ? 1 : 0;
+    }
+    const auto beside = static_cast<std::size_t>(std::count(torque_nm.begin(), torque_nm.end(), inner));
+    return count > fewest_at_limit ||
+           (count >= fewest_touches && stretches >= fewest_stretches && count > 3 * beside);
 }
 
 }  // namespace
@@ -35,10 +58,13 @@ std::vector<ConverterFault> find_converter_faults(std::span<const double> torque
     levels.erase(std::unique(levels.begin(), levels.end()), levels.end());
     std::vector<double> steps;
     for (std::size_t k = 1; k < levels.size(); ++k) steps.push_back(levels[k] - levels[k - 1]);
-    if (!steps.empty() && levels.size() < few_values && median(steps) > coarse_step_nm)
+    if (!steps.empty() && levels.size() < few_values && is_coarse(torque_nm, median(steps)))
         return {{.effect = "quantization", .rows = {}, .size = median(steps)}};
     double limit_nm = std::numeric_limits<double>::infinity();
-    if (std::max(at(highest), at(lowest)) > fewest_at_limit) {
+    const bool touches = levels.size() > 2 &&
+                         (at(highest) >= at(lowest) ? is_limit(torque_nm, highest, levels[levels.size() - 2])
+                                                    : is_limit(torque_nm, lowest, levels[1]));
+    if (touches) {
         limit_nm = std::max(std::abs(lowest), std::abs(highest));
         auto& fault = found.emplace_back();
         fault.effect = "saturation";

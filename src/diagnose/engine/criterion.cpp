@@ -126,10 +126,16 @@ Criterion::Criterion(const RecordedMotion& recorded, const Baseline& base,
       white_(blocks_, noise_->whitening, noise_->innovation_nm),
       plain_(blocks_, {1.0}, 1.0) {}
 
-std::vector<std::vector<double>> Criterion::term_columns(const SearchedTerm& term, GearRatio ratio) const {
+std::vector<std::vector<double>> Criterion::term_columns(const SearchedTerm& term,
+                                                         const MotorAngle& angle) const {
+    const GearRatio ratio = angle.ratio;
     const Motion& motion = recorded_.motion();
     if (term.kind->role != Role::ripple_change) {
-        return unit_columns(*term.kind->effect, unit_values(term),
+        const Effect& effect = *term.kind->effect;
+        if (effect.ripple_order && !angle.errors.empty())
+            return unit_columns(effect, unit_values(term),
+                                {.motion = without_errors(motion, angle.errors), .ratio = ratio});
+        return unit_columns(effect, unit_values(term),
                             {.motion = motion, .ratio = ratio, .load_nm = noise_->load_nm});
     }
     const Situation situation{.motion = motion, .ratio = ratio, .load_nm = noise_->sensed_nm};
@@ -137,7 +143,7 @@ std::vector<std::vector<double>> Criterion::term_columns(const SearchedTerm& ter
     for (const auto& factor : ripple_factors(term, situation)) {
         // A modulation is one of the fitted ripple as a whole; other changes are each order's own.
         auto waves = term.kind->effect->polar ? std::vector<std::vector<double>>{noise_->ripple_nm}
-                                              : ripple_columns(motion, base_.orders, ratio);
+                                              : ripple_waves(angle);
         for (auto& wave : waves) {
             for (std::size_t k = 0; k < wave.size(); ++k) wave[k] *= factor[k];
             columns.push_back(std::move(wave));
@@ -146,15 +152,21 @@ std::vector<std::vector<double>> Criterion::term_columns(const SearchedTerm& ter
     return columns;
 }
 
+std::vector<std::vector<double>> Criterion::ripple_waves(const MotorAngle& angle) const {
+    const Motion& motion = recorded_.motion();
+    if (angle.errors.empty()) return ripple_columns(motion, base_.orders, angle.ratio);
+    return ripple_columns(without_errors(motion, angle.errors), base_.orders, angle.ratio);
+}
+
 Design Criterion::design(const SearchedTerms& terms, ColumnProducts& columns, const Parts& parts) {
     const Motion& motion = recorded_.motion();
     const Transforms transforms(terms);
     const SearchedTerms every = transforms.all();
-    const GearRatio ratio = ratio_of(terms, base_.ratio);
+    const MotorAngle angle = motor_angle(terms, base_.ratio), fixed{base_.ratio, {}};
     Design made;
-    const auto add = [&](const SearchedTerm& term, int group, const SearchedTerms& behind, GearRatio at,
-                         auto make) {
-        const ColumnProducts::Key key{term, group, at.value(), behind};
+    const auto add = [&](const SearchedTerm& term, int group, const SearchedTerms& behind,
+                         const MotorAngle& at, auto make) {
+        const ColumnProducts::Key key{term, group, at.ratio.value(), at.errors, behind};
         const auto& places = columns.places(key, [make, behind, &motion] {
             auto whole = make();
             for (auto& column : whole) column = transformed(std::move(column), behind, motion);
@@ -165,7 +177,7 @@ Design Criterion::design(const SearchedTerms& terms, ColumnProducts& columns, co
     };
     // The torque less what is known, as the sensor sees that.
     const SearchedTerms behind_known = base_.known_nm.empty() ? SearchedTerms{} : every;
-    made.target = columns.places({{}, target, 0.0, behind_known}, [this, behind_known, &motion] {
+    made.target = columns.places({{}, target, 0.0, {}, behind_known}, [this, behind_known, &motion] {
         std::vector<double> torque = recorded_.torque_nm();
         if (!base_.known_nm.empty()) {
             const std::vector<double> known = transformed(base_.known_nm, behind_known, motion);
@@ -176,16 +188,16 @@ Design Criterion::design(const SearchedTerms& terms, ColumnProducts& columns, co
     for (std::size_t i = 0; i < base_.columns.size(); ++i) {
         if (base_.columns[i].has_prior() && !parts.nuisance) continue;
         const SearchedTerm place{nullptr, {static_cast<double>(i), 0.0}};
-        add(place, base_column, every, GearRatio(0.0),
+        add(place, base_column, every, {},
             [this, i] { return std::vector<std::vector<double>>{base_.columns[i].torque_nm}; });
         made.deviation.back() = base_.columns[i].deviation;
     }
-    const auto ripple = [this, ratio, &motion] { return ripple_columns(motion, base_.orders, ratio); };
+    const auto ripple = [this, angle] { return ripple_waves(angle); };
     const bool has_ripple = !base_.orders.empty() && parts.ripple == Ripple::fitted;
     if (has_ripple) {
-        add({}, ripple_before_joint, every, ratio, ripple);
+        add({}, ripple_before_joint, every, angle, ripple);
         // The gauges' own ripple does not pass the elastic joint.
-        if (!transforms.elastic_joint.empty()) add({}, ripple_behind_joint, transforms.sensor, ratio, ripple);
+        if (!transforms.elastic_joint.empty()) add({}, ripple_behind_joint, transforms.sensor, angle, ripple);
     }
     for (const SearchedTerm& term : terms) {
         made.first_of_term.push_back(made.columns.size());
@@ -195,8 +207,7 @@ Design Criterion::design(const SearchedTerms& terms, ColumnProducts& columns, co
         if (!has_columns || (term.changes_ripple() && parts.ripple == Ripple::left)) continue;
         const bool turns_with_motor = term.kind->effect->ripple_order || term.changes_ripple();
         add(term, of_term, role == Role::sensor_torque ? SearchedTerms{} : every,
-            turns_with_motor ? ratio : base_.ratio,
-            [this, term, ratio] { return term_columns(term, ratio); });
+            turns_with_motor ? angle : fixed, [this, term, angle] { return term_columns(term, angle); });
     }
     return made;
 }
@@ -233,6 +244,28 @@ std::vector<double> Criterion::prior_weights(const Design& design, const MatrixX
     return weights;
 }
 
+// What changes a friction needs one; what rings does so for a cycle at least.
+bool Criterion::is_possible(const SearchedTerms& terms) const {
+    const auto is_there = [&](std::string_view name) {
+        return contains(terms, name) || base_.has(name) || base_.states(name) || base_.is_simulated;
+    };
+    for (const SearchedTerm& term : terms) {
+        const bool changes_friction = term.is("position-dependent-friction") || term.is("friction-warm-up") ||
+                                      term.is("asymmetric-friction");
+        if (changes_friction && !is_there("coulomb-friction") && !is_there("hysteresis")) return false;
+        if (term.is("asymmetric-viscous-friction") && !is_there("viscous-friction")) return false;
+        if (term.is("position-dependent-friction")) {
+            // Twice a turn the load of a weight comes and goes, and friction with it.
+            const bool is_by_load = term.values[0] == 2.0 && is_there("gravity") && !base_.is_simulated;
+            if (is_by_load || recorded_.travel_deg() * term.values[0] < 180.0) return false;
+        }
+        // Of what can be lifted the weight is known first.
+        if (term.is("payload-change") && !is_there("gravity")) return false;
+        if (term.is("start-stop-ringing") && term.values[0] * term.values[1] < 1.0) return false;
+    }
+    return true;
+}
+
 const LinearFit& Criterion::fit(const SearchedTerms& given) {
     SearchedTerms terms = given;
     std::sort(terms.begin(), terms.end());
@@ -249,13 +282,11 @@ const LinearFit& Criterion::fit(const SearchedTerms& given) {
         const double power = products(static_cast<Index>(c) + 1, static_cast<Index>(c) + 1);
         found.squares += (weights[c] - ridge) * factor * factor * power;
     }
+    if (!is_possible(terms)) found.is_physical = false;
     for (std::size_t i = 0; i < terms.size(); ++i) {
         const Effect& effect = *terms[i].kind->effect;
-        // Nothing that resists drives the joint. Of what is largest at low speed a negative size corrects the
-        // form of another friction.
-        if (!effect.resists || effect.name == "stribeck-friction" ||
-            effect.name == "quadratic-viscous-friction")
-            continue;
+        // Nothing that resists drives the joint, unless the user states more of it.
+        if (!effect.resists || base_.states(effect.name)) continue;
         if (found.factors[static_cast<Index>(made.first_of_term[i])] < 0.0) found.is_physical = false;
     }
     if (!found.is_physical) found.squares = refused_squares;

@@ -38,10 +38,11 @@ class ColumnProducts {
         SearchedTerm term;  ///< kind null: a group of the baseline
         int group = 0;      ///< which, or another use of the term's columns
         double ratio = 0.0;
-        SearchedTerms transforms;
+        SearchedTerms errors, transforms;
         auto operator<=>(const Key& other) const {
-            return std::tie(group, term.kind, term.values, ratio, transforms) <=>
-                   std::tie(other.group, other.term.kind, other.term.values, other.ratio, other.transforms);
+            return std::tie(group, term.kind, term.values, ratio, errors, transforms) <=>
+                   std::tie(other.group, other.term.kind, other.term.values, other.ratio, other.errors,
+                            other.transforms);
         }
         bool operator==(const Key&) const = default;
     };
@@ -125,8 +126,10 @@ class Criterion {
         bool nuisance = true;
         Ripple ripple = Ripple::fitted;
     };
+    [[nodiscard]] bool is_possible(const SearchedTerms& terms) const;
     Design design(const SearchedTerms& terms, ColumnProducts& columns, const Parts& parts);
-    std::vector<std::vector<double>> term_columns(const SearchedTerm& term, GearRatio ratio) const;
+    std::vector<std::vector<double>> term_columns(const SearchedTerm& term, const MotorAngle& angle) const;
+    std::vector<std::vector<double>> ripple_waves(const MotorAngle& angle) const;
     Eigen::MatrixXd gram(const Design& design, ColumnProducts& columns, std::vector<Eigen::MatrixXd>* blocks);
     [[nodiscard]] std::vector<double> prior_weights(const Design& design, const Eigen::MatrixXd& gram,
                                                     double noise_nm) const;

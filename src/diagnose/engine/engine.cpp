@@ -98,7 +98,20 @@ Result find_missing_effects(const Input& input) {
     recorded.mark_spoiled_rows(good);
     const KnownSide known{&input.model, input.given_terms, input.simulation.has_value(),
                           input.simulation && input.simulation->is_scale_known};
-    const Prepared prepared = prepare(recorded, known, result.faults);
+    Prepared prepared = prepare(recorded, known, result.faults);
+    if (recorded.is_position_integrated()) {
+        // It spoils every column, so that it comes before the search.
+        const Search search(recorded, prepared.base, prepared.noise,
+                            {input.without.begin(), input.without.end()});
+        Criterion criterion(recorded, prepared.base, prepared.noise);
+        if (const auto bias = search.velocity_bias(criterion)) {
+            result.terms.push_back(
+                judged(search, criterion, {*bias}, 0, std::move(valued_terms(criterion, {*bias})[0])));
+            result.rms_before_nm = criterion.rms_nm({});
+            recorded.remove_velocity_bias(bias->values[0]);
+            prepared = prepare(recorded, known, result.faults);
+        }
+    }
     Search search(recorded, prepared.base, prepared.noise, {input.without.begin(), input.without.end()});
     const SearchResult found = search.run();
     Criterion& criterion = *found.best.criterion;
@@ -115,7 +128,7 @@ Result find_missing_effects(const Input& input) {
         result.nearly_adopted.push_back({valued_terms(criterion, with).back().term,
                                          refused.admission.reduction, refused.admission.reason});
     }
-    result.rms_before_nm = criterion.rms_nm({});
+    if (recorded.removed_bias_deg_s() == 0.0) result.rms_before_nm = criterion.rms_nm({});
     result.rms_after_nm = criterion.rms_nm(terms);
     result.noise_nm = criterion.noise().noise_nm;
     result.residual_before_nm = per_row(recorded, criterion.residual_nm({}));

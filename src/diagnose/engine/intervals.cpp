@@ -178,7 +178,7 @@ std::vector<Derived> linear_values(const SearchedTerm& term, const Linearised& f
         }
         case Role::elastic_joint:
         case Role::sensor:
-        case Role::ratio:
+        case Role::motor_angle:
             break;
     }
     return {};
@@ -203,7 +203,7 @@ std::vector<ValuedTerm> valued_terms(Criterion& criterion, const SearchedTerms& 
         for (std::size_t v = 0; v < term.kind->searched.size(); ++v) {
             Derived searched{
                 term.kind->searched[v].parameter, term.values[v], {{fit.searched_place(t, v), 1.0}}};
-            if (term.kind->role == Role::ratio) {
+            if (term.is("gear-ratio")) {
                 const double percent = 100.0 / base.ratio.value();
                 searched.value = percent * term.values[v] - 100.0;
                 searched.slopes[0].second = percent;

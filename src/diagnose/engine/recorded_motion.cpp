@@ -17,6 +17,9 @@ namespace ripplenotch::engine {
 namespace {
 
 constexpr std::size_t fewest_slots = 200;
+constexpr double longest_gap = 2000.0;  // slots that a gap in the log takes at most: they hold nothing
+// Travel in units of the noise of the position below which a joint stands still.
+constexpr double least_travel = 30.0;
 
 // Linear interpolation at rising places; constant beyond the ends. `known` rises, equal places are allowed.
 std::vector<double> interpolate(std::span<const double> known, std::span<const double> values,
@@ -56,6 +59,14 @@ double deviation_from_slots(std::span<const double> time_s, double rate_hz) {
     }
     const double count = static_cast<double>(time_s.size());
     return squares / count - (sum / count) * (sum / count);
+}
+
+double usual_step_s(std::span<const double> time_s) {
+    std::vector<double> steps;
+    for (std::size_t k = 1; k < time_s.size(); ++k) steps.push_back(time_s[k] - time_s[k - 1]);
+    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+    std::nth_element(steps.begin(), middle, steps.end());
+    return *middle;
 }
 
 void place_rows(Clock& clock, std::span<const double> time_s) {
@@ -99,11 +110,7 @@ void each_run(std::size_t count, Is is, Act act) {
 }  // namespace
 
 Clock regular_clock(std::span<const double> time_s) {
-    std::vector<double> steps;
-    for (std::size_t k = 1; k < time_s.size(); ++k) steps.push_back(time_s[k] - time_s[k - 1]);
-    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-    std::nth_element(steps.begin(), middle, steps.end());
-    const double usual_hz = 1.0 / *middle;
+    const double usual_hz = 1.0 / usual_step_s(time_s);
     double best_hz = static_cast<double>(time_s.size() - 1) / (time_s.back() - time_s.front());
     double best = deviation_from_slots(time_s, best_hz);
     for (const double unit : {1.0, 10.0, 100.0}) {
@@ -193,12 +200,21 @@ std::vector<double> gradient(std::span<const double> values, double step_s) {
 }
 
 RecordedMotion::RecordedMotion(const TraceView& log, const std::optional<Simulation>& simulation)
-    : log_(log), clock_(regular_clock(log.time_s)) {
-    if (clock_.slots < fewest_slots)
+    : log_(log) {
+    if (log.size() < fewest_slots)
         raise<DataError>("a diagnosis needs at least {} samples, the log has {}", fewest_slots, log.size());
+    const double usual_s = usual_step_s(log.time_s);
+    double removed_s = 0.0;
+    for (std::size_t row = 0; row < log.size(); ++row) {
+        const double gap = row > 0 ? (log.time_s[row] - log.time_s[row - 1]) / usual_s : 0.0;
+        if (gap > longest_gap) removed_s += usual_s * std::floor(gap - longest_gap);
+        row_s_.push_back(log.time_s[row] - removed_s);
+        removed_s_.push_back(removed_s);
+    }
+    clock_ = regular_clock(row_s_);
     std::vector<double> slot_s(clock_.slots), row_s(log.size());
     for (std::size_t k = 0; k < slot_s.size(); ++k) slot_s[k] = clock_.step_s * static_cast<double>(k);
-    for (std::size_t row = 0; row < row_s.size(); ++row) row_s[row] = log.time_s[row] - clock_.start_s;
+    for (std::size_t row = 0; row < row_s.size(); ++row) row_s[row] = row_s_[row] - clock_.start_s;
     std::vector<double> position_deg(log.position_deg.begin(), log.position_deg.end());
     if (position_deg.empty()) {
         is_position_integrated_ = true;
@@ -206,7 +222,7 @@ RecordedMotion::RecordedMotion(const TraceView& log, const std::optional<Simulat
         for (std::size_t row = 1; row < log.size(); ++row)
             position_deg[row] =
                 position_deg[row - 1] + 0.5 * (log.velocity_deg_s[row] + log.velocity_deg_s[row - 1]) *
-                                            (log.time_s[row] - log.time_s[row - 1]);
+                                            (row_s_[row] - row_s_[row - 1]);
     }
     // The stamps may jitter more than the sampling does: the reading with the smoother positions counts.
     raw_position_deg_ = interpolate(row_s, position_deg, slot_s);
@@ -219,9 +235,7 @@ RecordedMotion::RecordedMotion(const TraceView& log, const std::optional<Simulat
     recorded_.resize(clock_.slots);
     std::size_t row = 0;
     for (std::size_t k = 0; k < clock_.slots; ++k) {
-        const auto off = [&](std::size_t of) {
-            return std::abs(log_.time_s[of] - clock_.start_s - slot_s[k]);
-        };
+        const auto off = [&](std::size_t of) { return std::abs(row_s_[of] - clock_.start_s - slot_s[k]); };
         while (row + 1 < log.size() && off(row + 1) <= off(row)) ++row;
         row_of_[k] = row;
         recorded_[k] = off(row) <= 0.75 * clock_.step_s ? 1 : 0;
@@ -233,6 +247,7 @@ RecordedMotion::RecordedMotion(const TraceView& log, const std::optional<Simulat
         if (!simulation->position_deg.empty()) simulated_position_deg_ = on_clock(simulation->position_deg);
     }
     motion_.sample_rate = Hertz(1.0 / clock_.step_s);
+    for (std::size_t k = 0; k < slot_s.size(); ++k) slot_s[k] += removed_s_[row_of_[k]];
     motion_.time_s = std::move(slot_s);
     mark_spoiled_rows(std::vector<unsigned char>(log.size(), 1));
 }
@@ -242,7 +257,7 @@ std::vector<double> RecordedMotion::on_clock(std::span<const double> per_row) co
     for (std::size_t k = 0; k < slots.size(); ++k) slots[k] = static_cast<double>(k);
     for (std::size_t row = 0; row < places.size(); ++row)
         places[row] = counts_rows_ ? static_cast<double>(clock_.slot_of[row])
-                                   : (log_.time_s[row] - clock_.start_s) / clock_.step_s;
+                                   : (row_s_[row] - clock_.start_s) / clock_.step_s;
     return interpolate(places, per_row, slots);
 }
 
@@ -255,11 +270,17 @@ void RecordedMotion::mark_spoiled_rows(std::span<const unsigned char> is_good_ro
     for (std::size_t row = 0; row < log_.size(); ++row) {
         if (is_good_row[row] == 0) continue;
         places.push_back(counts_rows_ ? static_cast<double>(clock_.slot_of[row])
-                                      : (log_.time_s[row] - clock_.start_s) / clock_.step_s);
+                                      : (row_s_[row] - clock_.start_s) / clock_.step_s);
         torque.push_back(log_.torque_nm[row]);
     }
     if (torque.empty()) raise<DataError>("no sample of the torque is that of the joint");
     torque_nm_ = interpolate(places, torque, slots);
+}
+
+void RecordedMotion::remove_velocity_bias(double bias_deg_s) {
+    removed_bias_deg_s_ = bias_deg_s;
+    for (std::size_t k = 0; k < size(); ++k)
+        raw_position_deg_[k] -= bias_deg_s * (motion_.time_s[k] - motion_.time_s.front());
 }
 
 void RecordedMotion::exclude(std::size_t first, std::size_t count) {
@@ -274,8 +295,25 @@ void RecordedMotion::smooth(double window_s) {
     motion_.position_deg = std::move(smoothed.value);
     motion_.velocity_deg_s = std::move(smoothed.slope_per_s);
     motion_.acceleration_deg_s2 = std::move(smoothed.curvature_per_s2);
+    refuse_standstill();
     if (!simulated_nm_.empty()) move_simulation();
     mark_usable(window);
+    if (usable_count() < fewest_slots)
+        raise<DataError>(
+            "a diagnosis needs at least {} samples in motion, whose torque is that of the joint; "
+            "the log has {}",
+            fewest_slots, usable_count());
+}
+
+void RecordedMotion::refuse_standstill() const {
+    double squares = 0.0;
+    for (std::size_t k = 0; k < size(); ++k) {
+        const double off = raw_position_deg_[k] - motion_.position_deg[k];
+        squares += off * off;
+    }
+    const double noise_deg = std::sqrt(squares / static_cast<double>(size()));
+    if (!(travel_deg() > least_travel * noise_deg))
+        raise<DataError>("the joint stands still in this log: a diagnosis needs motion");
 }
 
 void RecordedMotion::mark_usable(std::size_t window) {

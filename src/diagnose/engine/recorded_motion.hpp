@@ -41,11 +41,15 @@ struct SmoothedSignal {
 /// All vectors have an entry per slot of the clock.
 class RecordedMotion {
   public:
-    /// Throws DataError for fewer than 200 slots. `simulation` is copied.
+    /// Throws DataError for fewer than 200 slots, and smooth() for a joint that does not move. `simulation`
+    /// is copied.
     RecordedMotion(const TraceView& log, const std::optional<Simulation>& simulation);
 
     /// Derives motion, moved simulation and usable samples with a smoothing window of this length.
     void smooth(double window_s);
+    /// Takes an error of the velocity out of the positions that are its integral; with the next smooth().
+    void remove_velocity_bias(double bias_deg_s);
+    [[nodiscard]] double removed_bias_deg_s() const { return removed_bias_deg_s_; }
     /// Excludes samples from now on, for instance spikes; takes effect with the next smooth().
     void exclude(std::size_t first, std::size_t count);
 
@@ -71,10 +75,13 @@ class RecordedMotion {
     void mark_spoiled_rows(std::span<const unsigned char> is_good_row);
 
   private:
+    void refuse_standstill() const;
     void move_simulation();
     void mark_usable(std::size_t window);
 
     TraceView log_;
+    std::vector<double> row_s_;      ///< time of each row, long gaps shortened
+    std::vector<double> removed_s_;  ///< from long gaps before each row
     Clock clock_;
     bool counts_rows_ = false;  ///< rows are regular and their stamps jitter
     bool is_position_integrated_ = false;
@@ -82,7 +89,7 @@ class RecordedMotion {
         simulated_position_deg_;
     std::vector<unsigned char> recorded_, usable_;
     std::vector<std::size_t> row_of_;
-    double window_s_ = 0.0;
+    double window_s_ = 0.0, removed_bias_deg_s_ = 0.0;
     Motion motion_;
 };
 

@@ -38,11 +38,17 @@ struct StepSearch {
 
 }  // namespace
 
+double bias_step_deg_s(const RecordedMotion& recorded, const Baseline& base) {
+    const double cycles_per_deg =
+        *std::max_element(base.orders.begin(), base.orders.end()) * base.ratio.value() / 360.0;
+    return 0.25 / (cycles_per_deg * recorded.motion().time_s.back());
+}
+
 SearchedTerms refined(Criterion& criterion, SearchedTerms terms, std::size_t place) {
     const TermKind& kind = *terms[place].kind;
     if (!kind.is_refined) return terms;
     StepSearch search{criterion, terms, place, 0, criterion.fit(terms).squares};
-    if (kind.role == Role::ratio) {
+    if (kind.effect->name == "gear-ratio") {
         const std::vector<double>& orders = criterion.base().orders;
         const double turns = std::max(criterion.recorded().travel_deg() / 360.0, 0.05);
         const double step = 0.2 / (*std::max_element(orders.begin(), orders.end()) * turns);
@@ -50,7 +56,13 @@ SearchedTerms refined(Criterion& criterion, SearchedTerms terms, std::size_t pla
                    [](double ratio, double by) { return std::optional(rounded(ratio + by, 7)); });
         return terms;
     }
-    const bool is_delay = kind.searched[0].lower < 0.0;
+    const bool is_delay = kind.effect->name == "delay";
+    if (kind.effect->name == "velocity-bias") {
+        const double step = bias_step_deg_s(criterion.recorded(), criterion.base());
+        search.run(7, 0.5 * step, shrink,
+                   [](double bias, double by) { return std::optional(rounded(bias + by, 7)); });
+        return terms;
+    }
     const int sweeps = kind.searched.size() > 1 ? 2 : 1;
     for (int sweep = 0; sweep < sweeps; ++sweep) {
         for (std::size_t value = 0; value < kind.searched.size(); ++value) {
@@ -65,6 +77,12 @@ SearchedTerms refined(Criterion& criterion, SearchedTerms terms, std::size_t pla
                 continue;
             }
             if (kind.effect->name == "drift" && terms[place].values[0] > straight_drift_s) continue;
+            if (bounds.step > 0.0) {
+                search.run(6, bounds.step, shrink, [&](double from, double by) {
+                    return std::optional(rounded(std::clamp(from + by, bounds.lower, bounds.upper), 6));
+                });
+                continue;
+            }
             search.run(5, 0.35, shrink, [&](double from, double by) {
                 return std::optional(
                     rounded(std::clamp(from * portable::exp(by), bounds.lower, bounds.upper), 5));

@@ -25,6 +25,7 @@ constexpr std::size_t most_lines = 4;
 // Power over the median at which a line or tone is taken; a line of white noise is at 10 or 15.
 constexpr double line_power = 30.0;
 constexpr double lowest_tone_hz = 5.0;
+constexpr double highest_unknown = 1000.0;  // cycles per turn of lines where no gear ratio is known
 
 double quantile(std::vector<double> values, double share) {
     const double place = share * static_cast<double>(values.size() - 1);
@@ -91,7 +92,8 @@ Columns waves_over_angle(const Motion& motion, double cycles) {
 std::vector<double> strongest_lines(const RecordedMotion& recorded, const Baseline& base,
                                     const std::vector<double>& residual) {
     const double turns_per_s = recorded.fastest_deg_s() / 360.0;
-    const double highest = std::min(8.0 * base.ratio.value(), 0.35 / recorded.step_s() / turns_per_s);
+    const double highest_of_ratio = base.ratio.value() > 0.0 ? 8.0 * base.ratio.value() : highest_unknown;
+    const double highest = std::min(highest_of_ratio, 0.35 / recorded.step_s() / turns_per_s);
     AngleSpectrum spectrum = angle_spectrum(recorded, residual, 3.0, highest);
     std::vector<double> found;
     if (spectrum.power.empty()) return found;
@@ -170,12 +172,6 @@ void filter_in_place(std::vector<double>& values, std::span<const double> filter
     prediction_errors(padded.data() + memory, values.size(), weights.data(), memory, values.data());
 }
 
-GearRatio ratio_of(const SearchedTerms& terms, GearRatio known) {
-    for (const SearchedTerm& term : terms)
-        if (term.kind->role == Role::ratio) return GearRatio(term.values[0]);
-    return known;
-}
-
 AngleSpectrum angle_spectrum(const RecordedMotion& recorded, const std::vector<double>& residual,
                              double lowest, double highest, double spacing) {
     const std::vector<double>& position = recorded.motion().position_deg;
@@ -227,7 +223,10 @@ SaturatedFit fit_saturated(const RecordedMotion& recorded, const Baseline& base,
     const Motion& motion = recorded.motion();
     const std::vector<unsigned char>& use = recorded.usable();
     const std::size_t count = motion.size();
-    const GearRatio ratio = ratio_of(terms, base.ratio);
+    const MotorAngle angle = motor_angle(terms, base.ratio);
+    const GearRatio ratio = angle.ratio;
+    const Motion at_motor = angle.errors.empty() ? Motion{} : without_errors(motion, angle.errors);
+    const Motion& of_ripple = angle.errors.empty() ? motion : at_motor;
     const Transforms transforms(terms);
     const auto sensed = [&](std::vector<double> column) {
         return transformed(std::move(column), transforms.all(), motion);
@@ -258,7 +257,7 @@ SaturatedFit fit_saturated(const RecordedMotion& recorded, const Baseline& base,
     append(columns, over_time);
     append(columns, loops);
     const std::size_t first_ripple = columns.size();
-    const Columns ripple = ripple_columns(motion, base.orders, ratio);
+    const Columns ripple = ripple_columns(of_ripple, base.orders, ratio);
     append(columns, ripple);
     const Columns turn = waves_over_angle(motion, 1.0);
     for (const auto& wave : ripple)
@@ -266,7 +265,9 @@ SaturatedFit fit_saturated(const RecordedMotion& recorded, const Baseline& base,
              std::array<const std::vector<double>*, 4>{&speed, &base.direction, &turn[0], &turn[1]})
             columns.push_back(product(wave, *factor));
     for (const SearchedTerm& term : terms) {
-        const Situation situation{.motion = motion, .ratio = ratio, .load_nm = before->load_nm};
+        const Situation situation{.motion = term.kind->effect->ripple_order ? of_ripple : motion,
+                                  .ratio = ratio,
+                                  .load_nm = before->load_nm};
         const Situation on_ripple{.motion = motion, .ratio = ratio, .load_nm = before->sensed_nm};
         if (term.kind->role == Role::joint_torque || term.kind->role == Role::sensor_torque)
             append(columns, unit_columns(*term.kind->effect, unit_values(term), situation));
@@ -318,7 +319,8 @@ SaturatedFit fit_saturated(const RecordedMotion& recorded, const Baseline& base,
     SaturatedFit found;
     found.residual_nm = residual;
     found.noise_nm = rms_used(residual, use);
-    found.inertia_nm_per_deg_s2 = factors[static_cast<Eigen::Index>(base.inertia_place)];
+    found.inertia_nm_per_deg_s2 =
+        base.known_inertia_nm_per_deg_s2 + factors[static_cast<Eigen::Index>(base.inertia_place)];
     found.ripple_nm.assign(count, 0.0);
     for (std::size_t c = 0; c < ripple.size(); ++c)
         add_scaled(factors[static_cast<Eigen::Index>(first_ripple + c)], columns[first_ripple + c].data(),

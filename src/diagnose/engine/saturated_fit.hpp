@@ -43,9 +43,6 @@ struct AngleSpectrum {
 [[nodiscard]] std::optional<double> find_tone(const RecordedMotion& recorded,
                                               const std::vector<double>& residual);
 
-/// The ratio that a set of terms has.
-[[nodiscard]] GearRatio ratio_of(const SearchedTerms& terms, GearRatio known);
-
 /// Rounds to so many significant digits, so that values of a search that are equal to it are the same.
 [[nodiscard]] double rounded(double value, int digits);
 

@@ -17,6 +17,8 @@ constexpr std::size_t tried_of_finalists = 3;
 constexpr std::size_t exchange_finalists = 5;
 constexpr std::size_t rival_paths = 2;
 constexpr double much_left = 1.5;          // squares over those of the noise from which other paths compete
+constexpr int payload_parts = 24;          // in which a change of the load is looked for
+constexpr int most_bias_steps = 40;        // an error of ten cycles when the log ends
 constexpr double smallest_delay_s = 1e-4;  // the valley of a delay may be narrower than any grid
 constexpr double least_gap = 0.02;         // of the squares of the noise: a gap is no smaller
 constexpr double best_block_share = 0.15;  // of the blocks, which a dominant term must not depend on
@@ -34,6 +36,12 @@ constexpr std::array plainer_pairs = {
     Plainer{"coulomb-friction", "hysteresis", plain_friction_share},
     Plainer{"coulomb-friction", "stribeck-friction", plain_friction_share},
     Plainer{"hysteresis", "stribeck-friction", plain_friction_share},
+    Plainer{"coulomb-friction", "backlash", plain_friction_share},
+    Plainer{"hysteresis", "backlash", plain_friction_share},
+    Plainer{"offset", "asymmetric-friction", plain_friction_share},
+    Plainer{"coulomb-friction", "position-dependent-friction", plain_friction_share},
+    Plainer{"drift", "payload-change", plain_friction_share},
+    Plainer{"load-friction", "position-dependent-friction", 0.7},
 };
 const Plainer* plainer_than(const SearchedTerm& plain, const SearchedTerm& other) {
     const auto found = std::ranges::find_if(
@@ -59,7 +67,7 @@ double t_value(const std::vector<double>& values) {
 
 // A transform, a ratio or a ripple changes what the saturated regression can explain.
 bool changes_noise(const SearchedTerm& term) {
-    return term.is_transform() || term.kind->role == Role::ratio || term.is("ripple");
+    return term.is_transform() || term.kind->role == Role::motor_angle || term.is("ripple");
 }
 
 bool has_sensor(const SearchedTerms& terms) {
@@ -67,13 +75,20 @@ bool has_sensor(const SearchedTerms& terms) {
 }
 
 bool is_at_bound(const SearchedTerm& term) {
-    if (term.kind->may_be_at_bound || !term.kind->is_refined || term.kind->role == Role::ratio) return false;
+    if (term.kind->may_be_at_bound || !term.kind->is_refined || term.kind->role == Role::motor_angle)
+        return false;
     for (std::size_t i = 0; i < term.kind->searched.size(); ++i) {
         const double size = std::abs(term.values[i]);
         if (size <= term.kind->searched[i].lower * 1.02 || size >= term.kind->searched[i].upper * 0.98)
             return true;
     }
     return false;
+}
+
+// A change of the load at an end of the log is a load.
+bool is_at_end(const SearchedTerm& term, const RecordedMotion& recorded) {
+    const double share = term.values[0] / recorded.motion().time_s.back();
+    return term.is("payload-change") && (share < 0.05 || share > 0.95);
 }
 
 SearchedTerms with(SearchedTerms terms, const SearchedTerm& more) {
@@ -116,6 +131,17 @@ Admission Search::admission(Criterion& criterion, const SearchedTerms& shorter, 
     found.block_t = std::max(t_value(by_block), t_value(plain));
     found.noise_share = std::sqrt(std::max(sum(plain), 0.0) / samples) / noise_nm;
     found.gap_share = found.reduction / std::max(before - samples, least_squares);
+    const auto added = std::ranges::find_if(
+        longer, [&](const SearchedTerm& term) { return std::ranges::find(shorter, term) == shorter.end(); });
+    // What is known is fitted within its prior all the same: beside it a departure is worth what it explains
+    // of the torque, not what it spares the prior.
+    if (added != longer.end() && criterion.base().is_known(added->kind->effect->name)) {
+        const double noise_squares = samples * noise_nm * noise_nm;
+        by_block = plain;
+        for (double& squares : by_block) squares /= noise_nm * noise_nm;
+        found.gap_share = sum(plain) / std::max(sum(criterion.plain_block_squares(shorter)) - noise_squares,
+                                                least_gap * noise_squares);
+    }
     const double whole_share = found.reduction / std::max(criterion.fit({}).squares - samples, least_squares);
     std::vector<double> held_out = difference(fit_before.held_out, fit_after.held_out);
     std::sort(held_out.begin(), held_out.end());
@@ -125,10 +151,11 @@ Admission Search::admission(Criterion& criterion, const SearchedTerms& shorter, 
     const auto best = std::max<std::size_t>(
         2, static_cast<std::size_t>(best_block_share * static_cast<double>(by_block.size())));
     by_block.resize(by_block.size() - std::min(best, by_block.size()));
+    // A ripple is at its order exactly, and may swell in a few fast strokes only.
+    const double dominant_share =
+        added != longer.end() && added->is("ripple") ? least_gap_share : dominant_gap_share;
     const bool is_dominant =
-        std::min(found.gap_share, whole_share) > dominant_gap_share && sum(by_block) > least_spread;
-    const auto added = std::ranges::find_if(
-        longer, [&](const SearchedTerm& term) { return std::ranges::find(shorter, term) == shorter.end(); });
+        std::min(found.gap_share, whole_share) > dominant_share && sum(by_block) > least_spread;
     const bool is_silent =
         added != longer.end() && is_below_resolution(*added, criterion.recorded().step_s());
     if (found.reduction <= least_reduction)
@@ -141,7 +168,8 @@ Admission Search::admission(Criterion& criterion, const SearchedTerms& shorter, 
         found.reason = "its torque is far below the noise";
     else if (!is_silent && found.gap_share <= least_gap_share)
         found.reason = "it explains a small part of what is unexplained";
-    else if (!is_silent && added != longer.end() && is_at_bound(*added))
+    else if (!is_silent && added != longer.end() &&
+             (is_at_bound(*added) || is_at_end(*added, criterion.recorded())))
         found.reason = "its best value is a bound";
     found.is_admissible = found.reason.empty();
     return found;
@@ -153,7 +181,7 @@ void Search::add_lines(Criterion& criterion, const SearchedTerms& terms,
     const std::vector<double> residual = criterion.residual_nm(terms);
     const double turns_per_s = recorded_.fastest_deg_s() / 360.0;
     const double highest = 0.45 / recorded_.step_s() / turns_per_s;
-    const double ratio = ratio_of(terms, base_.ratio).value();
+    const double ratio = motor_angle(terms, base_.ratio).ratio.value();
     const auto median_of = [](std::vector<double> values) {
         const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
         std::nth_element(values.begin(), middle, values.end());
@@ -175,6 +203,15 @@ void Search::add_lines(Criterion& criterion, const SearchedTerms& terms,
                 if (std::abs(lines.cycles_per_turn[k] - order * ratio) < 0.6 / lines.turns)
                     power = std::max(power, lines.power[k]);
             if (power > 6.0 * usual) found.push_back({&term_kind("ripple"), {order, 0.0}});
+        }
+    }
+    if (ratio <= 0.0) {
+        const AngleSpectrum lines = angle_spectrum(recorded_, residual, 3.0, std::min(highest, 1000.0));
+        if (!lines.power.empty()) {
+            const auto top = std::max_element(lines.power.begin(), lines.power.end()) - lines.power.begin();
+            if (lines.power[static_cast<std::size_t>(top)] > 30.0 * median_of(lines.power))
+                found.push_back({&term_kind("output-ripple"),
+                                 {rounded(lines.cycles_per_turn[static_cast<std::size_t>(top)], 6), 0.0}});
         }
     }
     if (!contains(terms, "tone"))
@@ -215,33 +252,80 @@ void Search::add_lines(Criterion& criterion, const SearchedTerms& terms,
     }
 }
 
-std::vector<SearchedTerm> Search::starts(Criterion& criterion, const SearchedTerms& terms) const {
+bool Search::is_left_out(const TermKind& kind) const {
+    return std::ranges::find(without_, kind.effect->name) != without_.end();
+}
+
+bool Search::may_be_missing(const TermKind& kind, const SearchedTerms& terms) const {
+    const std::string_view name = kind.effect->name;
+    if (base_.has(name) || (contains(terms, name) && !kind.may_occur_twice)) return false;
+    const bool needs_ripple = kind.role == Role::ripple_change || kind.role == Role::motor_angle;
+    if (needs_ripple && (base_.orders.empty() || base_.ratio.value() <= 0.0)) return false;
+    if (kind.role == Role::sensor) return !has_sensor(terms);
+    if (name == "simulation-scale") return !base_.known_nm.empty() && base_.is_scale_known;
+    // Once it is removed from the motion it is not searched again.
+    if (name == "velocity-bias")
+        return recorded_.is_position_integrated() && recorded_.removed_bias_deg_s() == 0.0;
+    return true;
+}
+
+// Values that the search of a kind begins with.
+std::vector<SearchedTerm> Search::begins(const TermKind& kind, const SearchedTerms& terms) const {
+    const std::string_view name = kind.effect->name;
     std::vector<SearchedTerm> found;
-    const bool sensor_is_there = has_sensor(terms);
-    for (const TermKind& kind : term_kinds()) {
-        const std::string_view name = kind.effect->name;
-        const bool needs_ripple = kind.role == Role::ripple_change;
-        if (base_.has(name) || (name == "hysteresis" && base_.has("coulomb-friction")) ||
-            (contains(terms, name) && !kind.may_occur_twice) || (needs_ripple && base_.orders.empty()) ||
-            (kind.role == Role::sensor && sensor_is_there))
-            continue;
-        if (kind.searched.empty()) {
-            found.push_back({&kind, {}});
-            continue;
-        }
+    if (kind.searched.empty()) {
+        found.push_back({&kind, {}});
+    } else if (name == "payload-change") {
+        const double duration_s = recorded_.motion().time_s.back();
+        for (int part = 0; part <= payload_parts; ++part)
+            found.push_back({&kind, {rounded(duration_s * (0.05 + 0.9 * part / payload_parts), 5), 0.0}});
+    } else if (name == "velocity-bias") {
+        const double step = bias_step_deg_s(recorded_, base_);
+        for (int steps = 1; steps <= most_bias_steps; ++steps)
+            for (const double sign : {-1.0, 1.0})
+                found.push_back({&kind, {rounded(sign * steps * step, 7), 0.0}});
+    } else if (name == "encoder-eccentricity") {
+        const double turn_deg = 1.0 / (*std::max_element(base_.orders.begin(), base_.orders.end()) *
+                                       motor_angle(terms, base_.ratio).ratio.value());
+        for (const double off_deg : {20.0, 60.0})  // of the fastest ripple
+            for (int phase = 0; phase < 6; ++phase)
+                found.push_back({&kind, {rounded(off_deg * turn_deg, 5), 60.0 * phase}});
+    } else {
+        // Narrower loops belong to a known Coulomb friction.
+        const double least =
+            name == "hysteresis" && (base_.has("coulomb-friction") || base_.states("coulomb-friction"))
+                ? 0.3
+                : -1e9;
         for (const double first : kind.searched[0].grid) {
-            if (kind.searched.size() == 1) {
-                const SearchedTerm term{&kind, {first, 0.0}};
-                if (std::ranges::find(terms, term) == terms.end()) found.push_back(term);
-                continue;
-            }
-            for (const double second : kind.searched[1].grid) found.push_back({&kind, {first, second}});
+            if (first < least) continue;
+            if (kind.searched.size() == 1) found.push_back({&kind, {first, 0.0}});
+            if (kind.searched.size() == 2)
+                for (const double second : kind.searched[1].grid) found.push_back({&kind, {first, second}});
         }
     }
+    return found;
+}
+
+std::optional<SearchedTerm> Search::velocity_bias(Criterion& criterion) const {
+    const TermKind& kind = term_kind("velocity-bias");
+    if (!may_be_missing(kind, {}) || is_left_out(kind)) return std::nullopt;
+    std::optional<SearchedTerms> best;
+    for (const SearchedTerm& term : begins(kind, {}))
+        if (!best || criterion.fit({term}).squares < criterion.fit(*best).squares) best = {term};
+    best = refined(criterion, *best, 0);
+    if (!admission(criterion, {}, *best).is_admissible) return std::nullopt;
+    return best->front();
+}
+
+std::vector<SearchedTerm> Search::starts(Criterion& criterion, const SearchedTerms& terms) const {
+    std::vector<SearchedTerm> found;
+    for (const TermKind& kind : term_kinds()) {
+        if (!may_be_missing(kind, terms)) continue;
+        for (const SearchedTerm& term : begins(kind, terms))
+            if (std::ranges::find(terms, term) == terms.end()) found.push_back(term);
+    }
     add_lines(criterion, terms, found);
-    std::erase_if(found, [&](const SearchedTerm& term) {
-        return std::ranges::find(without_, term.kind->effect->name) != without_.end();
-    });
+    std::erase_if(found, [&](const SearchedTerm& term) { return is_left_out(*term.kind); });
     return found;
 }
 
@@ -274,7 +358,7 @@ std::vector<SearchedTerms> Search::extensions(Criterion& criterion, const Search
     std::vector<Candidate> candidates = ranked(criterion, terms);
     candidates.resize(std::min(candidates.size(), finalists));
     const bool may_delay =
-        !has_sensor(terms) && std::ranges::find(without_, "delay") == without_.end() &&
+        !has_sensor(terms) && !is_left_out(term_kind("delay")) &&
         std::ranges::none_of(candidates, [](const Candidate& c) { return c.term.is("delay"); });
     if (may_delay) candidates.push_back({{&term_kind("delay"), {smallest_delay_s, 0.0}}, 0.0});
     std::vector<SearchedTerms> found;
@@ -314,7 +398,8 @@ void Search::exchange(SearchState& state, std::vector<SearchedTerms>& seen) cons
         const auto offer = [&](const SearchedTerms& other) {
             if (!best || criterion.cost(other) < criterion.cost(*best)) best = other;
         };
-        for (std::size_t i = 0; i + 1 < terms.size(); ++i) {
+        // The newest as well: its noise may have been measured anew.
+        for (std::size_t i = 0; i < terms.size(); ++i) {
             const SearchedTerms fewer = without_place(terms, i);
             if (!admission(criterion, fewer, terms).is_admissible) offer(fewer);
         }

@@ -4,6 +4,7 @@
 // are dropped, and each term is exchanged against every rival.
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -47,6 +48,8 @@ class Search {
 
     [[nodiscard]] SearchResult run();
 
+    /// The error of a velocity of which the positions are the integral, where the ripple shows one.
+    [[nodiscard]] std::optional<SearchedTerm> velocity_bias(Criterion& criterion) const;
     /// Models with one more term, refined, best first.
     [[nodiscard]] std::vector<SearchedTerms> extensions(Criterion& criterion, const SearchedTerms& terms,
                                                         std::size_t finalists) const;
@@ -59,6 +62,9 @@ class Search {
         double reduction = 0.0;
     };
     std::vector<SearchedTerm> starts(Criterion& criterion, const SearchedTerms& terms) const;
+    [[nodiscard]] bool is_left_out(const TermKind& kind) const;
+    [[nodiscard]] bool may_be_missing(const TermKind& kind, const SearchedTerms& terms) const;
+    std::vector<SearchedTerm> begins(const TermKind& kind, const SearchedTerms& terms) const;
     void add_lines(Criterion& criterion, const SearchedTerms& terms, std::vector<SearchedTerm>& found) const;
     std::vector<Candidate> ranked(Criterion& criterion, const SearchedTerms& terms) const;
     SearchState path(SearchState state, std::vector<RefusedTerm>& refused) const;
@@ -73,6 +79,9 @@ class Search {
 
 /// True of every log and therefore corrected without being named: less than one and a half samples.
 [[nodiscard]] bool is_below_resolution(const SearchedTerm& term, double step_s);
+
+/// Error of a velocity whose integral puts the fastest ripple a quarter of a cycle off when the log ends.
+[[nodiscard]] double bias_step_deg_s(const RecordedMotion& recorded, const Baseline& base);
 
 /// Searches the values of one term, the others fixed.
 [[nodiscard]] SearchedTerms refined(Criterion& criterion, SearchedTerms terms, std::size_t place);

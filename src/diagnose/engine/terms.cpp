@@ -4,12 +4,14 @@
 #include <algorithm>
 #include <complex>
 
+#include "diagnose/engine/recorded_motion.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch::engine {
 namespace {
 
 constexpr double friction_step_deg_s = 0.5;  // width of the step by which loads and ripples turn over
+constexpr double payload_step_s = 0.5;       // in which the time of a change is refined
 
 SearchedValue searched(const Effect& effect, std::string_view parameter, double lower, double upper,
                        std::vector<double> grid) {
@@ -33,10 +35,23 @@ std::vector<TermKind> make_term_kinds() {
     const auto assume = [](TermKind& kind, std::string_view parameter, double value) {
         kind.assumed.emplace_back(*find_parameter(*kind.effect, parameter), value);
     };
+    assume(add("simulation-scale", Role::joint_torque), "error_percent", 1.0);
+    add("inertia", Role::joint_torque);
     add("offset", Role::sensor_torque);
     add("viscous-friction", Role::joint_torque);
     add("quadratic-viscous-friction", Role::joint_torque);
     add("gravity", Role::joint_torque);
+    TermKind& payload = add("payload-change", Role::joint_torque);
+    search(payload, "time_s", 0.0, 1e6, {});
+    payload.searched.back().step = payload_step_s;
+    assume(add("asymmetric-friction", Role::joint_torque), "width_deg_s", friction_step_deg_s);
+    add("asymmetric-viscous-friction", Role::joint_torque);
+    TermKind& uneven = add("position-dependent-friction", Role::joint_torque);
+    search(uneven, "order", 0.0, 1e4, {1.0, 2.0}, false);
+    assume(uneven, "width_deg_s", friction_step_deg_s);
+    TermKind& warm_up = add("friction-warm-up", Role::joint_torque);
+    search(warm_up, "time_constant_s", 2.0, 200.0, {4.0, 10.0, 25.0});
+    assume(warm_up, "width_deg_s", friction_step_deg_s);
     assume(add("load-friction", Role::joint_torque), "width_deg_s", friction_step_deg_s);
     search(add("coulomb-friction", Role::joint_torque), "width_deg_s", 0.03, 8.0, {0.1, 0.4, 1.5});
     TermKind& stribeck = add("stribeck-friction", Role::joint_torque);
@@ -45,6 +60,10 @@ std::vector<TermKind> make_term_kinds() {
     TermKind& hysteresis = add("hysteresis", Role::joint_torque);
     search(hysteresis, "width_deg", 0.01, 15.0, {0.03, 0.1, 0.3, 1.0, 3.0, 8.0});
     hysteresis.may_be_at_bound = true;
+    search(add("backlash", Role::joint_torque), "width_deg", 0.05, 15.0, {0.2, 0.5, 1.0, 2.0, 4.0, 8.0});
+    TermKind& ringing = add("start-stop-ringing", Role::joint_torque);
+    search(ringing, "frequency_hz", 1.0, 30.0, {1.5, 2.0, 2.7, 3.6, 4.7, 6.2, 8.0, 10.5, 14.0, 18.0, 24.0});
+    search(ringing, "decay_s", 0.02, 3.0, {0.2});
     TermKind& drift = add("drift", Role::sensor_torque);
     search(drift, "time_constant_s", 2.0, 200.0, {4.0, 12.0, 40.0, 1e5});
     drift.may_be_at_bound = true;
@@ -59,7 +78,14 @@ std::vector<TermKind> make_term_kinds() {
     add("ripple-load-dependence", Role::ripple_change);
     assume(add("ripple-direction-dependence", Role::ripple_change), "width_deg_s", friction_step_deg_s);
     search(add("ripple-modulation", Role::ripple_change), "output_order", 0.0, 1e4, {1.0, 2.0, 3.0}, false);
-    search(add("gear-ratio", Role::ratio), "error_percent", 0.0, 1e5, {});
+    search(add("gear-ratio", Role::motor_angle), "error_percent", 0.0, 1e5, {});
+    search(add("velocity-bias", Role::motor_angle), "bias_deg_s", -100.0, 100.0, {});
+    TermKind& eccentric = add("encoder-eccentricity", Role::motor_angle);
+    search(eccentric, "amplitude_deg", 0.0, 10.0, {});
+    search(eccentric, "phase_deg", -360.0, 720.0, {});
+    eccentric.searched.back().step = 30.0;
+    assume(eccentric, "order", 1.0);
+    eccentric.may_be_at_bound = true;
     TermKind& resonance = add("resonance", Role::elastic_joint);
     search(resonance, "frequency_hz", 8.0, 200.0,
            {14.0, 16.89, 20.37, 24.57, 29.64, 35.75, 43.12, 52.01, 62.73, 75.66, 91.25, 110.0});
@@ -115,6 +141,9 @@ std::vector<double> unit_values(const SearchedTerm& term) {
 
 std::vector<std::vector<double>> unit_columns(const Effect& effect, std::vector<double> values,
                                               const Situation& situation) {
+    // The catalogue's loop holds its direction against noise that a smoothed motion no longer has.
+    if (effect.name == "hysteresis")
+        return {friction_loop(situation.motion.position_deg, values[*find_parameter(effect, "width_deg")])};
     std::vector<std::vector<double>> columns;
     const auto add = [&] {
         auto& column = columns.emplace_back(situation.motion.size(), 0.0);
@@ -181,6 +210,25 @@ std::vector<double> transformed(std::vector<double> torque_nm, const SearchedTer
     return torque_nm;
 }
 
+MotorAngle motor_angle(const SearchedTerms& terms, GearRatio known) {
+    MotorAngle angle{known, {}};
+    for (const SearchedTerm& term : terms) {
+        if (term.is("gear-ratio"))
+            angle.ratio = GearRatio(term.values[0]);
+        else if (term.kind->role == Role::motor_angle)
+            angle.errors.push_back(term);
+    }
+    return angle;
+}
+
+Motion without_errors(const Motion& motion, const SearchedTerms& errors) {
+    Motion corrected = motion;
+    GearRatio ratio(0.0);
+    for (const SearchedTerm& term : errors)
+        term.kind->effect->change_motion(unit_values(term), corrected, ratio);
+    return corrected;
+}
+
 std::size_t fitted_values(const SearchedTerm& term, std::size_t ripple_orders) {
     const TermKind& kind = *term.kind;
     switch (kind.role) {
@@ -194,7 +242,7 @@ std::size_t fitted_values(const SearchedTerm& term, std::size_t ripple_orders) {
         case Role::sensor_torque:
             return linear_values(*kind.effect) + kind.searched.size();
         case Role::sensor:
-        case Role::ratio:
+        case Role::motor_angle:
             break;
     }
     return kind.searched.size();

@@ -23,14 +23,15 @@ enum class Role {
     ripple_change,  ///< ripple columns, each multiplied by the change
     elastic_joint,  ///< a transform of every torque before the sensor
     sensor,         ///< a transform of everything before it
-    ratio,          ///< the gear ratio of every ripple
+    motor_angle,    ///< another angle of the motor for every ripple: gear ratio, errors of the position
 };
 
 /// A value of an effect that is not linear.
 struct SearchedValue {
     std::size_t parameter = 0;  ///< place in Effect::parameters
     double lower = 0.0, upper = 0.0;
-    std::vector<double> grid;  ///< where the search begins; empty: at lines of the residual
+    std::vector<double> grid;  ///< where the search begins; empty: at places that the log determines
+    double step = 0.0;         ///< of the refinement in the value itself; 0: in its logarithm
 };
 
 struct TermKind {
@@ -89,6 +90,16 @@ struct Transforms {
 /// A torque behind these transforms, in their order. One entry per sample of the motion.
 [[nodiscard]] std::vector<double> transformed(std::vector<double> torque_nm, const SearchedTerms& transforms,
                                               const Motion& motion);
+
+/// The angle that ripples go with.
+struct MotorAngle {
+    GearRatio ratio;
+    SearchedTerms errors;  ///< of the position
+};
+/// Of a set of terms, where the user states `known`.
+[[nodiscard]] MotorAngle motor_angle(const SearchedTerms& terms, GearRatio known);
+/// The motion without errors of its position.
+[[nodiscard]] Motion without_errors(const Motion& motion, const SearchedTerms& errors);
 
 /// Numbers that a term fits, with so many ripple orders in the model.
 [[nodiscard]] std::size_t fitted_values(const SearchedTerm& term, std::size_t ripple_orders);
