@@ -34,9 +34,9 @@ class Workshop:
     def commands(self):
         """Name, words, and the files that the command writes."""
         return {
-            "filter": (("filter", "log.csv", "--table", "table.json", "-o", "out.csv", "--metrics", "out.json"),
+            "filter": (("filter", "log.csv", "--method", "switching,table=table.json", "-o", "out.csv", "--metrics", "out.json"),
                        ("out.csv", "out.json")),
-            "filter, in place of an old file": (("filter", "log.csv", "--table", "table.json", "--force", "-o", "old.csv"),
+            "filter, in place of an old file": (("filter", "log.csv", "--method", "switching,table=table.json", "--force", "-o", "old.csv"),
                                                 ("old.csv",)),
             "identify": (("identify", "log.csv", "-o", "out.json"), ("out.json",)),
             "spectrum of a pipe": (("spectrum", "--segment", "1s", "-", "--json", "-o", "out.json"), ("out.json",)),

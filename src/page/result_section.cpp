@@ -523,17 +523,11 @@ bool is_ledger(const std::string& kind, const std::string& name) {
     struct Shown {
         std::string_view kind, name;
     };
-    constexpr std::array shown = {Shown{"joint", "lines"},
-                                  Shown{"table", "bands"},
-                                  Shown{"metrics", "orders"},
-                                  Shown{"metrics", "switches"},
-                                  Shown{"comparison", "methods"},
-                                  Shown{"diagnosis", "rounds"},
-                                  Shown{"diagnosis", "faults"},
-                                  Shown{"diagnosis", "ambiguous"},
-                                  Shown{"diagnosis", "unexplained"},
-                                  Shown{"diagnosis", "undecidable"},
-                                  Shown{"trend", "alerts"}};
+    constexpr std::array shown = {
+        Shown{"joint", "lines"},           Shown{"table", "bands"},         Shown{"metrics", "orders"},
+        Shown{"metrics", "switches"},      Shown{"comparison", "methods"},  Shown{"diagnosis", "rounds"},
+        Shown{"diagnosis", "faults"},      Shown{"diagnosis", "ambiguous"}, Shown{"diagnosis", "unexplained"},
+        Shown{"diagnosis", "undecidable"}, Shown{"trend", "alerts"}};
     const bool chosen =
         std::any_of(shown.begin(), shown.end(), [&](const Shown& s) { return s.kind == kind; });
     return chosen && std::none_of(shown.begin(), shown.end(),

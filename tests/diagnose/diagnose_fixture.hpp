@@ -8,8 +8,8 @@
 
 #include "ripplenotch/core/trace.hpp"
 #include "ripplenotch/diagnose/diagnosis.hpp"
-#include "ripplenotch/model/noise.hpp"
 #include "ripplenotch/model/motions.hpp"
+#include "ripplenotch/model/noise.hpp"
 
 namespace ripplenotch::fixture {
 

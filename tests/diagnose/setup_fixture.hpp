@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "ripplenotch/diagnose/setup.hpp"
-#include "ripplenotch/model/noise.hpp"
 #include "ripplenotch/model/model.hpp"
 #include "ripplenotch/model/motions.hpp"
+#include "ripplenotch/model/noise.hpp"
 
 namespace ripplenotch::fixture {
 

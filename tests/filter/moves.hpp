@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "filter/tables.hpp"
-#include "ripplenotch/model/noise.hpp"
 #include "ripplenotch/model/model.hpp"
 #include "ripplenotch/model/motions.hpp"
+#include "ripplenotch/model/noise.hpp"
 
 namespace ripplenotch::testing {
 
