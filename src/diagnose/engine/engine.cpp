@@ -9,6 +9,7 @@
 #include "diagnose/engine/intervals.hpp"
 #include "diagnose/engine/search.hpp"
 #include "diagnose/engine/settings.hpp"
+#include "ripplenotch/core/error.hpp"
 
 namespace ripplenotch::engine {
 namespace {
@@ -99,6 +100,7 @@ Result find_missing_effects(const Input& input) {
     const KnownSide known{&input.model, input.given_terms, input.simulation.has_value(),
                           input.simulation && input.simulation->is_scale_known};
     Prepared prepared = prepare(recorded, known, result.faults);
+    if (!(prepared.noise->noise_nm > 0.0)) raise<DataError>("the torque of this log does not change");
     if (recorded.is_position_integrated()) {
         // It spoils every column, so that it comes before the search.
         const Search search(recorded, prepared.base, prepared.noise,

@@ -312,7 +312,15 @@ void RecordedMotion::refuse_standstill() const {
         squares += off * off;
     }
     const double noise_deg = std::sqrt(squares / static_cast<double>(size()));
-    if (!(travel_deg() > least_travel * noise_deg))
+    // The integral of a noise travels far.
+    double speed = 0.0, noise = 0.0;
+    const std::vector<double> raw_deg_s = gradient(raw_position_deg_, clock_.step_s);
+    for (std::size_t k = 0; k < size() && is_position_integrated_; ++k) {
+        const double off = raw_deg_s[k] - motion_.velocity_deg_s[k];
+        speed += motion_.velocity_deg_s[k] * motion_.velocity_deg_s[k];
+        noise += off * off;
+    }
+    if (!(travel_deg() > least_travel * noise_deg) || speed < noise)
         raise<DataError>("the joint stands still in this log: a diagnosis needs motion");
 }
 

@@ -24,6 +24,7 @@ constexpr std::array loop_widths_deg = {0.1, 0.5, 2.0};
 constexpr std::size_t most_lines = 4;
 // Power over the median at which a line or tone is taken; a line of white noise is at 10 or 15.
 constexpr double line_power = 30.0;
+constexpr double tone_share = 0.1;  // of the squares, that no line of a noise has
 constexpr double lowest_tone_hz = 5.0;
 constexpr double highest_unknown = 1000.0;  // cycles per turn of lines where no gear ratio is known
 
@@ -204,6 +205,11 @@ AngleSpectrum angle_spectrum(const RecordedMotion& recorded, const std::vector<d
 }
 
 std::optional<double> find_tone(const RecordedMotion& recorded, const std::vector<double>& residual) {
+    double squares = 0.0, used = 0.0;
+    for (const double r : residual) {
+        squares += r * r;
+        used += r != 0.0 ? 1.0 : 0.0;
+    }
     const auto sums = real_fourier(residual);
     const double unit_hz = 1.0 / (recorded.step_s() * static_cast<double>(residual.size()));
     std::vector<double> power(sums.size());
@@ -213,9 +219,16 @@ std::optional<double> find_tone(const RecordedMotion& recorded, const std::vecto
     const std::size_t from = top - std::min<std::size_t>(top, 200), to = std::min(top + 201, power.size());
     const double usual = median(
         {power.begin() + static_cast<std::ptrdiff_t>(from), power.begin() + static_cast<std::ptrdiff_t>(to)});
-    if (power[top] < line_power * usual || power[top] == 0.0) return std::nullopt;
-    const double hz = static_cast<double>(top) * unit_hz;
-    return rounded(refine_peak(recorded.motion().time_s, residual, {hz, unit_hz}), 7);
+    // Stretches that do not count spread a tone over its neighbours: then its share of the squares tells.
+    const double explained = 2.0 * power[top] / std::max(used, 1.0);
+    const bool stands_out = power[top] > line_power * usual || explained > tone_share * squares;
+    if (!stands_out || power[top] == 0.0) return std::nullopt;
+    // The peak is between the two largest values, at the share of their sizes.
+    const double below = std::sqrt(power[top - 1]), at = std::sqrt(power[top]);
+    const double above = top + 1 < power.size() ? std::sqrt(power[top + 1]) : 0.0;
+    const double off = above > below ? above / (above + at) : -below / (below + at);
+    const double hz = (static_cast<double>(top) + off) * unit_hz;
+    return rounded(refine_peak(recorded.motion().time_s, residual, {hz, 0.5 * unit_hz}), 7);
 }
 
 SaturatedFit fit_saturated(const RecordedMotion& recorded, const Baseline& base, const SearchedTerms& terms,

@@ -16,13 +16,15 @@ constexpr int most_rounds = 6, most_exchanges = 5;  // a search that goes on bey
 constexpr std::size_t tried_of_finalists = 3;
 constexpr std::size_t exchange_finalists = 5;
 constexpr std::size_t rival_paths = 2;
-constexpr double much_left = 1.5;          // squares over those of the noise from which other paths compete
-constexpr int payload_parts = 24;          // in which a change of the load is looked for
-constexpr int most_bias_steps = 40;        // an error of ten cycles when the log ends
-constexpr double smallest_delay_s = 1e-4;  // the valley of a delay may be narrower than any grid
-constexpr double least_gap = 0.02;         // of the squares of the noise: a gap is no smaller
-constexpr double best_block_share = 0.15;  // of the blocks, which a dominant term must not depend on
-constexpr double least_spread = 100.0;     // reduction without them
+constexpr double much_left = 1.5;           // squares over those of the noise from which other paths compete
+constexpr int payload_parts = 24;           // in which a change of the load is looked for
+constexpr int most_bias_steps = 40;         // an error of ten cycles when the log ends
+constexpr double smallest_delay_s = 1e-4;   // the valley of a delay may be narrower than any grid
+constexpr double least_gap = 0.02;          // of the squares of the noise: a gap is no smaller
+constexpr double best_block_share = 0.15;   // of the blocks, which a dominant term must not depend on
+constexpr double least_spread = 100.0;      // reduction without them
+constexpr double large_spread = 0.02;       // the same per sample, where another term closes most of the gap
+constexpr double least_line_spread = 30.0;  // the same of a ripple
 
 // Of two terms that say nearly the same the plainer is preferred.
 struct Plainer {
@@ -38,7 +40,6 @@ constexpr std::array plainer_pairs = {
     Plainer{"hysteresis", "stribeck-friction", plain_friction_share},
     Plainer{"coulomb-friction", "backlash", plain_friction_share},
     Plainer{"hysteresis", "backlash", plain_friction_share},
-    Plainer{"offset", "asymmetric-friction", plain_friction_share},
     Plainer{"coulomb-friction", "position-dependent-friction", plain_friction_share},
     Plainer{"drift", "payload-change", plain_friction_share},
     Plainer{"load-friction", "position-dependent-friction", 0.7},
@@ -151,22 +152,29 @@ Admission Search::admission(Criterion& criterion, const SearchedTerms& shorter, 
     const auto best = std::max<std::size_t>(
         2, static_cast<std::size_t>(best_block_share * static_cast<double>(by_block.size())));
     by_block.resize(by_block.size() - std::min(best, by_block.size()));
-    // A ripple is at its order exactly, and may swell in a few fast strokes only.
-    const double dominant_share =
-        added != longer.end() && added->is("ripple") ? least_gap_share : dominant_gap_share;
-    const bool is_dominant =
-        std::min(found.gap_share, whole_share) > dominant_share && sum(by_block) > least_spread;
+    // A ripple is at its order exactly, and may swell in a few fast strokes only; a friction may act at a few
+    // reversals, beside a term that closes most of the gap.
+    const bool is_line = added != longer.end() && added->is("ripple");
+    const bool is_friction = added != longer.end() && added->kind->effect->resists;
+    const double dominant = is_line ? least_gap_share : dominant_gap_share;
+    const double least_beyond = is_line                  ? least_line_spread
+                                : whole_share > dominant ? least_spread
+                                                         : std::max(least_spread, large_spread * samples);
+    const bool is_dominant = found.gap_share > dominant &&
+                             (is_line || is_friction || whole_share > dominant) &&
+                             sum(by_block) > least_beyond;
     const bool is_silent =
         added != longer.end() && is_below_resolution(*added, criterion.recorded().step_s());
-    if (found.reduction <= least_reduction)
+    // Each condition is refused by a value that is no number, too.
+    if (!(found.reduction > least_reduction))
         found.reason = "it reduces the residual no more than chance";
-    else if (found.block_t <= least_block_t && !is_dominant)
+    else if (!(found.block_t > least_block_t) && !is_dominant)
         found.reason = "few stretches of the log carry it";
-    else if (held_out_sum <= 0.0)
+    else if (!(held_out_sum > 0.0))
         found.reason = "it does not predict stretches that were left out";
-    else if (!is_silent && found.noise_share <= least_noise_share)
+    else if (!is_silent && !(found.noise_share > least_noise_share))
         found.reason = "its torque is far below the noise";
-    else if (!is_silent && found.gap_share <= least_gap_share)
+    else if (!is_silent && !(found.gap_share > least_gap_share))
         found.reason = "it explains a small part of what is unexplained";
     else if (!is_silent && added != longer.end() &&
              (is_at_bound(*added) || is_at_end(*added, criterion.recorded())))
