@@ -137,7 +137,7 @@ def short_round(saboteur, steps, until):
         rows.append(step_by_step(saboteur, name, "MALLOC_FROM", (MEMORY,), steps, until))
         rows.append(step_by_step(saboteur, name, "READ_AT", (FILE,), steps, until))
         rows.append(step_by_step(saboteur, name, "WRITE_AT", (FILE,), steps, until))
-    for name in ("filter, synced", "filter, in place of an old file"):
+    for name in ("filter", "filter, in place of an old file"):
         for fault in ("SYNC_AT", "LINK_AT", "RENAME_AT", "WRITE_AT"):
             rows.append(step_by_step(saboteur, name, fault, (FILE,), steps, until))
             rows.append(step_by_step(saboteur, name, fault, (FILE,), steps, until, NAMELESS=1))

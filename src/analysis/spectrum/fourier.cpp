@@ -141,6 +141,7 @@ struct Plan {
         const auto in = real_array(n);
         const auto out = complex_array(n / 2 + 1);
         plan = fftw_plan_dft_r2c_1d(static_cast<int>(n), in.get(), out.get(), FFTW_ESTIMATE);
+        if (plan == nullptr) throw std::bad_alloc();
     }
     ~Plan() { fftw_destroy_plan(plan); }
     Plan(const Plan&) = delete;
