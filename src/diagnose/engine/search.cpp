@@ -153,9 +153,11 @@ Admission Search::admission(Criterion& criterion, const SearchedTerms& shorter, 
         2, static_cast<std::size_t>(best_block_share * static_cast<double>(by_block.size())));
     by_block.resize(by_block.size() - std::min(best, by_block.size()));
     // A ripple is at its order exactly, and may swell in a few fast strokes only; a friction may act at a few
-    // reversals, beside a term that closes most of the gap.
+    // reversals, beside a term that closes most of the gap. Stribeck friction also corrects the form of
+    // others.
     const bool is_line = added != longer.end() && added->is("ripple");
-    const bool is_friction = added != longer.end() && added->kind->effect->resists;
+    const bool is_friction =
+        added != longer.end() && added->kind->effect->resists && !added->is("stribeck-friction");
     const double dominant = is_line ? least_gap_share : dominant_gap_share;
     const double least_beyond = is_line                  ? least_line_spread
                                 : whole_share > dominant ? least_spread

@@ -89,7 +89,8 @@ std::vector<TermKind> make_term_kinds() {
     TermKind& resonance = add("resonance", Role::elastic_joint);
     search(resonance, "frequency_hz", 8.0, 200.0,
            {14.0, 16.89, 20.37, 24.57, 29.64, 35.75, 43.12, 52.01, 62.73, 75.66, 91.25, 110.0});
-    search(resonance, "damping", 0.005, 1.0, {0.05});
+    // What is damped more is no resonance of a gear but the form of a filter.
+    search(resonance, "damping", 0.005, 0.2, {0.05});
     assume(resonance, "whole", 1.0);
     TermKind& delay = add("delay", Role::sensor);
     search(delay, "delay_s", -0.04, 0.04,
