@@ -64,16 +64,15 @@ def listed(found):
 
 def line(robot, model, found, seconds):
     gap = found["gap"]
-    whole = found["rounds"][-1]["gap_after_nm"] if found["rounds"] else gap["after_nm"]
-    return [robot, model, f"{gap['before_nm']:.3g} → {gap['after_nm']:.3g}", f"{whole:.3g}", f"{gap['noise_floor_nm']:.3g}",
+    return [robot, model, f"{gap['before_nm']:.3g} → {gap['after_nm']:.3g}", f"{gap['noise_floor_nm']:.3g}",
             f"{gap['validation_before_nm']:.3g} → {gap['validation_after_nm']:.3g}", *listed(found),
-            str(len(found["unexplained"])), found["verdict"], f"{seconds:.1f} s"]
+            f"{found['remaining']['rms_nm']:.3g}" if found["remaining"] else "-", found["verdict"], f"{seconds:.1f} s"]
 
 
 def tables(program, folder):
     """One line for each log and model; logs that are not there are said to be."""
-    head = ["robot", "model", "residual, Nm", "with all effects tried, Nm", "noise floor, Nm", "residual on the validation rows, Nm", "confirmed",
-            "not confirmed", "parts unexplained", "verdict", "time"]
+    head = ["robot", "model", "residual, Nm", "noise floor, Nm", "residual on the validation rows, Nm", "confirmed",
+            "not confirmed", "remaining, Nm", "verdict", "time"]
     lines = []
     for robot, train, validate, ratio, words in LOGS:
         if not (folder / train).exists():

@@ -43,7 +43,7 @@ def named_keys(found):
 
 def undecided_names(found):
     names = {name for entry in found["ambiguous"] for name in entry["effects"]}
-    return names | {entry["effect"] for entry in found["rounds"] if entry["status"] in ("ambiguous", "unidentifiable")}
+    return names | {entry["effect"] for entry in found["rounds"] if entry["status"] in ("ambiguous",)}
 
 
 def names(acceptable, hidden, found):
@@ -97,14 +97,15 @@ def parameters(hidden, found, seconds):
 
 
 def place(case, span, found):
-    """Is something unexplained reported where the disturbance is? A place far wider than the disturbance is none."""
-    if not found["unexplained"]:
+    """Is something remaining reported where the disturbance is? A place far wider than the disturbance is none."""
+    left = found["remaining"]
+    if not left:
         return False
     if span[1] - span[0] > case.seconds / 2:
         return True
     widest = max(2.0, 4.0 * (span[1] - span[0]))
-    spans = [s for entry in found["unexplained"] for s in entry["where"].get("time_s") or []]
-    return any(low < span[1] + 0.25 and high > span[0] - 0.25 and high - low <= widest for low, high in spans)
+    low, high = left["where"]
+    return left["kind"] == "time" and low < span[1] + 0.25 and high > span[0] - 0.25 and high - low <= widest
 
 
 def share_closed(before_nm, after_nm, floor_nm):

@@ -9,7 +9,6 @@
 #include "ripplenotch/chart/diagnosis_figure.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/figure/min_max.hpp"
-#include "ripplenotch/model/motion.hpp"
 
 namespace ripplenotch {
 
@@ -98,12 +97,6 @@ Figure residual_figure(const std::string& title, const std::string& sentence, co
 
 namespace {
 
-std::vector<double> residual_of(const Model& model, const TraceView& log, Seconds smoothing) {
-    std::vector<double> residual_nm = predict_nm(model, motion_along(log, smoothing));
-    for (std::size_t k = 0; k < residual_nm.size(); ++k) residual_nm[k] = log.torque_nm[k] - residual_nm[k];
-    return residual_nm;
-}
-
 // "coulomb-friction", "ripple (ambiguous)"
 std::string round_name(const Finding& finding) {
     if (finding.status == FindingStatus::confirmed) return std::string(finding.term.effect->name);
@@ -120,7 +113,8 @@ std::string diagnosis_sentence(const Diagnosis& diagnosis) {
 }
 
 Figure gap_figure(const std::string& title, const Diagnosis& diagnosis) {
-    const std::vector<Finding>& rounds = diagnosis.rounds;
+    std::vector<Finding> rounds;
+    std::ranges::copy_if(diagnosis.rounds, std::back_inserter(rounds), &Finding::is_in_model);
     Panel panel{.title = "", .x = {"round", "", PlotScale::whole}, .y = {"rms residual", "Nm"}};
     panel.x.from = -0.5;
     panel.x.to = static_cast<double>(rounds.size()) + 0.5;
@@ -142,14 +136,10 @@ Figure gap_figure(const std::string& title, const Diagnosis& diagnosis) {
     return {"gap", title, "", {std::move(panel)}};
 }
 
-Figure diagnosis_figure(const std::string& source, const Diagnosis& diagnosis, const TraceView& log,
-                        Seconds smoothing) {
-    const bool given = !diagnosis.residual_after_nm.empty();
-    const std::vector<double> before =
-        given ? diagnosis.residual_before_nm : residual_of(diagnosis.baseline, log, smoothing);
+Figure diagnosis_figure(const std::string& source, const Diagnosis& diagnosis, const TraceView& log) {
+    const std::vector<double>& before = diagnosis.residual_before_nm;
     std::vector<double> after;  // none where nothing was added: the same picture twice
-    if (!diagnosis.rounds.empty())
-        after = given ? diagnosis.residual_after_nm : residual_of(diagnosis.model, log, smoothing);
+    if (!diagnosis.rounds.empty()) after = diagnosis.residual_after_nm;
     Figure figure = residual_figure(
         fmt::format("Model and log: {}", source), diagnosis_sentence(diagnosis) + ".",
         {log.time_s, log.velocity_deg_s, log.position_deg, before, after}, diagnosis.gap.noise_floor_nm);

@@ -1,22 +1,24 @@
 // SPDX-License-Identifier: MIT
-// The main loop of a diagnosis: select -> fit -> test -> report.
+// A diagnosis: the engine finds what is missing, and this file makes of it an improved model, its gap here
+// and on the validation log, and what is left open.
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
+#include <numbers>
 #include <optional>
 
-#include "diagnose/angle/angle.hpp"
-#include "diagnose/case/case.hpp"
-#include "diagnose/case/known_torque.hpp"
-#include "diagnose/judging/doubt.hpp"
-#include "diagnose/judging/judge.hpp"
-#include "diagnose/judging/residual_regions.hpp"
-#include "diagnose/limits.hpp"
-#include "diagnose/report/summary.hpp"
-#include "diagnose/search/search.hpp"
+#include "core/functions/many_numbers.hpp"
+#include "core/matrices/least_squares.hpp"
+#include "core/rows/row_facts.hpp"
+#include "diagnose/answer/advice.hpp"
+#include "diagnose/answer/log_faults.hpp"
+#include "diagnose/answer/remaining.hpp"
+#include "diagnose/answer/settled_model.hpp"
+#include "diagnose/engine/engine.hpp"
+#include "diagnose/engine/settings.hpp"
+#include "diagnose/engine/terms.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/diagnose/diagnosis.hpp"
@@ -24,222 +26,30 @@
 namespace ripplenotch {
 namespace {
 
+// The user's side is known to four per cent: a departure within is corrected and not named.
+constexpr double known_deviation = 0.04;
+// Errors of a value, from which on it departs from what the user stated: as the t of a term.
+constexpr double least_departure = 4.0;
+// Of the floor's square: a smaller gap is none to speak of, and no part of it is said to be closed.
+constexpr double least_gap = 0.02;
+// Below a turn the integral of a velocity does not tell where the joint is.
+constexpr double turn_deg = 360.0;
+// Residual of the improved model over that of the search, from which on its sizes are fitted anew.
+constexpr double most_lost = 1.1;
+// The search finds shorter delays by itself.
+constexpr double longest_searched_s = 0.03;
+// A shape whose error is that share of it is not determined by the rows of the search.
+constexpr double undetermined_error = 0.3;
+// Each direction has to have this share of the log for effects that differ by direction.
+constexpr double least_direction = 0.05;
+
 bool is_among(std::span<const std::string> names, std::string_view name) {
-    return std::find(names.begin(), names.end(), name) != names.end();
+    return std::ranges::find(names, name) != names.end();
 }
 
-// Whether effects take part that need the joint's position, the gear ratio, or motion in both directions.
-struct Examinable {
-    bool of_position = true, of_motor = true, of_direction = true;
-};
-
-// Effects that a fit can find; those of the converter are found in the log itself (find_faults).
-std::vector<const Effect*> examined(std::span<const std::string> without, Examinable some) {
-    std::vector<const Effect*> effects;
-    for (const Effect* effect : catalogue()) {
-        const bool left_out = is_among(without, effect->name);
-        if (left_out || effect->side == Side::converter || (!some.of_position && needs_position(*effect)) ||
-            (!some.of_motor && needs_gear_ratio(*effect)) || (!some.of_direction && effect->differs))
-            continue;
-        effects.push_back(effect);
-    }
-    return effects;
-}
-
-// Faults whose effect is not among those tried have no name: the samples that they invalidate are
-// unexplained. They are removed from `faults`.
-std::vector<ResidualRegion> nameless(std::vector<Fault>& faults, std::span<const std::string> without) {
-    std::vector<ResidualRegion> left;
-    for (const Fault& fault : faults) {
-        if (is_among(without, fault.term.effect->name))
-            left.push_back({RegionKind::time, {fault.time_s, {}, {}, {}, {}, {}}, 0.0, 0.0});
-    }
-    std::erase_if(faults, [&](const Fault& fault) { return is_among(without, fault.term.effect->name); });
-    return left;
-}
-
-// Measures the residual in invalidated samples, once there is a model of the others.
-void measure_at_samples(std::vector<ResidualRegion>& nameless, const Case& c, const Model& stated) {
-    std::vector<double> left = predict_nm(stated, c.motion);
-    double all = 0.0;
-    for (std::size_t k = 0; k < left.size(); ++k) {
-        left[k] = c.torque_nm[k] - left[k];
-        all += left[k] * left[k];
-    }
-    for (ResidualRegion& region : nameless) {
-        double sum = 0.0, count = 0.0;
-        for (const Span& span : region.where.time_s) {
-            const auto first = std::lower_bound(c.motion.time_s.begin(), c.motion.time_s.end(), span.from);
-            for (auto at = first; at != c.motion.time_s.end() && *at <= span.to; ++at, count += 1.0)
-                sum += portable::pow(left[static_cast<std::size_t>(at - c.motion.time_s.begin())], 2);
-        }
-        region.rms_nm = std::sqrt(sum / std::max(count, 1.0));
-        region.part = sum / std::max(all, 1e-300);
-    }
-}
-
-struct Searched {
-    std::unique_ptr<ModelBench> bench;  ///< on which the last model was found
-    NoiseGround ground;
-    NoiseFloor noise;
-    Candidate first, last;
-    std::vector<RefusedCandidate> refused;
-};
-
-// The noise with the last model, and that model fitted with it. The first noise estimate contains what the
-// search could not explain at that time.
-void measure_noise(Searched& found, const Case& c, Work& work) {
-    found.noise = noise_floor(c, found.last.stated, found.last.open, found.ground);
-    auto kept = found.bench ? found.bench->kept() : std::make_shared<KeptScreenings>();
-    found.bench = std::make_unique<ModelBench>(c, found.noise, work, std::move(kept));
-    found.bench->settle_on(found.last.stated);
-    found.last = found.bench->fitted(found.last.open, found.last.stated, found.last.prices);
-}
-
-Searched search_case(const Case& c, const Model& model, std::span<const Effect* const> effects, Work& work) {
-    const std::size_t own = model.terms.size();
-    // The first fit has no estimate of the noise.
-    ModelBench rough(c, {1.0, 1.0, {}}, work);
-    Searched found;
-    found.first = baseline(rough, model);
-    found.last = found.first;
-    for (std::size_t look = 0; look < limits::noise_floor::most_looks; ++look) {
-        measure_noise(found, c, work);
-        const Candidate start = found.last;
-        if (look == 0) found.first = start;
-        found.last = search(*found.bench, start, own, effects, found.refused);
-        const double left = std::sqrt(found.last.gain_left / found.bench->samples());
-        const bool found_more = found.last.stated.terms.size() > start.stated.terms.size();
-        if (look > 0 && !found_more) break;
-        if (work.is_over()) {
-            if (found_more) measure_noise(found, c, work);
-            break;
-        }
-        if (left > limits::noise_floor::was_too_large && found.last.stated.terms.size() == own) break;
-    }
-    return found;
-}
-
-// The gap after each addition, in the order of adoption.
-void measure_rounds(Diagnosis& diagnosis, const ModelBench& bench, const Candidate& last, std::size_t own) {
-    Candidate now = last;
-    now.open.terms.resize(own);
-    now.stated.terms.resize(own);
-    double before = rms_of(bench.raw_residual(diagnosis.baseline), bench.looked_at().use);
-    for (std::size_t i = 0; i < diagnosis.rounds.size(); ++i) {
-        Finding& finding = diagnosis.rounds[i];
-        now.open.terms.push_back(last.open.terms[own + i]);
-        now.stated.terms.push_back(last.stated.terms[own + i]);
-        now = bench.fitted(now.open, now.stated, {}, 4);
-        finding.gap_before_nm = before;
-        finding.gap_after_nm = before = rms_of(bench.raw_residual(now.stated), bench.looked_at().use);
-    }
-}
-
-bool set_aside(Case& c, const std::vector<ResidualRegion>& left) {
-    bool any = false;
-    const double margin_s = limits::regions::aside_margin_s;
-    for (const ResidualRegion& region : left) {
-        if (!is_confined(region, c)) continue;
-        for (std::size_t k = 0; k < c.size(); ++k) {
-            for (const Span& span : region.where.time_s) {
-                if (c.motion.time_s[k] < span.from - margin_s || c.motion.time_s[k] > span.to + margin_s)
-                    continue;
-                any = any || c.use[k] != 0;
-                c.use[k] = c.valid[k] = 0;
-            }
-        }
-    }
-    return any;
-}
-
-double confined_part(const Case& c, const std::vector<ResidualRegion>& left) {
-    double total_s = 0.0;
-    for (const ResidualRegion& region : left) {
-        for (const Span& span : region.where.time_s)
-            total_s += region.kind == RegionKind::time ? span.to - span.from : 0.0;
-    }
-    return total_s / (c.motion.time_s.back() - c.motion.time_s.front());
-}
-
-// Without position an effect of the position may fit along the integral of the speed and be something else.
-std::vector<Undecidable> undecidable(const ModelBench& bench, const Candidate& model,
-                                     std::span<const Effect* const> tried,
-                                     std::span<const std::string> without) {
-    std::vector<const Effect*> others;
-    for (const Effect* effect : examined(without, {.of_motor = model.stated.has_gear_ratio()})) {
-        if (needs_position(*effect) && std::find(tried.begin(), tried.end(), effect) == tried.end())
-            others.push_back(effect);
-    }
-    std::vector<Undecidable> told;
-    for (const Effect* effect : others)
-        told.push_back({effect->name, "it depends on where the joint is, and the log has no position", 0.0});
-    for (const Trial& trial : screen(bench, model, others)) {
-        for (Undecidable& entry : told) {
-            if (entry.effect == trial.start.effect->name && trial.score() > 0.0)
-                entry.would_explain_nm =
-                    bench.share(with_trial(bench, model, trial), model) * bench.noise().material_nm;
-        }
-    }
-    return told;
-}
-
-// A disturbance of short duration biases everything that is fitted to it. It is reported and excluded, and
-// the rest of the log is diagnosed without it.
-Searched search_rest(Case& part, const Model& model, std::span<const Effect* const> effects,
-                     Diagnosis& diagnosis, std::vector<ResidualRegion>& aside, Work& work) {
-    Searched found = search_case(part, model, effects, work);
-    {
-        ModelBench bench(part, found.noise, work);
-        bench.settle_on(found.first.stated);
-        diagnosis.disagreement = residual_regions(bench, found.first.stated);
-    }
-    for (std::size_t look = 0; look < limits::regions::most_asides; ++look) {
-        const auto left = residual_regions(*found.bench, found.last.stated);
-        // Each exclusion of an interval requires a complete new search.
-        if (confined_part(part, left) > limits::regions::most_aside_part || work.is_over() ||
-            !set_aside(part, left))
-            break;
-        for (const ResidualRegion& region : left) {
-            if (region.kind == RegionKind::time) aside.push_back(region);
-        }
-        found = search_case(part, model, effects, work);
-    }
-    return found;
-}
-
-// The findings may determine the angle better than the model as given did; then the search continues from
-// there.
-Searched search_straight(Case& whole, Case& part, const Model& model, std::span<const Effect* const> effects,
-                         Diagnosis& diagnosis, std::vector<ResidualRegion>& aside, Work& work,
-                         bool has_position) {
-    Searched found = search_rest(part, model, effects, diagnosis, aside, work);
-    if (has_position || !straightened_by(whole, found.last, found.bench->floor_nm(found.last.stated)))
-        return found;
-    found.bench.reset();
-    found.ground = {};
-    for (std::size_t k = 0; k < part.size(); ++k)
-        part.motion.position_deg[k] = whole.motion.position_deg[part.row[k]];
-    measure_noise(found, part, work);
-    found.first = found.bench->fitted(found.first.open, found.first.stated, found.first.prices);
-    found.refused.clear();
-    found.last = search(*found.bench, found.last, model.terms.size(), effects, found.refused);
-    return found;
-}
-
-// Against the noise that holds the residual: the same search from the start.
-Searched search_again(const Searched& before, const Case& c, const Model& model,
-                      std::span<const Effect* const> effects, Work& work) {
-    std::vector<double> left(c.size(), 0.0);
-    const auto cleared = before.bench->cleared_residual(before.last.stated);
-    for (std::size_t r = 0; r < cleared.size(); ++r) left[before.bench->rows()[r]] = cleared[r];
-    Searched found;
-    found.noise = noise_of_residual(c, left, before.noise);
-    found.bench = std::make_unique<ModelBench>(c, found.noise, work);
-    found.bench->settle_on(before.first.stated);
-    found.first = found.bench->fitted(before.first.open, before.first.stated, before.first.prices);
-    found.last = search(*found.bench, found.first, model.terms.size(), effects, found.refused);
-    return found;
+const GivenTerm* find_given(std::span<const GivenTerm> given, std::string_view name) {
+    const auto found = std::ranges::find(given, name, &GivenTerm::name);
+    return found == given.end() ? nullptr : &*found;
 }
 
 void check_rows(std::span<const GivenTerm> given, std::size_t rows, std::string_view log) {
@@ -251,422 +61,635 @@ void check_rows(std::span<const GivenTerm> given, std::size_t rows, std::string_
     }
 }
 
-// Whether there is a simulation whose scale is not stated.
-bool is_scale_open(std::span<const GivenTerm> given) {
-    return std::ranges::any_of(given, [](const GivenTerm& term) {
-        return term.name == "simulated" && term.deviation[0] > stated_deviation;
-    });
-}
-
-bool has_offset(const Model& model) {
-    return std::ranges::any_of(model.terms, [](const Term& term) { return term.effect->name == "offset"; });
-}
-
-double fastest_deg_s(const Motion& motion) {
-    double fastest = 0.0;
-    for (const double v : motion.velocity_deg_s) fastest = std::max(fastest, std::abs(v));
-    return fastest;
-}
-
-bool moves_both_ways(const Case& c, double least_part) {
-    std::size_t positive = 0, negative = 0;
-    for (const double v : c.motion.velocity_deg_s) {
-        if (std::abs(v) > c.moving_deg_s) ++(v > 0.0 ? positive : negative);
+// Values of a torque that came later by so much.
+std::vector<double> advanced(const TraceView& log, double delay_s) {
+    std::vector<double> found;
+    std::size_t next = 0;
+    for (const double t : log.time_s) {
+        while (next < log.size() && log.time_s[next] < t + delay_s) ++next;
+        if (next == 0 || next == log.size()) {
+            found.push_back(next == 0 ? log.torque_nm.front() : log.torque_nm.back());
+            continue;
+        }
+        const double share = (t + delay_s - log.time_s[next - 1]) / (log.time_s[next] - log.time_s[next - 1]);
+        found.push_back(log.torque_nm[next - 1] + share * (log.torque_nm[next] - log.torque_nm[next - 1]));
     }
-    return static_cast<double>(std::min(positive, negative)) >= least_part * static_cast<double>(c.size());
+    return found;
 }
 
-// A value that is fitted in its logarithm has an interval of factors.
-void widen_interval(FittedValue& value, const Parameter& parameter, double times) {
-    if (!value.ci95) return;
-    if (parameter.logarithmic && value.ci95->low > 0.0) {
-        value.ci95->low = value.value * portable::pow(value.ci95->low / value.value, times);
-        value.ci95->high = value.value * portable::pow(value.ci95->high / value.value, times);
-        return;
-    }
-    value.ci95->low = value.value + times * (value.ci95->low - value.value);
-    value.ci95->high = value.value + times * (value.ci95->high - value.value);
+// Friction that turns over with the direction, over a speed or over an angle: one effect to the joint, told
+// by the plainer form that explains as much.
+bool is_friction_loop(const Effect& effect) {
+    return effect.name == "coulomb-friction" || effect.name == "hysteresis";
+}
+
+std::optional<double> closed_percent(double before_nm, double after_nm, double floor_nm) {
+    const double floor = floor_nm * floor_nm, before = before_nm * before_nm - floor;
+    if (before < least_gap * floor || before <= 0.0) return std::nullopt;
+    const double closed = 100.0 * (1.0 - std::max(after_nm * after_nm - floor, 0.0) / before);
+    return std::abs(closed) < 1e-3 ? 0.0 : closed;
 }
 
 class DiagnosisRun {
   public:
     DiagnosisRun(const Model& model, const TraceView& log, const TraceView* validation,
                  const DiagnosisOptions& options)
-        : options_(options),
-          model_(model),
-          has_position_(log.has_position()),
-          whole_(whole_case(log, options.smoothing)),
-          work_(limits::search::most_evaluations),
-          more_work_(limits::search::most_evaluations) {
-        take_known_torque(whole_, options.given);
-        whole_.expected_delay = options.expected_delay;
-        // Terms that the known torque adds to the model: excess friction in a simulation is below 0, and the
-        // zero of the sensor is fitted along with an arm's weight, which resembles it.
-        model_.beside_simulation = is_given(options.given, "simulated");
-        fits_offset_ = is_given(options.given, "arm") && !has_offset(model_);
-        if (fits_offset_) model_.terms.push_back(parse_term("offset"));
-        model_.widest_step_deg_s = limits::search::widest_step * fastest_deg_s(whole_.motion);
-        own_ = model_.terms.size();
-        without_.assign(options.without.begin(), options.without.end());
-        // A fault of the set-up explains a wrong scale.
-        if (!is_scale_open(options.given) || !options.setup.empty())
-            without_.emplace_back("simulation-scale");
-        // An arm has inertia and gravity of its own.
-        if (is_given(options.given, "arm"))
-            without_.insert(without_.end(), {"inertia", "gravity", "payload-change"});
-        moves_both_ways_ = moves_both_ways(whole_, limits::advice::least_part);
-        effects_ = examined(without_, {.of_position = has_position_ || tells_position(whole_.motion),
-                                       .of_motor = model_.has_gear_ratio(),
-                                       .of_direction = moves_both_ways_});
-        if (validation == nullptr) return;
-        other_ = whole_case(*validation, options.smoothing);
-        take_known_torque(*other_, options.validation_given);
-        (void)find_faults(*other_);
-        other_has_position_ = validation->has_position();
+        : options_(options), model_(model), log_(log), simulated_(find_given(options.given, "simulated")) {
+        if (log.size() < fewest_samples_diagnosed)
+            raise<DataError>("the log has {} rows; a diagnosis needs at least {}", log.size(),
+                             fewest_samples_diagnosed);
+        along_ = log_along(log, options.given, options.smoothing);
+        if (validation != nullptr)
+            other_ = log_along(*validation, options.validation_given, options.smoothing);
+        model_.beside_simulation = simulated_ != nullptr;
     }
 
     [[nodiscard]] Diagnosis run() {
-        result_.has_position = has_position_;
+        result_.has_position = log_.has_position();
+        result_.samples = log_.size();
         result_.setup.assign(options_.setup.begin(), options_.setup.end());
-        result_.false_alarm = limits::screening::false_alarm;
-        result_.samples = whole_.size();
-        add_unused_rows(result_.unused, whole_,
-                        "where the acceleration jumps, smoothing hides the torque of the inertia");
-        result_.faults = find_faults(whole_);
-        add_unused_rows(result_.unused, whole_, "spoiled by a fault of the log");
-        std::vector<ResidualRegion> spoiled = nameless(result_.faults, options_.without), aside;
-        AngleBefore before(whole_, has_position_);
-        if (!has_position_) straighten(whole_, model_);
-        Case part = excerpt(whole_);
-        Searched found =
-            search_straight(whole_, part, model_, effects_, result_, aside, work_, has_position_);
-        found.ground = {};  // its columns are not needed any more
-        if (other_ && !(has_position_ && other_has_position_)) before.of_other(*other_);
-        Candidate last = tested(found, before.has_other());
-        if (is_residual_left(found, last)) {
-            const ModelBench plain = *found.bench;
-            Diagnosis first_result = result_;
-            const std::size_t own = own_;
-            first_bench_ = &plain;
-            Searched again = search_again(found, part, model_, effects_, more_work_);
-            Candidate last_again = tested(again, before.has_other());
-            first_bench_ = nullptr;
-            const auto left_nm = [&](const Candidate& model) {
-                return rms(plain.cleared_residual(model.stated));
-            };
-            if (options_.given.empty() || left_nm(last_again) < left_nm(last)) {
-                found = std::move(again);
-                last = std::move(last_again);
-                result_.unexplained = residual_regions(plain, last.stated);
-                result_.gap.noise_floor_nm = plain.floor_nm(last.stated);
-                result_.residual_in_noise = true;
-            } else {
-                result_ = std::move(first_result);
-                own_ = own;
-            }
+        find_log_faults();
+        const SettledModel alone = settled(model_, along_, 0.0);
+        result_.baseline = alone.model;
+        if (options_.setup.empty()) {
+            require_motion();
+            search();
+        } else {
+            result_.gap.noise_floor_nm = rms_where(alone.residual_nm, along_.use);
         }
-        result_.angle = before.account(whole_, other_ ? &*other_ : nullptr);
-        if (!has_position_) result_.undecidable = undecidable(*found.bench, last, effects_, without_);
-        if (!model_.has_gear_ratio()) list_effects_of_motor();
-        if (!moves_both_ways_) list_of_both_directions();
-        measure_at_samples(spoiled, whole_, last.stated);
-        result_.unexplained.insert(result_.unexplained.begin(), spoiled.begin(), spoiled.end());
-        result_.unexplained.insert(result_.unexplained.begin(), aside.begin(), aside.end());
-        report(found, last, part, aside);
+        // The rows that count for the engine count for the values.
+        alone_ = settled(model_, along_, result_.gap.noise_floor_nm);
+        result_.baseline = alone_.model;
+        accept();
+        improve();
+        report();
         return std::move(result_);
     }
 
   private:
-    void list_effects_of_motor() {
-        for (const Effect* effect : examined(without_, {})) {
-            if (needs_gear_ratio(*effect))
-                result_.undecidable.push_back({effect->name, "needs the gear ratio, --gear-ratio N", 0.0});
+    void find_log_faults() {
+        result_.faults = find_faults(along_.motion, along_.torque_nm, along_.use);
+        std::erase_if(result_.faults, [&](const Fault& fault) {
+            return is_among(options_.without, fault.term.effect->name);
+        });
+        if (!other_) return;
+        (void)find_faults(other_->motion, other_->torque_nm, other_->use);
+    }
+
+    void require_motion() const {
+        const auto& velocity = along_.motion.velocity_deg_s;
+        if (std::ranges::all_of(velocity, [](double v) { return v == 0.0; }))
+            raise<DataError>("the joint does not move in this log; a diagnosis needs motion");
+    }
+
+    [[nodiscard]] bool moves_both_ways() const {
+        std::size_t positive = 0, negative = 0;
+        for (const double v : along_.motion.velocity_deg_s) ++(v > 0.0 ? positive : negative);
+        std::size_t still = 0;
+        for (const double v : along_.motion.velocity_deg_s) still += v == 0.0 ? 1 : 0;
+        return static_cast<double>(std::min(positive, negative - still)) >=
+               least_direction * static_cast<double>(log_.size());
+    }
+
+    // Effects that are not tried, and why this log does not let them be.
+    [[nodiscard]] std::vector<std::string> not_tried() {
+        std::vector<std::string> names(options_.without.begin(), options_.without.end());
+        const auto [low, high] = std::ranges::minmax(along_.motion.position_deg);
+        const bool tells_position = log_.has_position() || high - low >= turn_deg;
+        const bool both_ways = moves_both_ways();
+        for (const Effect* effect : catalogue()) {
+            if (is_among(options_.without, effect->name)) continue;
+            std::string reason;
+            if (needs_gear_ratio(*effect) && !model_.has_gear_ratio())
+                reason = "needs the gear ratio, --gear-ratio N";
+            else if (needs_position(*effect) && !tells_position)
+                reason = "it depends on where the joint is, and the log has no position";
+            else if (effect->differs && !both_ways)
+                reason = "needs motion in both directions";
+            if (reason.empty()) continue;
+            names.emplace_back(effect->name);
+            result_.undecidable.push_back({effect->name, std::move(reason)});
         }
+        // An arm has inertia and gravity of its own.
+        if (is_given(options_.given, "arm")) names.insert(names.end(), {"gravity", "payload-change"});
+        return names;
     }
 
-    void list_of_both_directions() {
-        for (const Effect* effect : examined(without_, {})) {
-            if (effect->differs)
-                result_.undecidable.push_back({effect->name, "needs motion in both directions", 0.0});
-        }
+    // The delay that the model states, or that the torques of a simulation without motion show.
+    [[nodiscard]] double known_delay_s() const {
+        for (const Term& term : model_.terms)
+            if (term.effect->name == "delay" && term.values.front()) return *term.values.front();
+        const double seen_s = options_.expected_delay ? options_.expected_delay->value() : 0.0;
+        return std::abs(seen_s) > longest_searched_s ? seen_s : 0.0;
     }
 
-    // The effect of the motor for which the catalogue says that this one may be mistaken, if there is one.
-    [[nodiscard]] const Effect* look_alike_of_motor(const Effect& effect) const {
-        for (const Effect* other : catalogue()) {
-            // What changes a ripple is a rival of nothing where there is none.
-            if (needs_gear_ratio(*other) && other->side != Side::ripple && !is_among(without_, other->name) &&
-                std::ranges::find(effect.look_alikes, other->name, &LookAlike::name) !=
-                    effect.look_alikes.end())
-                return other;
-        }
-        return nullptr;
-    }
-
-    // Without the gear ratio an effect of the motor is no rival, and what resembles one is no finding by
-    // itself. Over a short travel a ripple of few cycles per turn is as smooth as a weight or an offset:
-    // identify takes no ratio below 3, and 3 cycles are in opposition to the one of a weight after a quarter
-    // of a turn.
-    void tie_with_effects_of_motor(const Case& c) {
-        if (model_.has_gear_ratio()) return;
-        constexpr double least_ratio = 3.0, least_turns = 0.5 / (least_ratio - 1.0);
-        const auto [low, high] = std::ranges::minmax(c.motion.position_deg);
-        const bool is_short = (high - low) / 360.0 < least_turns && !is_among(without_, "ripple");
-        for (Finding& finding : result_.rounds) {
-            if (!is_trusted(finding)) continue;
-            const Effect& effect = *finding.term.effect;
-            const Effect* rival = look_alike_of_motor(effect);
-            if (rival == nullptr && is_short && (needs_position(effect) || effect.name == "offset"))
-                rival = &find_effect("ripple");
-            if (rival == nullptr) continue;
-            finding.status = FindingStatus::ambiguous;
-            finding.alternatives.insert(finding.alternatives.begin(), {rival->name, 0.0});
-        }
-    }
-
-    // Which findings hold, and the residual then.
-    [[nodiscard]] Candidate tested(Searched& found, bool other_begins_anywhere) {
-        const ModelBench& bench = *found.bench;
-        std::size_t own = model_.terms.size();
-        result_.unexplained = residual_regions(bench, found.last.stated);
-        // A known torque is never right everywhere, and its residual is no reason against a finding that
-        // rises above it. A model of the joint alone should leave nothing.
-        const bool may_be_left = bench.noise_holds_residual() && !options_.given.empty();
-        const auto unexplained = may_be_left ? std::vector<ResidualRegion>()
-                                 : first_bench_ != nullptr
-                                     ? residual_regions(*first_bench_, found.last.stated)
-                                     : result_.unexplained;
-        result_.rounds = judge(bench, found.last, own, effects_, unexplained);
-        drop_collinear(found, unexplained);
-        if (fits_offset_ && options_.setup.empty()) promote_offset(found, own, unexplained);
-        doubt_for_setup();
-        doubt_for_travel(bench.looked_at(), found.last.stated);
-        tie_with_effects_of_motor(bench.looked_at());
-        own_ = own;
-        result_.refused = found.refused;
-        result_.baseline = as_given(bench, found.first).stated;
-        result_.evaluations =
-            bench.work().spent() * Work::unit_samples / static_cast<double>(bench.looked_at().size());
-        result_.search_ended = bench.work().ended();
-        result_.gap.noise_floor_nm = bench.floor_nm(found.last.stated);
-        result_.noise_color = found.noise.color;
-        measure_rounds(result_, bench, found.last, own);
-        Candidate last = believed(bench, found.last, own, result_.rounds);
-        if (other_ && other_begins_anywhere) put_in_place(*other_, last.stated);
-        if (other_)
-            last = reproduced(bench, found.last, last, result_.baseline, *other_, own, result_.rounds);
-        // The torque of an uncertain finding counts as unexplained.
-        if (last.stated.terms.size() < found.last.stated.terms.size())
-            result_.unexplained = residual_regions(bench, last.stated);
-        return last;
-    }
-
-    // Findings whose torques are nearly collinear hide what each of them would be without the
-    // other: the weakest goes, and the others are tested without it.
-    void drop_collinear(Searched& found, const std::vector<ResidualRegion>& unexplained) {
-        const std::size_t own = model_.terms.size();
-        for (std::size_t most = result_.rounds.size(); most > 0; --most) {
-            const auto doubtful = std::ranges::count_if(result_.rounds, is_doubtful);
-            if (std::ranges::count(result_.rounds, FindingStatus::unidentifiable, &Finding::status) == 0 ||
-                doubtful < 2)
-                return;
-            std::optional<std::size_t> weakest;
-            for (std::size_t i = 0; i < result_.rounds.size(); ++i) {
-                const bool weaker = !weakest || result_.rounds[i].evidence.share_nm <
-                                                    result_.rounds[*weakest].evidence.share_nm;
-                if (is_doubtful(result_.rounds[i]) && weaker) weakest = i;
+    // Beside a simulation the engine takes its torque for all of what the user knows: terms of the model are
+    // given as columns.
+    [[nodiscard]] std::vector<GivenTerm> columns_of_model() const {
+        std::vector<GivenTerm> columns;
+        const Situation situation{.motion = along_.motion, .ratio = model_.gear_ratio};
+        for (const Term& term : model_.terms) {
+            const Effect& effect = *term.effect;
+            if (effect.side != Side::joint || effect.ripple_order || effect.uses_load) continue;
+            std::vector<double> values;
+            for (std::size_t p = 0; p < term.values.size(); ++p)
+                values.push_back(term.values[p].value_or(effect.parameters[p].start));
+            const bool is_stated =
+                std::ranges::all_of(term.values, [](const auto& value) { return value.has_value(); });
+            GivenTerm column{std::string(effect.name), {}, {}, {}};
+            if (is_stated) {
+                column.torque_nm.emplace_back(log_.size(), 0.0);
+                effect.apply(situation, values, column.torque_nm.front());
+            } else {
+                column.torque_nm = engine::unit_columns(effect, values, situation);
             }
-            found.last = without_term(*found.bench, found.last, own + *weakest);
-            result_.rounds = judge(*found.bench, found.last, own, effects_, unexplained);
+            column.mean.assign(column.torque_nm.size(), is_stated ? 1.0 : 0.0);
+            column.deviation.assign(column.torque_nm.size(),
+                                    is_stated ? stated_deviation : std::numeric_limits<double>::infinity());
+            columns.push_back(std::move(column));
+        }
+        return columns;
+    }
+
+    void search() {
+        std::vector<std::string> without = not_tried();
+        const double delay_s = known_delay_s();
+        std::vector<double> torque_nm = along_.torque_nm, simulated_nm;
+        TraceView log = log_;
+        if (delay_s != 0.0) torque_nm = advanced(log_, delay_s);
+        log.torque_nm = torque_nm;
+        std::vector<GivenTerm> given;
+        for (const GivenTerm& term : options_.given)
+            if (&term != simulated_) given.push_back(term);
+        std::optional<engine::Simulation> simulation;
+        if (simulated_ != nullptr) {
+            simulated_nm = simulated_->torque_nm.front();
+            for (double& nm : simulated_nm) nm *= simulated_->mean.front();
+            simulation = {simulated_nm, options_.simulated_velocity_deg_s, options_.simulated_position_deg,
+                          simulated_->deviation.front() <= stated_deviation};
+            for (GivenTerm& column : columns_of_model()) given.push_back(std::move(column));
+        }
+        const engine::Result found = engine::find_missing_effects({.log = log,
+                                                                   .model = model_,
+                                                                   .simulation = simulation,
+                                                                   .given_terms = given,
+                                                                   .without = without,
+                                                                   .is_good_row = along_.use});
+        good_ = along_.use;
+        along_.use = found.is_used;
+        result_.samples_used = found.samples;
+        result_.smoothing_s = found.smoothing_s;
+        result_.gap.noise_floor_nm = found.noise_nm;
+        engine_residual_nm_ = found.residual_after_nm;
+        take_faults(found);
+        take_known_values(found);
+        take_departures(found);
+        for (const engine::AdoptedTerm& term : found.terms) take(term, FindingStatus::confirmed, delay_s);
+        for (const engine::AdoptedTerm& term : found.corrections)
+            take(term, FindingStatus::correction, delay_s);
+        if (options_.expected_delay && delay_s != 0.0 && own_term("delay") == nullptr) restore_delay(delay_s);
+        for (const engine::NearlyAdopted& term : found.nearly_adopted)
+            result_.refused.push_back({term.term, term.reason});
+    }
+
+    // What the engine alone sees.
+    void take_faults(const engine::Result& found) {
+        for (const engine::ConverterFault& fault : found.faults) {
+            if (is_among(options_.without, fault.effect) ||
+                std::ranges::any_of(result_.faults, [&](const Fault& known) {
+                    return known.term.effect->name == fault.effect;
+                }))
+                continue;
+            Fault seen{{&find_effect(fault.effect), {}}, fault.rows.size(), {}, {}};
+            for (const Parameter& parameter : seen.term.effect->parameters)
+                seen.term.values.emplace_back(parameter.start);
+            if (fault.size > 0.0) seen.term.values.front() = fault.size;
+            for (const std::size_t row : fault.rows)
+                seen.time_s.push_back({log_.time_s[row], log_.time_s[row]});
+            seen.words = fmt::format("{} samples", fault.rows.size());
+            result_.faults.push_back(std::move(seen));
         }
     }
 
-    // Without the offset of an arm fit where that is a finding.
-    [[nodiscard]] Candidate as_given(const ModelBench& bench, const Candidate& first) const {
-        return own_ < first.stated.terms.size() ? without_term(bench, first, own_) : first;
+    [[nodiscard]] const Term* own_term(std::string_view name) const {
+        const auto found =
+            std::ranges::find_if(model_.terms, [&](const Term& term) { return term.effect->name == name; });
+        return found == model_.terms.end() ? nullptr : &*found;
     }
 
-    // The offset of an arm fit is a finding where it passes the same tests, and is larger than the residual.
-    void promote_offset(Searched& found, std::size_t& own, const std::vector<ResidualRegion>& unexplained) {
-        const ModelBench& bench = *found.bench;
-        Candidate model = found.last;
-        const std::size_t place = own - 1;
-        model.prices[place] =
-            portable::log(bench.samples()) +
-            2.0 * portable::log(static_cast<double>(effects_.size()) / limits::screening::false_alarm);
-        Finding offset = judged_alone(bench, model, place, effects_, unexplained);
-        if (offset.status != FindingStatus::confirmed || offset.evidence.gain < model.prices[place] ||
-            offset.evidence.share_nm < rms(bench.cleared_residual(model.stated)))
+    // The factors of an arm, as the engine fits them beside everything else.
+    void take_known_values(const engine::Result& found) {
+        for (const engine::ValuedColumn& column : found.baseline) {
+            if (column.name != "arm") continue;
+            departure_.push_back(column.factor);
+        }
+        if (departure_.size() != along_.uncertain_nm.size()) departure_.clear();
+    }
+
+    // What the values of the user's side come to, where that is not what he states.
+    void take_departures(const engine::Result& found) {
+        for (const engine::ValuedColumn& column : found.baseline) {
+            if (column.name == "simulated")
+                depart("simulation-scale", 100.0 * (column.factor - 1.0), 100.0 * column.standard_error,
+                       0.01 * rms_where(along_.motion.known_nm, along_.use), 100.0);
+            if (column.name != "inertia") continue;
+            if (own_term("inertia") != nullptr) continue;
+            const double unit = degrees_per_radian;
+            depart("inertia", column.factor * unit, column.standard_error * unit,
+                   rms_where(along_.motion.acceleration_deg_s2, along_.use) / unit, simulated_inertia());
+            break;  // the first column of that name is the engine's own
+        }
+    }
+
+    // Of the simulation's torque on the motion.
+    [[nodiscard]] double simulated_inertia() const {
+        if (simulated_ == nullptr) return 0.0;
+        const Motion& motion = along_.motion;
+        std::vector<std::vector<double>> columns = {motion.acceleration_deg_s2, motion.velocity_deg_s,
+                                                    std::vector<double>(motion.size(), 1.0)};
+        columns.resize(6, std::vector<double>(motion.size()));
+        for (std::size_t k = 0; k < motion.size(); ++k) columns[3][k] = motion.velocity_deg_s[k] / 0.5;
+        portable::tanh(columns[3], columns[3]);
+        portable::cos_degrees(motion.position_deg, columns[4]);
+        portable::sin_degrees(motion.position_deg, columns[5]);
+        return degrees_per_radian * std::abs(least_squares(columns, motion.known_nm).front());
+    }
+
+    void depart(std::string_view name, double value, double error, double unit_rms_nm, double known) {
+        const double rms_nm = std::abs(value) * unit_rms_nm, noise_nm = result_.gap.noise_floor_nm;
+        const Effect& effect = find_effect(name);
+        if (is_among(options_.without, name) || std::abs(value) < least_departure * error ||
+            rms_nm < engine::least_noise_share * noise_nm || value < effect.parameters.front().lower)
             return;
-        found.last.prices[place] = model.prices[place];
-        result_.rounds.insert(result_.rounds.begin(), std::move(offset));
-        own = place;
+        Finding finding;
+        finding.term = {&effect, {value}};
+        const double half = normal_95_errors * error;
+        finding.values = {{.parameter = 0,
+                           .value = value,
+                           .standard_error = error,
+                           .ci95 = Interval{value - half, value + half}}};
+        if (std::abs(value) <= known_deviation * known || is_given(options_.given, "arm")) {
+            finding.status = FindingStatus::correction;
+            finding.reason = "the user's side is not known better";
+        }
+        finding.evidence.noise_share = noise_nm > 0.0 ? rms_nm / noise_nm : 0.0;
+        finding.evidence.block_t = std::abs(value) / std::max(error, 1e-300);
+        finding.evidence.reduction = finding.evidence.block_t * finding.evidence.block_t;
+        result_.rounds.push_back(std::move(finding));
     }
 
-    // Cycles per output turn of a torque of the output angle.
-    static std::optional<double> output_order(const Term& term) {
-        if (term.effect->name == "gravity") return 1.0;
-        return term.effect->name == "output-ripple" ? term.values[0] : std::nullopt;
+    void take(const engine::AdoptedTerm& adopted, FindingStatus status, double delay_s) {
+        const Effect& effect = *adopted.term.effect;
+        // An effect of sensor, motion or ripple that the model has already is not the engine's to know.
+        if (own_term(effect.name) != nullptr && effect.side != Side::joint) return;
+        Finding finding;
+        finding.term = adopted.term;
+        finding.status = status;
+        finding.values = adopted.values;
+        finding.evidence = {adopted.reduction, adopted.block_t, adopted.noise_share, adopted.explained_share};
+        for (const engine::Rival& rival : adopted.rivals)
+            finding.alternatives.push_back({rival.term, rival.margin});
+        if (status == FindingStatus::correction) {
+            finding.alternatives.clear();
+            finding.reason = "below what the log resolves";
+        } else if (std::ranges::any_of(finding.alternatives, [&](const RivalFinding& rival) {
+                       return !(is_friction_loop(*rival.term.effect) && is_friction_loop(effect));
+                   })) {
+            finding.status = FindingStatus::ambiguous;
+            finding.reason = "another effect explains the log as well";
+        }
+        if (effect.name == "delay" && delay_s != 0.0) shift(finding, delay_s);
+        if (finding.status != FindingStatus::correction) doubt_short_travel(finding);
+        result_.rounds.push_back(std::move(finding));
     }
 
-    // A torque that repeats with the output angle has to be seen over a cycle of its own, and two of them
-    // until they are in opposition: over less, any weight bends alike. Where other joints move, or more than
-    // noise is left, it needs a whole turn to be distinguished from what that is.
-    void doubt_for_travel(const Case& c, const Model& model) {
-        const auto [low, high] = std::ranges::minmax(c.motion.position_deg);
-        const double turns = (high - low) / 360.0;
-        const bool may_be_other = options_.others_move || first_bench_ != nullptr;
+    // Over less than one of its cycles a torque of the output angle bends as a weight does.
+    void doubt_short_travel(Finding& finding) const {
+        if (finding.term.effect->name != "output-ripple") return;
+        const auto [low, high] = std::ranges::minmax(along_.motion.position_deg);
+        const double cycles = *finding.term.values.front() * (high - low) / turn_deg;
+        if (cycles >= 1.0) return;
+        finding.status = FindingStatus::ambiguous;
+        finding.reason = fmt::format(
+            "the travel of {:.0f} deg, {:.2g} of its cycles, does not distinguish it from a weight",
+            high - low, cycles);
+        const Effect& gravity = find_effect("gravity");
+        finding.alternatives.push_back({{&gravity, {finding.term.values[1], finding.term.values[2]}}, 0.0});
+    }
+
+    static void shift(Finding& delay, double by_s) {
+        delay.term.values.front() = *delay.term.values.front() + by_s;
+        for (FittedValue& value : delay.values) {
+            value.value += by_s;
+            if (value.ci95) value.ci95 = Interval{value.ci95->low + by_s, value.ci95->high + by_s};
+        }
+    }
+
+    // The delay of a simulation without motion was taken out before the search.
+    void restore_delay(double delay_s) {
+        const auto is_delay = [](const Finding& one) { return one.term.effect->name == "delay"; };
+        if (std::ranges::any_of(result_.rounds, is_delay)) {
+            for (Finding& finding : result_.rounds)
+                if (is_delay(finding)) finding.status = FindingStatus::confirmed;
+            return;
+        }
+        Finding finding;
+        finding.term = {&find_effect("delay"), {delay_s}};
+        finding.values = {{0, 0, delay_s, {}, {}, false}};
+        result_.rounds.push_back(std::move(finding));
+    }
+
+    // What the user takes into the model: the side of a tie in the place of the finding, or a term that was
+    // refused.
+    void accept() {
+        for (const std::string& name : options_.accept) {
+            const bool is_found = accept_side(name) || accept_refused(name);
+            if (!is_found) unknown_.push_back(name);
+        }
+    }
+
+    bool accept_side(const std::string& name) {
+        for (const Finding& finding : result_.rounds) {
+            if (finding.status != FindingStatus::ambiguous) continue;
+            const Term* side = finding.term.effect->name == name ? &finding.term : nullptr;
+            for (const RivalFinding& rival : finding.alternatives)
+                if (side == nullptr && rival.term.effect->name == name) side = &rival.term;
+            if (side == nullptr) continue;
+            accepted_.push_back({*side, finding.status, finding.reason});
+            replaced_.push_back(&finding);
+            return true;
+        }
+        return false;
+    }
+
+    bool accept_refused(const std::string& name) {
+        for (const RefusedCandidate& refused : result_.refused) {
+            if (refused.term.effect->name != name) continue;
+            accepted_.push_back({refused.term, FindingStatus::refused, refused.reason});
+            return true;
+        }
+        return false;
+    }
+
+    [[nodiscard]] bool is_replaced(const Finding& finding) const {
+        return std::ranges::find(replaced_, &finding) != replaced_.end();
+    }
+
+    // Own terms, then what was accepted, then the findings that are in the model, up to so many.
+    [[nodiscard]] Model model_with(std::size_t findings, const Finding* except = nullptr) const {
+        Model model = model_;
+        for (const AcceptedFinding& one : accepted_) model.terms.push_back(one.term);
+        for (std::size_t i = 0; i < findings; ++i) {
+            const Finding& finding = result_.rounds[i];
+            if (finding.is_in_model() && &finding != except && !is_replaced(finding))
+                model.terms.push_back(finding.term);
+        }
+        return model;
+    }
+
+    [[nodiscard]] SettledModel settled_with(std::size_t findings, const Finding* except = nullptr) const {
+        return settled(model_with(findings, except), along_, result_.gap.noise_floor_nm, departure_);
+    }
+
+    [[nodiscard]] double rms_of_other(const SettledModel& found) const {
+        return rms(residual_along(found.model, *other_, found.departure));
+    }
+
+    // The improved model: no addition may make a gap grow, here or on the validation log.
+    void improve() {
+        const std::size_t count = result_.rounds.size();
+        improved_ = settled_with(count);
+        settle_sizes();
+        settle_shapes();
+        if (other_) withdraw_on_other();
+        while (grows()) {
+            const auto newest =
+                std::find_if(result_.rounds.rbegin(), result_.rounds.rend(),
+                             [&](const Finding& f) { return f.is_in_model() && !is_replaced(f); });
+            if (newest == result_.rounds.rend()) break;
+            newest->status = FindingStatus::not_reproduced;
+            newest->reason = "with it a gap is larger than with the model as given";
+            is_withdrawn_ = true;
+            improved_ = settled_with(count);
+        }
+        double before_nm = rms(alone_.residual_nm);
+        std::size_t last = 0;
+        for (std::size_t i = 0; i < count; ++i)
+            if (result_.rounds[i].is_in_model()) last = i;
+        for (std::size_t i = 0; i < count; ++i) {
+            Finding& finding = result_.rounds[i];
+            if (!finding.is_in_model()) continue;
+            finding.gap_before_nm = before_nm;
+            finding.gap_after_nm = before_nm =
+                rms(i == last ? improved_.residual_nm : settled_with(i + 1).residual_nm);
+        }
+    }
+
+    // The search has its own load, motion and moved simulation. Where the improved model cannot have them its
+    // sizes are those that leave least along the motion of `simulate`.
+    void settle_sizes() {
+        if (engine_residual_nm_.empty()) return;
+        const double searched_nm = rms_where(engine_residual_nm_, along_.use);
+        if (rms_where(improved_.residual_nm, along_.use) < most_lost * searched_nm) return;
+        Model open = improved_.model;
+        const std::size_t first = model_.terms.size() + accepted_.size();
+        for (std::size_t place = first; place < open.terms.size(); ++place) {
+            const Effect& effect = *open.terms[place].effect;
+            for (std::size_t p = 0; p < effect.parameters.size(); ++p)
+                if (effect.parameters[p].linear || (effect.polar && effect.polar->phase == p))
+                    open.terms[place].values[p].reset();
+        }
+        const Model& own = model_;
+        std::copy(own.terms.begin(), own.terms.end(), open.terms.begin());
+        SettledModel found =
+            settled(open, along_, result_.gap.noise_floor_nm, improved_.departure, &improved_.model);
+        if (rms(found.residual_nm) > rms(improved_.residual_nm)) return;
+        std::size_t place = first;
         for (Finding& finding : result_.rounds) {
-            if (!is_trusted(finding) || finding.term.effect->name != "output-ripple") continue;
-            const double order = finding.term.values[0].value_or(1.0);
-            const bool is_alike = std::ranges::any_of(model.terms, [&](const Term& term) {
-                const auto other = output_order(term);
-                return other && *other != order && std::abs(*other - order) * turns < 0.5;
-            });
-            if (turns * order >= 1.0 && !is_alike && (turns >= 1.0 || !may_be_other)) continue;
-            finding.status = FindingStatus::tentative;
-            finding.reason =
-                fmt::format("the travel of {:.0f} deg, {:.2g} of its cycles, does not distinguish it from {}",
-                            high - low, turns * order, is_alike ? "another order" : "a weight");
+            if (!finding.is_in_model() || is_replaced(finding)) continue;
+            finding.term = found.model.terms[place];
+            for (const FittedValue& fitted : found.values)
+                for (FittedValue& value : finding.values)
+                    if (fitted.term == place && fitted.parameter == value.parameter) value = fitted;
+            ++place;
         }
+        departure_ = found.departure;
+        improved_ = std::move(found);
     }
 
-    // A fault of the set-up causes torques that effects of the joint may imitate.
-    void doubt_for_setup() {
-        if (options_.setup.empty()) return;
+    // A shape that the catalogue assumes is as assumed where that leaves less of all rows.
+    void assume_shapes() {
+        std::size_t place = model_.terms.size() + accepted_.size();
         for (Finding& finding : result_.rounds) {
-            if (!is_trusted(finding)) continue;
-            finding.status = FindingStatus::tentative;
-            finding.reason = "the fault of the set-up may cause it";
-        }
-    }
-
-    // With a known torque, uncertain findings may explain that torque's error, which counts as residual.
-    [[nodiscard]] bool is_residual_left(const Searched& found, const Candidate& last) const {
-        if (!options_.setup.empty()) return false;
-        const bool doubtful = std::any_of(result_.rounds.begin(), result_.rounds.end(), is_doubtful);
-        const Model& model = options_.given.empty() ? found.last.stated : last.stated;
-        return (doubtful || !result_.unexplained.empty()) &&
-               rms(found.bench->cleared_residual(model)) > limits::residual::least_left * found.noise.rms_nm;
-    }
-
-    // The excerpt chose; the whole log gives the values.
-    void report(const Searched& found, Candidate last, const Case& part,
-                const std::vector<ResidualRegion>& aside) {
-        const bool is_excerpt = part.size() < whole_.size();
-        Case all = is_excerpt ? whole_ : part;
-        if (is_excerpt) {
-            (void)set_aside(all, aside);
-            ModelBench bench(all, found.noise, work_);
-            bench.settle_on(last.stated);
-            last = bench.fitted(last.open, last.stated, last.prices, 4);
-            const Candidate first = as_given(bench, found.first);
-            result_.baseline = bench.fitted(first.open, first.stated, first.prices, 4).stated;
-        }
-        result_.samples_used = all.used();
-        add_unused_rows(result_.unused, all, "a disturbance of short duration");
-        result_.acts_where_unused = mainly_unused(effects_, all, model_);
-        while (true) {
-            const Candidate settled =
-                final_values(all, found.noise, last, {result_.faults, result_.rounds, own_}, work_);
-            report_model(settled);
-            measure(settled, found.noise, all);
-            if (!withdraw_for_gap(*found.bench, last)) break;
-        }
-        name_findings(result_);
-        for (const Fault& fault : result_.faults) result_.named.emplace_back(fault.term.effect->name);
-        result_.verdict = verdict_of(result_);
-    }
-
-    // The improved model with its values, and those of each finding.
-    void report_model(const Candidate& last) {
-        result_.model = last.stated;
-        result_.values = last.values;
-        for (FittedValue& value : result_.values)
-            widen_interval(value, last.stated.terms[value.term].effect->parameters[value.parameter],
-                           limits::values::interval_factor);
-        std::size_t place = own_;
-        for (Finding& finding : result_.rounds) {
-            if (is_doubtful(finding)) continue;
-            finding.term = last.stated.terms[place];
-            finding.values.clear();
-            for (const FittedValue& value : result_.values) {
-                if (value.term == place) finding.values.push_back(value);
+            if (!finding.is_in_model() || is_replaced(finding)) continue;
+            for (FittedValue& value : finding.values) {
+                const Parameter& parameter = finding.term.effect->parameters[value.parameter];
+                if (parameter.left_out != LeftOut::assumed) continue;
+                Model assumed = improved_.model;
+                assumed.terms[place].values[value.parameter] = parameter.start;
+                std::vector<double> left_nm = residual_along(assumed, along_, improved_.departure);
+                if (rms(left_nm) >= rms(improved_.residual_nm)) continue;
+                improved_.model = std::move(assumed);
+                improved_.residual_nm = std::move(left_nm);
+                finding.term.values[value.parameter] = value.value = parameter.start;
+                if (value.ci95 && (value.value < value.ci95->low || value.value > value.ci95->high))
+                    value.ci95.reset();
             }
             ++place;
         }
     }
 
-    // The gaps; they equal those of `simulate` with the same model and log.
-    void measure(const Candidate& last, const NoiseFloor& noise, const Case& all) {
-        const KnownValues known = fit_known_values(all, last.stated, noise);
-        // The uncertain values of an arm are also fitted with the model as given.
-        const KnownValues alone = fit_known_values(all, result_.baseline, noise);
-        result_.given = reported_values(options_.given, known);
-        given_alone_ = reported_values(options_.given, alone);
-        const Case improved = with_known_values(whole_, known), as_given = with_known_values(whole_, alone);
-        const auto of_other = [&](const KnownValues& values) {
-            return other_ ? std::optional(with_known_values(*other_, values)) : std::nullopt;
-        };
-        const std::optional<Case> other = of_other(known), other_as_given = of_other(alone);
-        // A fault of the converter belongs to the model where that predicts the log better with it.
+    // The step of a friction at standstill, where no rows are searched, is the one that leaves least of all
+    // rows, within its interval.
+    void settle_shapes() {
+        if (good_.empty()) return;
+        assume_shapes();
+        Model open = improved_.model;
+        std::vector<std::pair<Finding*, std::size_t>> shapes;  // and the place of the value
+        std::size_t place = model_.terms.size() + accepted_.size();
+        for (Finding& finding : result_.rounds) {
+            if (!finding.is_in_model() || is_replaced(finding)) continue;
+            for (std::size_t v = 0; v < finding.values.size(); ++v) {
+                const FittedValue& value = finding.values[v];
+                const Parameter& parameter = finding.term.effect->parameters[value.parameter];
+                if (parameter.linear || parameter.left_out != LeftOut::fitted ||
+                    finding.term.effect->domain != Domain::speed)
+                    continue;
+                open.terms[place].values[value.parameter].reset();
+                shapes.emplace_back(&finding, v);
+            }
+            ++place;
+        }
+        if (shapes.empty()) return;
+        LogAlong whole = along_;
+        whole.use = good_;
+        const SettledModel found =
+            settled(open, whole, result_.gap.noise_floor_nm, improved_.departure, &improved_.model);
+        if (rms(found.residual_nm) >= rms(improved_.residual_nm)) return;
+        for (std::size_t i = 0; i < shapes.size(); ++i) {
+            FittedValue& value = shapes[i].first->values[shapes[i].second];
+            const bool is_determined =
+                value.standard_error.value_or(0.0) < undetermined_error * std::abs(value.value);
+            value.value = found.values[i].value;
+            if (value.ci95 && is_determined)
+                value.value = std::clamp(value.value, value.ci95->low, value.ci95->high);
+            else if (value.ci95 && (value.value < value.ci95->low || value.value > value.ci95->high))
+                value.ci95.reset();
+            shapes[i].first->term.values[value.parameter] = value.value;
+        }
+        improved_ = settled_with(result_.rounds.size());
+    }
+
+    [[nodiscard]] bool grows() const {
+        if (!accepted_.empty()) return false;
+        if (rms(improved_.residual_nm) > rms(alone_.residual_nm)) return true;
+        return other_ && rms_of_other(improved_) > rms_of_other(alone_);
+    }
+
+    // The finding that the validation log speaks against most is withdrawn, until none is left.
+    void withdraw_on_other() {
+        const std::size_t count = result_.rounds.size();
+        while (true) {
+            const double with_nm = rms_of_other(improved_);
+            Finding* worst = nullptr;
+            double least_nm = with_nm;
+            for (Finding& finding : result_.rounds) {
+                if (!finding.is_in_model() || is_replaced(finding)) continue;
+                const double without_nm = rms_of_other(settled_with(count, &finding));
+                finding.validation_before_nm = without_nm;
+                finding.validation_after_nm = with_nm;
+                if (finding.status == FindingStatus::correction || without_nm >= least_nm) continue;
+                least_nm = without_nm;
+                worst = &finding;
+            }
+            if (worst == nullptr) return;
+            worst->status = FindingStatus::not_reproduced;
+            worst->reason = "with it the residual of the validation log is larger";
+            is_withdrawn_ = true;
+            improved_ = settled_with(count);
+        }
+    }
+
+    void report() {
+        DiagnosisGap& gap = result_.gap;
+        result_.model = improved_.model;
+        std::ranges::copy_if(improved_.values, std::back_inserter(result_.values),
+                             [&](const FittedValue& value) { return value.term < model_.terms.size(); });
+        std::size_t place = model_.terms.size() + accepted_.size();
+        for (Finding& finding : result_.rounds) {
+            if (!finding.is_in_model() || is_replaced(finding)) continue;
+            for (FittedValue& value : finding.values) value.term = place;
+            result_.values.insert(result_.values.end(), finding.values.begin(), finding.values.end());
+            ++place;
+        }
+        add_faults_to_model();
+        result_.residual_before_nm = alone_.residual_nm;
+        result_.residual_after_nm = residual_along(result_.model, along_, improved_.departure);
+        gap.before_nm = rms(result_.residual_before_nm);
+        gap.after_nm = rms(result_.residual_after_nm);
+        gap.closed_percent = closed_percent(gap.before_nm, gap.after_nm, gap.noise_floor_nm);
+        if (other_) {
+            gap.validation_before_nm = rms_of_other(alone_);
+            gap.validation_after_nm = rms(residual_along(result_.model, *other_, improved_.departure));
+            gap.validation_closed_percent =
+                closed_percent(*gap.validation_before_nm, *gap.validation_after_nm, gap.noise_floor_nm);
+        }
+        result_.given = values_of_given(options_.given, improved_);
+        if (!options_.given.empty()) {
+            result_.beside_given_nm =
+                residual_along({result_.model.gear_ratio, {}}, along_, improved_.departure);
+            result_.bands = band_gaps(log_.torque_nm, result_.beside_given_nm, result_.residual_after_nm,
+                                      log_.sample_rate);
+        }
+        // What the search leaves along its own motion, unless the improved model leaves less; withdrawn and
+        // accepted terms change that.
+        const bool is_as_searched =
+            !is_withdrawn_ && accepted_.empty() && !engine_residual_nm_.empty() &&
+            rms_where(engine_residual_nm_, along_.use) < rms_where(result_.residual_after_nm, along_.use);
+        if (options_.setup.empty())
+            result_.remaining = remaining_residual(
+                along_.motion, is_as_searched ? engine_residual_nm_ : result_.residual_after_nm, along_.use,
+                gap.noise_floor_nm);
+        result_.accepted = accepted_;
+        std::erase_if(result_.rounds, [&](const Finding& finding) { return is_replaced(finding); });
+        name_findings(result_);
+        for (const std::string& name : unknown_)
+            result_.not_accepted.push_back(why_not_accepted(result_, name));
+        result_.verdict = verdict_of(result_);
+        if (!accepted_.empty() &&
+            (result_.verdict == DiagnosisVerdict::matches || result_.verdict == DiagnosisVerdict::explained))
+            result_.verdict = DiagnosisVerdict::partly_explained;
+        result_.next = next_steps(result_, along_.motion);
+    }
+
+    // A fault of the converter belongs to the model where that predicts the log better with it.
+    void add_faults_to_model() {
+        double left_nm = rms_where(improved_.residual_nm, along_.use);
         for (const Fault& fault : result_.faults) {
             Model with = result_.model;
             with.terms.push_back(fault.term);
-            if (left_rms(improved, with) <= left_rms(improved, result_.model))
-                result_.model = std::move(with);
+            const double with_nm = rms_where(residual_along(with, along_, improved_.departure), along_.use);
+            if (with_nm > left_nm || rms(residual_along(with, along_, improved_.departure)) >
+                                         rms(residual_along(result_.model, along_, improved_.departure)))
+                continue;
+            left_nm = with_nm;
+            result_.model = std::move(with);
         }
-        const GapCase log_gap{as_given, improved};
-        const std::optional<GapCase> other_gap =
-            other ? std::optional<GapCase>({*other_as_given, *other}) : std::nullopt;
-        measure_gap(result_, log_gap, other_gap ? &*other_gap : nullptr);
-        if (options_.given.empty()) return;
-        result_.residual_before_nm = residual_nm(as_given, result_.baseline);
-        result_.residual_after_nm = residual_nm(improved, result_.model);
-        result_.beside_given_nm = residual_nm(improved, {result_.model.gear_ratio, {}});
-    }
-
-    // A model whose residual exceeds that of the one given, here or on the validation log, is no improvement:
-    // the newest finding is withdrawn, or with none the previous values are restored. True when something was
-    // withdrawn.
-    [[nodiscard]] bool withdraw_for_gap(const ModelBench& bench, Candidate& last) {
-        const DiagnosisGap& gap = result_.gap;
-        const bool grows_here = gap.after_nm > gap.before_nm;
-        const bool grows_there =
-            gap.validation_after_nm && *gap.validation_after_nm > *gap.validation_before_nm;
-        if (!grows_here && !grows_there) return false;
-        std::size_t place = last.stated.terms.size();
-        for (auto finding = result_.rounds.rbegin(); finding != result_.rounds.rend(); ++finding) {
-            if (is_doubtful(*finding)) continue;
-            finding->status = FindingStatus::not_reproduced;
-            finding->reason = fmt::format(
-                "with it the residual of {} is larger with the improved model than with the model as given",
-                grows_here ? "the log" : "the validation log");
-            last = without_term(bench, last, --place);
-            return true;
-        }
-        result_.model = result_.baseline;
-        result_.given = given_alone_;
-        result_.gap.after_nm = gap.before_nm;
-        result_.gap.validation_after_nm = gap.validation_before_nm;
-        result_.gap.closed_percent = result_.gap.closed_percent ? std::optional(0.0) : std::nullopt;
-        result_.gap.validation_closed_percent =
-            result_.gap.validation_closed_percent ? std::optional(0.0) : std::nullopt;
-        result_.residual_after_nm = result_.residual_before_nm;
-        return false;
     }
 
     const DiagnosisOptions& options_;
     Model model_;
-    bool has_position_, other_has_position_ = false, fits_offset_ = false, moves_both_ways_ = true;
-    Case whole_;
-    std::optional<Case> other_;
-    Work work_, more_work_;
-    std::vector<GivenValue> given_alone_;      ///< fitted with the model as given
-    const ModelBench* first_bench_ = nullptr;  ///< with the noise of the first search, during the second
-    std::size_t own_ = 0;                      ///< terms of the model as given
-    std::vector<std::string> without_;
-    std::vector<const Effect*> effects_;
+    const TraceView& log_;
+    const GivenTerm* simulated_;
+    LogAlong along_;
+    std::optional<LogAlong> other_;
+    std::vector<unsigned char> good_;  ///< rows that hold the joint's torque
+    SettledModel alone_, improved_;
+    std::vector<double> engine_residual_nm_, departure_;
+    std::vector<AcceptedFinding> accepted_;
+    std::vector<const Finding*> replaced_;
+    std::vector<std::string> unknown_;
+    bool is_withdrawn_ = false;
     Diagnosis result_;
 };
 

@@ -248,12 +248,11 @@ Json row_of(const Finding& finding) {
     Json row{{"effect", finding.term.effect->name}, {"status", status_name(finding.status)}};
     if (!finding.reason.empty()) row["reason"] = finding.reason;
     row["parameters"] = parameters_json(finding.term, finding.values);
-    row["where"] = place_json(finding.where);
-    row["explains_nm"] = finite_or_null(finding.evidence.share_nm);
+    row["times_the_noise"] = finite_or_null(to_digits(finding.evidence.noise_share, 4));
     row["gap_nm"] = gap_from_to(finding.gap_before_nm, finding.gap_after_nm);
     if (finding.validation_before_nm)
         row["validation_nm"] = gap_from_to(*finding.validation_before_nm, *finding.validation_after_nm);
-    const std::string rivals = joined(finding.alternatives, ", ", &RivalFinding::effect);
+    const std::string rivals = joined(finding.alternatives, ", ", &RivalFinding::name);
     if (!rivals.empty()) row["rivals"] = rivals;
     return row;
 }
@@ -526,7 +525,7 @@ bool is_ledger(const std::string& kind, const std::string& name) {
     constexpr std::array shown = {
         Shown{"joint", "lines"},           Shown{"table", "bands"},         Shown{"metrics", "orders"},
         Shown{"metrics", "switches"},      Shown{"comparison", "methods"},  Shown{"diagnosis", "rounds"},
-        Shown{"diagnosis", "faults"},      Shown{"diagnosis", "ambiguous"}, Shown{"diagnosis", "unexplained"},
+        Shown{"diagnosis", "faults"},      Shown{"diagnosis", "ambiguous"}, Shown{"diagnosis", "remaining"},
         Shown{"diagnosis", "undecidable"}, Shown{"trend", "alerts"}};
     const bool chosen =
         std::any_of(shown.begin(), shown.end(), [&](const Shown& s) { return s.kind == kind; });

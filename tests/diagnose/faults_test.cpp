@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Faults of the converter, each with what can be taken for it.
-#include "diagnose/case/case.hpp"
+#include "diagnose/answer/log_faults.hpp"
 
 #include <fmt/format.h>
 
@@ -15,6 +15,25 @@ using namespace ripplenotch;
 using namespace ripplenotch::fixture;
 
 namespace {
+
+// A log with what is looked for in it.
+struct Case {
+    Motion motion;
+    std::vector<double> torque_nm;
+    std::vector<unsigned char> use;
+    [[nodiscard]] std::size_t size() const { return torque_nm.size(); }
+    [[nodiscard]] std::size_t used() const {
+        return static_cast<std::size_t>(std::count(use.begin(), use.end(), 1));
+    }
+};
+
+std::vector<Fault> find_faults(Case& c) { return ripplenotch::find_faults(c.motion, c.torque_nm, c.use); }
+
+Case whole_case(const TraceView& log, Seconds smoothing) {
+    return {motion_along(log, smoothing),
+            {log.torque_nm.begin(), log.torque_nm.end()},
+            std::vector<unsigned char>(log.size(), 1)};
+}
 
 Case case_with(std::initializer_list<std::string> hidden, std::uint64_t seed = 1) {
     Model truth = joint();

@@ -8,13 +8,13 @@ import numpy as np
 from prove_diagnose import cases, score
 
 
-def diagnosis(rounds, ambiguous=(), unexplained=()):
+def diagnosis(rounds, ambiguous=(), remaining=None):
     """rounds: (effect, status, {parameter: (value, low, high)})"""
     entries = [{"effect": effect, "status": status,
                 "parameters": {name: {"value": v, "ci95": [low, high]} for name, (v, low, high) in given.items()}}
                for effect, status, given in rounds]
     return {"verdict": "explained", "rounds": entries, "named": [r[0] for r in rounds if r[1] == "confirmed"],
-            "ambiguous": [{"effects": list(names)} for names in ambiguous], "unexplained": list(unexplained)}
+            "ambiguous": [{"effects": list(names)} for names in ambiguous], "remaining": remaining}
 
 
 RIPPLE = {"effect": "ripple", "order": 3, "amplitude_nm": 0.2, "phase_deg": 175.0}
@@ -80,6 +80,6 @@ class Gap(unittest.TestCase):
 
     def test_a_place_counts_when_it_overlaps_and_is_not_the_whole_log(self):
         case = cases.studies("outside", 1)[0]
-        for spans, right in (([[10.1, 10.3]], True), ([[0.0, 40.0]], False), ([[20.0, 20.5]], False), ([], False)):
-            found = diagnosis([], unexplained=[{"where": {"time_s": spans}}])
-            self.assertEqual(score.place(case, (10.0, 10.4), found), right, spans)
+        for span, right in (([10.1, 10.3], True), ([0.0, 40.0], False), ([20.0, 20.5], False), (None, False)):
+            found = diagnosis([], remaining=span and {"kind": "time", "where": span})
+            self.assertEqual(score.place(case, (10.0, 10.4), found), right, span)

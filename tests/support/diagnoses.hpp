@@ -13,10 +13,8 @@ inline Finding coulomb_finding() {
     Finding finding;
     finding.term = parse_term("coulomb-friction,torque_nm=0.49985,width_deg_s=2");
     finding.values = {{1, 0, 0.49985, {}, Interval{0.4987246838, 0.5009686948}, false}};
-    finding.where.speed_deg_s = {{10.0, 90.0}};
-    finding.where.direction = Direction::both;
-    finding.evidence = {773388.0, 34.9626, 0.432205, 8.70051, 0.432622, 0.0, 0.959804};
-    finding.alternatives = {{find_effect("offset").name, 2.5}};
+    finding.evidence = {773388.0, 34.9626, 8.70051, 0.959804};
+    finding.alternatives = {{parse_term("offset,torque_nm=0.4"), 2.5}};
     finding.gap_before_nm = 0.434974;
     finding.gap_after_nm = 0.0496759;
     finding.validation_before_nm = 0.433479;
@@ -30,9 +28,7 @@ inline Finding tone_finding() {
     finding.status = FindingStatus::ambiguous;
     finding.reason = "another effect explains as much";
     finding.values = {{2, 0, 50.0, {}, Interval{49.9, 50.1}, false}, {2, 1, 0.02, {}, {}, true}};
-    finding.where.time_s = {{0.5, 2.25}, {4.0, 5.0}};
-    finding.where.hz = {50.0};
-    finding.evidence.share_nm = 0.0141;
+    finding.evidence.noise_share = 0.298;
     finding.gap_before_nm = 0.0496759;
     finding.gap_after_nm = 0.0475;
     return finding;
@@ -50,17 +46,14 @@ inline Diagnosis full_diagnosis() {
     diagnosis.faults = {{parse_term("quantization,step_nm=0.01"), 12, {{1.5, 1.5}}, "steps of 0.01 Nm"}};
     diagnosis.named = {"coulomb-friction"};
     diagnosis.ambiguous = {{{"tone", "ripple"}, "move at another speed"}};
-    diagnosis.unexplained = {
-        {RegionKind::time, {{{3.0, 3.5}}, {}, {}, {}, {}, Direction::positive}, 0.25, 0.125}};
-    diagnosis.disagreement = {{RegionKind::order, {{}, {}, {}, {}, {2.0}}, 0.4, 0.75}};
-    diagnosis.undecidable = {{find_effect("gravity").name, "the log has no position", 0.1}};
+    diagnosis.refused = {{parse_term("lag,time_constant_s=0.01"), "few stretches of the log carry it"}};
+    diagnosis.remaining = RemainingResidual{0.0575, RegionKind::time, {3.0, 3.5}, 0.625};
+    diagnosis.undecidable = {{find_effect("gravity").name, "the log has no position"}};
     diagnosis.gap = {0.434974, 0.0475, 0.0474, 99.9, {}, {}, {}};
     diagnosis.samples = 9050;
     diagnosis.samples_used = 9000;
-    diagnosis.evaluations = 321.0;
-    diagnosis.search_ended = true;
+    diagnosis.smoothing_s = 0.025;
     diagnosis.has_position = true;
-    diagnosis.noise_color = {0.25, -0.125};
     return diagnosis;
 }
 

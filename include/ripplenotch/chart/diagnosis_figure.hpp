@@ -30,8 +30,8 @@ struct Residuals {
 [[nodiscard]] Figure gap_figure(const std::string& title, const Diagnosis& diagnosis);
 
 /// The gap from round to round, and the residual of the model as given and of the improved one: against time,
-/// and over position and speed. Runs both models along the log's motion with the smoothing of the diagnosis.
+/// and over position and speed.
 [[nodiscard]] Figure diagnosis_figure(const std::string& source, const Diagnosis& diagnosis,
-                                      const TraceView& log, Seconds smoothing);
+                                      const TraceView& log);
 
 }  // namespace ripplenotch

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Where a model of a joint and a measured log disagree, which effect of the catalogue is missing, and how far
-// the gap shrinks when it is added.
+// Which effects of the catalogue a model of a joint lacks, from one log, and how far the gap shrinks when
+// they are added.
 
 #include <optional>
 #include <span>
@@ -18,24 +18,21 @@
 
 namespace ripplenotch {
 
-/// How sure a finding is. Only confirmed ones are named.
 enum class FindingStatus {
     confirmed,
-    ambiguous,         ///< another effect explains the log as well
-    tentative,         ///< an unexplained region depends on the same variable
-    immaterial,        ///< there, and too small to matter
-    shape_correction,  ///< mends the form of a larger finding
-    /// Two large torques that cancel, or a size within its error: not determined by this log.
-    unidentifiable,
-    not_reproduced,  ///< the validation log is predicted worse with it than without
+    ambiguous,       ///< in the model; another effect explains the log as well
+    correction,      ///< in the model and not named: below what the log resolves, or what the user's side is
+                     ///< uncertain by
+    not_reproduced,  ///< not in the model: with it the gap of a log grows
+    refused,         ///< not in the model: tried last, and not admitted; no finding
 };
 [[nodiscard]] std::string_view status_name(FindingStatus status);
 
 enum class DiagnosisVerdict {
-    matches,           ///< the model explains the log: nothing is missing
-    explained,         ///< it does with what was named, or with either side of a tie
+    matches,           ///< nothing is missing, and noise is left
+    explained,         ///< noise is left with what was named, or with either side of a tie
     partly_explained,  ///< something was named, something is left
-    unexplained,       ///< something is left that no effect explains
+    unexplained,       ///< nothing was named, something is left
     /// Another interpretation of the log, equally possible, gives another result: see Diagnosis::doubt.
     undecided,
 };
@@ -46,47 +43,36 @@ struct Span {
     bool operator==(const Span&) const = default;
 };
 
-enum class Direction {
-    at_rest_too,  ///< in none in particular, and at standstill
-    positive,
-    negative,
-    both,  ///< wherever it moves
-};
-/// "positive", "negative", "both"; empty for at_rest_too.
-[[nodiscard]] std::string_view direction_name(Direction direction);
-
-/// Where in a log something acts. Empty lists: nowhere in particular.
-struct Place {
-    std::vector<Span> time_s, speed_deg_s, position_deg;
-    std::vector<double> hz, order;  ///< order: cycles per motor revolution
-    Direction direction = Direction::at_rest_too;
-    std::vector<double> order_output = {};  ///< cycles per output revolution, where no gear ratio is known
-};
-
-/// The evidence for a finding.
+/// What speaks for a finding.
 struct Evidence {
-    double gain =
-        0.0;  ///< fall of the sum of squares in units of the noise's variance, without it less with it
-    double price = 0.0;        ///< gain that chance might bring, given all that was tried
-    double share_nm = 0.0;     ///< rms torque that only this finding explains
-    double share_sigma = 0.0;  ///< the same in units of the noise floor
-    double own_nm = 0.0;       ///< rms of its whole torque, of which others might explain a part as well
-    double sized_nm = 0.0;     ///< the same of its size alone, without a number that acts where the size is 0
-    double raw_gain = 0.0;     ///< fall of the sum of squares of the residual, Nm^2
-    double elsewhere = 0.0;    ///< part of the gain that is left without its best stretch of the log
-    double t = 0.0;            ///< the gain in units of its own standard error over blocks of the log
-    std::size_t blocks = 0,
-                blocks_positive = 0;  ///< blocks of a second or more; those with a reduction of squares
+    double reduction = 0.0;        ///< of the criterion (squares in units of the noise, prices) by it alone
+    double block_t = 0.0;          ///< mean reduction of a block of the log over its standard error
+    double noise_share = 0.0;      ///< rms torque that it alone explains, in units of the noise
+    double explained_share = 0.0;  ///< the squares of it, as a share of those of the gap
 };
 
-/// A rival that is behind by less is not told from a finding: 400 to 1 were both as likely.
-inline constexpr double tie_margin = 12.0;
 /// Fewer samples do not distinguish noise from torque: the log is refused.
 inline constexpr std::size_t fewest_samples_diagnosed = 200;
 
+/// Another effect that explains the log about as well in place of a finding.
 struct RivalFinding {
-    std::string_view effect;
-    double margin = 0.0;  ///< gain by which the finding is ahead of it
+    Term term;            ///< with its values
+    double margin = 0.0;  ///< reduction by which the finding is ahead of it
+    [[nodiscard]] std::string_view name() const { return term.effect->name; }
+};
+
+struct Finding {
+    Term term;  ///< with its values
+    FindingStatus status = FindingStatus::confirmed;
+    std::vector<FittedValue> values;  ///< its fitted parameters
+    Evidence evidence;
+    std::vector<RivalFinding> alternatives;
+    double gap_before_nm = 0.0, gap_after_nm = 0.0;  ///< in the order of the findings
+    /// rms residual of the validation log, without it and with it, together with all others.
+    std::optional<double> validation_before_nm, validation_after_nm;
+    std::string reason;  ///< of a status other than confirmed, a clause
+
+    [[nodiscard]] bool is_in_model() const { return status <= FindingStatus::correction; }
 };
 
 /// A candidate that the search did not add in its last step.
@@ -95,43 +81,28 @@ struct RefusedCandidate {
     std::string reason;
 };
 
-/// One effect that was added, in the order of adoption.
-struct Finding {
-    Term term;  ///< with its values
-    FindingStatus status = FindingStatus::confirmed;
-    std::vector<FittedValue> values;  ///< its fitted parameters
-    Place where;
-    Evidence evidence;
-    std::vector<RivalFinding> alternatives;
-    double gap_before_nm = 0.0, gap_after_nm = 0.0;
-    /// rms residual of the validation log, without it and with it, together with all accepted findings.
-    std::optional<double> validation_before_nm, validation_after_nm;
-    std::string reason;  ///< reason of a status other than confirmed, as text
-};
-
 /// Effects between which this log does not decide.
 struct Tie {
     std::vector<std::string> effects;
     std::string advice;  ///< the experiment that would
 };
 
-/// The variable in which a region is confined.
-enum class RegionKind { time, tone, order, position, speed };
+/// The variable in which a residual is confined.
+enum class RegionKind { throughout, time, speed, position, tone };
 [[nodiscard]] std::string_view region_kind_name(RegionKind kind);
 
-/// Something that no effect of the catalogue explains.
-struct ResidualRegion {
-    RegionKind kind = RegionKind::time;
-    Place where;
-    double rms_nm = 0.0;  ///< within the place
-    double part = 0.0;    ///< share of the squared residual of the whole log
+/// What the improved model leaves above the noise.
+struct RemainingResidual {
+    double rms_nm = 0.0;  ///< over the samples used, noise included
+    RegionKind kind = RegionKind::throughout;
+    Span where;         ///< s, deg/s, deg or Hz
+    double part = 1.0;  ///< of what is left
 };
 
 /// An effect that is not examined: this log does not let it be, or the gear ratio is not known.
 struct Undecidable {
     std::string_view effect;
     std::string reason;
-    double would_explain_nm = 0.0;  ///< rms torque, under the assumption made for the missing measurement
 };
 
 /// A fault of the converter that was seen in the log itself.
@@ -149,12 +120,11 @@ struct BandGap {
     double torque_nm = 0.0, beside_given_nm = 0.0, after_nm = 0.0;
 };
 
-/// A finding that is uncertain from this log and that the user takes into the model.
+/// What the user takes into the model although the log leaves it uncertain.
 struct AcceptedFinding {
-    Term term;                                        ///< with its values, of the last fit
-    FindingStatus status = FindingStatus::tentative;  ///< before
-    std::string reason;                               ///< reason against it
-    std::vector<FittedValue> values;
+    Term term;                                      ///< with its values
+    FindingStatus status = FindingStatus::refused;  ///< before
+    std::string reason;                             ///< against it
 };
 
 /// A value of a given term.
@@ -165,49 +135,29 @@ struct GivenValue {
 };
 
 struct DiagnosisGap {
-    double before_nm = 0.0, after_nm = 0.0;  ///< rms of measured less predicted torque, samples in order
-    double noise_floor_nm = 0.0;
+    double before_nm = 0.0, after_nm = 0.0;  ///< rms of measured less predicted torque, all samples
+    double noise_floor_nm = 0.0;             ///< the least that any smooth law leaves
     /// Share of the squared gap above the floor that was closed; empty when there was none.
     std::optional<double> closed_percent;
     std::optional<double> validation_before_nm, validation_after_nm, validation_closed_percent;
 };
 
-/// The correction of the angle from the ripple, where a log has no position.
-struct AngleAccount {
-    double walk_deg = 0.0;  ///< rms by which the integral of the log's velocity was moved, less its mean
-    /// Where the validation log begins, in the angle of the log; empty where both have a position.
-    std::optional<double> validation_start_deg;
-};
-
-/// Rows of the log that nothing is fitted to.
-struct UnusedRows {
-    std::string reason;
-    std::size_t rows = 0;
-};
-
-/// An effect that acts mainly in rows that nothing is fitted to.
-struct EffectOfUnusedRows {
-    std::string effect;
-    std::size_t rows = 0, unused = 0;  ///< rows in which it acts, and how many of these are unused
-};
-
 struct Diagnosis {
     DiagnosisVerdict verdict = DiagnosisVerdict::matches;
-    Model baseline;  ///< the model as given, with the values that were fitted to it alone
-    Model model;     ///< the improved one: with the findings, except tentative or unidentifiable ones
-    std::vector<FittedValue> values;  ///< every fitted value of the improved model
+    Model baseline;                   ///< the model as given, with the values that were fitted to it alone
+    Model model;                      ///< the improved one
+    std::vector<FittedValue> values;  ///< of the improved model's own terms, where they were open
     std::vector<Finding> rounds;
     std::vector<RefusedCandidate> refused;
     std::vector<Fault> faults;
     std::vector<std::string> named;
     std::string doubt;  ///< one sentence, where the verdict is undecided
     std::vector<Tie> ambiguous;
-    std::vector<ResidualRegion> unexplained;
     std::vector<Undecidable> undecidable;
+    std::optional<RemainingResidual> remaining;  ///< empty: noise
     DiagnosisGap gap;
     std::vector<GivenValue> given;  ///< values of the given terms, in their order
-    /// With known terms: measured less predicted torque of the model as given and of the improved one, an
-    /// entry per row of the log. Empty without known terms: a model's own prediction gives it then.
+    /// Measured less predicted torque of the model as given and of the improved one, an entry per row.
     std::vector<double> residual_before_nm, residual_after_nm;
     std::vector<double> beside_given_nm;  ///< with known terms: torque less their contribution, as fitted
     std::vector<BandGap> bands;           ///< with known terms
@@ -219,48 +169,32 @@ struct Diagnosis {
     /// How far the log is behind the user's simulation, where their motions show it. The known torque is
     /// shifted by that: it is no effect of the model.
     std::optional<SimulationLag> alignment;
-    bool residual_in_noise = false;  ///< names were weighed against noise that holds what nothing explains
-    std::vector<ResidualRegion>
-        disagreement;  ///< where the model as given and the log disagree, largest first
     std::size_t samples = 0, samples_used = 0;
-    std::vector<UnusedRows> unused;                     ///< with those of `samples_used` all samples
-    std::vector<EffectOfUnusedRows> acts_where_unused;  ///< effects that were tried
-    /// Evaluations of a model along the samples searched, and whether the search was ended for their number.
-    double evaluations = 0.0;
-    bool search_ended = false;
+    double smoothing_s = 0.0;  ///< window of the motion along which effects were searched
     bool has_position = false;
-    std::optional<AngleAccount> angle;  ///< where the log or the validation log has no position
-    std::vector<double> noise_color;    ///< a1 ... ap of FitOptions::noise_color
-    double false_alarm = 0.01;          ///< chance that a log with nothing hidden gets a name, by design
 };
 
 struct DiagnosisOptions {
-    Seconds smoothing = default_smoothing;
+    Seconds smoothing = default_smoothing;      ///< of the motion along which the gap is measured
     std::span<const std::string> without = {};  ///< names of effects that are not tried
-    /// Names of findings that are taken into the model although the log leaves them uncertain; used by
-    /// diagnose_in_full.
+    /// Names of uncertain findings that are taken into the model: a side of a tie, a refused candidate.
+    /// Others are told in Diagnosis::not_accepted.
     std::span<const std::string> accept = {};
     /// Terms that are stated and not searched, a column per value and a row per row of the log; the same of
     /// the validation log, where there is one.
     std::span<const GivenTerm> given = {}, validation_given = {};
-    /// Faults of the set-up that are known beforehand. The known terms are wrong then, so that no name is
-    /// confirmed.
+    /// The simulation's own motion, an entry per row of the log; empty: not known.
+    std::span<const double> simulated_velocity_deg_s = {}, simulated_position_deg = {};
+    /// Faults of the set-up that are known beforehand. The known terms are wrong then: nothing is searched.
     std::span<const SetupFault> setup = {};
-    bool others_move = false;  ///< joints of the same arm, whose torque on this one no term holds
-    /// A delay at which the search for one begins as well.
+    /// How late the log is by its torques, where the simulation has no motion: a delay is searched about it.
     std::optional<Seconds> expected_delay = {};
 };
 
 /// Diagnoses a log of at least fewest_samples_diagnosed. `validation` is another log that nothing is
-/// fitted to; it may be absent. Throws UsageError: an unknown name in `without`, a
-/// model whose lines are not stated; DataError: a log too short, or without motion.
+/// fitted to; it may be absent. Throws UsageError: an unknown name in `without`, a model whose lines are not
+/// stated; DataError: a log too short, or without motion.
 [[nodiscard]] Diagnosis diagnose(const Model& model, const TraceView& log, const TraceView* validation,
                                  const DiagnosisOptions& options = {});
-
-/// diagnose(), then once more with what the user accepts as a part of the model, its values open: gap and
-/// disagreement are those before that. A name that is neither uncertain nor a side of a tie is reported in
-/// `not_accepted`. `next` and `bands` are filled in, too. Throws as diagnose().
-[[nodiscard]] Diagnosis diagnose_in_full(const Model& model, const TraceView& log,
-                                         const TraceView* validation, const DiagnosisOptions& options = {});
 
 }  // namespace ripplenotch

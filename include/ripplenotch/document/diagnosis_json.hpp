@@ -39,9 +39,8 @@ struct DiagnosedJoint {
 [[nodiscard]] std::string write_friction(const FrictionDiagnosis& found, const Provenance& provenance);
 
 /// Reads a diagnosis back; `source` is its name in messages. What the document does not hold is not known
-/// then: values of Diagnosis::baseline are empty, Evidence::raw_gain is nan,
-/// FittedValue has no standard error, and a finding's values have the place that it would have if every round
-/// were in the model. Throws DataError that names `source`, the field, what it holds and what was expected.
+/// then: values of Diagnosis::baseline are empty, and FittedValue has no standard error. Throws DataError
+/// that names `source`, the field, what it holds and what was expected.
 [[nodiscard]] Diagnosis read_diagnosis(std::string_view text, const std::string& source);
 
 }  // namespace ripplenotch

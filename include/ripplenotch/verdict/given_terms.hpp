@@ -122,11 +122,13 @@ struct GivenLog {
 struct GivenTerms {
     std::vector<GivenTerm> log, validation;
     std::optional<SimulatedTerm> simulated;  ///< as stated
-    std::optional<StatedArm> arm;            ///< as stated, or as --arm has it
-    std::optional<ArmAccount> account;       ///< of the arm
-    std::vector<std::string> files;          ///< that were read in addition to the logs
-    std::optional<SetupAnswer> setup;        ///< of simulation and log, where it was asked for
-    std::shared_ptr<GivenArm> fitted_arm;    ///< whose values are found with the rest; null: all are stated
+    /// The simulation's own motion at the rows of the log; empty where it has none.
+    std::vector<double> simulated_velocity_deg_s, simulated_position_deg;
+    std::optional<StatedArm> arm;          ///< as stated, or as --arm has it
+    std::optional<ArmAccount> account;     ///< of the arm
+    std::vector<std::string> files;        ///< that were read in addition to the logs
+    std::optional<SetupAnswer> setup;      ///< of simulation and log, where it was asked for
+    std::shared_ptr<GivenArm> fitted_arm;  ///< whose values are found with the rest; null: all are stated
 
     /// "simulated.scale", "arm.links": values that are not stated yet; empty: none.
     [[nodiscard]] std::vector<std::string> open() const;

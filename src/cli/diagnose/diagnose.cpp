@@ -128,9 +128,8 @@ ExitCode run_one(const DiagnoseRequest& request, GivenSource& given, const std::
                                      one.given.account ? &*one.given.account : nullptr, mjcf_of(one))
                    : story(request, one),
                ByteSink::Overwrite::no);
-    draw_plot(request.plot, request.common, one.provenance, [&] {
-        return diagnosis_figure(request.path, one.diagnosis, one.log.trace.view(), request.smoothing);
-    });
+    draw_plot(request.plot, request.common, one.provenance,
+              [&] { return diagnosis_figure(request.path, one.diagnosis, one.log.trace.view()); });
     return request.require_conclusive && !one.is_conclusive() ? ExitCode::inconclusive : ExitCode::done;
 }
 

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <string>
 #include <vector>
 
@@ -36,20 +35,22 @@ std::string value_text(const Term& term, const FittedValue& value) {
 
 namespace {
 
-// A line a finding that the user took into the model; nothing without one.
+// "torque_nm = 0.8, width_deg_s = 1"
+std::string stated_text(const Term& term) {
+    std::string text;
+    for (std::size_t p = 0; p < term.values.size(); ++p)
+        if (term.values[p])
+            text += fmt::format("{}{} = {}", text.empty() ? "" : ", ", term.effect->parameters[p].name,
+                                short_number(*term.values[p]));
+    return text;
+}
+
+// A line a term that the user took into the model; nothing without one.
 std::string accepted_text(const Diagnosis& diagnosis) {
     std::string text;
-    for (const AcceptedFinding& one : diagnosis.accepted) {
-        std::string values;
-        for (std::size_t p = 0; p < one.term.values.size(); ++p) {
-            const Parameter& parameter = one.term.effect->parameters[p];
-            if (parameter.left_out == LeftOut::refused)
-                values += fmt::format(", {} = {}", parameter.name, short_number(*one.term.values[p]));
-        }
-        for (const FittedValue& value : one.values) values += ", " + value_text(one.term, value);
-        text += fmt::format("accepted by you and not confirmed by this log ({}): {}{}\n",
-                            status_name(one.status), one.term.effect->name, values);
-    }
+    for (const AcceptedFinding& one : diagnosis.accepted)
+        text += fmt::format("accepted by you and not confirmed by this log ({}): {}, {}\n",
+                            status_name(one.status), one.term.effect->name, stated_text(one.term));
     return text;
 }
 
@@ -76,35 +77,7 @@ std::string next_text(const std::vector<std::string>& steps) {
     return text;
 }
 
-constexpr std::size_t most_places = 4, most_of_a_kind = 3;
-
 std::string unit_after(std::string_view unit) { return unit.empty() ? "" : fmt::format(" {}", unit); }
-
-std::string spans_text(const std::vector<Span>& spans, std::string_view unit) {
-    std::string text;
-    for (std::size_t i = 0; i < std::min(spans.size(), most_places); ++i) {
-        text += fmt::format("{}{} to {}", i == 0 ? "" : ", ", short_number(spans[i].from),
-                            short_number(spans[i].to));
-    }
-    if (spans.size() > most_places) text += ", ...";
-    return text + unit_after(unit);
-}
-
-std::string where_text(const Place& place) {
-    std::vector<std::string> parts;
-    if (!place.time_s.empty()) parts.push_back("at " + spans_text(place.time_s, "s"));
-    if (!place.speed_deg_s.empty()) parts.push_back("at speeds of " + spans_text(place.speed_deg_s, "deg/s"));
-    if (!place.position_deg.empty())
-        parts.push_back("at positions of " + spans_text(place.position_deg, "deg"));
-    for (const double hz : place.hz) parts.push_back(fmt::format("at {} Hz", short_number(hz)));
-    for (const double order : place.order) parts.push_back(fmt::format("at order {}", short_number(order)));
-    for (const double order : place.order_output)
-        parts.push_back(fmt::format("at {} cycles per turn of the joint", short_number(order)));
-    if (place.direction == Direction::both) parts.emplace_back("while it moves");
-    if (place.direction == Direction::positive || place.direction == Direction::negative)
-        parts.push_back(fmt::format("in {} direction", direction_name(place.direction)));
-    return parts.empty() ? "throughout the log" : joined(parts, "; ");
-}
 
 // "1.500 +/- 0.010 Nm": the size of a finding with half of its 95 % interval.
 std::string size_text(const Finding& finding) {
@@ -127,14 +100,10 @@ std::string size_text(const Finding& finding) {
     return text + unit_after(parameter.unit);
 }
 
-bool is_doubtful(const Finding& finding) {
-    return finding.status == FindingStatus::tentative || finding.status == FindingStatus::unidentifiable ||
-           finding.status == FindingStatus::not_reproduced;
-}
-
 // A friction below 0 is what a simulation has too much of.
-bool drives(const Finding& finding) {
-    return finding.term.effect->resists && finding.term.values.front().value_or(0.0) < 0.0;
+bool drives(const Diagnosis& diagnosis, const Finding& finding) {
+    return diagnosis.model.beside_simulation && finding.term.effect->resists &&
+           finding.term.values.front().value_or(0.0) < 0.0;
 }
 
 std::vector<std::string> setup_sentences(const Diagnosis& diagnosis) {
@@ -157,7 +126,7 @@ std::vector<std::string> setup_sentences(const Diagnosis& diagnosis) {
     return all;
 }
 
-// The verdict in one sentence, with names, sizes and what is left.
+// What is missing with its size, then the gap.
 std::string answer(const Diagnosis& diagnosis) {
     std::string names;
     const auto add = [&](const std::string& name) { names += (names.empty() ? "" : ", ") + name; };
@@ -165,13 +134,13 @@ std::string answer(const Diagnosis& diagnosis) {
     for (const Finding& finding : diagnosis.rounds) {
         if (finding.status != FindingStatus::confirmed) continue;
         add(fmt::format("{}{}{}", finding.term.effect->name, size_text(finding),
-                        drives(finding) ? " (the simulation has too much of it)" : ""));
+                        drives(diagnosis, finding) ? " (the simulation has too much of it)" : ""));
     }
     for (const Tie& tie : diagnosis.ambiguous) add(joined(tie.effects, " or "));
     const DiagnosisGap& gap = diagnosis.gap;
-    const std::string head = !names.empty()                   ? "Missing: " + names
-                             : !diagnosis.setup.empty()       ? "No effect can be confirmed with this set-up"
-                             : !diagnosis.unexplained.empty() ? "Unexplained"
+    const std::string head = !names.empty()             ? "Missing: " + names
+                             : !diagnosis.setup.empty() ? "No effect can be confirmed with this set-up"
+                             : diagnosis.remaining      ? "No effect of the catalogue is named"
                              : diagnosis.model.has_gear_ratio()
                                  ? "Nothing is missing"
                                  : "Nothing is missing of what was examined, which ripple is not";
@@ -180,94 +149,71 @@ std::string answer(const Diagnosis& diagnosis) {
                        gap.after_nm, gap.noise_floor_nm);
 }
 
-std::string round_text(const Finding& finding, std::size_t number) {
-    const Term& term = finding.term;
+std::string round_text(const Diagnosis& diagnosis, const Finding& finding, std::size_t number) {
     std::string text =
-        fmt::format("round {}: {}, {}\n", number, term.effect->name, status_name(finding.status));
+        fmt::format("round {}: {}, {}\n", number, finding.term.effect->name, status_name(finding.status));
     if (!finding.reason.empty()) text += fmt::format("  {}\n", finding.reason);
-    for (std::size_t p = 0; p < term.values.size(); ++p) {
-        if (term.effect->parameters[p].left_out == LeftOut::refused)
-            text +=
-                fmt::format("  {} = {}\n", term.effect->parameters[p].name, short_number(*term.values[p]));
-    }
-    for (const FittedValue& value : finding.values) text += fmt::format("  {}\n", value_text(term, value));
-    if (drives(finding))
+    for (const FittedValue& value : finding.values)
+        text += fmt::format("  {}\n", value_text(finding.term, value));
+    if (drives(diagnosis, finding))
         text += "  negative friction is not physical: the simulation includes too much friction already\n";
-    text += fmt::format("  acts {}\n", where_text(finding.where));
-    text += fmt::format("  gap {} -> {} Nm; alone it explains {} Nm rms; improves {} of {} blocks\n",
-                        short_number(finding.gap_before_nm), short_number(finding.gap_after_nm),
-                        short_number(finding.evidence.share_nm), finding.evidence.blocks_positive,
-                        finding.evidence.blocks);
+    if (finding.is_in_model())
+        text += fmt::format("  gap {} -> {} Nm\n", short_number(finding.gap_before_nm),
+                            short_number(finding.gap_after_nm));
+    text += fmt::format("  alone it explains {} times the noise; t over blocks {}\n",
+                        short_number(finding.evidence.noise_share), short_number(finding.evidence.block_t));
     if (finding.validation_before_nm) {
         text += fmt::format("  on the validation log {} -> {} Nm with it\n",
                             short_number(*finding.validation_before_nm),
                             short_number(*finding.validation_after_nm));
     }
     for (const RivalFinding& rival : finding.alternatives)
-        text += fmt::format(
-            "  instead of it, {} would leave {} more{}\n", rival.effect, short_number(rival.margin),
-            finding.status == FindingStatus::ambiguous && rival.margin < tie_margin ? " (a tie)" : "");
+        text += fmt::format("  instead of it, {} ({}): behind by {}\n", rival.term.effect->name,
+                            stated_text(rival.term), short_number(rival.margin));
     return text;
 }
 
-// What was tried and is not confirmed, in a line.
-std::string doubtful_text(const Finding& finding) {
-    return fmt::format("not confirmed: {}{}, {}: {}\n", finding.term.effect->name, size_text(finding),
-                       status_name(finding.status), finding.reason);
+// What the improved model leaves, in a line.
+std::string remaining_text(const Diagnosis& diagnosis) {
+    if (!diagnosis.remaining) return {};
+    const RemainingResidual& left = *diagnosis.remaining;
+    const std::string part = fmt::format("{:.0f} % of it", 100.0 * std::min(left.part, 1.0));
+    std::string where;
+    switch (left.kind) {
+        case RegionKind::throughout:
+            where = "throughout the log";
+            break;
+        case RegionKind::tone:
+            where = fmt::format("{} at {} Hz", part, short_number(left.where.from));
+            break;
+        default:
+            where = fmt::format("{} from {} to {} {}", part, short_number(left.where.from),
+                                short_number(left.where.to),
+                                left.kind == RegionKind::time    ? "s"
+                                : left.kind == RegionKind::speed ? "deg/s"
+                                                                 : "deg");
+    }
+    return fmt::format("remaining: {} Nm rms where the noise is {}; {}\n", short_number(left.rms_nm),
+                       short_number(diagnosis.gap.noise_floor_nm), where);
 }
 
-std::string region_text(const ResidualRegion& region) {
-    return fmt::format("{} Nm rms {} ({:.0f} % of the squared residual)", short_number(region.rms_nm),
-                       where_text(region.where), 100.0 * std::min(region.part, 1.0));
-}
-
-// Places of one kind are told together beyond the largest: a log may disagree in dozens of stretches of time.
-std::string regions_text(const std::vector<ResidualRegion>& residual_regions, std::string_view verb) {
+// What could not be determined, and which motion would.
+std::string open_text(const Diagnosis& diagnosis) {
     std::string text;
-    std::map<std::string_view, std::pair<std::size_t, double>> more;  // number and part, by the kind's name
-    std::map<RegionKind, std::size_t> told;
-    for (const ResidualRegion& region : residual_regions) {
-        if (told[region.kind]++ < most_of_a_kind) {
-            text += fmt::format("{} {}\n", verb, region_text(region));
-        } else {
-            auto& [number, part] = more[region_kind_name(region.kind)];
-            ++number;
-            part += region.part;
-        }
-    }
-    for (const auto& [kind, rest] : more)
-        text += fmt::format("{} in {} further regions by {} ({:.0f} %)\n", verb, rest.first, kind,
-                            100.0 * std::min(rest.second, 1.0));
+    for (const Tie& tie : diagnosis.ambiguous)
+        text += fmt::format("{}: this log cannot tell; {} would\n", joined(tie.effects, " or "), tie.advice);
+    for (const Undecidable& entry : diagnosis.undecidable)
+        text += fmt::format("not examined: {}: {}\n", entry.effect, entry.reason);
     return text;
-}
-
-std::string closing(const Diagnosis& diagnosis) {
-    switch (diagnosis.verdict) {
-        case DiagnosisVerdict::matches:
-            return diagnosis.model.has_gear_ratio()
-                       ? "the model explains this log: nothing is missing"
-                       : "nothing is missing of what was examined: without the gear ratio ripple was not";
-        case DiagnosisVerdict::explained:
-            return diagnosis.model.has_gear_ratio() ? "explained"
-                                                    : "explained, without the effects of the motor's angle";
-        case DiagnosisVerdict::partly_explained:
-            return diagnosis.unexplained.empty() && !diagnosis.accepted.empty()
-                       ? "partly explained: this log does not confirm what you accepted"
-                       : "partly explained: unexplained residual remains";
-        case DiagnosisVerdict::unexplained:
-            return diagnosis.setup.empty() ? "unexplained: no effect of the catalogue explains the residual"
-                                           : "unexplained: correct the set-up first";
-        case DiagnosisVerdict::undecided:
-            return "cannot tell";
-    }
-    return {};
 }
 
 std::string findings_text(const Diagnosis& diagnosis, bool explain) {
     std::string text;
-    for (std::size_t i = 0; i < diagnosis.rounds.size(); ++i) {
-        const Finding& finding = diagnosis.rounds[i];
-        text += explain || !is_doubtful(finding) ? round_text(finding, i + 1) : doubtful_text(finding);
+    std::size_t number = 0;
+    for (const Finding& finding : diagnosis.rounds) {
+        ++number;
+        if (finding.status == FindingStatus::correction && !explain) continue;
+        text += round_text(diagnosis, finding, number);
     }
     if (!explain) return text;
     for (const RefusedCandidate& candidate : diagnosis.refused)
@@ -290,62 +236,21 @@ std::string gap_text(const DiagnosisGap& gap) {
     return text;
 }
 
-std::string angle_text(const Diagnosis& diagnosis) {
-    if (!diagnosis.angle) return "";
-    std::string text;
-    constexpr double rounding_deg = 1e-9;
-    if (!diagnosis.has_position && diagnosis.angle->walk_deg > rounding_deg)
-        text += fmt::format(
-            "the angle is the integrated velocity, corrected by {} deg rms with the phase of the ripple; "
-            "phases are this log's own\n",
-            short_number(diagnosis.angle->walk_deg));
-    if (const auto& start = diagnosis.angle->validation_start_deg)
-        text += fmt::format("the validation log begins at {} deg of it, where it fits the model best\n",
-                            short_number(*start));
-    return text;
-}
-
 }  // namespace
 
 std::string diagnosis_story(const CommonOptions& common, const Diagnosis& diagnosis, bool explain) {
     if (diagnosis.verdict == DiagnosisVerdict::undecided) return paragraph(common, diagnosis.doubt);
-    const DiagnosisGap& gap = diagnosis.gap;
     std::string text;
     for (const std::string& sentence : setup_sentences(diagnosis)) text += paragraph(common, sentence);
-    text += paragraph(common, answer(diagnosis));
-    text += fmt::format("verdict: {}\n", closing(diagnosis));
-    text += fmt::format("named: {}\n", diagnosis.named.empty() ? "nothing" : joined(diagnosis.named, ", "));
-    text += fmt::format("{} samples, {} used; noise floor {} Nm rms\n", diagnosis.samples,
-                        diagnosis.samples_used, short_number(gap.noise_floor_nm));
-    for (const UnusedRows& rows : diagnosis.unused)
-        text += fmt::format("  {} samples not used: {}\n", rows.rows, rows.reason);
-    for (const EffectOfUnusedRows& one : diagnosis.acts_where_unused)
-        text += fmt::format("  {} acts in {} samples, of which {} are not used: it may be missed\n",
-                            one.effect, one.rows, one.unused);
-    text += fmt::format("gap of the model as given: {} Nm rms\n", short_number(gap.before_nm));
-    for (std::size_t i = 0; i < std::min<std::size_t>(diagnosis.disagreement.size(), 3); ++i)
-        text += fmt::format("  residual {}\n", region_text(diagnosis.disagreement[i]));
-    text += angle_text(diagnosis);
+    text += paragraph(common, answer(diagnosis)) + gap_text(diagnosis.gap) + open_text(diagnosis) +
+            remaining_text(diagnosis);
+    text += fmt::format("verdict: {}\nnamed: {}\n", verdict_name(diagnosis.verdict),
+                        diagnosis.named.empty() ? "nothing" : joined(diagnosis.named, ", "));
+    text += fmt::format("{} samples, {} used\n", diagnosis.samples, diagnosis.samples_used);
     for (const Fault& fault : diagnosis.faults)
         text += fmt::format("fault of the log: {}, {}\n", fault.term.effect->name, fault.words);
-    text += findings_text(diagnosis, explain);
-    for (const Tie& tie : diagnosis.ambiguous)
-        text += fmt::format("{}: this log cannot tell; {} would\n", joined(tie.effects, " or "), tie.advice);
-    text += regions_text(diagnosis.unexplained, "unexplained:");
-    for (const Undecidable& entry : diagnosis.undecidable) {
-        text += fmt::format("not examined: {}: {}", entry.effect, entry.reason);
-        if (entry.would_explain_nm > 0.0)
-            text += fmt::format("; along the integral of the speed it would explain {} Nm rms",
-                                short_number(entry.would_explain_nm));
-        text += "\n";
-    }
-    text += accepted_text(diagnosis);
-    text += gap_text(gap);
-    if (diagnosis.search_ended)
-        text += fmt::format(
-            "the search was ended after {:.0f} evaluations of the model; the residual is unexplained\n",
-            diagnosis.evaluations);
-    return text + band_table(diagnosis.bands) + next_text(diagnosis.next);
+    return text + findings_text(diagnosis, explain) + accepted_text(diagnosis) + band_table(diagnosis.bands) +
+           next_text(diagnosis.next);
 }
 
 namespace {

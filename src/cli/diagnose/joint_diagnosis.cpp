@@ -33,16 +33,11 @@ namespace ripplenotch {
 namespace {
 
 // The rms that is left when the model's torque is that of what MuJoCo holds. `left`: what the whole model
-// leaves beside given terms; empty without any.
-double held_gap(const JointDiagnosis& one, const Model& whole, const Motion& motion,
-                const std::vector<double>& left) {
+// leaves.
+double held_gap(const Model& whole, const Motion& motion, const std::vector<double>& left) {
     const std::vector<double> held = predict_nm(joint_mjcf(whole).held, motion);
-    std::vector<double> gap(held.size());
-    if (left.empty()) {
-        for (std::size_t k = 0; k < gap.size(); ++k) gap[k] = one.log.trace.torque_nm[k] - held[k];
-        return rms(gap);
-    }
     const std::vector<double> all = predict_nm(whole, motion);
+    std::vector<double> gap(held.size());
     for (std::size_t k = 0; k < gap.size(); ++k) gap[k] = left[k] + all[k] - held[k];
     return rms(gap);
 }
@@ -97,8 +92,8 @@ MjcfAccount write_improved_mjcf(const DiagnoseRequest& request, const JointDiagn
     const Motion motion = motion_of(request, one);
     const Diagnosis& found = one.diagnosis;
     const MjcfAccount account{path, parts.holds, parts.not_held,
-                              held_gap(one, found.baseline, motion, found.residual_before_nm),
-                              held_gap(one, model.model, motion, found.residual_after_nm)};
+                              held_gap(found.baseline, motion, found.residual_before_nm),
+                              held_gap(model.model, motion, found.residual_after_nm)};
     const std::vector<std::string> heading = mjcf_heading(one, account);
     write_text(path,
                tree ? write_into_mjcf(parts, read_chain_file(*tree), *tree, model.arm->joint, heading)
@@ -360,9 +355,10 @@ Diagnosis diagnosed(const DiagnoseRequest& request, Model model, const JointDiag
              .accept = request.accept,
              .given = one.given.log,
              .validation_given = one.given.validation,
+             .simulated_velocity_deg_s = one.given.simulated_velocity_deg_s,
+             .simulated_position_deg = one.given.simulated_position_deg,
              .setup = one.given.setup ? std::span<const SetupFault>(one.given.setup->faults)
                                       : std::span<const SetupFault>(),
-             .others_move = others_move(one),
              .expected_delay = expected_delay(one.given)});
     } catch (const DataError& error) {  // the library knows no file
         raise<DataError>("{}: {}", request.path, error.what());
@@ -389,7 +385,7 @@ void advise_arm(JointDiagnosis& one) {
     const bool is_of_position = std::ranges::any_of(one.diagnosis.rounds, [](const Finding& finding) {
         return finding.term.effect->domain == Domain::position || finding.term.effect->name == "gravity";
     });
-    const bool is_open = is_of_position || !one.diagnosis.unexplained.empty();
+    const bool is_open = is_of_position || one.diagnosis.remaining;
     if (!others_move(one) || !is_open) return;
     one.diagnosis.next.insert(
         one.diagnosis.next.begin(),

@@ -285,8 +285,12 @@ const LinearFit& Criterion::fit(const SearchedTerms& given) {
     if (!is_possible(terms)) found.is_physical = false;
     for (std::size_t i = 0; i < terms.size(); ++i) {
         const Effect& effect = *terms[i].kind->effect;
-        // Nothing that resists drives the joint, unless the user states more of it.
-        if (!effect.resists || base_.states(effect.name)) continue;
+        // Nothing that resists drives the joint, unless the user states more of it or a simulation may hold
+        // more.
+        const bool may_drive =
+            base_.states(effect.name) ||
+            (base_.is_simulated && (effect.name == "coulomb-friction" || effect.name == "viscous-friction"));
+        if (!effect.resists || may_drive) continue;
         if (found.factors[static_cast<Index>(made.first_of_term[i])] < 0.0) found.is_physical = false;
     }
     if (!found.is_physical) found.squares = refused_squares;

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "diagnose/engine/intervals.hpp"
 #include "diagnose/engine/search.hpp"
 #include "diagnose/engine/settings.hpp"
 #include "ripplenotch/core/error.hpp"
@@ -94,8 +93,9 @@ AdoptedTerm judged(const Search& search, Criterion& criterion, const SearchedTer
 Result find_missing_effects(const Input& input) {
     Result result;
     RecordedMotion recorded(input.log, input.simulation);
-    std::vector<unsigned char> good(input.log.size(), 1);
-    result.faults = find_converter_faults(input.log.torque_nm, good);
+    std::vector<unsigned char> good(input.is_good_row.begin(), input.is_good_row.end());
+    good.resize(input.log.size(), 1);
+    if (input.is_good_row.empty()) result.faults = find_converter_faults(input.log.torque_nm, good);
     recorded.mark_spoiled_rows(good);
     const KnownSide known{&input.model, input.given_terms, input.simulation.has_value(),
                           input.simulation && input.simulation->is_scale_known};
@@ -130,6 +130,7 @@ Result find_missing_effects(const Input& input) {
         result.nearly_adopted.push_back({valued_terms(criterion, with).back().term,
                                          refused.admission.reduction, refused.admission.reason});
     }
+    result.baseline = valued_columns(criterion, terms);
     if (recorded.removed_bias_deg_s() == 0.0) result.rms_before_nm = criterion.rms_nm({});
     result.rms_after_nm = criterion.rms_nm(terms);
     result.noise_nm = criterion.noise().noise_nm;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "diagnose/engine/converter_faults.hpp"
+#include "diagnose/engine/intervals.hpp"
 #include "diagnose/engine/recorded_motion.hpp"
 #include "ripplenotch/model/fit.hpp"
 #include "ripplenotch/model/model.hpp"
@@ -25,6 +26,8 @@ struct Input {
     /// Known torque with priors, a column per value and an entry per row of the log: an arm's rigid bodies.
     std::span<const GivenTerm> given_terms = {};
     std::span<const std::string> without = {};  ///< names of effects that are not tried
+    /// Of each row: 0 where it does not hold the joint's torque; empty: that is found in the torque itself.
+    std::span<const unsigned char> is_good_row = {};
 };
 
 /// A term that explains the log about as well in place of an adopted one.
@@ -55,6 +58,7 @@ struct Result {
     std::vector<AdoptedTerm>
         corrections;  ///< below what the log resolves: fitted and not reported as missing
     std::vector<NearlyAdopted> nearly_adopted;
+    std::vector<ValuedColumn> baseline;  ///< what the columns of the user's side come to
     std::vector<ConverterFault> faults;
     double rms_before_nm = 0.0, rms_after_nm = 0.0;
     double noise_nm = 0.0;  ///< the least that any smooth law leaves

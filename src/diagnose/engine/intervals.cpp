@@ -225,4 +225,17 @@ std::vector<ValuedTerm> valued_terms(Criterion& criterion, const SearchedTerms& 
     return found;
 }
 
+std::vector<ValuedColumn> valued_columns(Criterion& criterion, const SearchedTerms& terms) {
+    SearchedTerms sorted = terms;
+    std::sort(sorted.begin(), sorted.end());
+    const Linearised fit(criterion, sorted);
+    std::vector<ValuedColumn> found;
+    for (std::size_t c = 0; c < criterion.base().columns.size(); ++c) {
+        const Derived factor{0, fit.factor(c), {{c, 1.0}}};
+        found.push_back(
+            {criterion.base().columns[c].name, factor.value, std::sqrt(std::max(fit.variance(factor), 0.0))});
+    }
+    return found;
+}
+
 }  // namespace ripplenotch::engine

@@ -2,6 +2,7 @@
 #pragma once
 // Values of adopted terms in the catalogue's parameters, with 95 % intervals.
 
+#include <string>
 #include <vector>
 
 #include "diagnose/engine/criterion.hpp"
@@ -17,5 +18,13 @@ struct ValuedTerm {
 /// A term of the catalogue for each term of the set. Intervals are of the sandwich covariance over blocks, of
 /// all linear values and the linearised others together, with the priors.
 [[nodiscard]] std::vector<ValuedTerm> valued_terms(Criterion& criterion, const SearchedTerms& terms);
+
+/// The factor of a column of the baseline.
+struct ValuedColumn {
+    std::string name;
+    double factor = 0.0, standard_error = 0.0;
+};
+/// Of every column of the baseline, in its order.
+[[nodiscard]] std::vector<ValuedColumn> valued_columns(Criterion& criterion, const SearchedTerms& terms);
 
 }  // namespace ripplenotch::engine

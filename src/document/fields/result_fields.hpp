@@ -32,9 +32,6 @@ void describe(JsonWriter& json, const SwitchEntry& entry);
 /// {"level_nm": {"value", "ci95", "fitted", "at_bound"}, ...}, one entry a parameter of the term's effect.
 [[nodiscard]] Json parameters_json(const Term& term, const std::vector<FittedValue>& values);
 
-/// {"time_s", "speed_deg_s", "position_deg", "hz", "order", "direction"}
-[[nodiscard]] Json place_json(const Place& place);
-
 /// An effect by its name. The catalogue answers an unknown one as a wrong request; in a file it is wrong
 /// data, and the file must be named.
 template <class Archive, class EffectPointer>

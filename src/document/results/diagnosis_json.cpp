@@ -19,7 +19,7 @@ constexpr std::string_view simulated = "simulated";
 constexpr Rounded ten{[](double value) { return finite_or_null(to_digits(value, 10) + 0.0); }};
 constexpr Rounded ten_or_unknown{ten.json_of, true};
 
-constexpr Names statuses{status_name, FindingStatus::not_reproduced};
+constexpr Names statuses{status_name, FindingStatus::refused};
 
 // An effect of which the catalogue's name is kept.
 template <class Archive>
@@ -70,32 +70,18 @@ void describe_parameters(Archive& archive, auto& term, auto& fitted) {
 
 auto ends_of(Is<Span> auto& span) { return std::tie(span.from, span.to); }
 
-void describe(auto& archive, Is<Place> auto& place) {
-    archive("time_s", place.time_s, six);
-    archive("speed_deg_s", place.speed_deg_s, six);
-    archive("position_deg", place.position_deg, six);
-    archive("hz", place.hz, six);
-    archive("order", place.order, six);
-    archive("order_output", place.order_output, six, if_any);
-    archive("direction", place.direction, Names{direction_name, Direction::both}, null_if_empty);
+void describe(auto& archive, Is<Evidence> auto& evidence) {
+    archive("reduction", evidence.reduction, six_or_unknown);
+    archive("block_t", evidence.block_t, six_or_unknown);
+    archive("noise_share", evidence.noise_share, six_or_unknown);
+    archive("explained_share", evidence.explained_share, six_or_unknown);
 }
 
 template <class Archive>
-void describe(Archive& archive, Is<Evidence> auto& evidence) {
-    archive("gain", evidence.gain, six_or_unknown);
-    archive("price", evidence.price, six_or_unknown);
-    archive("share_nm", evidence.share_nm, six_or_unknown);
-    archive("share_of_noise", evidence.share_sigma, six_or_unknown);
-    archive("own_nm", evidence.own_nm, six_or_unknown);
-    archive("gain_elsewhere", evidence.elsewhere, six_or_unknown);
-    archive("t", evidence.t, six, if_there);
-    archive("blocks", evidence.blocks, if_there);
-    archive("blocks_positive", evidence.blocks_positive, if_there);
-    if constexpr (Archive::reading) evidence.raw_gain = std::numeric_limits<double>::quiet_NaN();
-}
-
-void describe(auto& archive, Is<RivalFinding> auto& rival) {
-    describe_effect_name(archive, rival.effect);
+void describe(Archive& archive, Is<RivalFinding> auto& rival) {
+    std::vector<FittedValue> none;
+    describe_effect(archive, rival.term.effect);
+    describe_parameters(archive, rival.term, none);
     archive("margin", rival.margin, six_or_unknown);
 }
 
@@ -109,7 +95,6 @@ void describe_named(auto& archive, auto& finding) {
 
 void describe(auto& archive, Is<Finding> auto& finding) {
     describe_named(archive, finding);
-    archive("where", finding.where);
     archive("evidence", finding.evidence);
     archive("alternatives", finding.alternatives);
     archive("validation_before_nm", finding.validation_before_nm, six);
@@ -118,7 +103,20 @@ void describe(auto& archive, Is<Finding> auto& finding) {
     archive("gap_after_nm", finding.gap_after_nm, six_or_unknown);
 }
 
-void describe(auto& archive, Is<AcceptedFinding> auto& one) { describe_named(archive, one); }
+void describe(auto& archive, Is<AcceptedFinding> auto& one) {
+    std::vector<FittedValue> none;
+    describe_effect(archive, one.term.effect);
+    archive("status", one.status, statuses);
+    archive("reason", one.reason, if_any);
+    describe_parameters(archive, one.term, none);
+}
+
+void describe(auto& archive, Is<RefusedCandidate> auto& one) {
+    std::vector<FittedValue> none;
+    describe_effect(archive, one.term.effect);
+    describe_parameters(archive, one.term, none);
+    archive("reason", one.reason);
+}
 
 void describe(auto& archive, Is<Fault> auto& fault) {
     std::vector<FittedValue> none;
@@ -134,28 +132,16 @@ void describe(auto& archive, Is<Tie> auto& tie) {
     archive("advice", tie.advice);
 }
 
-void describe(auto& archive, Is<UnusedRows> auto& unused) {
-    archive("reason", unused.reason);
-    archive("samples", unused.rows);
-}
-
-void describe(auto& archive, Is<EffectOfUnusedRows> auto& acting) {
-    archive("effect", acting.effect);
-    archive("samples", acting.rows);
-    archive("not_used", acting.unused);
-}
-
-void describe(auto& archive, Is<ResidualRegion> auto& region) {
-    archive("kind", region.kind, Names{region_kind_name, RegionKind::speed});
-    archive("where", region.where);
-    archive("rms_nm", region.rms_nm, six_or_unknown);
-    archive("part_of_gap", region.part, six_or_unknown);
+void describe(auto& archive, Is<RemainingResidual> auto& left) {
+    archive("rms_nm", left.rms_nm, six_or_unknown);
+    archive("kind", left.kind, Names{region_kind_name, RegionKind::tone});
+    archive("where", left.where, six);
+    archive("part", left.part, six_or_unknown);
 }
 
 void describe(auto& archive, Is<Undecidable> auto& one) {
     describe_effect_name(archive, one.effect);
     archive("reason", one.reason);
-    archive("would_explain_nm", one.would_explain_nm, six_or_unknown);
 }
 
 void describe(auto& archive, Is<DiagnosisGap> auto& gap) {
@@ -182,11 +168,6 @@ void describe(Archive& archive, Is<BandGap> auto& band) {
     archive("torque_nm", band.torque_nm, six);
     archive("beside_given_nm", band.beside_given_nm, six);
     archive("after_nm", band.after_nm, six);
-}
-
-void describe(auto& archive, Is<AngleAccount> auto& angle) {
-    archive("walk_deg", angle.walk_deg, six);
-    archive("validation_start_deg", angle.validation_start_deg, six);
 }
 
 namespace {
@@ -218,12 +199,9 @@ void describe_own_terms(Archive& archive, auto& diagnosis) {
 // The values of what was found stand in the model behind its own terms and what was accepted.
 void place_values(Diagnosis& diagnosis) {
     std::size_t place = diagnosis.baseline.terms.size();
-    for (AcceptedFinding& one : diagnosis.accepted) {
-        for (FittedValue& value : one.values) value.term = place;
-        diagnosis.values.insert(diagnosis.values.end(), one.values.begin(), one.values.end());
-        ++place;
-    }
+    place += diagnosis.accepted.size();
     for (Finding& finding : diagnosis.rounds) {
+        if (!finding.is_in_model()) continue;
         for (FittedValue& value : finding.values) value.term = place;
         ++place;
     }
@@ -304,10 +282,10 @@ void describe_diagnosis(Archive& archive, auto& diagnosis, const DiagnosedJoint*
     archive.derived("gear", [&] { return &joint->gear; });
     archive("named", diagnosis.named);
     archive("rounds", diagnosis.rounds);
+    archive("refused", diagnosis.refused);
     archive("faults", diagnosis.faults);
     archive("ambiguous", diagnosis.ambiguous);
-    archive("unexplained", diagnosis.unexplained);
-    archive("disagreement", diagnosis.disagreement);
+    archive("remaining", diagnosis.remaining);
     archive("undecidable", diagnosis.undecidable);
     archive("gap", diagnosis.gap);
     // An arm's values are of combinations of links, which have no meaning one by one.
@@ -318,7 +296,6 @@ void describe_diagnosis(Archive& archive, auto& diagnosis, const DiagnosedJoint*
         archive.group("simulated", [&](Archive& entry) { entry("scale", scale, six); });
         if constexpr (Archive::reading) diagnosis.given.push_back({std::string(simulated), scale, {}});
     }
-    archive("residual_in_noise", diagnosis.residual_in_noise, if_any);
     archive.derived(
         "setup", [&] { return diagnosis.setup; }, if_any);
     archive.derived(
@@ -333,18 +310,8 @@ void describe_diagnosis(Archive& archive, auto& diagnosis, const DiagnosedJoint*
     describe_own_terms(archive, diagnosis);
     archive("samples", diagnosis.samples);
     archive("samples_used", diagnosis.samples_used);
-    archive("samples_not_used", diagnosis.unused, if_there);
-    archive("acts_where_not_used", diagnosis.acts_where_unused, if_there);
+    archive("smoothing_s", diagnosis.smoothing_s, six);
     archive("position_in_log", diagnosis.has_position);
-    archive("angle", diagnosis.angle, if_any);
-    archive.group("search", [&](Archive& search) {
-        double evaluations = std::round(diagnosis.evaluations);
-        search("evaluations", evaluations);
-        search("ended", diagnosis.search_ended);
-        if constexpr (Archive::reading) diagnosis.evaluations = evaluations;
-    });
-    archive("noise_color", diagnosis.noise_color, six);
-    archive("false_alarm", diagnosis.false_alarm);
     archive.group("model", [&](Archive& model) {
         model.derived("schema", [] { return "ripplenotch/model/1"; });
         if constexpr (Archive::reading)
@@ -368,8 +335,6 @@ Json parameters_json(const Term& term, const std::vector<FittedValue>& values) {
     return JsonWriter::object_of(
         [&](JsonWriter& json) { describe_parameters(json, term, values); })["parameters"];
 }
-
-Json place_json(const Place& place) { return to_json(place); }
 
 std::string write_diagnosis(const Diagnosis& diagnosis, const GearAccount& gear, const Provenance& provenance,
                             const ArmAccount* arm, const MjcfAccount* mjcf) {

@@ -163,6 +163,11 @@ void GivenSource::add_simulated(GivenTerms& terms, const ModelWithGiven& stated,
     terms.simulated = simulated.term();
     if (simulated.file()) terms.files.push_back(*simulated.file());
     terms.log.push_back(simulated.read(reading, log.path, log.log));
+    if (checks_setup_) {
+        const SimulatedMotion own = simulated.read_motion_at(reading, log.path, log.log);
+        terms.simulated_velocity_deg_s = own.velocity_deg_s;
+        terms.simulated_position_deg = own.position_deg;
+    }
     if (validation == nullptr) return;
     terms.validation.push_back(simulated.read_validation(reading, validation->path, validation->log));
 }

@@ -237,6 +237,21 @@ SimulatedMotion SimulationSource::read_motion(const ReadOptions& reading, const 
     return motion;
 }
 
+SimulatedMotion SimulationSource::read_motion_at(const ReadOptions& reading, const std::string& path,
+                                                 const Log& log) const {
+    if (!file_ && !position_ && !velocity_) return {};
+    SimulatedMotion motion = read_motion(reading, path, log);
+    for (std::vector<double>* series : {&motion.position_deg, &motion.velocity_deg_s, &motion.torque_nm}) {
+        if (series->empty()) continue;
+        std::vector<double> at_log;
+        for (const double t : log.trace.time_s)
+            at_log.push_back(cubic_at(motion.time_s, *series, t + term_.delay_s));
+        *series = std::move(at_log);
+    }
+    motion.time_s = log.trace.time_s;
+    return motion;
+}
+
 GivenTerm SimulationSource::from(ReadOptions reading, const std::string& path, Log& log) const {
     reading = reading_of(std::move(reading));
     if (file_) reading.needs_velocity = false;  // its torque and its times are all that is compared

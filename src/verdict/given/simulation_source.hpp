@@ -37,6 +37,9 @@ class SimulationSource {
     /// position= and velocity= name; one in a file of its own has those that the file has. Throws as read().
     [[nodiscard]] SimulatedMotion read_motion(const ReadOptions& reading, const std::string& path,
                                               const Log& log) const;
+    /// The same at the rows of the log, as its torque is.
+    [[nodiscard]] SimulatedMotion read_motion_at(const ReadOptions& reading, const std::string& path,
+                                                 const Log& log) const;
     [[nodiscard]] const SimulatedTerm& term() const { return term_; }
     /// Whether the user or the model says by how much the column is later than the log.
     [[nodiscard]] bool states_delay() const { return states_delay_; }

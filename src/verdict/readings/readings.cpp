@@ -283,11 +283,10 @@ Diagnosis diagnose_readings(const Model& model, const Log& log, const Log* valid
         const Trace read = read_otherwise(log.trace, reading);
         const Trace second = validation == nullptr ? Trace{} : read_otherwise(validation->trace, reading);
         const TraceView view = second.view();
-        return diagnose_in_full(model, read.view(), validation == nullptr ? nullptr : &view, options);
+        return diagnose(model, read.view(), validation == nullptr ? nullptr : &view, options);
     };
     const TraceView other = validation == nullptr ? TraceView{} : validation->trace.view();
-    Diagnosis taken =
-        diagnose_in_full(model, log.trace.view(), validation == nullptr ? nullptr : &other, options);
+    Diagnosis taken = diagnose(model, log.trace.view(), validation == nullptr ? nullptr : &other, options);
     std::string doubt;
     for (OtherReading reading : open_readings({&log, 1})) {
         if (reading.changes_side && model.has_gear_ratio()) continue;

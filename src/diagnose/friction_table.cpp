@@ -11,12 +11,16 @@
 #include <utility>
 
 #include "core/matrices/least_squares.hpp"
-#include "diagnose/limits.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
+
+// Chance that a table without any of the further frictions gets one.
+constexpr double false_alarm = 0.01;
+// Two of which the chances are less than 400 to 1 apart are not told apart, as 2 log(odds).
+constexpr double tie_margin = 12.0;
 
 // Rows as a motion: each at its speed, not accelerated, and at no position in particular.
 Motion motion_of(const FrictionTable& table) {
@@ -104,7 +108,7 @@ class TableFit {
 
     // The t of a size that is found just so, of so many degrees of freedom.
     [[nodiscard]] double least_t(double freedom) const {
-        const double ratio = portable::pow(limits::screening::false_alarm / cells(), 2.0 / freedom);
+        const double ratio = portable::pow(false_alarm / cells(), 2.0 / freedom);
         return std::sqrt(freedom * (1.0 / ratio - 1.0));
     }
 
@@ -232,7 +236,7 @@ void check_rows(const Rows& rows, FrictionDiagnosis& result) {
 // slope that oppose each other explain little alone: where nothing is found, the two are tried together, and
 // each has to be more than chance beside the other.
 TableFit::Fitted with_found(const TableFit& table, Model model, std::vector<std::string_view> names,
-                            FrictionDiagnosis& result, double false_alarm) {
+                            FrictionDiagnosis& result) {
     using Names = std::vector<std::string_view>;
     struct Trial {
         Names added;
@@ -329,7 +333,7 @@ bool is_found(const FrictionDiagnosis& result, std::string_view effect) {
 
 void list_undecidable(FrictionDiagnosis& result) {
     const auto add = [&](std::string_view effect, std::string reason) {
-        result.undecidable.push_back({find_effect(effect).name, std::move(reason), 0.0});
+        result.undecidable.push_back({find_effect(effect).name, std::move(reason)});
     };
     if (!is_found(result, "stribeck-friction")) {
         const std::string slowest =
@@ -364,9 +368,8 @@ FrictionDiagnosis diagnose_friction(const FrictionTable& table) {
     std::vector<std::string_view> names = {"stribeck-friction", "quadratic-viscous-friction"};
     const bool both_ways = result.positive > 0 && result.negative > 0;
     if (both_ways) names.insert(names.begin(), {"asymmetric-friction", "asymmetric-viscous-friction"});
-    const TableFit::Fitted best =
-        with_found(fit, {{}, {fit.term("coulomb-friction"), fit.term("viscous-friction")}}, std::move(names),
-                   result, limits::screening::false_alarm);
+    const TableFit::Fitted best = with_found(
+        fit, {{}, {fit.term("coulomb-friction"), fit.term("viscous-friction")}}, std::move(names), result);
     result.model = best.fit.model;
     result.values = best.fit.values;
     for (FittedValue& value : result.values) {
