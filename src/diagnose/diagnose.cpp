@@ -241,6 +241,7 @@ class DiagnosisRun {
         result_.smoothing_s = found.smoothing_s;
         result_.gap.noise_floor_nm = found.noise_nm;
         engine_residual_nm_ = found.residual_after_nm;
+        searched_before_nm_ = found.rms_before_nm;
         take_faults(found);
         take_known_values(found);
         take_departures(found);
@@ -331,6 +332,9 @@ class DiagnosisRun {
         if (std::abs(value) <= known_deviation * known || is_given(options_.given, "arm")) {
             finding.status = FindingStatus::correction;
             finding.reason = "the user's side is not known better";
+        } else if (rms_nm * rms_nm < engine::least_gap_share * searched_before_nm_ * searched_before_nm_) {
+            finding.status = FindingStatus::correction;
+            finding.reason = "it explains a small part of the gap";
         }
         finding.evidence.noise_share = noise_nm > 0.0 ? rms_nm / noise_nm : 0.0;
         finding.evidence.block_t = std::abs(value) / std::max(error, 1e-300);
@@ -689,6 +693,7 @@ class DiagnosisRun {
     std::vector<AcceptedFinding> accepted_;
     std::vector<const Finding*> replaced_;
     std::vector<std::string> unknown_;
+    double searched_before_nm_ = 0.0;  ///< rms that the user's side leaves along the motion of the search
     bool is_withdrawn_ = false;
     Diagnosis result_;
 };

@@ -48,7 +48,6 @@ class Robots(Case):
                 logs = self.halves(f"gpl3/panda_gaz_{joint}.csv", step=2)
                 self.check_no_false_story(self.diagnosed(*logs, 120, PAPER))
 
-    @unittest.expectedFailure  # the search does not reach it yet
     def test_gravity_of_the_joint_that_moves_alone_is_found_and_holds_at_positions_that_were_never_seen(self):
         found = self.diagnosed(*self.halves("neura_lara8_j3.csv"), 101, [INERTIA])
         self.assertIn("gravity", found["named"])
