@@ -256,7 +256,12 @@ class Threads(ModuleCase):
     def test_calls_of_several_threads_take_turns_and_let_others_run(self):
         expected = ripplenotch.filter(MOVE, "oscillator", gear_ratio=100)
         found, ticks, ended = [], [], threading.Event()
-        workers = [threading.Thread(target=lambda: found.append(ripplenotch.filter(MOVE, "oscillator", gear_ratio=100))) for _ in range(4)]
+
+        def work():  # long enough for the clock to tick many times meanwhile
+            for _ in range(10):
+                found.append(ripplenotch.filter(MOVE, "oscillator", gear_ratio=100))
+
+        workers = [threading.Thread(target=work) for _ in range(4)]
         for worker in workers:
             worker.start()
         ticker = threading.Thread(target=lambda: [ticks.append(1) for _ in iter(lambda: ended.wait(0.0005), True)])
@@ -265,7 +270,7 @@ class Threads(ModuleCase):
             worker.join()
         ended.set()
         ticker.join()
-        self.assertEqual(len(found), 4)
+        self.assertEqual(len(found), 40)
         for one in found:
             self.same(one, expected)
         self.assertGreater(len(ticks), 3)
