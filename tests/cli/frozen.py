@@ -40,8 +40,13 @@ BYTES = [
     ("map", f"map {MOVE} {STEADY} {GEAR} -o {{d}}/map.json --force"),
     *[(f"export {target}", f"export {{d}}/table.json --to {target} -o {{d}}/exported_{k}")
       for k, target in enumerate(("c-header", "cmsis-dsp", "json", "matlab", "scipy"))],
+    *[(f"export map {target}", f"export {{d}}/map.json --to {target} -o {{d}}/exported_map_{k}") for k, target in enumerate(("c-header", "lut", "fourier"))],
+    ("filter map", f"filter {MOVE} --method map,map={{d}}/map.json -o {{d}}/filtered_map.csv"),
 ]
 ANSWERS = [
+    ("recommend", f"recommend {MOVE} {GEAR} --json"),
+    ("identify several", f"identify {STEADY} {MOVE} --json"),
+    ("spectrum order", f"spectrum {MOVE} --domain order --json"),
     *[(f"info {name}", f"info {name} --json") for name in (MOVE, REST)],
     *[(f"info {path.name}", f"info {path.relative_to(SOURCE)} --json") for path in sorted((SOURCE / "data/dialects").glob("*.csv"))],
     *[(f"identify {name}", f"identify {name} --json") for name in (MOVE, STEADY, REST)],
