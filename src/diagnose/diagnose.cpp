@@ -33,7 +33,7 @@ constexpr double least_departure = 4.0;
 // Of the floor's square: a smaller gap is none to speak of, and no part of it is said to be closed.
 constexpr double least_gap = 0.02;
 // Below a turn the integral of a velocity does not tell where the joint is.
-constexpr double turn_deg = 360.0;
+constexpr double one_turn_deg = 360.0;
 // Residual of the improved model over that of the search, from which on its sizes are fitted anew.
 constexpr double most_lost = 1.1;
 // The search finds shorter delays by itself.
@@ -155,7 +155,7 @@ class DiagnosisRun {
     [[nodiscard]] std::vector<std::string> not_tried() {
         std::vector<std::string> names(options_.without.begin(), options_.without.end());
         const auto [low, high] = std::ranges::minmax(along_.motion.position_deg);
-        const bool tells_position = log_.has_position() || high - low >= turn_deg;
+        const bool tells_position = log_.has_position() || high - low >= one_turn_deg;
         const bool both_ways = moves_both_ways();
         for (const Effect* effect : catalogue()) {
             if (is_among(options_.without, effect->name)) continue;
@@ -371,7 +371,7 @@ class DiagnosisRun {
     void doubt_short_travel(Finding& finding) const {
         if (finding.term.effect->name != "output-ripple") return;
         const auto [low, high] = std::ranges::minmax(along_.motion.position_deg);
-        const double cycles = *finding.term.values.front() * (high - low) / turn_deg;
+        const double cycles = *finding.term.values.front() * (high - low) / one_turn_deg;
         if (cycles >= 1.0) return;
         finding.status = FindingStatus::ambiguous;
         finding.reason = fmt::format(

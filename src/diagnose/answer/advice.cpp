@@ -18,7 +18,7 @@ namespace {
 constexpr double least_part = 0.05;
 // Of the fastest speed: below it is standstill, up to there motion is slow, where kinds of friction part.
 constexpr double rest_share = 0.01, slow_share = 0.2;
-constexpr double turn_deg = 360.0;  // a smaller travel does not tell effects of the position apart
+constexpr double smallest_travel_deg = 360.0;  // a smaller travel does not tell effects of the position apart
 
 // The catalogue's advice; a general one when it has none.
 std::string what_would_tell(const Effect& one, const Effect& other) {
@@ -83,7 +83,7 @@ std::vector<std::string> missing_motion(const Diagnosis& diagnosis, const Seen& 
     if (speed && seen.slowly < least_part)
         missing.push_back(
             fmt::format("slow motion, at {:g} % of the fastest speed or less", 100.0 * slow_share));
-    if (position && diagnosis.has_position && seen.travel_deg < turn_deg)
+    if (position && diagnosis.has_position && seen.travel_deg < smallest_travel_deg)
         missing.push_back(fmt::format("a travel of more than a turn (here {:.0f} deg)", seen.travel_deg));
     if (load) missing.emplace_back("the same motion with another load");
     if (!diagnosis.has_position && position) missing.emplace_back("a column with the position");
