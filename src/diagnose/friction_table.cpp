@@ -19,7 +19,7 @@ namespace {
 
 // Chance that a table without any of the further frictions gets one.
 constexpr double false_alarm = 0.01;
-// Two of which the chances are less than 400 to 1 apart are not told apart, as 2 log(odds).
+// Two of which the chances are less than 400 to 1 apart are a tie, as 2 log(odds).
 constexpr double tie_margin = 12.0;
 
 // Rows as a motion: each at its speed, not accelerated, and at no position in particular.

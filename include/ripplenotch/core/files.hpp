@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // Files as the tool promises them: read whole or in pieces, written under no name and put in place when they
-// are complete, never overwritten unasked, "-" is the pipe. docs/durability.md says what a crash leaves.
+// are complete, never overwritten unasked, "-" is the pipe. docs/reliability.md says what a crash leaves.
 
 #include <cstddef>
 #include <cstdint>

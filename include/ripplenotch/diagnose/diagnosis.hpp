@@ -178,7 +178,7 @@ struct DiagnosisOptions {
     Seconds smoothing = default_smoothing;      ///< of the motion along which the gap is measured
     std::span<const std::string> without = {};  ///< names of effects that are not tried
     /// Names of uncertain findings that are taken into the model: a side of a tie, a refused candidate.
-    /// Others are told in Diagnosis::not_accepted.
+    /// Others are listed in Diagnosis::not_accepted.
     std::span<const std::string> accept = {};
     /// Terms that are stated and not searched, a column per value and a row per row of the log; the same of
     /// the validation log, where there is one.
