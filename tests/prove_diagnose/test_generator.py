@@ -8,6 +8,7 @@ import unittest
 import prove  # first: it skips without numpy
 import numpy as np
 from prove_diagnose import cases, joint, motion, sensor, strengths
+from prove_diagnose.physics import rough
 
 
 class Agreement(unittest.TestCase):
@@ -37,6 +38,22 @@ class Motion(unittest.TestCase):
             self.assertAlmostEqual(travel.duration_s, 40.0, delta=1.0)
             for speed in (-178.0, -25.0, 25.0, 178.0):
                 self.assertGreater(np.sum(np.abs(speeds - speed) < 1e-6), 900, (seed, speed))
+
+
+class RoughLogs(unittest.TestCase):
+    def test_stamps_jitter_and_rows_are_lost_in_about_half_of_the_logs_and_time_never_runs_back(self):
+        count, rate = 4000, 500
+        clean = {"time_s": np.arange(count) / rate, "velocity_deg_s": np.where(np.arange(count) < 2000, 0.0, 30.0)}
+        jittered, lost, rises = 0, 0, []
+        for seed in range(40):
+            log = rough.recorded(np.random.default_rng(seed), clean, rate)
+            steps = np.diff(log["time_s"])
+            self.assertGreater(np.min(steps), 0.0)
+            jittered += np.std(np.mod(log["time_s"] * rate + 0.5, 1.0)) > 1e-3
+            lost += len(log["time_s"]) < 0.995 * count
+            rises.append(np.max(np.diff(log["velocity_deg_s"])))
+        self.assertTrue(10 < jittered < 30 and 10 < lost < 30, (jittered, lost))
+        self.assertLess(np.max(rises), 30.0 * (1 - np.exp(-2 * np.pi * 300.0 * 6 / rate)), "the velocity is not filtered")
 
 
 class Sensor(unittest.TestCase):

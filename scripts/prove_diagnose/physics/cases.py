@@ -13,7 +13,7 @@ import zlib
 
 import numpy as np
 
-from . import catalogue, integrator, motions, plant
+from . import catalogue, integrator, motions, plant, rough as rough_logs
 
 FORMS = ("model", "simulated", "simulated_scale1")
 COLUMN, SIMULATED_ANGLE = "tau_sim_nm", "q_sim_deg"
@@ -38,6 +38,7 @@ class Setting:
     memory: float  # of the noise, from one millisecond to the next
     velocity: str  # how the drive makes it
     kinds: tuple  # of motion, of the two logs
+    soft: bool  # the gear
 
     def joint(self, with_hidden=True):
         p = dict(self.plant.parameters)
@@ -56,10 +57,11 @@ class Case:
     kind: str  # single, pair, null or outside
     label: str
     number: int
+    rough: bool = False  # with a careless logger and, in half of the joints, a soft gear
 
     @property
     def name(self):
-        return f"dynamics-{self.form}-{self.friction}-{self.kind}-{self.label}-{self.number}"
+        return f"{'rough' if self.rough else 'dynamics'}-{self.form}-{self.friction}-{self.kind}-{self.label}-{self.number}"
 
     @property
     def labels(self):
@@ -96,6 +98,8 @@ class Case:
             columns[COLUMN] = simulated["torque"]
             if "position_deg" in columns:  # else the tool would take it for the log's own
                 columns[SIMULATED_ANGLE] = np.degrees(simulated["motor_angle"])
+        if self.rough:
+            columns = rough_logs.recorded(self.rng("logger " + purpose), columns, rate)
         return columns, clean, limit
 
     def simulation(self, setting, reference):
@@ -136,6 +140,8 @@ class Case:
             optional = hidden.optional_when_scaled and self.form == "simulated"
             allowed += [*hidden.allowed, *(name for group in hidden.required for name in group)]
             required += [] if optional else hidden.required
+        if setting.soft and self.form == "model":  # no model of the form states how soft its gear is
+            allowed += [("resonance", None)]
         if self.form != "model":
             if self.friction == "frictionless":
                 required += [[("coulomb-friction", None)], [("viscous-friction", None)]]
@@ -184,11 +190,12 @@ class Case:
 def _setting(case):
     rng = case.rng("joint")
     drawn = plant.drawn(rng, catalogue.gravity(case.labels))
+    soft = case.rough and rough_logs.softened(case.rng("gear"), drawn)
     rate = int(rng.choice(list(RATES)))
     memory, velocity_kind = rng.uniform(0.0, 0.6), str(rng.choice(["noisy", "differenced", "filtered"]))
     kinds = tuple(str(kind) for kind in rng.permutation(catalogue.motions(case.labels))[:2])
     hidden = [catalogue.drawer(label)(rng, drawn) for label in case.labels]
-    setting = Setting(drawn, hidden, [h.start for h in hidden], [None] * len(hidden), rate, memory, velocity_kind, kinds)
+    setting = Setting(drawn, hidden, [h.start for h in hidden], [None] * len(hidden), rate, memory, velocity_kind, kinds, soft)
     reference = _reference(setting, case.rng("train"), kinds[0])
     for k, h in enumerate(hidden):
         if h.sized:
@@ -278,7 +285,7 @@ def _disturb(label, rng, shared, setting, p, reference):
         reference[:, 3] = rng.uniform(2, 5) * size * walk / walk.std()
 
 
-def planned(first, seeds, forms, nulls, labels):
+def planned(first, seeds, forms, nulls, labels, rough=False):
     """Singles of the labels, pairs, nulls and disturbances in every form, with friction in the simulation and without."""
     numbers, found = range(first, first + seeds), []
     for form in forms:
@@ -288,4 +295,4 @@ def planned(first, seeds, forms, nulls, labels):
             found += [Case(form, friction, "pair", pair, n) for pair in catalogue.PAIRS for n in numbers]
         found += [Case(form, "friction", "null", "nothing", n) for n in range(first, first + nulls)]
         found += [Case(form, "friction", "outside", label, n) for label in OUTSIDE for n in numbers]
-    return found
+    return [dataclasses.replace(case, rough=rough) for case in found]

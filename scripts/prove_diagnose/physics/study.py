@@ -87,12 +87,13 @@ class Study:
     options: tuple = ()
     nulls: int | None = None
     kinds: tuple = ()
+    rough: bool = False
     seeds = 5
 
     def chosen(self, first, seeds):
         """Cases by form; nulls, unless their number is given, are forty times as many as the seeds."""
         nulls = 40 * seeds if self.nulls is None else self.nulls
-        return [case for case in cases.planned(first, seeds, self.forms, nulls, catalogue.labels())
+        return [case for case in cases.planned(first, seeds, self.forms, nulls, catalogue.labels(), self.rough)
                 if not self.kinds or case.kind in self.kinds]
 
     def trial(self, program, case, keep=None):

@@ -14,6 +14,10 @@ TITLES = {("model", "friction"): "`--model`", ("simulated", "friction"): "`--sim
 KINDS = {"single": "one effect", "pair": "two effects", "null": "nothing hidden", "outside": "no effect of the catalogue"}
 
 
+def rough(rows):
+    return all(row["case"].startswith("rough-") for row in rows)
+
+
 def beside(row, key):
     return row.get("baseline", {}).get(key)
 
@@ -59,7 +63,7 @@ def summary(rows):
                               table.percent([{"h": h} for h in held(of)], lambda r: r["h"]), table.share(of, lambda r: "error" in r),
                               table.median([speed(row) for row in of], "{:.1f} s"), table.percent(of, lambda r: beside(r, "exact")),
                               table.percent(of, lambda r: bool(beside(r, "false")))])
-    return table.joined(short(head, lines), page_tables.detail("diagnose-physics-forms", "All columns", table.markdown(head, lines)))
+    return table.joined(short(head, lines), page_tables.detail(f"diagnose-{'rough' if rough(rows) else 'physics'}-forms", "All columns", table.markdown(head, lines)))
 
 
 def short(head, lines):
@@ -107,6 +111,8 @@ def failure(row):
 
 
 def blocks(about, rows):
+    if rough(rows):
+        return {"rough": table.joined(about, summary(rows))}
     return {"dynamics": table.joined(
         about, summary(rows), page_tables.detail("diagnose-physics-criteria", "Criteria, and whether they are met", asked(rows)),
         page_tables.detail("diagnose-physics-effects", "Each hidden effect", by_label(rows)),
