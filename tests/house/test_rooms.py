@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Which room may include which, where third-party headers are included, formatting, and what must not be in the repository."""
 
+import collections
 import functools
 import re
 import shutil
@@ -91,6 +92,17 @@ class Rooms(unittest.TestCase):
         named = re.findall(r"`((?:src|include)/[\w/.]+)`", page)
         self.assertGreater(len(named), 15)
         self.assertEqual([name for name in named if not (SOURCE / name).exists()], [])
+
+    def test_names_without_linkage_differ_within_a_room_since_the_release_preset_compiles_files_together(self):
+        apart = re.search(r'EXCLUDE REGEX "(.+)"', (SOURCE / "src/CMakeLists.txt").read_text())[1]
+        places = collections.defaultdict(set)
+        for path, room, _ in sources():
+            if path.suffix == ".cpp" and not re.search(apart, str(path)):
+                for scope in re.findall(r"^namespace \{$(.*?)^\}", path.read_text(), re.M | re.S):
+                    for name in re.findall(r"^(?:constexpr|const|struct|class|enum class) [^\n(={;]*?(\w+)\s*(?:[={;]|$)", scope, re.M):
+                        places[room, name].add(str(path.relative_to(SOURCE)))
+        self.assertGreater(len(places), 300)
+        self.assertEqual({name: sorted(files) for (_, name), files in places.items() if len(files) > 1}, {})
 
     def test_third_party_headers_have_one_door_each(self):
         for path, _, includes in sources():
