@@ -98,8 +98,9 @@ class Rooms(unittest.TestCase):
         places = collections.defaultdict(set)
         for path, room, _ in sources():
             if path.suffix == ".cpp" and not re.search(apart, str(path)):
-                for scope in re.findall(r"^namespace \{$(.*?)^\}", path.read_text(), re.M | re.S):
-                    for name in re.findall(r"^(?:constexpr|const|struct|class|enum class) [^\n(={;]*?(\w+)\s*(?:[={;]|$)", scope, re.M):
+                for scope in re.findall(r"^namespace \{$(.*?)^\}  // namespace", path.read_text(), re.M | re.S):
+                    types = re.findall(r"^(?:struct|class|enum class) (\w+)", scope, re.M)
+                    for name in types + re.findall(r"^(?:constexpr|const) [^\n(={;]*?(\w+)\s*[={;]", scope, re.M):
                         places[room, name].add(str(path.relative_to(SOURCE)))
         self.assertGreater(len(places), 300)
         self.assertEqual({name: sorted(files) for (_, name), files in places.items() if len(files) > 1}, {})
