@@ -35,7 +35,6 @@ struct SetupFault {
     /// Shares of the variance that simulation or arm explain in held-out blocks: as things are, and with the
     /// fault repaired. Below 0 where the residual of the simulation exceeds the torque itself.
     double explained_before = 0.0, explained_after = 0.0;
-    std::size_t blocks_improved = 0, blocks = 0;
 };
 
 }  // namespace ripplenotch

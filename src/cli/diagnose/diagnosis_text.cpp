@@ -119,9 +119,9 @@ std::vector<std::string> setup_sentences(const Diagnosis& diagnosis) {
                     with_error(1e3 * std::abs(lag.delay_s), 1e3 * half_s),
                     lag.delay_s > 0.0 ? "behind" : "ahead of", lag.correlation);
     if (lag.clock_error) text += fmt::format("; clocks differ by {:.3g} ppm", 1e6 * *lag.clock_error);
-    if (lag.position)
+    if (lag.position_difference_deg)
         text +=
-            fmt::format("; positions then differ by {} deg rms", short_number(lag.position->rms_difference));
+            fmt::format("; positions then differ by {} deg rms", short_number(*lag.position_difference_deg));
     all.push_back(text + ".");
     return all;
 }

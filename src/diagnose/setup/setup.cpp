@@ -1,256 +1,367 @@
 // SPDX-License-Identifier: MIT
-#include "diagnose/setup/setup.hpp"
+// Hypotheses on how log and simulation were put together, each a factor of the simulation's series, another
+// joint or another motion, by what a regression at their lag leaves in blocks that were not fitted.
+
+#include "ripplenotch/diagnose/setup.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
-#include "core/matrices/factorisations.hpp"
-#include "diagnose/setup/hypotheses.hpp"
 #include "diagnose/setup/lag.hpp"
 #include "ripplenotch/core/portable_math.hpp"
-#include "ripplenotch/diagnose/setup.hpp"
 
 namespace ripplenotch {
 
-namespace {
-
-using Eigen::Index;
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
-
-// Columns may be combinations of each other (a joint that moves one way only): a pull towards 0 of a
-// billionth of a column's own squares.
-VectorXd solve_squares(const MatrixXd& products, const VectorXd& side) {
-    VectorXd scale = products.diagonal();
-    for (double& each : scale) each = each > 0.0 ? 1.0 / std::sqrt(each) : 0.0;
-    MatrixXd scaled = scale.asDiagonal() * products * scale.asDiagonal();
-    for (Index k = 0; k < scaled.rows(); ++k) scaled(k, k) += scale[k] > 0.0 ? 1e-9 : 1.0;
-    return scale.cwiseProduct(SymmetricFactors(scaled).solve(VectorXd(scale.cwiseProduct(side))));
-}
-
-}  // namespace
-
-double BlockedSquares::Sums::left(const VectorXd& values) const {
-    return std::max(squares - 2.0 * values.dot(side) + values.dot(products * values), 0.0);
-}
-
-BlockedSquares::BlockedSquares(const std::vector<std::vector<double>>& columns,
-                               std::span<const double> target, std::span<const std::size_t> block) {
-    const auto count = static_cast<Index>(columns.size());
-    const std::size_t blocks = block.empty() ? 0 : *std::max_element(block.begin(), block.end()) + 1;
-    sums_.assign(blocks, {MatrixXd::Zero(count, count), VectorXd::Zero(count), 0.0});
-    VectorXd row(count);
-    for (std::size_t k = 0; k < target.size(); ++k) {
-        for (Index c = 0; c < count; ++c) row[c] = columns[static_cast<std::size_t>(c)][k];
-        Sums& sums = sums_[block[k]];
-        sums.products += row * row.transpose();
-        sums.side += target[k] * row;
-        sums.squares += target[k] * target[k];
-    }
-    Sums all{MatrixXd::Zero(count, count), VectorXd::Zero(count), 0.0};
-    for (const Sums& sums : sums_) {
-        all.products += sums.products;
-        all.side += sums.side;
-    }
-    values_ = solve_squares(all.products, all.side);
-    for (const Sums& sums : sums_)
-        without_.push_back(solve_squares(all.products - sums.products, all.side - sums.side));
-}
-
-double BlockedSquares::jackknife_error(std::size_t value) const {
-    const auto at = static_cast<Index>(value);
-    const auto count = static_cast<double>(without_.size());
-    double mean = 0.0, squares = 0.0;
-    for (const VectorXd& values : without_) mean += values[at] / count;
-    for (const VectorXd& values : without_) squares += (values[at] - mean) * (values[at] - mean);
-    return std::sqrt(squares * (count - 1.0) / count);
-}
-
-std::vector<double> BlockedSquares::held_out() const {
-    std::vector<double> squares;
-    for (std::size_t b = 0; b < sums_.size(); ++b) squares.push_back(sums_[b].left(without_[b]));
-    return squares;
-}
-
-std::vector<double> BlockedSquares::left() const {
-    std::vector<double> squares;
-    for (const Sums& sums : sums_) squares.push_back(sums.left(values_));
-    return squares;
-}
-
-std::vector<std::size_t> equal_blocks(std::span<const double> weight, std::size_t blocks) {
-    const double all = std::accumulate(weight.begin(), weight.end(), 0.0);
-    std::vector<std::size_t> numbers;
-    double before = 0.0;
-    for (const double each : weight) {
-        const double share = all > 0.0 ? before / all : 0.0;
-        numbers.push_back(
-            std::min(static_cast<std::size_t>(share * static_cast<double>(blocks)), blocks - 1));
-        before += each;
-    }
-    return numbers;
-}
+using Eigen::Index, Eigen::VectorXd;
 
 namespace {
 
-// A column of the log over the window.
-std::vector<double> smoothed_column(std::span<const double> time_s, std::span<const double> values,
-                                    const NuisanceColumns::Window& window) {
-    const SmoothedSeries series(time_s, values, window.smoothing_s);
-    std::vector<double> column;
-    for (const double at_s : window.at_s) column.push_back(series.mean(at_s));
-    return column;
+// A true fault passes each by far: factors lie 10 or more apart, and what a repaired set-up leaves is that of
+// an ordinary simulation. Squares held out, before to after, and the share of the variance then explained.
+constexpr double least_ratio = 4.0, least_explained = 0.5;
+constexpr double least_blocks = 0.9;  // that improve: at a fair coin 1 of 93 for 9 of 10
+// About a factor: friction and payload change the torque's scale; a controller follows the motion.
+constexpr double torque_tolerance = 1.5, motion_tolerance = 1.1, gravity_tolerance = 1.25;
+constexpr double same_motion = 0.9;  // correlation
+constexpr double least_told = 0.1,
+                 least_size = 0.5;       // by a simulation of another motion, and of its own torque
+constexpr double least_turn_deg = 60.0;  // less is an error of the position's zero or of the mount
+
+// What a factor of a series may be mistaken for, and how it is told.
+struct Mistakes {
+    double unit, tolerance;
+    SetupFaultKind sign_fault, unit_fault, side_fault;
+    const char *unit_above, *unit_below, *side_above, *side_below;  // where the log is larger, and smaller
+};
+constexpr Mistakes motion_mistakes{
+    degrees_per_radian,
+    motion_tolerance,
+    SetupFaultKind::motion_sign,
+    SetupFaultKind::motion_unit,
+    SetupFaultKind::motor_side_motion,
+    "the simulated one is in radians, or that of the log is not in its stated unit",
+    "the simulated one is in degrees, or that of the log in radians",
+    "the log has it on the motor side of the gear, the simulation on the joint side",
+    "the simulation has it on the motor side of the gear, the log on the joint side"};
+constexpr Mistakes torque_mistakes{
+    1000.0,
+    torque_tolerance,
+    SetupFaultKind::torque_sign,
+    SetupFaultKind::torque_unit,
+    SetupFaultKind::motor_side_torque,
+    "mNm in the log were read as Nm, or the simulated torque is too small by 1000",
+    "the simulated torque is in mNm and was read as Nm",
+    "the simulated torque is on the motor side of the gear",
+    "the measured torque is on the motor side of the gear"};
+
+// The measured series less the simulated one times a factor.
+VectorXd less(const BlockProducts& both, double factor) {
+    return both.column(Alignment::measured) - factor * both.column(Alignment::simulated);
 }
 
-// The position of the log, or else the integral of its velocity.
-std::vector<double> angle_of(const TraceView& log) {
-    if (log.has_position()) return {log.position_deg.begin(), log.position_deg.end()};
-    std::vector<double> angle_deg(log.velocity_deg_s.size());
-    for (std::size_t k = 1; k < angle_deg.size(); ++k)
-        angle_deg[k] = angle_deg[k - 1] + 0.5 * (log.time_s[k] - log.time_s[k - 1]) *
-                                              (log.velocity_deg_s[k - 1] + log.velocity_deg_s[k]);
-    return angle_deg;
+double scale_of(const BlockProducts& both, Places by) {
+    by.insert(by.begin(), Alignment::simulated);
+    return both.values(less(both, 0.0), by)[0];
 }
 
-// The state of Dahl's friction along a position: it turns from -1 to 1 within about the width.
-std::vector<double> dahl_state(std::span<const double> angle_deg, double width_deg) {
-    std::vector<double> state(angle_deg.size());
-    for (std::size_t k = 1; k < state.size(); ++k) {
-        const double way = (angle_deg[k] - angle_deg[k - 1]) / width_deg;
-        const double end = way > 0.0 ? 1.0 : -1.0;
-        state[k] = end + (state[k - 1] - end) * portable::exp(-std::abs(way));
-    }
-    return state;
+// Fills in what a repair explains, beside an offset and friction of any size; whether that is clear.
+bool proves(const BlockProducts& both, const Places& beside, const VectorXd& repaired, SetupFault& fault) {
+    const auto before = both.left(less(both, 1.0), beside, true), after = both.left(repaired, beside, true);
+    const double total = both.squares(less(both, 0.0), {Alignment::constant}),
+                 after_all = both.squares(repaired, beside),
+                 before_all = both.squares(less(both, 1.0), beside);
+    double improved = 0.0;
+    for (std::size_t b = 0; b < before.size(); ++b) improved += after[b] < before[b] ? 1.0 : 0.0;
+    fault.explained_before = 1.0 - before_all / total;
+    fault.explained_after = 1.0 - after_all / total;
+    return total > 0.0 && before_all >= least_ratio * after_all && fault.explained_after >= least_explained &&
+           improved >= least_blocks * static_cast<double>(before.size());
 }
 
-}  // namespace
-
-NuisanceColumns::NuisanceColumns(const TraceView& log, std::optional<GearRatio> gear_ratio,
-                                 const AlignmentOptions& options, const Window& window)
-    : rows_(window.at_s.size()) {
-    const auto smoothed = [&](std::span<const double> values) {
-        return smoothed_column(log.time_s, values, window);
-    };
-    const std::span<const double> velocity = log.velocity_deg_s;
-    if (log.has_position()) {
-        std::vector<double> cosine(log.size()), sine(log.size());
-        portable::cos_degrees(log.position_deg, cosine);
-        portable::sin_degrees(log.position_deg, sine);
-        gravity_ = {smoothed(cosine), smoothed(sine)};
-    }
-    if (velocity.empty()) return;
-    std::vector<double> side(velocity.size());
-    for (const double width_deg_s : {options.slow_width_deg_s, options.fast_width_deg_s}) {
-        for (std::size_t k = 0; k < side.size(); ++k) side[k] = portable::tanh(velocity[k] / width_deg_s);
-        friction_.push_back(smoothed(side));
-    }
-    friction_.push_back(smoothed(velocity));
-    const SmoothedSeries speed(log.time_s, velocity, window.smoothing_s);
-    inertia_.emplace_back();
-    for (const double at_s : window.at_s) inertia_.back().push_back(speed.slope(at_s));
-    const std::vector<double> angle_deg = angle_of(log);
-    for (std::size_t k = 0; k < side.size(); ++k)
-        side[k] = std::abs(log.torque_nm[k]) * portable::tanh(velocity[k] / options.slow_width_deg_s);
-    load_ = {smoothed(side), smoothed(dahl_state(angle_deg, options.hysteresis_width_deg))};
-    if (!gear_ratio) return;
-    std::vector<double> wave(angle_deg.size()), swelling(angle_deg.size());
-    for (const double order : {1.0, 2.0}) {
-        for (const double quarter_deg : {0.0, 90.0}) {
-            for (std::size_t k = 0; k < wave.size(); ++k) {
-                wave[k] = portable::cos_degrees(order * gear_ratio->value() * angle_deg[k] - quarter_deg);
-                swelling[k] = wave[k] * std::abs(velocity[k]);
-            }
-            ripple_.push_back(smoothed(wave));
-            ripple_.push_back(smoothed(swelling));
-        }
-    }
-}
-
-std::vector<std::vector<double>> NuisanceColumns::of(const NuisanceChoice& choice) const {
-    std::vector<std::vector<double>> columns{std::vector<double>(rows_, 1.0)};
-    const auto add = [&](bool chosen, const std::vector<std::vector<double>>& more) {
-        if (chosen) columns.insert(columns.end(), more.begin(), more.end());
-    };
-    add(choice.friction, friction_);
-    add(choice.inertia, inertia_);
-    add(choice.gravity, gravity_);
-    add(choice.ripple, ripple_);
-    add(choice.load, load_);
-    return columns;
-}
-
-std::optional<MistakenFactor> nearest_factor(double scale, const std::vector<MistakenFactor>& factors,
-                                             double tolerance) {
-    if (scale == 0.0 || !std::isfinite(scale)) return {};
-    const auto distance = [scale](double factor) {
-        return scale * factor > 0.0 ? std::abs(portable::log(scale / factor))
-                                    : std::numeric_limits<double>::infinity();
-    };
-    std::optional<MistakenFactor> nearest;
-    double least = std::min(distance(1.0), portable::log(tolerance));
-    for (const MistakenFactor& one : factors) {
-        if (distance(one.factor) >= least) continue;
-        least = distance(one.factor);
-        nearest = one;
-    }
-    return nearest;
-}
-
-void add_evidence(const BlockEvidence& evidence, SetupFault& fault) {
-    const auto sum = [](const std::vector<double>& squares) {
-        return std::accumulate(squares.begin(), squares.end(), 0.0);
-    };
-    const double total = sum(evidence.total);
-    fault.explained_before = total > 0.0 ? 1.0 - sum(evidence.before) / total : 0.0;
-    fault.explained_after = total > 0.0 ? 1.0 - sum(evidence.after) / total : 0.0;
-    fault.blocks = evidence.before.size();
-    for (std::size_t b = 0; b < evidence.before.size(); ++b)
-        if (evidence.after[b] < evidence.before[b]) ++fault.blocks_improved;
-}
-
-bool is_clear(const BlockEvidence& evidence, const SetupLimits& limits) {
+// The mistaken factor that is nearest to the scale of a series, with its sign; nothing where 1 is as near.
+std::optional<SetupFault> factor_fault(const BlockProducts& both, const Places& beside, const Mistakes& of,
+                                       std::string_view series, const std::optional<GearRatio>& ratio) {
+    const double scale = scale_of(both, beside), size = portable::log(std::max(std::abs(scale), 1e-300));
+    double least = portable::log(of.tolerance);
+    if (scale > 0.0) least = std::min(least, std::abs(size));
     SetupFault fault;
-    add_evidence(evidence, fault);
-    return 1.0 - fault.explained_before >= limits.least_ratio * (1.0 - fault.explained_after) &&
-           fault.explained_after >= limits.least_explained &&
-           static_cast<double>(fault.blocks_improved) >=
-               limits.least_blocks * static_cast<double>(fault.blocks);
+    const auto consider = [&](double factor, SetupFaultKind kind, std::string_view words) {
+        const double off = std::abs(size - portable::log(factor));
+        if (off >= least) return;
+        least = off;
+        fault = {kind, std::string(words), {}, std::copysign(factor, scale)};
+    };
+    if (scale < 0.0) consider(1.0, of.sign_fault, "");
+    consider(of.unit, of.unit_fault, of.unit_above);
+    consider(1.0 / of.unit, of.unit_fault, of.unit_below);
+    if (ratio && ratio->value() > 2.0) {
+        consider(ratio->value(), of.side_fault, of.side_above);
+        consider(1.0 / ratio->value(), of.side_fault, of.side_below);
+    }
+    if (fault.factor == 1.0 || !proves(both, beside, less(both, fault.factor), fault)) return {};
+    fault.statement =
+        fmt::format("the {} of the log is {:.4g} times the simulated one: {}{}", series, scale,
+                    fault.statement, fault.kind == of.sign_fault || fault.factor > 0.0 ? "" : ", and ");
+    return fault;
 }
 
-std::string joint_text(const std::string& name) { return name.empty() ? "this joint" : "joint " + name; }
+// Position and velocity, where both have them, at the lag of the motions.
+void add_motion_faults(const TraceView& log, const SimulatedMotion& simulation, SimulationLag& lag,
+                       const SetupContext& context, std::vector<SetupFault>& faults) {
+    for (const bool is_position : {true, false}) {
+        const std::span<const double> left = is_position ? log.position_deg : log.velocity_deg_s,
+                                      right =
+                                          is_position ? simulation.position_deg : simulation.velocity_deg_s;
+        if (left.empty() || right.empty()) continue;
+        const BlockProducts both = Alignment(log.time_s, left, false, simulation, right, false)
+                                       .products(lag.delay_s, lag.clock_error.value_or(0.0));
+        const Places offset{Alignment::constant};
+        const VectorXd rows = both.column(Alignment::constant), difference = less(both, 1.0);
+        if (is_position)
+            lag.position_difference_deg =
+                std::sqrt(both.product(difference, difference) / both.product(rows, rows));
+        const double share = 1.0 - both.squares(less(both, scale_of(both, offset)), offset, false) /
+                                       both.squares(less(both, 0.0), offset, false);
+        auto fault = factor_fault(both, offset, motion_mistakes, is_position ? "position" : "velocity",
+                                  context.gear_ratio);
+        if (!fault || !(share >= same_motion * same_motion)) continue;
+        if (fault->factor < 0.0) fault->statement += "its sign is reversed";
+        if (fault->kind == SetupFaultKind::motion_unit)
+            fault->option =
+                fmt::format("--unit {}={}{}", is_position ? context.position_column : context.velocity_column,
+                            std::abs(fault->factor) > 1.0 ? "rad" : "deg", is_position ? "" : "/s");
+        faults.push_back(*std::move(fault));
+    }
+}
+
+// The joint of the log that the simulation is of, where it explains far more of that one than of the one in
+// hand. `share_of`: what it explains of a joint.
+template <class ShareOf>
+std::optional<SetupFault> other_joint(const SetupContext& context, double own, std::string_view series,
+                                      ShareOf share_of) {
+    std::optional<SetupFault> best;
+    for (const LoggedJoint& joint : context.others) {
+        const double share = share_of(joint.trace);
+        if (share < same_motion * same_motion || 1.0 - own < least_ratio * (1.0 - share)) continue;
+        if (best && best->explained_after >= share) continue;
+        best = {
+            SetupFaultKind::wrong_joint,
+            fmt::format(
+                "the simulated {} is that of joint {} of the log (it explains {:.1f} % of its variance), "
+                "not of {} ({:.1f} %)",
+                series, joint.name, 100.0 * share,
+                context.joint.empty() ? "this joint" : "joint " + context.joint, 100.0 * std::max(own, 0.0)),
+            "--joint " + joint.name,
+            1.0,
+            own,
+            share};
+    }
+    return best;
+}
+
+SetupFault other_motion(double explained, std::string_view what) {
+    return {SetupFaultKind::other_motion,
+            fmt::format("the simulation is of another motion: at no delay {}", what),
+            {},
+            1.0,
+            explained,
+            explained};
+}
+
+// The two torques at their lag.
+struct Torques {
+    const Alignment& columns;
+    BlockProducts both;
+    const Places& beside = columns.friction;  // and an offset
+
+    [[nodiscard]] Places motion() const { return beside + columns.inertia + columns.gravity; }
+    [[nodiscard]] VectorXd simulated() const { return both.column(Alignment::simulated); }
+
+    // -1 or 1; 0 where a set of blocks has another.
+    [[nodiscard]] double sign_of_inertia(const VectorXd& torque) const {
+        if (columns.inertia.empty()) return 0.0;
+        const auto at = static_cast<Index>(beside.size());
+        const double inertia = both.values(torque, motion())[at];
+        for (std::size_t b = 0; b < BlockProducts::blocks; ++b)
+            if (!(both.values(torque, motion(), b)[at] * inertia > 0.0)) return 0.0;
+        return std::copysign(1.0, inertia);
+    }
+
+    [[nodiscard]] bool friction_drives(double factor) const {
+        const VectorXd values = both.values(less(both, factor), beside);
+        VectorXd friction = VectorXd::Zero(simulated().size());
+        for (std::size_t c = 1; c < beside.size(); ++c) friction[beside[c]] = values[static_cast<Index>(c)];
+        return both.product(friction, both.column(beside.back())) < 0.0;
+    }
+
+    [[nodiscard]] std::optional<SetupFault> factor(const SetupContext& context) const {
+        auto fault = factor_fault(both, beside, torque_mistakes, "torque", context.gear_ratio);
+        if (!fault) return {};
+        fault->option = fmt::format("scale={:.6g}", context.torque_scale * fault->factor);
+        if (fault->kind == SetupFaultKind::torque_unit && fault->factor > 0.0 && fault->factor < 1.0)
+            fault->option = fmt::format("--unit {}=mNm", context.torque_column);
+        if (fault->factor > 0.0) return fault;
+        // A reversed torque has an inertia below 0. Where both are above, something else is missing.
+        const double measured = sign_of_inertia(less(both, 0.0)),
+                     inertias = measured * sign_of_inertia(simulated());
+        if (inertias > 0.0) return {};
+        fault->statement +=
+            measured < 0.0 || friction_drives(fault->factor)
+                ? "the sign of the measured torque is reversed (its friction would drive the joint)"
+                : "the sign of one of them is reversed";
+        if (inertias == 0.0 && fault->kind == SetupFaultKind::torque_sign)
+            fault->statement += ", or gravity acts in the other direction";
+        return fault;
+    }
+
+    // Of the simulated torque, by the motion of the log at its delay.
+    [[nodiscard]] double share_of_motion() const {
+        return 1.0 - both.squares(simulated(), motion()) / both.squares(simulated(), {Alignment::constant});
+    }
+
+    // The simulation's own weight, turned: one angle is fitted, and no size.
+    [[nodiscard]] std::optional<SetupFault> turned_gravity() const {
+        if (columns.gravity.empty() || share_of_motion() < least_explained) return {};
+        const auto at = static_cast<Index>(motion().size()) - 2;
+        const VectorXd own = both.values(simulated(), motion()),
+                       real = both.values(less(both, 0.0), motion());
+        const double size = portable::hypot(own[at], own[at + 1]),
+                     real_size = portable::hypot(real[at], real[at + 1]);
+        const double turn = portable::atan2(own[at] * real[at + 1] - own[at + 1] * real[at],
+                                            own[at] * real[at] + own[at + 1] * real[at + 1]);
+        if (!(size > 0.0) || !(real_size > 0.0) || std::abs(turn) * degrees_per_radian < least_turn_deg ||
+            std::abs(portable::log(real_size / size)) > portable::log(gravity_tolerance))
+            return {};
+        const double cosine = portable::cos(turn) - 1.0, sine = portable::sin(turn);
+        VectorXd repaired = less(both, 1.0);
+        repaired[columns.gravity[0]] -= cosine * own[at] - sine * own[at + 1];
+        repaired[columns.gravity[1]] -= sine * own[at] + cosine * own[at + 1];
+        SetupFault fault{
+            SetupFaultKind::gravity_direction,
+            fmt::format("the measured weight, {:.3g} Nm, is the simulated one turned by {:.0f} deg: "
+                        "gravity acts in another direction in the simulation, or its position has "
+                        "another zero",
+                        real_size, turn * degrees_per_radian),
+            {}};
+        return proves(both, beside, repaired, fault) ? std::optional(std::move(fault)) : std::nullopt;
+    }
+
+    // It explains next to nothing, and is not of this motion either: that is no weight in another direction.
+    [[nodiscard]] bool are_of_other_motions(double explained) const {
+        return explained < least_told && share_of_motion() < least_explained &&
+               both.squares(simulated(), beside) >
+                   least_size * least_size * both.squares(less(both, 0.0), beside);
+    }
+};
+
+bool changes(std::span<const double> values) {
+    if (values.size() < 8) return false;
+    const auto [low, high] = std::ranges::minmax(values);
+    return high > low;
+}
+
+Alignment torques_of(const TraceView& log, const SimulatedMotion& simulation,
+                     std::optional<GearRatio> gear_ratio) {
+    return {log.time_s, log.torque_nm, false, simulation, simulation.torque_nm, false, &log, gear_ratio};
+}
+
+// Together with a weight and an inertia of the joint, what is left of a simulation that has nothing else may
+// have any scale and delay: more columns count where they halve the squares of blocks held out at about the
+// same scale.
+SimulationLag lag_of_torques(const Alignment& both) {
+    Places beside = both.friction + both.ripple;
+    double least = 0.0, squares = 0.0;
+    SimulationLag chosen = both.lag(beside, &least);
+    for (const Places& added : {both.inertia, both.gravity, both.load}) {
+        if (added.empty() || !chosen.is_compared) continue;
+        beside = beside + added;
+        const SimulationLag lag = both.lag(beside, &squares);
+        const bool is_better =
+            squares < 0.5 * least && lag.scale * chosen.scale > 0.0 &&
+            std::abs(portable::log(lag.scale / chosen.scale)) <= portable::log(torque_tolerance);
+        if (!lag.identifiable || (chosen.identifiable && !is_better)) continue;
+        chosen = lag;
+        least = squares;
+    }
+    return chosen;
+}
+
+}  // namespace
+
+SimulationLag lag_by_torque(const TraceView& log, const SimulatedMotion& simulation,
+                            std::optional<GearRatio> gear_ratio) {
+    if (!changes(log.torque_nm) || !changes(simulation.torque_nm)) return {};
+    return lag_of_torques(torques_of(log, simulation, gear_ratio));
+}
+
+SimulationLag lag_by_motion(const TraceView& log, const SimulatedMotion& simulation) {
+    // The same series of both, if there is one: a velocity of the log may have passed a filter that its
+    // position has not.
+    const bool both_velocities = !log.velocity_deg_s.empty() && !simulation.velocity_deg_s.empty(),
+               both_positions = log.has_position() && !simulation.position_deg.empty(),
+               may_be_position = both_positions || !both_velocities,
+               by_position = log.has_position() && may_be_position,
+               simulated_position = !simulation.position_deg.empty() && may_be_position;
+    const std::span<const double> left = by_position ? log.position_deg : log.velocity_deg_s,
+                                  right = simulated_position ? simulation.position_deg
+                                                             : simulation.velocity_deg_s;
+    double squares = 0.0;
+    if (!changes(left) || !changes(right)) return {};
+    return Alignment(log.time_s, left, by_position, simulation, right, simulated_position)
+        .lag({Alignment::constant}, &squares);
+}
 
 const SimulationLag* SetupAnswer::lag() const {
     if (motion_lag && motion_lag->identifiable) return &*motion_lag;
-    if (torque_lag && torque_lag->identifiable) return &*torque_lag;
-    return nullptr;
+    return torque_lag && torque_lag->identifiable ? &*torque_lag : nullptr;
 }
 
 SetupAnswer suspect_setup(const TraceView& log, const SimulatedMotion& simulation,
                           const SetupContext& context) {
     SetupAnswer answer;
-    const bool has_motion = simulation.has_motion() && (log.has_position() || !log.velocity_deg_s.empty());
-    if (has_motion) answer.motion_lag = lag_by_motion(log, simulation, context.alignment);
-    if (!simulation.torque_nm.empty() && log.size() > 0)
-        answer.torque_lag = lag_by_torque(log, simulation, context.gear_ratio, context.alignment);
-    if (has_motion) {
-        answer.faults = motion_faults(log, simulation, *answer.motion_lag, context);
-        const bool void_otherwise =
-            std::any_of(answer.faults.begin(), answer.faults.end(), [](const SetupFault& fault) {
-                return fault.kind == SetupFaultKind::wrong_joint ||
-                       fault.kind == SetupFaultKind::other_motion;
-            });
-        if (void_otherwise) return answer;
+    std::vector<SetupFault>& faults = answer.faults;
+    double share = 0.0;
+    SimulationLag by_motion = lag_by_motion(log, simulation);
+    if (by_motion.is_compared) {
+        share = by_motion.correlation * by_motion.correlation;
+        if (auto other = other_joint(context, share, "motion", [&](const TraceView& joint) {
+                const double found = lag_by_motion(joint, simulation).correlation;
+                return found * found;
+            }))
+            faults.push_back(*std::move(other));
+        else if (by_motion.explained < least_explained)
+            faults.push_back(other_motion(
+                by_motion.explained, "does its velocity explain half of the variance of the measured one"));
+        else
+            add_motion_faults(log, simulation, by_motion, context, faults);
+        answer.motion_lag = by_motion;
+        if (share < same_motion * same_motion && !faults.empty()) return answer;
     }
-    if (!answer.torque_lag) return answer;
-    const bool is_same_motion =
-        has_motion && std::abs(answer.motion_lag->correlation) >= context.limits.least_correlation;
-    SimulationLag lag = *answer.torque_lag;
-    if (answer.motion_lag && answer.motion_lag->identifiable) lag = *answer.motion_lag;
-    lag.explained = answer.torque_lag->explained;
-    if (!lag.identifiable) lag.delay_s = 0.0;
-    const auto more = torque_faults(log, simulation, lag, context, is_same_motion);
-    answer.faults.insert(answer.faults.end(), more.begin(), more.end());
+    if (!changes(log.torque_nm) || !changes(simulation.torque_nm)) return answer;
+    const Alignment columns = torques_of(log, simulation, context.gear_ratio);
+    const SimulationLag by_torque = lag_of_torques(columns);
+    answer.torque_lag = by_torque;
+    if (!by_torque.is_compared) return answer;
+    const bool is_same_motion = share >= same_motion * same_motion;
+    std::optional<SetupFault> fault;
+    if (!is_same_motion)
+        fault = other_joint(context, by_torque.explained, "torque", [&](const TraceView& joint) {
+            const SimulationLag lag = lag_by_torque(joint, simulation, context.gear_ratio);
+            const bool is_full =
+                std::abs(portable::log(std::max(lag.scale, 1e-9))) <= portable::log(torque_tolerance);
+            return is_full ? lag.explained : 0.0;
+        });
+    const SimulationLag* lag = answer.lag();
+    const Torques torques{columns, columns.products(lag != nullptr ? lag->delay_s : 0.0)};
+    if (!fault) fault = torques.factor(context);
+    if (!fault) fault = torques.turned_gravity();
+    if (!fault && !is_same_motion && torques.are_of_other_motions(by_torque.explained))
+        fault = other_motion(by_torque.explained,
+                             "does its torque explain the measured one, and it is not that of the "
+                             "motion of the log");
+    if (fault) faults.push_back(*std::move(fault));
     return answer;
 }
 
