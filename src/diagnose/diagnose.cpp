@@ -109,7 +109,7 @@ class DiagnosisRun {
         result_.samples = log_.size();
         result_.setup.assign(options_.setup.begin(), options_.setup.end());
         find_log_faults();
-        const SettledModel alone = settled(model_, along_, 0.0);
+        const SettledModel alone = settled(model_, along_, {});
         result_.baseline = alone.model;
         if (options_.setup.empty()) {
             require_motion();
@@ -118,7 +118,7 @@ class DiagnosisRun {
             result_.gap.noise_floor_nm = rms_where(alone.residual_nm, along_.use);
         }
         // The rows that count for the engine count for the values.
-        alone_ = settled(model_, along_, result_.gap.noise_floor_nm);
+        alone_ = settled(model_, along_, departure_beside(0));
         result_.baseline = alone_.model;
         accept();
         improve();
@@ -171,7 +171,8 @@ class DiagnosisRun {
             result_.undecidable.push_back({effect->name, std::move(reason)});
         }
         // An arm has inertia and gravity of its own.
-        if (is_given(options_.given, "arm")) names.insert(names.end(), {"gravity", "payload-change"});
+        if (is_given(options_.given, "arm"))
+            names.insert(names.end(), {"gravity", "inertia", "payload-change"});
         return names;
     }
 
@@ -242,12 +243,18 @@ class DiagnosisRun {
         result_.gap.noise_floor_nm = found.noise_nm;
         engine_residual_nm_ = found.residual_after_nm;
         searched_before_nm_ = found.rms_before_nm;
+        std::size_t taken = 0;
         take_faults(found);
-        take_known_values(found);
         take_departures(found);
-        for (const engine::AdoptedTerm& term : found.terms) take(term, FindingStatus::confirmed, delay_s);
-        for (const engine::AdoptedTerm& term : found.corrections)
+        take_known_values(found, 0);
+        for (const engine::AdoptedTerm& term : found.terms) {
+            take(term, FindingStatus::confirmed, delay_s);
+            take_known_values(found, ++taken);
+        }
+        for (const engine::AdoptedTerm& term : found.corrections) {
             take(term, FindingStatus::correction, delay_s);
+            take_known_values(found, ++taken);
+        }
         if (options_.expected_delay && delay_s != 0.0 && own_term("delay") == nullptr) restore_delay(delay_s);
         for (const engine::NearlyAdopted& term : found.nearly_adopted)
             result_.refused.push_back({term.term, term.reason});
@@ -278,13 +285,22 @@ class DiagnosisRun {
         return found == model_.terms.end() ? nullptr : &*found;
     }
 
-    // The factors of an arm, as the engine fits them beside everything else.
-    void take_known_values(const engine::Result& found) {
-        for (const engine::ValuedColumn& column : found.baseline) {
-            if (column.name != "arm") continue;
-            departure_.push_back(column.factor);
+    // The factors of an arm, as the engine fits them beside its first terms, which are the findings so far.
+    void take_known_values(const engine::Result& found, std::size_t terms) {
+        departures_.resize(result_.rounds.size() + 1);
+        departures_.back().clear();
+        departure_error_.clear();
+        for (std::size_t c = 0; c < found.baseline.size(); ++c) {
+            if (found.baseline[c].name != "arm") continue;
+            departures_.back().push_back(found.baseline_factors[terms][c]);
+            departure_error_.push_back(found.baseline[c].standard_error);
         }
-        if (departure_.size() != along_.uncertain_nm.size()) departure_.clear();
+    }
+
+    // That of the uncertain factors beside the first so many findings.
+    [[nodiscard]] std::span<const double> departure_beside(std::size_t findings) const {
+        if (departures_.empty()) return {};
+        return departures_[std::min(findings, departures_.size() - 1)];
     }
 
     // What the values of the user's side come to, where that is not what he states.
@@ -329,7 +345,7 @@ class DiagnosisRun {
                            .value = value,
                            .standard_error = error,
                            .ci95 = Interval{value - half, value + half}}};
-        if (std::abs(value) <= known_deviation * known || is_given(options_.given, "arm")) {
+        if (std::abs(value) <= known_deviation * known) {
             finding.status = FindingStatus::correction;
             finding.reason = "the user's side is not known better";
         } else if (rms_nm * rms_nm < engine::least_gap_share * searched_before_nm_ * searched_before_nm_) {
@@ -452,7 +468,10 @@ class DiagnosisRun {
     }
 
     [[nodiscard]] SettledModel settled_with(std::size_t findings, const Finding* except = nullptr) const {
-        return settled(model_with(findings, except), along_, result_.gap.noise_floor_nm, departure_);
+        std::size_t last = 0;
+        for (std::size_t i = 0; i < findings; ++i)
+            if (result_.rounds[i].is_in_model() && &result_.rounds[i] != except) last = i + 1;
+        return settled(model_with(findings, except), along_, departure_beside(last));
     }
 
     [[nodiscard]] double rms_of_other(const SettledModel& found) const {
@@ -505,8 +524,7 @@ class DiagnosisRun {
         }
         const Model& own = model_;
         std::copy(own.terms.begin(), own.terms.end(), open.terms.begin());
-        SettledModel found =
-            settled(open, along_, result_.gap.noise_floor_nm, improved_.departure, &improved_.model);
+        SettledModel found = settled(open, along_, improved_.departure, &improved_.model);
         if (rms(found.residual_nm) > rms(improved_.residual_nm)) return;
         std::size_t place = first;
         for (Finding& finding : result_.rounds) {
@@ -517,7 +535,6 @@ class DiagnosisRun {
                     if (fitted.term == place && fitted.parameter == value.parameter) value = fitted;
             ++place;
         }
-        departure_ = found.departure;
         improved_ = std::move(found);
     }
 
@@ -567,8 +584,7 @@ class DiagnosisRun {
         if (shapes.empty()) return;
         LogAlong whole = along_;
         whole.use = good_;
-        const SettledModel found =
-            settled(open, whole, result_.gap.noise_floor_nm, improved_.departure, &improved_.model);
+        const SettledModel found = settled(open, whole, improved_.departure, &improved_.model);
         if (rms(found.residual_nm) >= rms(improved_.residual_nm)) return;
         for (std::size_t i = 0; i < shapes.size(); ++i) {
             FittedValue& value = shapes[i].first->values[shapes[i].second];
@@ -638,7 +654,7 @@ class DiagnosisRun {
             gap.validation_closed_percent =
                 closed_percent(*gap.validation_before_nm, *gap.validation_after_nm, gap.noise_floor_nm);
         }
-        result_.given = values_of_given(options_.given, improved_);
+        result_.given = values_of_given(options_.given, improved_.departure, departure_error_);
         if (!options_.given.empty()) {
             result_.beside_given_nm =
                 residual_along({result_.model.gear_ratio, {}}, along_, improved_.departure);
@@ -689,7 +705,9 @@ class DiagnosisRun {
     std::optional<LogAlong> other_;
     std::vector<unsigned char> good_;  ///< rows that hold the joint's torque
     SettledModel alone_, improved_;
-    std::vector<double> engine_residual_nm_, departure_;
+    std::vector<double> engine_residual_nm_;
+    std::vector<std::vector<double>> departures_;  ///< of the uncertain factors, by number of findings
+    std::vector<double> departure_error_;
     std::vector<AcceptedFinding> accepted_;
     std::vector<const Finding*> replaced_;
     std::vector<std::string> unknown_;

@@ -30,14 +30,11 @@ struct SettledModel {
     Model model;                      ///< every value stated
     std::vector<FittedValue> values;  ///< of those that were open
     std::vector<double> departure;    ///< of the uncertain factors from their prior means
-    std::vector<double> departure_error;
     std::vector<double> residual_nm;  ///< measured less predicted, all rows
 };
 
-/// Fits the open values by least squares on the rows that count, and the uncertain factors with their priors
-/// to what is left, from `departure` on; `noise_nm` weighs these.
-[[nodiscard]] SettledModel settled(const Model& open, const LogAlong& log, double noise_nm,
-                                   std::span<const double> departure = {},
+/// Fits the open values by least squares on the rows that count, beside the uncertain factors as they are.
+[[nodiscard]] SettledModel settled(const Model& open, const LogAlong& log, std::span<const double> departure,
                                    const Model* first_guess = nullptr);
 
 /// The residual on another log, or of another model with all values stated.
@@ -47,8 +44,10 @@ struct SettledModel {
 /// Over the rows that `use` counts.
 [[nodiscard]] double rms_where(std::span<const double> values, std::span<const unsigned char> use);
 
-/// All values of the given terms, in their order, with 95 % intervals of those that were fitted.
+/// All values of the given terms, in their order, with 95 % intervals of those that were fitted. `errors`:
+/// standard errors of the departures.
 [[nodiscard]] std::vector<GivenValue> values_of_given(std::span<const GivenTerm> given,
-                                                      const SettledModel& found);
+                                                      std::span<const double> departure,
+                                                      std::span<const double> errors);
 
 }  // namespace ripplenotch

@@ -29,6 +29,7 @@ constexpr double known_deviation = 0.04;
 constexpr double known_mass_deviation = 0.01;
 constexpr double fixed_share = 1e-6;  // of a value that is stated: its column stays for the load's sake
 constexpr double least_gravity_nm = 1e-4;
+constexpr double no_inertia_nm_per_deg_s2 = 1e-9;  // far below that of any joint
 
 std::vector<double> step_of_direction(const Motion& motion, double width_deg_s) {
     std::vector<double> step(motion.size());
@@ -196,6 +197,8 @@ Baseline make_baseline(const RecordedMotion& recorded, const KnownSide& known,
                                     .deviation = mass_deviation * gravity_nm + least_gravity_nm});
     }
     for (const GivenTerm& given : known.given_terms) {
+        // Its columns hold the inertia of this joint.
+        if (given.name == "arm") base.columns[base.inertia_place].deviation = no_inertia_nm_per_deg_s2;
         for (std::size_t value = 0; value < given.torque_nm.size(); ++value) {
             std::vector<double> column = recorded.on_clock(given.torque_nm[value]);
             if (given.mean[value] != 0.0) add_known(given.mean[value], column);

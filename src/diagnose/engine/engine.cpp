@@ -119,10 +119,21 @@ Result find_missing_effects(const Input& input) {
     Criterion& criterion = *found.best.criterion;
     const SearchedTerms& terms = found.best.terms;
     std::vector<ValuedTerm> valued = valued_terms(criterion, terms);
-    for (std::size_t i = 0; i < terms.size(); ++i) {
-        const bool is_silent = is_below_resolution(terms[i], recorded.step_s());
-        auto& list = is_silent ? result.corrections : result.terms;
-        list.push_back(judged(search, criterion, terms, i, std::move(valued[i])));
+    SearchedTerms so_far;
+    const auto add_factors = [&] {
+        const Eigen::VectorXd& factors = criterion.fit(so_far).factors;
+        result.baseline_factors.emplace_back(
+            factors.begin(), factors.begin() + static_cast<std::ptrdiff_t>(prepared.base.columns.size()));
+    };
+    add_factors();
+    for (const bool is_silent : {false, true}) {
+        for (std::size_t i = 0; i < terms.size(); ++i) {
+            if (is_below_resolution(terms[i], recorded.step_s()) != is_silent) continue;
+            auto& list = is_silent ? result.corrections : result.terms;
+            list.push_back(judged(search, criterion, terms, i, std::move(valued[i])));
+            so_far.push_back(terms[i]);
+            add_factors();
+        }
     }
     for (const RefusedTerm& refused : found.refused) {
         SearchedTerms with = terms;
