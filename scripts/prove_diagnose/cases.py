@@ -10,7 +10,7 @@ import zlib
 
 import numpy as np
 
-from . import disturbances, joint, motion, other_formulas, sensor, strengths
+from . import disturbances, joint, motion, sensor
 
 SAMPLE_RATE_HZ = 1000.0
 
@@ -39,9 +39,8 @@ class Case:
     label: str
     number: int
     noise: str = "white"
-    hidden: tuple = ()  # labels of strengths
+    hidden: tuple = ()  # labels of joint
     disturbance: str | None = None
-    other: str | None = None
     position: bool = True
     seconds: float = 40.0
 
@@ -56,57 +55,49 @@ class Case:
     def truth(self):
         """The complete joint: what the model knows and what is hidden from it."""
         rng = self.rng("joint")
-        base = strengths.base_joint(rng)
-        return base, [strengths.draw(rng, label) for label in self.hidden]
+        base = joint.base_joint(rng)
+        return base, [joint.draw(rng, label) for label in self.hidden]
 
     def log(self, purpose):
         """purpose: 'train' or 'validate'; another motion, noise and chance of the same joint."""
         base, hidden = self.truth()
-        other = other_formulas.OTHERS[self.other](self.rng("other")) if self.other else None
         rng = self.rng(purpose)
         start_deg = rng.uniform(-90.0, 90.0) if self.position else 0.0  # without position every log begins at one stop
         travel = motion.rich(rng, start_deg, self.seconds)
         time = np.arange(round(travel.duration_s * SAMPLE_RATE_HZ)) / SAMPLE_RATE_HZ
         q, v, _ = travel.at(time)
-        torque = joint.torque(travel, base + hidden, strengths.GEAR_RATIO, time, other)
+        torque = joint.torque(travel, base + hidden, joint.GEAR_RATIO, time)
         place = None
         if self.disturbance:
             disturbing, place = disturbances.DISTURBANCES[self.disturbance](rng, time)
             torque = torque + disturbing
-        noise = sensor.noise(rng, self.noise, len(time), strengths.TORQUE_NOISE_NM)
+        noise = sensor.noise(rng, self.noise, len(time), joint.TORQUE_NOISE_NM)
         torque = sensor.convert(torque + noise, hidden, rng)
         q, v = joint.seen(q, v, hidden)
-        v = v + strengths.VELOCITY_NOISE_DEG_S * rng.standard_normal(len(time))
+        v = v + joint.VELOCITY_NOISE_DEG_S * rng.standard_normal(len(time))
         position = np.round(q * 2**19 / 360) * 360 / 2**19 if self.position else None  # an encoder of 19 bits
         return Log(time, v, torque, position, place)
 
 
-def without_hidden(case):
-    """The same joint with nothing hidden, for the smallest residual that its logs allow."""
-    return dataclasses.replace(case, hidden=(), disturbance=None, other=None)
-
-
 # How many of each kind: 5 of each single effect, 40 pairs, 40 logs of each noise with nothing hidden, ...
-SEEDS = {"single": 5, "rarer": 2, "pair": 40, "triple": 30, "null": 40, "outside": 15, "formula": 2}
+SEEDS = {"single": 5, "rarer": 2, "pair": 40, "triple": 30, "null": 40, "outside": 15}
 
 
 def studies(name, seeds, first=0):
     """The cases of one study, the first of every kind before the second of any; seeds: how many of each."""
     numbers = range(first, first + seeds)
     if name == "single":
-        return [Case(name, label, n, hidden=(label,)) for n in numbers for label in (*strengths.HIDDEN, *strengths.FURTHER)]
+        return [Case(name, label, n, hidden=(label,)) for n in numbers for label in (*joint.HIDDEN, *joint.FURTHER)]
     if name == "rarer":
-        return [Case(name, label, n, hidden=(label,), position=label != "velocity-bias") for n in numbers for label in strengths.RARER]
+        return [Case(name, label, n, hidden=(label,), position=label != "velocity-bias") for n in numbers for label in joint.RARER]
     if name in ("pair", "triple"):
         count = 2 if name == "pair" else 3
-        several = [strengths.draw_several(np.random.default_rng([count, n]), count) for n in numbers]
+        several = [joint.draw_several(np.random.default_rng([count, n]), count) for n in numbers]
         return [Case(name, "+".join(labels), n, hidden=tuple(labels)) for n, labels in zip(numbers, several)]
     if name == "null":
         return [Case(name, "nothing", n, noise=kind) for n in numbers for kind in sensor.NOISES]
     if name == "outside":
         return [Case(name, label, n, disturbance=label) for n in numbers for label in disturbances.DISTURBANCES]
-    if name == "formula":
-        return [Case(name, label, n, other=label) for n in numbers for label in other_formulas.OTHERS]
     raise SystemExit(f"prove-diagnose: there is no study '{name}'; there are: {', '.join(SEEDS)}")
 
 

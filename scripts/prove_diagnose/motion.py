@@ -29,7 +29,7 @@ class Motion:
     def duration_s(self):
         return self._ends[-1]
 
-    def _append(self, duration_s, angle):
+    def append(self, duration_s, angle):
         """angle: polynomial in the share of the piece, in degrees."""
         speed = angle.deriv(1)
         self._pieces.append((duration_s, *(curve.coef.tolist() for curve in (angle, speed, speed.deriv(1)))))
@@ -40,19 +40,19 @@ class Motion:
 
     def rest(self, duration_s):
         self.speed_deg_s = 0.0
-        return self._append(duration_s, Polynomial([self.angle_deg]))
+        return self.append(duration_s, Polynomial([self.angle_deg]))
 
     def speed_to(self, speed_deg_s, duration_s):
         """The speed changes smoothly; the same speed again is a stretch of constant speed."""
         change = (speed_deg_s - self.speed_deg_s) * SMOOTH_STEP
-        return self._append(duration_s, self.angle_deg + duration_s * (self.speed_deg_s + change).integ())
+        return self.append(duration_s, self.angle_deg + duration_s * (self.speed_deg_s + change).integ())
 
     def stay(self, duration_s):
         return self.speed_to(self.speed_deg_s, duration_s)
 
     def stroke(self, by_deg, duration_s):
         """From rest to rest with least jerk."""
-        return self._append(duration_s, self.angle_deg + by_deg * SMOOTH_STEP)
+        return self.append(duration_s, self.angle_deg + by_deg * SMOOTH_STEP)
 
     def at(self, time_s):
         """Angle (deg), speed (deg/s) and acceleration (deg/s2) at each time."""

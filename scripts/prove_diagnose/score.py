@@ -6,7 +6,7 @@ A finding is a name and, where the name is that of a line, its order: ripple of 
 
 import math
 
-from . import strengths
+from . import joint
 
 ORDER = {"ripple": "order", "output-ripple": "order", "ripple-modulation": "output_order",
          "position-dependent-friction": "order", "encoder-eccentricity": "order"}
@@ -46,13 +46,9 @@ def undecided_names(found):
     return names | {entry["effect"] for entry in found["rounds"] if entry["status"] in ("ambiguous",)}
 
 
-def names(acceptable, hidden, found):
-    """exact, in_set, false names. acceptable: the names that are right where no effect of the catalogue is hidden."""
+def names(hidden, found):
+    """exact, in_set, false names."""
     named, undecided = set(named_keys(found)), undecided_names(found)
-    if acceptable:
-        right = {k for k in named if k[0] in acceptable}
-        return {"exact": bool(right) and named == right, "in_set": bool(right) or bool(undecided & set(acceptable)),
-                "false": words(named - right), "named": words(named)}
     truth = truth_keys(hidden)
     false = named - truth
     in_set = not false and all(k in named or k[0] in undecided for k in truth)
@@ -115,4 +111,4 @@ def share_closed(before_nm, after_nm, floor_nm):
 
 
 def explainable(hidden):
-    return not any(e["effect"] in ("quantization", *strengths.CHANCE) for e in hidden)
+    return not any(e["effect"] in ("quantization", *joint.CHANCE) for e in hidden)

@@ -48,6 +48,11 @@ def percent(rows, test):
     return f"{100 * sum(counted) / len(counted):.1f} % ({sum(counted)}/{len(counted)})" if counted else "-"
 
 
+def held(rows):
+    """Whether each interval of the rows holds the truth."""
+    return [p["beyond"] <= 1.0 for row in rows for p in row["parameters"] if p["beyond"] is not None]
+
+
 def median(values, text):
     values = [value for value in values if value is not None]
     return text.format(statistics.median(values)) if values else "-"

@@ -8,9 +8,9 @@ import resource
 import signal
 import subprocess
 
-from . import strengths
+from . import joint
 
-MODEL = {"schema": "ripplenotch/model/1", "gear_ratio": strengths.GEAR_RATIO}
+MODEL = {"schema": "ripplenotch/model/1", "gear_ratio": joint.GEAR_RATIO}
 BASE = {**MODEL, "effects": [{"effect": "inertia"}, {"effect": "ripple", "order": 1}, {"effect": "ripple", "order": 2}]}
 LONGEST_S = 60
 
@@ -26,7 +26,7 @@ def cpu_seconds():
 
 def as_model(truth):
     """The truth in the tool's words; which samples chance hits is in no model, so these effects stay out."""
-    return {**MODEL, "effects": [effect for effect in truth if effect["effect"] not in strengths.CHANCE]}
+    return {**MODEL, "effects": [effect for effect in truth if effect["effect"] not in joint.CHANCE]}
 
 
 def run(tool, *words):

@@ -7,11 +7,35 @@ white. Known terms, or the simulation's torque, are always in the fit.
 
 import numpy as np
 
-from .. import joint, measured
+from .. import joint
 from . import cases
 
 WIDTHS = (0.2, 0.4, 0.7, 1.2)  # deg/s, of a friction's step
 SMALLEST_SHARE = 1e-9  # of a column's squares that has to be left beside the columns before
+
+
+def cubic_weights(half, derivative):
+    """Weights of the least-squares cubic through 2 half + 1 samples: its value (0) or slope (1) in the middle."""
+    k = np.arange(-half, half + 1.0)
+    return np.linalg.pinv(np.vander(k, 4, increasing=True))[derivative]
+
+
+def smoothed(values, half, derivative):
+    ends = np.concatenate([np.full(half, values[0]), values, np.full(half, values[-1])])
+    return np.convolve(ends, cubic_weights(half, derivative)[::-1], "valid")
+
+
+def waves(angle):
+    return [np.cos(angle), np.sin(angle)]
+
+
+def solve(columns, values):
+    size = np.sqrt(np.mean(columns**2, axis=0))
+    return np.linalg.lstsq(columns / size, values, rcond=None)[0] / size
+
+
+def rms(values):
+    return float(np.sqrt(np.mean(values**2)))
 
 
 class Log:
@@ -23,13 +47,13 @@ class Log:
         half = max(2, round(0.025 / step))
         position = columns.get("position_deg")
         raw = np.gradient(position, step) if position is not None else columns["velocity_deg_s"]
-        self.v, self.a = measured.smoothed(raw, half, 0), measured.smoothed(raw, half, 1) / step
+        self.v, self.a = smoothed(raw, half, 0), smoothed(raw, half, 1) / step
         self.q = position if position is not None else np.cumsum(self.v) * step
         self.rad, self.step = np.radians(self.q), step
         self.simulated = columns.get(cases.COLUMN)
 
     def waves(self, order):
-        return measured.waves(order * self.ratio * self.rad)
+        return waves(order * self.ratio * self.rad)
 
 
 def ripple_gain(log, hertz, damping, order):
@@ -45,7 +69,7 @@ def known_columns(log, case, width=0.2):
     for entry in case.model()["effects"]:
         name, order = entry["effect"], entry.get("order")
         key = name if order is None else f"{name} {order:g}"
-        found[key] = {"inertia": [np.radians(log.a)], "gravity": measured.waves(log.rad), "coulomb-friction": [np.tanh(log.v / width)],
+        found[key] = {"inertia": [np.radians(log.a)], "gravity": waves(log.rad), "coulomb-friction": [np.tanh(log.v / width)],
                       "viscous-friction": [log.v]}.get(name) or log.waves(order)
     return found
 
@@ -55,7 +79,7 @@ def best_width(log, case):
     def rest(width):
         columns = [column for group in known_columns(log, case, width).values() for column in group]
         columns = columns if case.form == "model" else [*columns, np.tanh(log.v / width), log.v]
-        return measured.rms(log.torque - np.column_stack(columns) @ fit(columns, log.torque))
+        return rms(log.torque - np.column_stack(columns) @ fit(columns, log.torque))
     return min(WIDTHS, key=rest)
 
 
@@ -73,19 +97,19 @@ def dictionary(log, expected, width):
     sense, load = np.tanh(log.v / width), np.abs(expected)
     ripple = [wave for order in (1, 2) for wave in log.waves(order)]
     found = [(("offset", None), [np.ones_like(log.t)]), (("inertia", None), [np.radians(log.a)]),
-             (("gravity", None), measured.waves(log.rad)), (("coulomb-friction", None), [sense]), (("viscous-friction", None), [log.v]),
+             (("gravity", None), waves(log.rad)), (("coulomb-friction", None), [sense]), (("viscous-friction", None), [log.v]),
              (("quadratic-viscous-friction", None), [log.v * np.abs(log.v)]), (("load-friction", None), [load * sense]),
              (("ripple-load-dependence", None), [load * wave for wave in ripple]),
              (("ripple-direction-dependence", None), [sense * wave for wave in ripple]),
-             (("ripple-modulation", 1.0), [w * wave for w in measured.waves(log.rad) for wave in ripple]),
-             (("delay", None), [np.gradient(expected, log.step)]), (("tone", None), measured.waves(2 * np.pi * 50 * log.t)),
+             (("ripple-modulation", 1.0), [w * wave for w in waves(log.rad) for wave in ripple]),
+             (("delay", None), [np.gradient(expected, log.step)]), (("tone", None), waves(2 * np.pi * 50 * log.t)),
              (("gear-ratio", None), [log.rad * wave for wave in ripple])]
     found += [(("drift", None), [np.expm1(-log.t / tau)]) for tau in (5.0, 15.0, 40.0)]
     found += [(("stribeck-friction", None), [sense * np.exp(-((log.v / slow) ** 2))]) for slow in (4.0, 8.0, 16.0)]
     found += [(("hysteresis", None), [joint.hysteresis(log, {"torque_nm": 1.0, "width_deg": width})]) for width in (0.7, 1.5, 4.0)]
     found += [(("ripple-speed-dependence", None), [np.abs(log.v) ** n * wave for wave in ripple]) for n in (1, 2)]
     found += [(("ripple", float(order)), log.waves(order)) for order in (1, 2, 3, 4, 6)]
-    found += [(("output-ripple", float(order)), measured.waves(order * log.rad)) for order in (2, 3, 4)]
+    found += [(("output-ripple", float(order)), waves(order * log.rad)) for order in (2, 3, 4)]
     found += [(("lag", None), [filtered(expected, tau, log.step) - expected]) for tau in (0.003, 0.01)]
     for hertz in (15.0, 25.0, 40.0):
         columns = []
@@ -145,7 +169,7 @@ def chosen(known, entries, values, most=8):
 
 
 def fit(columns, values):
-    return measured.solve(np.column_stack(columns), values)
+    return solve(np.column_stack(columns), values)
 
 
 def names(case, logs):

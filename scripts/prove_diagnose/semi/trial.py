@@ -28,7 +28,7 @@ def write(log, folder):
 
 def scored(log, found):
     """Names right, false, offered; values and their intervals; reported sizes of what was rightly named."""
-    names = score.names((), log.hidden, found)
+    names = score.names(log.hidden, found)
     values = [p for p in score.parameters(log.hidden, found, log.seconds)
               if p["parameter"].partition(".")[2] not in UNCOUNTED]
     offered = {k[0] for k in score.named_keys(found)} | score.undecided_names(found)
