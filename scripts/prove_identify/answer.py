@@ -22,7 +22,8 @@ class Answer:
         self.tones = [line for line in result["lines"] if line["kind"] not in TURNING]
         self.ratio = result["gear_ratio"]["value"]
         self.interval = result["gear_ratio"]["ci95"]
-        self.candidates = [candidate["value"] for candidate in result["gear_ratio"]["candidates"]]
+        self.rivals = sorted(((rival["probability"] if "probability" in rival else rival["score"], rival["value"])
+                              for rival in result["gear_ratio"]["candidates"]), reverse=True)
 
     def says_nothing(self):
         return self.finding == "nothing" and self.conclusive and not self.lines
@@ -40,12 +41,18 @@ class Answer:
         found = re.search(r"no line above ([0-9.e+-]+) Nm", self.verdict)
         return float(found[1]) if found else None
 
-    def has_order(self, order, tolerance):
-        def near(value):
-            return value is not None and abs(value - order) <= tolerance
+    def bound_at(self, order):
+        """X of an order; None where it was not searched or no bound is given."""
+        stated = self.json.get("searched") or {}
+        if not (self.searched() and stated["lowest_order"] <= order <= stated["highest_order"]):
+            return None
+        within = [band["detectable_nm"] for band in stated.get("bounds") or [] if band["from_order"] <= order]
+        return within[-1] if within else self.bound_nm()
 
-        return any(near(line["order_output"]) or any(map(near, line.get("could_be") or []))
-                   for line in self.lines)
+    def near(self, order, tolerance):
+        """The first line that is, or could be, of this order; None without."""
+        return next((line for line in self.lines for value in (line["order_output"], *(line.get("could_be") or []))
+                     if value is not None and abs(value - order) <= tolerance), None)
 
 
 def identify(program, *texts, words=()):
@@ -65,6 +72,6 @@ def identify(program, *texts, words=()):
         for descriptor in descriptors:
             os.close(descriptor)
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    if done.returncode != 0:
+    if done.returncode not in (0, 5):
         raise Failed(f"exit {done.returncode}: {done.stderr.strip()[-200:]}")
     return Answer(json.loads(done.stdout), after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)

@@ -29,8 +29,8 @@ class Log:
     speed: np.ndarray     # of the output, as it is
     noise: object         # function of a random generator: another draw of this log's noise in Nm
 
-    def csv(self, extra=None):
-        columns = [self.time, self.velocity, self.torque if extra is None else self.torque + extra]
+    def csv(self):
+        columns = [self.time, self.velocity, self.torque]
         header = "time_s,velocity_deg_s,torque_nm"
         if self.position is not None:
             columns.append(self.position)
@@ -56,8 +56,8 @@ def draw(seed, ripple="none", tones=True):
     peak *= max(1.0, mean_sweep * sweeps * rate / ROWS)
     peak *= min(1.0, mean_sweep * sweeps * rate / FEWEST)
     made, speeds = motion.moves(rng, kind, travel, peak, sweeps)
-    time, angle, speed, acceleration = motion.along(made, rate)
-    time, angle, speed, acceleration = time[:ROWS], angle[:ROWS], speed[:ROWS], acceleration[:ROWS]
+    time = np.arange(min(ROWS, int(made.duration_s * rate))) / rate
+    angle, speed, acceleration = made.at(time)
     travelled = float(np.ptp(angle))
 
     sigma = log_uniform(rng, 0.005, 1.0)
@@ -116,17 +116,6 @@ def draw_ripple(rng, ripple, ratio, sigma):
     if ripple == "two combs":
         comb(ratio + 1, choice[rng.integers(len(choice))], "second")
     return lines
-
-
-def walk_deg(log):
-    """Error of the angle at the end of a log without position: the sum of the noise of its velocity."""
-    return 0.0 if log.truth["position"] else log.truth["velocity_noise_deg_s"] * math.sqrt(log.truth["duration_s"] / log.truth["rate_hz"])
-
-
-def expected_range(log):
-    """The orders that a log can show: one per output turn or 4 cycles per sweep, to half the sample rate at its fastest."""
-    lowest = max(1.0, 4 * 360.0 / log.truth["travel_deg"])
-    return lowest, 0.5 * log.truth["rate_hz"] * 360.0 / log.truth["peak_deg_s"]
 
 
 def standard_errors(log, orders, draws=16):

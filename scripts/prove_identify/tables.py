@@ -7,6 +7,8 @@ import statistics
 
 import page_tables
 
+from .real_studies import STRENGTHS
+
 
 def share(count, total):
     return f"{100.0 * count / total:.1f} %" if total else "-"
@@ -25,31 +27,18 @@ def rank(edges):
     return lambda value: bisect.bisect_right(edges, value)
 
 
-TRAVEL, RATIO, RATE, CYCLES, STRENGTH = (40, 90, 180, 360), (3, 10, 30, 100), (100, 500), (4, 6, 10, 30, 100), (3, 6, 10, 30)
+TRAVEL, RATIO, RATE = (40, 90, 180, 360), (3, 10, 30, 100), (100, 500)
 # Name of the class and the order in which classes are listed, from a row; None leaves the row out.
 CLASSES = {
     "travel": lambda row: (rank(TRAVEL)(row["travel_deg"]), banded(TRAVEL, " deg")(row["travel_deg"])),
     "ratio": lambda row: (rank(RATIO)(row["ratio"]), banded(RATIO, "")(row["ratio"])),
     "sample rate": lambda row: (rank(RATE)(row["rate_hz"]), banded(RATE, " Hz")(row["rate_hz"])),
-    "motion": lambda row: (0, motion_name(row)),
+    "motion": lambda row: (0, row["motion"]),
     "noise": lambda row: (0, row["colour"]),
     "position": lambda row: (0, "with position" if row["position"] else "velocity only"),
-    "cycles per sweep": lambda row: "cycles_per_sweep" in row and (rank(CYCLES)(row["cycles_per_sweep"]),
-                                                                  banded(CYCLES, " cycles")(row["cycles_per_sweep"])),
-    "half the sample rate": lambda row: "share_of_nyquist" in row and (
-        row["share_of_nyquist"] > 1, "above half the rate at the fastest" if row["share_of_nyquist"] > 1 else "below half the rate"),
     "ripple": lambda row: (0, row["ripple"] + (", folded" if row["folded"] else "")),
-    "strength": lambda row: "strength" in row and (rank(STRENGTH)(row["strength"]),
-                                                   banded(STRENGTH, " standard errors")(row["strength"])),
-    "multiples": lambda row: "identifiable" in row and (0, "n without common divisor, all visible" if row["identifiable"]
-                                                        else "n all even, one n, or lines too weak"),
     "visible lines": lambda row: "visible" in row and (row["visible"] > 0, f"{min(2, row['visible'])}{' or more' if row['visible'] > 1 else ''}"),
-    "angle": lambda row: "angle_error_cycles" in row and (0, "known" if row["angle_error_cycles"] < 0.1 else "hidden by the noise of the velocity"),
 }
-
-
-def motion_name(row):
-    return row["motion"] if row["motion"] != "steady" else f"steady, {'1 speed' if row['speeds'] == 1 else '2 to 4 speeds'}"
 
 
 def grouped(rows, classes):
@@ -95,7 +84,8 @@ def measured(asked, count, total):
 def noise(rows):
     names = ("false line", "false tone", "tone as unknown", "gravity", "nothing", "cannot tell", "failed")
     asked = measured("lines of an order in at most 1 % of logs", sum(row["outcome"] == "false line" for row in rows), len(rows))
-    return asked + shown("identify-noise", "By travel, ratio, sample rate, motion, noise and position", ["logs without ripple", "logs", *("undecided" if name == "cannot tell" else name for name in names)],
+    heads = ["logs without ripple", "logs", *("undecided" if name == "cannot tell" else name for name in names)]
+    return asked + shown("identify-noise", "By travel, ratio, sample rate, motion, noise and position", heads,
                          outcomes(rows, names, ("travel", "ratio", "sample rate", "motion", "noise", "position")), (), ("failed",))
 
 
@@ -109,59 +99,79 @@ def tenth(values):
     return f"{values[len(values) // 10]:.2g} to {values[(9 * len(values)) // 10]:.2g}" if values else "-"
 
 
-def injection(rows):
-    tried = [row for row in rows if row["outcome"] == "tried"]
-    body = []
-    for name, of in grouped(tried, ("travel", "cycles per sweep", "half the sample rate", "sample rate", "motion", "noise", "position", "angle")):
-        body.append([name, str(len(of)), share(sum(row["found_2x"] for row in of), len(of)), share(sum(row["nothing_2x"] for row in of), len(of)),
-                     share(sum(row["nothing_2x"] and (row["bound_2x"] or 0) < 2 * row["bound_nm"] for row in of), len(of)),
-                     share(sum(row["found_1x"] for row in of), len(of)), median([row["bound_in_largest"] for row in of]),
-                     tenth([row["bound_in_largest"] for row in of]), median([row["bound_in_errors"] for row in of])])
-    left = {}
-    for row in rows:
-        left[row["outcome"]] = left.get(row["outcome"], 0) + 1
-    what = ", ".join(f"{count} {'undecided' if name == 'cannot tell' else name}" for name, count in sorted(left.items()))
-    asked = measured("a sinusoid of 2X found in at least 99 %", sum(row["found_2x"] for row in tried), len(tried))
-    heads = ["logs that answer \"no line above X\"", "logs", "2X found", "2X: \"no line\"", "2X: \"no line\" above less than 2X", "X found",
-             "X / largest standard error", "10 % and 90 % quantile", "X / standard error of the order"]
-    return asked + shown("identify-injection", "By travel, cycles per sweep, sample rate, motion, noise, position and angle", heads, body, (),
-                         (heads[3], heads[4], heads[7])) + f"\nOutcomes of {len(rows)} logs: {what}.\n"
-
-
 def ratio(rows):
     body = []
-    for name, of in grouped(rows, ("ripple", "visible lines", "multiples", "travel", "ratio", "sample rate", "motion", "position")):
-        def count(outcome):
-            return share(sum(row["outcome"] == outcome for row in of), len(of))
-        given = [row for row in of if "covers" in row]
-        right = [row for row in given if row["match"] == "right"]
-        body.append([name, str(len(of)), count("right"), count("multiple"), count("other"), count("other comb"), count("cannot tell"), count("missed"), count("failed"),
-                     f"{share(sum(row['covers'] for row in right), len(right))} of {len(right)}",
-                     f"{share(sum(row['covers_either'] for row in given), len(given))} of {len(given)}"])
-    wrong = sum(row["outcome"] in ("multiple", "other", "other comb") for row in rows)
-    given = [row for row in rows if row.get("match") == "right" and "covers" in row]
-    asked = measured("no conclusive ratio that is wrong", wrong, len(rows)) + \
-        measured("intervals of right ratios hold the truth in 90 to 98 %", sum(row["covers"] for row in given), len(given))
-    heads = ["logs with ripple", "logs", "right", "wrong multiple", "wrong", "ratio of the other comb", "undecided", "\"no line\"", "failed", "right: interval covers",
-             "all: interval covers either comb"]
-    return asked + shown("identify-ratio", "By ripple, lines, travel, ratio, sample rate, motion and position", heads, body, ("visible lines",),
-                         ("failed", heads[-1])) + "\n" + lines(rows)
-
-
-def lines(rows):
-    """Lines of the same logs: how many are found, the error of their amplitude, and false ones."""
-    made = [{**row, **line} for row in rows for line in row.get("lines", []) if not row["folded"]]
-    body = []
-    for name, of in grouped(made, ("strength", "cycles per sweep", "motion")):
-        seen = [row for row in of if row["strength"] > 10 and row["cycles_per_sweep"] >= 4]
-        sizes = [row["size"] for row in seen if row["size"] and row["alone"] and row["strength"] > 30]
-        body.append([name, str(len(of)), share(sum(row["found"] for row in of), len(of)), share(sum(row["found"] for row in seen), len(seen)),
-                     median(sizes), share(sum(abs(size - 1) < 0.1 for size in sizes), len(sizes))])
+    for name, of in grouped(rows, ("ripple", "visible lines", "travel", "ratio", "sample rate", "motion", "position")):
+        right = [row["covers"] for row in of if row.get("right") and "covers" in row]
+        body.append([name, str(len(of)), *(share(sum(row["outcome"] == outcome for row in of), len(of)) for outcome in
+                                           ("right", "wrong", "cannot tell", "missed", "failed")),
+                     f"{share(sum(right), len(right))} of {len(right)}"])
+    covers = [row["covers"] for row in rows if row.get("right") and "covers" in row]
+    asked = measured("no conclusive ratio that is wrong", sum(row["outcome"] == "wrong" for row in rows), len(rows)) + \
+        measured("intervals of right ratios hold the truth in 90 to 98 %", sum(covers), len(covers))
     counted = [row for row in rows if row.get("false_lines") is not None]
-    some = sum(row["false_lines"] > 0 for row in counted)
-    heads = ["true lines", "lines", "found", "found, of 10 standard errors and 4 cycles", "amplitude / truth, median", "within 10 %"]
-    return shown("identify-lines", "By strength, cycles per sweep and motion", heads, body, (), heads[4:]) + \
-        f"\nLines at no true order: in {share(some, len(counted))} of {len(counted)} logs.\n"
+    heads = ["logs with ripple", "logs", "right", "wrong", "undecided", "\"no line\"", "failed", "right: interval covers"]
+    caption = "By ripple, lines, travel, ratio, sample rate, motion and position"
+    return asked + shown("identify-ratio", caption, heads, body, ("visible lines",), ("failed",)) + \
+        f"\nLines at no true order: in {share(sum(row['false_lines'] > 0 for row in counted), len(counted))} of {len(counted)} logs.\n\n" + \
+        calibration([(row["probability"], row["probable"]) for row in rows if "probability" in row], "simulated logs")
 
 
-TABLES = {"noise": noise, "injection": injection, "ratio": ratio}
+def by_length(rows):
+    """(head, rows) of all, of each length of a window, of each log."""
+    yield "all", rows
+    for key in ("length", "log"):
+        for value in sorted({row[key] for row in rows}):
+            yield f"{key}: {value}", [row for row in rows if row[key] == value]
+
+
+def left_out(rows, kept):
+    counts = {name: sum(row["outcome"] == name for row in rows) for name in sorted({row["outcome"] for row in rows} - set(kept))}
+    return "".join(f", {count} {name}" for name, count in counts.items())
+
+
+def power(rows):
+    tried = [row for row in rows if row["outcome"] == "tried"]
+    body = []
+    for name, of in by_length(tried):
+        bound = [row for row in of if "found_X" in row]
+        over = [row["bound_in_least"] for row in of]
+        body.append([name, str(len(of)), *(share(sum(row[f"found_{times}"] for row in of), len(of)) for times in STRENGTHS),
+                     share(sum(row["found_X"] for row in bound), len(bound)), str(len(of) - len(bound)),
+                     median([row.get("amplitude") for row in of]),
+                     f"{statistics.median(row['bound_in_errors'] for row in of):.3g}", f"{statistics.median(over):.3g}", tenth(over)])
+    asked = "".join(measured(f"lines of {times} standard errors found in at least {percent} %", sum(row[f"found_{times}"] for row in tried),
+                             len(tried)) for times, percent in ((7, 50), (10, 90), (14, 98)))
+    bound = [row["found_X"] for row in tried if "found_X" in row]
+    asked += measured("lines of X found in 95 %", sum(bound), len(bound))
+    asked += f"Required: X at most 3 times what least squares needs, in the median. Measured: {body[0][-2]}.\n\n"
+    heads = ["a line put in", "windows", *(f"{times} standard errors" for times in STRENGTHS), "X", "no X",
+             "amplitude / truth", "X / standard error", "X / what least squares needs", "10 % and 90 % quantile"]
+    return asked + shown("identify-power", "Each length and log", heads, body, ("length",)) + \
+        f"\nOf {len(rows)} windows: {len(tried)} tried{left_out(rows, ('tried',))}.\n"
+
+
+def stretched(rows):
+    tried = [row for row in rows if "sweeps" in row]
+    names = ("false line", "false tone", "nothing", "cannot tell")
+    body = [[name, str(len(of)), *(share(sum(row["outcome"] == outcome for row in of), len(of)) for outcome in names)]
+            for name, of in by_length(tried)]
+    asked = measured("lines of an order in at most 2 % of windows", sum(row["outcome"] == "false line" for row in tried), len(tried))
+    heads = ["windows without their lines", "windows", *("undecided" if name == "cannot tell" else name for name in names)]
+    return asked + shown("identify-stretched", "Each length and log", heads, body, ("length",)) + \
+        f"\nOf {len(rows)} windows: {len(tried)} tried{left_out(rows, names)}.\n"
+
+
+CHANCES = (0.5, 0.7, 0.85, 0.95, 0.99)
+
+
+def calibration(told, title):
+    """told: (probability of the most probable ratio, whether it is right)."""
+    body = []
+    for low, high in zip(CHANCES, (*CHANCES[1:], 1.01)):
+        of = [right for chance, right in told if low <= chance < high]
+        body.append([f"{100 * low:.0f} to {100 * min(high, 1):.0f} %", str(len(of)), share(sum(of), len(of))])
+    return page_tables.units_in_head(markdown([f"{title}: probability of the ratio", "answers", "right"], body)) + "\n"
+
+
+TABLES = {"power": power, "stretched": stretched, "noise": noise, "ratio": ratio}
