@@ -36,8 +36,6 @@ constexpr double least_gap = 0.02;
 constexpr double one_turn_deg = 360.0;
 // Residual of the improved model over that of the search, from which on its sizes are fitted anew.
 constexpr double most_lost = 1.1;
-// The search finds shorter delays by itself.
-constexpr double longest_searched_s = 0.03;
 // A shape whose error is that share of it is not determined by the rows of the search.
 constexpr double undetermined_error = 0.3;
 // Each direction has to have this share of the log for effects that differ by direction.
@@ -176,12 +174,10 @@ class DiagnosisRun {
         return names;
     }
 
-    // The delay that the model states, or that the torques of a simulation without motion show.
+    // The delay that the model states.
     [[nodiscard]] double known_delay_s() const {
-        for (const Term& term : model_.terms)
-            if (term.effect->name == "delay" && term.values.front()) return *term.values.front();
-        const double seen_s = options_.expected_delay ? options_.expected_delay->value() : 0.0;
-        return std::abs(seen_s) > longest_searched_s ? seen_s : 0.0;
+        const Term* delay = own_term("delay");
+        return delay != nullptr ? delay->values.front().value_or(0.0) : 0.0;
     }
 
     // Beside a simulation the engine takes its torque for all of what the user knows: terms of the model are
@@ -248,14 +244,13 @@ class DiagnosisRun {
         take_departures(found);
         take_known_values(found, 0);
         for (const engine::AdoptedTerm& term : found.terms) {
-            take(term, FindingStatus::confirmed, delay_s);
+            take(term, FindingStatus::confirmed);
             take_known_values(found, ++taken);
         }
         for (const engine::AdoptedTerm& term : found.corrections) {
-            take(term, FindingStatus::correction, delay_s);
+            take(term, FindingStatus::correction);
             take_known_values(found, ++taken);
         }
-        if (options_.expected_delay && delay_s != 0.0 && own_term("delay") == nullptr) restore_delay(delay_s);
         for (const engine::NearlyAdopted& term : found.nearly_adopted)
             result_.refused.push_back({term.term, term.reason});
     }
@@ -358,7 +353,7 @@ class DiagnosisRun {
         result_.rounds.push_back(std::move(finding));
     }
 
-    void take(const engine::AdoptedTerm& adopted, FindingStatus status, double delay_s) {
+    void take(const engine::AdoptedTerm& adopted, FindingStatus status) {
         const Effect& effect = *adopted.term.effect;
         // An effect of sensor, motion or ripple that the model has already is not the engine's to know.
         if (own_term(effect.name) != nullptr && effect.side != Side::joint) return;
@@ -378,7 +373,6 @@ class DiagnosisRun {
             finding.status = FindingStatus::ambiguous;
             finding.reason = "another effect explains the log as well";
         }
-        if (effect.name == "delay" && delay_s != 0.0) shift(finding, delay_s);
         if (finding.status != FindingStatus::correction) doubt_short_travel(finding);
         result_.rounds.push_back(std::move(finding));
     }
@@ -395,28 +389,6 @@ class DiagnosisRun {
             high - low, cycles);
         const Effect& gravity = find_effect("gravity");
         finding.alternatives.push_back({{&gravity, {finding.term.values[1], finding.term.values[2]}}, 0.0});
-    }
-
-    static void shift(Finding& delay, double by_s) {
-        delay.term.values.front() = *delay.term.values.front() + by_s;
-        for (FittedValue& value : delay.values) {
-            value.value += by_s;
-            if (value.ci95) value.ci95 = Interval{value.ci95->low + by_s, value.ci95->high + by_s};
-        }
-    }
-
-    // The delay of a simulation without motion was taken out before the search.
-    void restore_delay(double delay_s) {
-        const auto is_delay = [](const Finding& one) { return one.term.effect->name == "delay"; };
-        if (std::ranges::any_of(result_.rounds, is_delay)) {
-            for (Finding& finding : result_.rounds)
-                if (is_delay(finding)) finding.status = FindingStatus::confirmed;
-            return;
-        }
-        Finding finding;
-        finding.term = {&find_effect("delay"), {delay_s}};
-        finding.values = {{0, 0, delay_s, {}, {}, false}};
-        result_.rounds.push_back(std::move(finding));
     }
 
     // What the user takes into the model: the side of a tie in the place of the finding, or a term that was

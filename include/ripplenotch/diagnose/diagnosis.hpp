@@ -166,8 +166,8 @@ struct Diagnosis {
     std::vector<std::string> next;          ///< what to do where something is uncertain, a sentence each
     /// Faults of the set-up, which call every name into question; the first to repair comes first.
     std::vector<SetupFault> setup;
-    /// How far the log is behind the user's simulation, where their motions show it. The known torque is
-    /// shifted by that: it is no effect of the model.
+    /// How far the log is behind the user's simulation, where that is no effect of the joint. The known
+    /// torque is shifted by that.
     std::optional<SimulationLag> alignment;
     std::size_t samples = 0, samples_used = 0;
     double smoothing_s = 0.0;  ///< window of the motion along which effects were searched
@@ -187,8 +187,6 @@ struct DiagnosisOptions {
     std::span<const double> simulated_velocity_deg_s = {}, simulated_position_deg = {};
     /// Faults of the set-up that are known beforehand. The known terms are wrong then: nothing is searched.
     std::span<const SetupFault> setup = {};
-    /// How late the log is by its torques, where the simulation has no motion: a delay is searched about it.
-    std::optional<Seconds> expected_delay = {};
 };
 
 /// Diagnoses a log of at least fewest_samples_diagnosed. `validation` is another log that nothing is

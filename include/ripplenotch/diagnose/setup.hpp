@@ -38,6 +38,7 @@ struct SimulationLag {
     /// Share of the variance, of what nuisance parameters alone leave, that the simulation at this lag
     /// explains of blocks that it was not fitted to.
     double explained = 0.0;
+    double left = 0.0;                              ///< sum of squares of these blocks
     std::optional<double> position_difference_deg;  ///< rms, where both have a position
 };
 
@@ -70,10 +71,13 @@ struct SetupContext {
 
 struct SetupAnswer {
     std::vector<SetupFault> faults;  ///< faults that invalidate the others first
-    /// Both empty where simulation or log lack the required columns.
-    std::optional<SimulationLag> motion_lag, torque_lag;
+    /// By the motions, by the torques, and of the simulated torque behind the motion of the log that explains
+    /// it. Empty where simulation or log lack the required columns.
+    std::optional<SimulationLag> motion_lag, torque_lag, torque_to_motion_lag;
+    std::optional<SimulationLag> shift;  ///< by which the simulation is taken to be early
 
-    /// By motion where that is identifiable, else by torque; null: neither is.
+    /// The one that can be relied on: by the motions, or else by the torque that follows the motion of the
+    /// log, or else by the torques; null: none is identifiable.
     [[nodiscard]] const SimulationLag* lag() const;
 };
 

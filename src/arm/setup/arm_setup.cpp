@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <optional>
 #include <string>
 
@@ -16,44 +17,13 @@
 namespace ripplenotch {
 namespace {
 
-// A log of an arm with the torque of each joint multiplied by a factor.
-struct ScaledLog {
-    ArmLog log;
-    std::vector<std::vector<double>> torques_nm;
-
-    ScaledLog(const ArmLog& of, const std::vector<double>& factors) : log(of), torques_nm(of.joints.size()) {
-        for (std::size_t j = 0; j < torques_nm.size(); ++j) {
-            if (factors[j] == 1.0) continue;
-            torques_nm[j].assign(of.joints[j].torque_nm.begin(), of.joints[j].torque_nm.end());
-            for (double& each : torques_nm[j]) each *= factors[j];
-            log.joints[j].torque_nm = torques_nm[j];
-        }
-    }
+// How log and arm may have been put together: which joint of the log a joint's motion and torque are, the
+// factor of its torque, and the direction of gravity.
+struct Reading {
+    std::vector<std::size_t> motion, torque;
+    std::vector<double> factors;
+    Vector3 gravity_m_s2;
 };
-
-// Torque and power of the arm fit's friction, along the log.
-struct FrictionOfJoint {
-    double rms_nm = 0.0, power = 0.0;
-};
-
-FrictionOfJoint friction_along(const Chain& chain, const ArmLog& log, const ArmJointFit& own) {
-    FrictionOfJoint found;
-    const double unit = deg_s_of(chain.joints[own.joint].kind);
-    const auto value = [&](BesideArm which) { return own.beside_nm[static_cast<std::size_t>(which)]; };
-    const auto velocity = log.joints[own.joint].velocity_deg_s;
-    double squares = 0.0;
-    for (const double each : velocity) {
-        const double v_deg_s = unit * each;
-        const FrictionBeside shapes = friction_beside(v_deg_s);
-        const double torque_nm = value(BesideArm::coulomb) * shapes.side +
-                                 value(BesideArm::viscous) * v_deg_s * std::numbers::pi / 180.0 +
-                                 value(BesideArm::stribeck) * shapes.stribeck;
-        squares += torque_nm * torque_nm;
-        found.power += torque_nm * v_deg_s;
-    }
-    found.rms_nm = std::sqrt(squares / static_cast<double>(velocity.size()));
-    return found;
-}
 
 double rms_of_torque(const TraceView& joint) {
     double squares = 0.0;
@@ -61,148 +31,163 @@ double rms_of_torque(const TraceView& joint) {
     return std::sqrt(squares / static_cast<double>(joint.torque_nm.size()));
 }
 
-// Geometric mean over the joints of the error on held-out fifths, each relative to its torque, so that it
-// does not depend on the unit.
-double mean_error(const ArmFit& fit, const ArmLog& log) {
-    double sum = 0.0;
-    for (const ArmJointFit& joint : fit.joints)
-        sum += portable::log(std::max(joint.smoothed_error_nm, 1e-12) /
-                             std::max(rms_of_torque(log.joints[joint.joint]), 1e-12));
-    return portable::exp(sum / static_cast<double>(fit.joints.size()));
-}
-
-// Mean over the joints of the share of the torque's variance.
-double explained_by(const ArmFit& fit, const ArmLog& log) {
-    double sum = 0.0;
-    for (const ArmJointFit& joint : fit.joints) {
-        const auto torque = log.joints[joint.joint].torque_nm;
-        double mean = 0.0, squares = 0.0;
-        for (const double each : torque) mean += each / static_cast<double>(torque.size());
-        for (const double each : torque) squares += (each - mean) * (each - mean);
-        const double variance = squares / static_cast<double>(torque.size());
-        if (variance > 0.0)
-            sum +=
-                (1.0 - joint.error_nm * joint.error_nm / variance) / static_cast<double>(fit.joints.size());
-    }
-    return sum;
-}
-
-// Factors by which the torques are multiplied, and the fit of that.
-struct Factors {
+// The fit of a reading. Its error is the geometric mean over the joints of that on held-out fifths, each
+// relative to its torque, so that it does not depend on the unit; explained is the mean of the shares of the
+// variance.
+struct ReadArm {
+    Reading reading;
     ArmFit fit;
-    std::vector<double> of;
+    double error = 0.0, explained = 0.0;
+    bool friction_drives = false;  // most of the joints whose friction is identifiable
 };
 
-// Inverse factors of the mistakes in the torque of a joint. mNm for Nm is tested only where a thousandth is
-// nearer to the torques of the other joints, on the scale of factors.
-std::vector<double> possible_factors(const ArmLog& log, const ArmFit& fit, std::size_t joint) {
-    constexpr double of_milli = 1e-3;  // by the definition of the unit
-    double others = 0.0;
-    for (const ArmJointFit& other : fit.joints)
-        if (other.joint != joint)
-            others += portable::log(std::max(rms_of_torque(log.joints[other.joint]), 1e-12)) /
-                      static_cast<double>(fit.joints.size() - 1);
-    const double distance = portable::log(std::max(rms_of_torque(log.joints[joint]), 1e-12)) - others;
-    if (distance > -0.5 * portable::log(of_milli)) return {-1.0, of_milli};
-    return {-1.0};
-}
+class Readings {
+  public:
+    Readings(const Chain& chain, const ArmLog& log, const ArmFitOptions& options,
+             const ArmSetupLimits& limits)
+        : chain_(chain), log_(log), options_(options), limits_(limits) {}
 
-// The same with the torque of one more joint changed, where that fits clearly better; of several the best.
-std::optional<Factors> one_more_changed(const Chain& chain, const ArmLog& log, const Factors& now,
-                                        const ArmFitOptions& options, const ArmSetupLimits& limits) {
-    std::optional<Factors> best;
-    if (now.fit.joints.size() < 2) return best;
-    double least = limits.most_error * mean_error(now.fit, log);
-    for (const ArmJointFit& joint : now.fit.joints) {
-        if (now.of[joint.joint] != 1.0) continue;
-        for (const double factor : possible_factors(log, now.fit, joint.joint)) {
-            Factors one{{}, now.of};
-            one.of[joint.joint] = factor;
-            const ScaledLog scaled(log, one.of);
-            one.fit = fit_arm(chain, scaled.log, options);
-            const double error = mean_error(one.fit, scaled.log);
-            if (error >= least) continue;
-            least = error;
+    // With a fit that is known, or a new one.
+    [[nodiscard]] ReadArm read(Reading reading, const ArmFit* known = nullptr) const {
+        ArmLog log = log_;
+        std::vector<std::vector<double>> torques_nm(log.joints.size());
+        for (std::size_t j = 0; j < torques_nm.size(); ++j) {
+            const auto torque = log_.joints[reading.torque[j]].torque_nm;
+            torques_nm[j].assign(torque.begin(), torque.end());
+            for (double& each : torques_nm[j]) each *= reading.factors[j];
+            log.joints[j] = log_.joints[reading.motion[j]];
+            log.joints[j].torque_nm = torques_nm[j];
+            log.has_torque[j] = log_.has_torque[reading.torque[j]];
+        }
+        Chain chain = chain_;
+        chain.gravity_m_s2 = reading.gravity_m_s2;
+        ReadArm found{std::move(reading), known != nullptr ? *known : fit_arm(chain, log, options_)};
+        const auto count = static_cast<double>(found.fit.joints.size());
+        double sum = 0.0;
+        int drives = 0;
+        for (const ArmJointFit& joint : found.fit.joints) {
+            const TraceView& own = log.joints[joint.joint];
+            const auto rows = static_cast<double>(own.size());
+            double mean = 0.0, variance = 0.0;
+            for (const double each : own.torque_nm) mean += each / rows;
+            for (const double each : own.torque_nm) variance += (each - mean) * (each - mean) / rows;
+            if (variance > 0.0) found.explained += (1.0 - joint.error_nm * joint.error_nm / variance) / count;
+            sum +=
+                portable::log(std::max(joint.smoothed_error_nm, 1e-12) / std::max(rms_of_torque(own), 1e-12));
+            drives += friction_sign(joint, own);
+        }
+        found.error = portable::exp(sum / count);
+        found.friction_drives = drives < 0;
+        return found;
+    }
+
+    // The best of these that fits clearly better, on held-out fifths of the log.
+    [[nodiscard]] std::optional<ReadArm> better(const ReadArm& now,
+                                                const std::vector<Reading>& others) const {
+        std::optional<ReadArm> best;
+        double least = limits_.most_error * now.error;
+        for (const Reading& other : others) {
+            ReadArm one = read(other);
+            if (one.error >= least) continue;
+            least = one.error;
             best = std::move(one);
         }
+        return best;
     }
-    return best;
-}
 
-// Whether friction drives most of the joints whose friction is identifiable.
-bool friction_drives(const Chain& chain, const ArmLog& log, const ArmFit& fit, const ArmSetupLimits& limits) {
-    int drives = 0, resists = 0;
-    for (const ArmJointFit& joint : fit.joints) {
-        const FrictionOfJoint friction = friction_along(chain, log, joint);
-        if (friction.rms_nm < limits.least_friction * joint.smoothed_error_nm) continue;
-        ++(friction.power < 0.0 ? drives : resists);
+  private:
+    // 1 where friction resists, -1 where it drives, 0 where it is part of the residual.
+    [[nodiscard]] int friction_sign(const ArmJointFit& own, const TraceView& log) const {
+        const double unit = deg_s_of(chain_.joints[own.joint].kind);
+        const auto value = [&](BesideArm which) { return own.beside_nm[static_cast<std::size_t>(which)]; };
+        double squares = 0.0, power = 0.0;
+        for (const double each : log.velocity_deg_s) {
+            const double v_deg_s = unit * each;
+            const FrictionBeside shapes = friction_beside(v_deg_s);
+            const double torque_nm = value(BesideArm::coulomb) * shapes.side +
+                                     value(BesideArm::viscous) * v_deg_s * std::numbers::pi / 180.0 +
+                                     value(BesideArm::stribeck) * shapes.stribeck;
+            squares += torque_nm * torque_nm;
+            power += torque_nm * v_deg_s;
+        }
+        const double least_nm = limits_.least_friction * own.smoothed_error_nm;
+        if (squares < least_nm * least_nm * static_cast<double>(log.size())) return 0;
+        return power < 0.0 ? -1 : 1;
     }
-    return drives > resists;
-}
+
+    const Chain& chain_;
+    const ArmLog& log_;
+    const ArmFitOptions& options_;
+    const ArmSetupLimits& limits_;
+};
+
+constexpr double of_milli = 1e-3;  // mNm for Nm, by the definition of the unit
 
 // The fault of all joints whose torque has the same factor; nothing where none has.
-std::optional<SetupFault> factor_fault(const Chain& chain, const ArmLog& log, const ArmFit& fit,
-                                       const Factors& found, double factor) {
+std::optional<SetupFault> factor_fault(const Chain& chain, const ReadArm& before, const ReadArm& after,
+                                       double factor) {
     std::vector<std::string> names;
-    for (std::size_t j = 0; j < found.of.size(); ++j)
-        if (found.of[j] == factor) names.push_back(chain.joints[j].name);
+    for (std::size_t j = 0; j < chain.size(); ++j)
+        if (after.reading.factors[j] == factor) names.push_back(chain.joints[j].name);
     if (names.empty()) return {};
-    const bool all = names.size() == fit.joints.size();
-    SetupFault fault{factor < 0.0 ? SetupFaultKind::torque_sign : SetupFaultKind::torque_unit,
-                     fmt::format("the torque of {} {} {}: {}", names.size() == 1 ? "joint" : "joints",
-                                 fmt::join(names, ", "),
-                                 factor < 0.0 ? "has its sign reversed" : "is in mNm where Nm are expected",
-                                 all ? "friction would drive the arm"
-                                     : "with that corrected the joints fit one arm on held-out fifths of the "
-                                       "log"),
-                     {},
-                     factor};
-    fault.explained_before = explained_by(fit, log);
-    fault.explained_after = explained_by(found.fit, ScaledLog(log, found.of).log);
-    return fault;
-}
-
-// Two joints of the log that are exchanged, where the arm fits clearly better so.
-std::optional<SetupFault> exchanged_joints(const Chain& chain, const ArmLog& log, const ArmFit& fit,
-                                           const ArmFitOptions& options, const ArmSetupLimits& limits) {
-    std::optional<SetupFault> best;
-    double least = limits.most_error * mean_error(fit, log);
-    for (std::size_t i = 0; i < fit.joints.size(); ++i) {
-        for (std::size_t k = i + 1; k < fit.joints.size(); ++k) {
-            const std::size_t a = fit.joints[i].joint, b = fit.joints[k].joint;
-            if (chain.joints[a].kind != chain.joints[b].kind) continue;
-            ArmLog other = log;
-            std::swap(other.joints[a], other.joints[b]);
-            const ArmFit again = fit_arm(chain, other, options);
-            const double error = mean_error(again, other);
-            if (error >= least) continue;
-            best = SetupFault{
-                SetupFaultKind::wrong_joint,
-                fmt::format("joints {} and {} are exchanged in the log: the other way round the "
-                            "error on held-out fifths is {:.2g} of this",
-                            chain.joints[a].name, chain.joints[b].name, error / mean_error(fit, log)),
-                {}};
-            best->explained_before = explained_by(fit, log);
-            best->explained_after = explained_by(again, other);
-            least = error;
-        }
-    }
-    return best;
+    const bool all = names.size() == before.fit.joints.size();
+    return SetupFault{
+        factor < 0.0 ? SetupFaultKind::torque_sign : SetupFaultKind::torque_unit,
+        fmt::format("the torque of {} {} {}: {}", names.size() == 1 ? "joint" : "joints",
+                    fmt::join(names, ", "),
+                    factor < 0.0 ? "has its sign reversed" : "is in mNm where Nm are expected",
+                    all ? "friction would drive the arm"
+                        : "with that corrected the joints fit one arm on held-out fifths of the log"),
+        {},
+        factor,
+        before.explained,
+        after.explained};
 }
 
 std::string gravity_text(const Vector3& gravity) {
     return fmt::format("gravity={:g}:{:g}:{:g}", gravity[0], gravity[1], gravity[2]);
 }
 
-// The directions along the axes of the base that the chain does not state.
-std::vector<Vector3> other_directions(const Vector3& stated) {
+// With gravity along the axes of the base that the chain does not state.
+std::vector<Reading> other_directions(const Reading& now) {
+    const Vector3& stated = now.gravity_m_s2;
     const double size = portable::hypot(stated[0], stated[1], stated[2]);
-    std::vector<Vector3> others;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        for (const double sign : {-1.0, 1.0}) {
-            Vector3 gravity{};
-            gravity[axis] = sign * size;
-            if (std::abs(gravity[axis] - stated[axis]) > 1e-6 * size) others.push_back(gravity);
+    std::vector<Reading> others;
+    for (std::size_t axis = 0; axis < 3 && size > 0.0; ++axis) {
+        for (const double way : {-size, size}) {
+            if (std::abs(way - stated[axis]) <= 1e-6 * size) continue;
+            others.push_back(now);
+            others.back().gravity_m_s2 = {};
+            others.back().gravity_m_s2[axis] = way;
+        }
+    }
+    return others;
+}
+
+// With the torque of one more joint reversed or in another unit.
+std::vector<Reading> other_factors(const ReadArm& now) {
+    std::vector<Reading> others;
+    for (const ArmJointFit& joint : now.fit.joints) {
+        if (now.reading.factors[joint.joint] != 1.0 || now.fit.joints.size() < 2) continue;
+        for (const double factor : {-1.0, of_milli}) {
+            others.push_back(now.reading);
+            others.back().factors[joint.joint] = factor;
+        }
+    }
+    return others;
+}
+
+// With two joints exchanged, or their torques alone.
+std::vector<Reading> exchanged(const Chain& chain, const ReadArm& now) {
+    std::vector<Reading> others;
+    for (const ArmJointFit& one : now.fit.joints) {
+        for (const ArmJointFit& other : now.fit.joints) {
+            const std::size_t a = one.joint, b = other.joint;
+            if (a >= b || chain.joints[a].kind != chain.joints[b].kind) continue;
+            others.push_back(now.reading);
+            std::swap(others.back().torque[a], others.back().torque[b]);
+            others.push_back(others.back());
+            std::swap(others.back().motion[a], others.back().motion[b]);
         }
     }
     return others;
@@ -212,47 +197,48 @@ std::vector<Vector3> other_directions(const Vector3& stated) {
 
 std::vector<SetupFault> suspect_arm(const Chain& chain, const ArmLog& log, const ArmFit& fit,
                                     const ArmFitOptions& options, const ArmSetupLimits& limits) {
-    std::vector<SetupFault> faults;
     ArmFitOptions alike = options;
     alike.smoothing = fit.smoothing;
-    Factors factors{fit, std::vector<double>(log.joints.size(), 1.0)};
-    while (auto better = one_more_changed(chain, log, factors, alike, limits)) factors = *std::move(better);
+    const Readings readings(chain, log, alike, limits);
+    std::vector<std::size_t> places(log.joints.size());
+    std::iota(places.begin(), places.end(), std::size_t{0});
+    const ReadArm stated =
+        readings.read({places, places, std::vector<double>(places.size(), 1.0), chain.gravity_m_s2}, &fit);
+    ReadArm now = stated;
+    while (auto better = readings.better(now, other_factors(now))) now = *std::move(better);
     // All signs reversed fit as well: friction decides.
-    const ScaledLog as_found(log, factors.of);
-    if (friction_drives(chain, as_found.log, factors.fit, limits)) {
-        for (const ArmJointFit& joint : fit.joints) factors.of[joint.joint] *= -1.0;
-        factors.fit = fit_arm(chain, ScaledLog(log, factors.of).log, alike);
+    if (now.friction_drives) {
+        for (const ArmJointFit& joint : fit.joints) now.reading.factors[joint.joint] *= -1.0;
+        now = readings.read(now.reading);
     }
-    for (const double factor : {-1.0, 1e-3})
-        if (auto fault = factor_fault(chain, log, fit, factors, factor)) faults.push_back(*std::move(fault));
-    const ArmFit& best = factors.fit;
-    const ScaledLog corrected(log, factors.of);
-    const Vector3& g = chain.gravity_m_s2;
-    const double now = mean_error(best, corrected.log);
-    double least = limits.most_error * now;
-    std::optional<SetupFault> direction;
-    if (portable::hypot(g[0], g[1], g[2]) > 0.0) {
-        for (const Vector3& gravity : other_directions(g)) {
-            Chain other = chain;
-            other.gravity_m_s2 = gravity;
-            const ArmFit again = fit_arm(other, corrected.log, alike);
-            const double error = mean_error(again, corrected.log);
-            if (error >= least) continue;
-            least = error;
-            direction = SetupFault{
-                SetupFaultKind::gravity_direction,
-                fmt::format(
-                    "gravity acts along another axis of the base: with {} the error on held-out fifths "
-                    "of the log is {:.2g} of that with {}",
-                    gravity_text(gravity), error / now, gravity_text(g)),
-                gravity_text(gravity)};
-            direction->explained_before = explained_by(best, corrected.log);
-            direction->explained_after = explained_by(again, corrected.log);
-        }
+    std::vector<SetupFault> faults;
+    for (const double factor : {-1.0, of_milli})
+        if (auto fault = factor_fault(chain, stated, now, factor)) faults.push_back(*std::move(fault));
+    if (const auto turned = readings.better(now, other_directions(now.reading))) {
+        const std::string option = gravity_text(turned->reading.gravity_m_s2);
+        faults.push_back(
+            {SetupFaultKind::gravity_direction,
+             fmt::format("gravity acts along another axis of the base: with {} the error on held-out "
+                         "fifths of the log is {:.2g} of that with {}",
+                         option, turned->error / now.error, gravity_text(chain.gravity_m_s2)),
+             option, 1.0, now.explained, turned->explained});
     }
-    if (direction) faults.push_back(*std::move(direction));
     if (!faults.empty()) return faults;
-    if (auto fault = exchanged_joints(chain, log, fit, alike, limits)) faults.push_back(*std::move(fault));
+    const auto better = readings.better(now, exchanged(chain, now));
+    if (!better) return faults;
+    std::vector<std::string> names;
+    for (const std::size_t j : places)
+        if (better->reading.torque[j] != j) names.push_back(chain.joints[j].name);
+    faults.push_back(
+        {SetupFaultKind::wrong_joint,
+         fmt::format("{} {} are exchanged in the log: the other way round the error on held-out fifths "
+                     "is {:.2g} of this",
+                     better->reading.motion == places ? "the torques of joints" : "joints",
+                     fmt::join(names, " and "), better->error / now.error),
+         {},
+         1.0,
+         now.explained,
+         better->explained});
     return faults;
 }
 

@@ -114,10 +114,9 @@ std::vector<std::string> setup_sentences(const Diagnosis& diagnosis) {
     if (!diagnosis.alignment) return all;
     const SimulationLag& lag = *diagnosis.alignment;
     const double half_s = 0.5 * (lag.delay_95_s.high - lag.delay_95_s.low);
-    std::string text =
-        fmt::format("Delay: the log is {} ms {} the simulation (by their motions, correlation {:.4f})",
-                    with_error(1e3 * std::abs(lag.delay_s), 1e3 * half_s),
-                    lag.delay_s > 0.0 ? "behind" : "ahead of", lag.correlation);
+    std::string text = fmt::format("Delay: the log is {} ms {} the simulation (correlation {:.4f})",
+                                   with_error(1e3 * std::abs(lag.delay_s), 1e3 * half_s),
+                                   lag.delay_s > 0.0 ? "behind" : "ahead of", lag.correlation);
     if (lag.clock_error) text += fmt::format("; clocks differ by {:.3g} ppm", 1e6 * *lag.clock_error);
     if (lag.position_difference_deg)
         text +=

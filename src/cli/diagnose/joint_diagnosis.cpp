@@ -337,13 +337,6 @@ std::vector<std::string> take_lag(const DiagnoseRequest& request, const JointDia
     return without;
 }
 
-// Where no motion of the simulation says how late the log is, the torques may.
-std::optional<Seconds> expected_delay(const GivenTerms& given) {
-    if (!given.setup || given.setup->motion_lag || !given.setup->torque_lag) return std::nullopt;
-    const SimulationLag& lag = *given.setup->torque_lag;
-    return lag.identifiable ? std::optional(Seconds(lag.delay_s)) : std::nullopt;
-}
-
 Diagnosis diagnosed(const DiagnoseRequest& request, Model model, const JointDiagnosis& one,
                     const std::optional<Log>& other) {
     const std::vector<std::string> without = take_lag(request, one, model);
@@ -358,8 +351,7 @@ Diagnosis diagnosed(const DiagnoseRequest& request, Model model, const JointDiag
              .simulated_velocity_deg_s = one.given.simulated_velocity_deg_s,
              .simulated_position_deg = one.given.simulated_position_deg,
              .setup = one.given.setup ? std::span<const SetupFault>(one.given.setup->faults)
-                                      : std::span<const SetupFault>(),
-             .expected_delay = expected_delay(one.given)});
+                                      : std::span<const SetupFault>()});
     } catch (const DataError& error) {  // the library knows no file
         raise<DataError>("{}: {}", request.path, error.what());
     }
@@ -426,7 +418,7 @@ JointDiagnosis diagnosed_joint(const DiagnoseRequest& request, const std::option
     Progress::current().begin("looking for what is missing", "", 0);
     one.diagnosis = diagnosed(request, model.model, one, other);
     advise_arm(one);
-    if (one.given.setup) one.diagnosis.alignment = one.given.setup->motion_lag;
+    if (one.given.setup) one.diagnosis.alignment = one.given.setup->shift;
     return one;
 }
 

@@ -25,7 +25,8 @@ constexpr double longest_s = 1.0,
 constexpr double freedom = static_cast<double>(BlockProducts::blocks - 1);
 constexpr double clock_quantile = 4.781;  // Student's t at 0.9995 for that freedom
 // Of the variance of blocks held out. Of 100 pairs of unrelated motions 7 reached it, 3 of which had one lag.
-constexpr double least_share = 0.5, least_reversed_share = 0.9;
+// Of a reversed one, and of a torque by a motion, far more.
+constexpr double least_share = 0.5, least_of_all = 0.9;
 // Half a period of a sine reverses its sign: such a lag has to leave so much less, in squares.
 constexpr double reversed_ratio = 4.0;
 // Two steps of Coulomb friction follow one of a width between: with one of 2 deg/s the lag was off by 1.8 ms.
@@ -222,11 +223,6 @@ void Alignment::add_motion(const TraceView& log, std::optional<GearRatio> gear_r
     }
 }
 
-bool Alignment::is_long_enough() const {
-    // A block needs more rows than there are values to fit.
-    return at_s_.size() >= BlockProducts::blocks * 4 + 2 * (rows_.size() + 3);
-}
-
 BlockProducts Alignment::products(double delay_s, double clock_error, std::size_t stride) const {
     Columns columns(constant);
     std::vector<double> weight;
@@ -249,89 +245,94 @@ BlockProducts Alignment::products(double delay_s, double clock_error, std::size_
     return {columns, weight};
 }
 
-// A delay that fits, and what it leaves.
+// A delay that fits, with the squares that it leaves by block.
 struct Alignment::Candidate {
-    double delay_s = 0.0, clock_error = 0.0;
-    double scale = 0.0, delay_deviation_s = 0.0, clock = 0.0, clock_deviation = 0.0, misfit_s = 0.0;
-    double share = 0.0, held_out_share = 0.0, held_out_squares = 0.0;
-    std::vector<double> squares;  // by block
+    SimulationLag lag;
+    double clock = 0.0, clock_deviation = 0.0;
+    std::vector<double> squares;
     bool converged = false;
 };
 
-// Columns that are fitted at a delay. A lag of first order differs from a delay by the second derivative,
-// which for a single sine is the value itself.
-Places Alignment::fitted(const BlockProducts& products, Places first, const Places& beside) const {
+// Columns that are fitted at a delay: first those whose factors tell it. A lag of first order differs from a
+// delay by the second derivative, which for a single sine is the value itself.
+Places Alignment::fitted(const BlockProducts& products, const Question& of, bool with_clock) const {
+    if (of.is_simulated) return Places{slope} + of.beside;
+    Places first{simulated, slope};
+    if (with_clock) first.push_back(drift);
     const VectorXd second = products.column(bend);
-    if (products.squares(second, Places{simulated} + beside, false) >=
+    if (products.squares(second, Places{simulated} + of.beside, false) >=
         1e-2 * products.product(second, second))
         first.push_back(bend);
-    return std::move(first) + beside;
+    return std::move(first) + of.beside;
 }
 
-Alignment::Candidate Alignment::refined(double delay_s, bool with_clock, const Places& beside) const {
+Alignment::Candidate Alignment::refined(double delay_s, bool with_clock, const Question& of) const {
     Candidate found;
-    found.delay_s = delay_s;
-    const Places wanted = with_clock ? Places{simulated, slope, drift} : Places{simulated, slope};
+    found.lag.delay_s = delay_s;
     double clock_error = 0.0;
     const double step_s = 0.25 * smoothing_s_;
     for (int iteration = 0; iteration < 30 && !found.converged && std::abs(delay_s) <= range_s_;
          ++iteration) {
         const BlockProducts products = this->products(delay_s, clock_error);
-        const VectorXd values = products.values(products.column(measured), fitted(products, wanted, beside));
-        if (!(std::abs(values[0]) > 0.0)) break;
+        const VectorXd factors =
+            products.values(products.column(of.target()), fitted(products, of, with_clock));
         // Where samples are joined by lines the curvature has steps, between which it may alternate.
         const double part = iteration < 8 ? 1.0 : 0.5;
-        const double change_s = part * std::clamp(-values[1] / values[0], -step_s, step_s);
+        const double change_s = part * std::clamp(of.delay_of(factors), -step_s, step_s);
+        if (!std::isfinite(change_s)) break;
         delay_s += change_s;
-        if (with_clock) clock_error -= part * values[2] / values[0];
+        if (with_clock) clock_error -= part * factors[2] / factors[0];
         found.converged = std::abs(change_s) < (iteration < 20 ? 1e-9 : 1e-6);
     }
-    if (found.converged) found.delay_s = delay_s, found.clock_error = clock_error;
-    measure(found, wanted, beside);
+    if (found.converged) found.lag.delay_s = delay_s;
+    if (found.converged && with_clock) found.lag.clock_error = clock_error;
+    measure(found, with_clock, of);
     return found;
 }
 
-void Alignment::measure(Candidate& found, const Places& wanted, const Places& beside) const {
-    const BlockProducts products = this->products(found.delay_s, found.clock_error);
-    const VectorXd target = products.column(measured);
-    const Places by = fitted(products, wanted, beside), with_clock = Places{drift, third} + by;
-    const VectorXd values = products.values(target, by);
+void Alignment::measure(Candidate& found, bool with_clock, const Question& of) const {
+    SimulationLag& lag = found.lag;
+    const BlockProducts products = this->products(lag.delay_s, lag.clock_error.value_or(0.0));
+    const VectorXd target = products.column(of.target());
+    const Places by = fitted(products, of, with_clock), with_drift = Places{drift, third} + by;
     // A motion whose frequency changes in the course of the log looks like a clock, unless amplitude and
     // delay may depend on the frequency.
     const auto clock_of = [](const VectorXd& factors) { return -factors[0] / factors[2]; };
-    found.scale = values[0];
-    found.clock = clock_of(products.values(target, with_clock));
+    const VectorXd factors = products.values(target, by);
+    lag.scale = of.is_simulated ? 1.0 : factors[0];
+    found.clock = clock_of(products.values(target, with_drift));
     double delays = 0.0, clocks = 0.0;
     for (std::size_t b = 0; b < BlockProducts::blocks; ++b) {
-        const VectorXd one = products.values(target, by, b);
-        const double off_s = one[1] / one[0] - values[1] / values[0];
-        const double off = clock_of(products.values(target, with_clock, b)) - found.clock;
+        const double off_s = of.delay_of(products.values(target, by, b)) - of.delay_of(factors);
+        const double off = clock_of(products.values(target, with_drift, b)) - found.clock;
         delays += off_s * off_s;
         clocks += off * off;
     }
     // The delete-a-block jackknife (Efron and Tibshirani 1993, chapter 11).
-    found.delay_deviation_s = std::sqrt(delays * freedom / (freedom + 1.0));
     found.clock_deviation = std::sqrt(clocks * freedom / (freedom + 1.0));
     found.squares = products.left(target, by, false);
     // No simulation agrees better than to a thousandth: below, samples joined by lines decide.
     const double floor = 1e-6 * products.product(target, target) / (freedom + 1.0);
     for (double& each : found.squares) each = std::max(each, floor);
-    const auto share = [&](const Places& explained_by, bool held_out) {
-        const double alone = products.squares(target, beside, held_out);
-        return alone > 0.0 ? 1.0 - products.squares(target, explained_by, held_out) / alone : 0.0;
-    };
-    found.share = share(Places{simulated} + beside, false);
-    found.held_out_share = share(by, true);
-    found.held_out_squares = products.squares(target, by);
     Places rest = by;
     std::erase(rest, Index{slope});
-    const double information =
-        found.scale * found.scale * products.squares(products.column(slope), rest, false);
-    found.misfit_s = information > 0.0 ? std::sqrt(sum_of(found.squares) / information) : 0.0;
+    const double information = lag.scale * lag.scale * products.squares(products.column(slope), rest, false);
+    const double misfit_s = information > 0.0 ? std::sqrt(sum_of(found.squares) / information) : 0.0;
+    const double half_s =
+        portable::hypot(student_95(freedom) * std::sqrt(delays * freedom / (freedom + 1.0)),
+                        rows_.size() > 2 && !of.is_simulated ? misfit_share * misfit_s : 0.0);
+    lag.delay_95_s = {lag.delay_s - half_s, lag.delay_s + half_s};
+    lag.left = products.squares(target, by);
+    const auto share = [&](const Places& explained_by, bool held_out) {
+        return 1.0 - products.squares(target, explained_by, held_out) /
+                         products.squares(target, of.alone(), held_out);
+    };
+    lag.explained = share(by, true);
+    lag.correlation = std::copysign(std::sqrt(std::max(share(of.at_a_delay(), false), 0.0)), lag.scale);
 }
 
 // Delays at which the residual has a local minimum, least residual first.
-std::vector<double> Alignment::minima_s(const Places& beside) const {
+std::vector<double> Alignment::minima_s(const Question& of) const {
     const std::size_t stride = 1 + at_s_.size() / 4000;  // rows enough to find a minimum
     const double step_s = 0.25 * smoothing_s_;
     std::vector<double> left, minima;
@@ -339,7 +340,9 @@ std::vector<double> Alignment::minima_s(const Places& beside) const {
     const auto most = static_cast<int>(range_s_ / step_s);
     for (int d = -most; d <= most; ++d) {
         const BlockProducts products = this->products(step_s * d, 0.0, stride);
-        left.push_back(products.squares(products.column(measured), Places{simulated} + beside, false));
+        const VectorXd target = products.column(of.target());
+        left.push_back(products.squares(target, of.at_a_delay(), false) /
+                       products.squares(target, of.alone(), false));
     }
     for (std::size_t k = 0; k < left.size(); ++k)
         if ((k == 0 || left[k] <= left[k - 1]) && (k + 1 == left.size() || left[k] < left[k + 1]))
@@ -349,69 +352,47 @@ std::vector<double> Alignment::minima_s(const Places& beside) const {
     return minima;
 }
 
-// The best of the minima; of those that leave as little the one without a reversal of sign and with the least
-// delay.
-Alignment::Candidate Alignment::best(const Places& beside, bool& is_only_one) const {
+SimulationLag Alignment::lag(const Question& of) const {
+    if (at_s_.size() < BlockProducts::blocks * 4 + 2 * (rows_.size() + 3)) return {};  // than values to fit
     std::vector<Candidate> found;
-    const std::vector<double> starts_s = minima_s(beside);
-    for (const double start_s : starts_s) {
-        if (found.size() == 4) break;  // the best, and enough to show that there is more than one
-        Candidate one = refined(start_s, false, beside);
+    const std::vector<double> starts_s = minima_s(of);
+    for (std::size_t k = 0; k < starts_s.size() && found.size() < 4; ++k) {
+        Candidate one = refined(starts_s[k], false, of);
         const bool known = std::ranges::any_of(found, [&](const Candidate& other) {
-            return std::abs(other.delay_s - one.delay_s) < 0.25 * smoothing_s_;
+            return std::abs(other.lag.delay_s - one.lag.delay_s) < 0.25 * smoothing_s_;
         });
         if (one.converged && !known) found.push_back(std::move(one));
     }
-    is_only_one = true;
-    if (found.empty()) return refined(starts_s.front(), false, beside);
+    if (found.empty()) found.push_back(refined(starts_s.empty() ? 0.0 : starts_s.front(), false, of));
     const auto squares = [](const Candidate& one) { return sum_of(one.squares); };
     const Candidate least = *std::ranges::min_element(found, {}, squares);
+    // Others that leave as little stay: a paired t test of the logarithms, in which a block with large
+    // residuals counts no more than others.
     std::erase_if(found, [&](const Candidate& one) {
-        if (one.squares == least.squares) return false;
-        if (least.scale < 0.0 && one.scale > 0.0 && squares(one) < reversed_ratio * squares(least))
+        if (one.lag.delay_s == least.lag.delay_s ||
+            (least.lag.scale < 0.0 && one.lag.scale > 0.0 && squares(one) < reversed_ratio * squares(least)))
             return false;
-        // A paired t test of the logarithms, in which a block with large residuals counts no more than
-        // others.
-        double sum = 0.0, spread = 0.0;
+        double mean = 0.0, square = 0.0;
         for (std::size_t b = 0; b < one.squares.size(); ++b) {
-            const double ratio =
-                portable::log(std::max(one.squares[b], 1e-300) / std::max(least.squares[b], 1e-300));
-            sum += ratio;
-            spread += ratio * ratio;
+            const double ratio = portable::log(one.squares[b] / least.squares[b]);
+            mean += ratio / (freedom + 1.0);
+            square += ratio * ratio / (freedom + 1.0);
         }
-        const double mean = sum / (freedom + 1.0);
-        return mean > student_95(freedom) * std::sqrt((spread / (freedom + 1.0) - mean * mean) / freedom);
+        return mean > student_95(freedom) * std::sqrt((square - mean * mean) / freedom);
     });
-    std::ranges::sort(found, {},
-                      [](const Candidate& one) { return std::pair(one.scale < 0.0, std::abs(one.delay_s)); });
-    is_only_one = found.size() == 1;
-    return found.front();
-}
-
-SimulationLag Alignment::lag(const Places& beside, double* held_out_squares) const {
-    SimulationLag lag;
-    lag.is_compared = is_long_enough();
-    if (!lag.is_compared) return lag;
-    bool is_only_one = true;
-    Candidate one = best(beside, is_only_one);
-    if (one.converged && is_only_one && std::abs(one.clock) > clock_quantile * one.clock_deviation) {
-        const Candidate with = refined(one.delay_s, true, beside);
-        if (with.converged) {
-            one = with;
-            lag.clock_error = with.clock_error;
-        }
+    // Of those the one without a reversal of sign and with the least delay.
+    Candidate best = *std::ranges::min_element(found, {}, [](const Candidate& one) {
+        return std::pair(one.lag.scale < 0.0, std::abs(one.lag.delay_s));
+    });
+    bool is_one = best.converged && found.size() == 1;
+    if (is_one && !of.is_simulated && std::abs(best.clock) > clock_quantile * best.clock_deviation) {
+        Candidate with = refined(best.lag.delay_s, true, of);
+        if (with.converged) best = std::move(with);
     }
-    const double of_misfit = rows_.size() > 2 ? misfit_share : 0.0;
-    const double half_s =
-        portable::hypot(student_95(freedom) * one.delay_deviation_s, of_misfit * one.misfit_s);
-    lag.delay_s = one.delay_s;
-    lag.delay_95_s = {lag.delay_s - half_s, lag.delay_s + half_s};
-    lag.scale = one.scale;
-    lag.correlation = std::copysign(std::sqrt(std::max(one.share, 0.0)), one.scale);
-    lag.explained = one.held_out_share;
-    lag.identifiable = one.converged && is_only_one && half_s <= smoothing_s_ &&
-                       lag.explained >= (lag.scale > 0.0 ? least_share : least_reversed_share);
-    *held_out_squares = one.held_out_squares;
+    SimulationLag& lag = best.lag;
+    lag.is_compared = true;
+    lag.identifiable = is_one && lag.delay_95_s.high - lag.delay_95_s.low <= 2.0 * smoothing_s_ &&
+                       lag.explained >= (of.is_simulated || lag.scale < 0.0 ? least_of_all : least_share);
     return lag;
 }
 

@@ -79,12 +79,25 @@ class Alignment {
               const SimulatedMotion& simulation, std::span<const double> right, bool is_slope_of_right,
               const TraceView* log = nullptr, std::optional<GearRatio> gear_ratio = {});
 
-    [[nodiscard]] bool is_long_enough() const;
     /// At a delay that the search reaches.
     [[nodiscard]] BlockProducts products(double delay_s, double clock_error = 0.0,
                                          std::size_t stride = 1) const;
-    /// The delay that leaves least beside these columns, and what it leaves of blocks held out.
-    [[nodiscard]] SimulationLag lag(const Places& beside, double* held_out_squares) const;
+
+    /// Which series the other one and these columns are to explain: the measured one; or the simulated one by
+    /// the columns alone.
+    struct Question {
+        Places beside;
+        bool is_simulated = false;
+        [[nodiscard]] Eigen::Index target() const { return is_simulated ? simulated : measured; }
+        [[nodiscard]] Places at_a_delay() const { return is_simulated ? beside : Places{simulated} + beside; }
+        [[nodiscard]] Places alone() const { return is_simulated ? Places{constant} : beside; }
+        /// By which the delay is longer, from the first factors.
+        [[nodiscard]] double delay_of(const Eigen::VectorXd& factors) const {
+            return is_simulated ? factors[0] : -factors[1] / factors[0];
+        }
+    };
+    /// The delay that leaves least.
+    [[nodiscard]] SimulationLag lag(const Question& of) const;
 
     /// Places of columns: an offset, Coulomb friction of two widths and viscous friction; inertia; cosine and
     /// sine of the position; ripple; friction that grows with the torque and hysteresis. Empty where the log
@@ -93,11 +106,10 @@ class Alignment {
 
   private:
     struct Candidate;
-    [[nodiscard]] Places fitted(const BlockProducts& products, Places first, const Places& beside) const;
-    [[nodiscard]] Candidate refined(double delay_s, bool with_clock, const Places& beside) const;
-    void measure(Candidate& found, const Places& wanted, const Places& beside) const;
-    [[nodiscard]] std::vector<double> minima_s(const Places& beside) const;
-    [[nodiscard]] Candidate best(const Places& beside, bool& is_only_one) const;
+    [[nodiscard]] Places fitted(const BlockProducts& products, const Question& of, bool with_clock) const;
+    [[nodiscard]] Candidate refined(double delay_s, bool with_clock, const Question& of) const;
+    void measure(Candidate& found, bool with_clock, const Question& of) const;
+    [[nodiscard]] std::vector<double> minima_s(const Question& of) const;
     void add_motion(const TraceView& log, std::optional<GearRatio> gear_ratio);
 
     double smoothing_s_, range_s_, middle_s_ = 0.0;

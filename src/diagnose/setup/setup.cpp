@@ -29,33 +29,6 @@ constexpr double least_told = 0.1,
                  least_size = 0.5;       // by a simulation of another motion, and of its own torque
 constexpr double least_turn_deg = 60.0;  // less is an error of the position's zero or of the mount
 
-// What a factor of a series may be mistaken for, and how it is told.
-struct Mistakes {
-    double unit, tolerance;
-    SetupFaultKind sign_fault, unit_fault, side_fault;
-    const char *unit_above, *unit_below, *side_above, *side_below;  // where the log is larger, and smaller
-};
-constexpr Mistakes motion_mistakes{
-    degrees_per_radian,
-    motion_tolerance,
-    SetupFaultKind::motion_sign,
-    SetupFaultKind::motion_unit,
-    SetupFaultKind::motor_side_motion,
-    "the simulated one is in radians, or that of the log is not in its stated unit",
-    "the simulated one is in degrees, or that of the log in radians",
-    "the log has it on the motor side of the gear, the simulation on the joint side",
-    "the simulation has it on the motor side of the gear, the log on the joint side"};
-constexpr Mistakes torque_mistakes{
-    1000.0,
-    torque_tolerance,
-    SetupFaultKind::torque_sign,
-    SetupFaultKind::torque_unit,
-    SetupFaultKind::motor_side_torque,
-    "mNm in the log were read as Nm, or the simulated torque is too small by 1000",
-    "the simulated torque is in mNm and was read as Nm",
-    "the simulated torque is on the motor side of the gear",
-    "the measured torque is on the motor side of the gear"};
-
 // The measured series less the simulated one times a factor.
 VectorXd less(const BlockProducts& both, double factor) {
     return both.column(Alignment::measured) - factor * both.column(Alignment::simulated);
@@ -81,29 +54,38 @@ bool proves(const BlockProducts& both, const Places& beside, const VectorXd& rep
 }
 
 // The mistaken factor that is nearest to the scale of a series, with its sign; nothing where 1 is as near.
-std::optional<SetupFault> factor_fault(const BlockProducts& both, const Places& beside, const Mistakes& of,
+std::optional<SetupFault> factor_fault(const BlockProducts& both, const Places& beside,
                                        std::string_view series, const std::optional<GearRatio>& ratio) {
+    using Kind = SetupFaultKind;
+    const bool is_torque = series == "torque";
     const double scale = scale_of(both, beside), size = portable::log(std::max(std::abs(scale), 1e-300));
-    double least = portable::log(of.tolerance);
+    double least = portable::log(is_torque ? torque_tolerance : motion_tolerance);
     if (scale > 0.0) least = std::min(least, std::abs(size));
     SetupFault fault;
-    const auto consider = [&](double factor, SetupFaultKind kind, std::string_view words) {
+    const auto consider = [&](double factor, Kind kind, bool is_simulated, std::string_view what) {
         const double off = std::abs(size - portable::log(factor));
         if (off >= least) return;
         least = off;
-        fault = {kind, std::string(words), {}, std::copysign(factor, scale)};
+        fault = {kind,
+                 fmt::format("the {} one {}", is_simulated ? "simulated" : "measured", what),
+                 {},
+                 std::copysign(factor, scale)};
     };
-    if (scale < 0.0) consider(1.0, of.sign_fault, "");
-    consider(of.unit, of.unit_fault, of.unit_above);
-    consider(1.0 / of.unit, of.unit_fault, of.unit_below);
-    if (ratio && ratio->value() > 2.0) {
-        consider(ratio->value(), of.side_fault, of.side_above);
-        consider(1.0 / ratio->value(), of.side_fault, of.side_below);
+    if (scale < 0.0) consider(1.0, is_torque ? Kind::torque_sign : Kind::motion_sign, true, "");
+    for (const bool is_larger : {true, false}) {
+        const auto factor = [&](double of) { return is_larger ? of : 1.0 / of; };
+        consider(factor(is_torque ? 1000.0 : degrees_per_radian),
+                 is_torque ? Kind::torque_unit : Kind::motion_unit, is_larger != is_torque,
+                 is_torque ? "is in mNm" : "is in radians");
+        if (ratio && ratio->value() > 2.0)
+            consider(factor(ratio->value()), is_torque ? Kind::motor_side_torque : Kind::motor_side_motion,
+                     is_larger == is_torque, "is on the motor side of the gear");
     }
     if (fault.factor == 1.0 || !proves(both, beside, less(both, fault.factor), fault)) return {};
+    const bool is_sign = std::abs(fault.factor) == 1.0;
     fault.statement =
         fmt::format("the {} of the log is {:.4g} times the simulated one: {}{}", series, scale,
-                    fault.statement, fault.kind == of.sign_fault || fault.factor > 0.0 ? "" : ", and ");
+                    is_sign ? "" : fault.statement, is_sign || fault.factor > 0.0 ? "" : ", and ");
     return fault;
 }
 
@@ -124,8 +106,7 @@ void add_motion_faults(const TraceView& log, const SimulatedMotion& simulation, 
                 std::sqrt(both.product(difference, difference) / both.product(rows, rows));
         const double share = 1.0 - both.squares(less(both, scale_of(both, offset)), offset, false) /
                                        both.squares(less(both, 0.0), offset, false);
-        auto fault = factor_fault(both, offset, motion_mistakes, is_position ? "position" : "velocity",
-                                  context.gear_ratio);
+        auto fault = factor_fault(both, offset, is_position ? "position" : "velocity", context.gear_ratio);
         if (!fault || !(share >= same_motion * same_motion)) continue;
         if (fault->factor < 0.0) fault->statement += "its sign is reversed";
         if (fault->kind == SetupFaultKind::motion_unit)
@@ -163,7 +144,7 @@ std::optional<SetupFault> other_joint(const SetupContext& context, double own, s
 
 SetupFault other_motion(double explained, std::string_view what) {
     return {SetupFaultKind::other_motion,
-            fmt::format("the simulation is of another motion: at no delay {}", what),
+            fmt::format("the simulation is of another motion: no delay makes the measured one {}", what),
             {},
             1.0,
             explained,
@@ -197,7 +178,7 @@ struct Torques {
     }
 
     [[nodiscard]] std::optional<SetupFault> factor(const SetupContext& context) const {
-        auto fault = factor_fault(both, beside, torque_mistakes, "torque", context.gear_ratio);
+        auto fault = factor_fault(both, beside, "torque", context.gear_ratio);
         if (!fault) return {};
         fault->option = fmt::format("scale={:.6g}", context.torque_scale * fault->factor);
         if (fault->kind == SetupFaultKind::torque_unit && fault->factor > 0.0 && fault->factor < 1.0)
@@ -214,6 +195,11 @@ struct Torques {
         if (inertias == 0.0 && fault->kind == SetupFaultKind::torque_sign)
             fault->statement += ", or gravity acts in the other direction";
         return fault;
+    }
+
+    // Of the simulated torque's square to that of the measured one.
+    [[nodiscard]] double relative_square() const {
+        return both.squares(simulated(), beside) / both.squares(less(both, 0.0), beside);
     }
 
     // Of the simulated torque, by the motion of the log at its delay.
@@ -247,13 +233,6 @@ struct Torques {
             {}};
         return proves(both, beside, repaired, fault) ? std::optional(std::move(fault)) : std::nullopt;
     }
-
-    // It explains next to nothing, and is not of this motion either: that is no weight in another direction.
-    [[nodiscard]] bool are_of_other_motions(double explained) const {
-        return explained < least_told && share_of_motion() < least_explained &&
-               both.squares(simulated(), beside) >
-                   least_size * least_size * both.squares(less(both, 0.0), beside);
-    }
 };
 
 bool changes(std::span<const double> values) {
@@ -272,18 +251,15 @@ Alignment torques_of(const TraceView& log, const SimulatedMotion& simulation,
 // same scale.
 SimulationLag lag_of_torques(const Alignment& both) {
     Places beside = both.friction + both.ripple;
-    double least = 0.0, squares = 0.0;
-    SimulationLag chosen = both.lag(beside, &least);
+    SimulationLag chosen = both.lag({beside});
     for (const Places& added : {both.inertia, both.gravity, both.load}) {
         if (added.empty() || !chosen.is_compared) continue;
         beside = beside + added;
-        const SimulationLag lag = both.lag(beside, &squares);
+        const SimulationLag lag = both.lag({beside});
         const bool is_better =
-            squares < 0.5 * least && lag.scale * chosen.scale > 0.0 &&
+            lag.left < 0.5 * chosen.left && lag.scale * chosen.scale > 0.0 &&
             std::abs(portable::log(lag.scale / chosen.scale)) <= portable::log(torque_tolerance);
-        if (!lag.identifiable || (chosen.identifiable && !is_better)) continue;
-        chosen = lag;
-        least = squares;
+        if (lag.identifiable && (!chosen.identifiable || is_better)) chosen = lag;
     }
     return chosen;
 }
@@ -307,37 +283,35 @@ SimulationLag lag_by_motion(const TraceView& log, const SimulatedMotion& simulat
     const std::span<const double> left = by_position ? log.position_deg : log.velocity_deg_s,
                                   right = simulated_position ? simulation.position_deg
                                                              : simulation.velocity_deg_s;
-    double squares = 0.0;
     if (!changes(left) || !changes(right)) return {};
     return Alignment(log.time_s, left, by_position, simulation, right, simulated_position)
-        .lag({Alignment::constant}, &squares);
+        .lag({{Alignment::constant}});
 }
 
 const SimulationLag* SetupAnswer::lag() const {
-    if (motion_lag && motion_lag->identifiable) return &*motion_lag;
-    return torque_lag && torque_lag->identifiable ? &*torque_lag : nullptr;
+    for (const auto* lag : {&motion_lag, &torque_to_motion_lag, &torque_lag})
+        if (*lag && (*lag)->identifiable) return &**lag;
+    return nullptr;
 }
 
 SetupAnswer suspect_setup(const TraceView& log, const SimulatedMotion& simulation,
                           const SetupContext& context) {
     SetupAnswer answer;
     std::vector<SetupFault>& faults = answer.faults;
-    double share = 0.0;
-    SimulationLag by_motion = lag_by_motion(log, simulation);
+    const SimulationLag by_motion = lag_by_motion(log, simulation);
+    const double share = by_motion.correlation * by_motion.correlation;
     if (by_motion.is_compared) {
-        share = by_motion.correlation * by_motion.correlation;
-        if (auto other = other_joint(context, share, "motion", [&](const TraceView& joint) {
-                const double found = lag_by_motion(joint, simulation).correlation;
-                return found * found;
-            }))
+        answer.motion_lag = by_motion;
+        auto other = other_joint(context, share, "motion", [&](const TraceView& joint) {
+            const double found = lag_by_motion(joint, simulation).correlation;
+            return found * found;
+        });
+        if (other)
             faults.push_back(*std::move(other));
         else if (by_motion.explained < least_explained)
-            faults.push_back(other_motion(
-                by_motion.explained, "does its velocity explain half of the variance of the measured one"));
-        else
-            add_motion_faults(log, simulation, by_motion, context, faults);
-        answer.motion_lag = by_motion;
-        if (share < same_motion * same_motion && !faults.empty()) return answer;
+            faults.push_back(other_motion(by_motion.explained, "of its velocity"));
+        if (!faults.empty()) return answer;
+        add_motion_faults(log, simulation, *answer.motion_lag, context, faults);
     }
     if (!changes(log.torque_nm) || !changes(simulation.torque_nm)) return answer;
     const Alignment columns = torques_of(log, simulation, context.gear_ratio);
@@ -353,14 +327,18 @@ SetupAnswer suspect_setup(const TraceView& log, const SimulatedMotion& simulatio
                 std::abs(portable::log(std::max(lag.scale, 1e-9))) <= portable::log(torque_tolerance);
             return is_full ? lag.explained : 0.0;
         });
+    // The motion that a simulation without one has had is that which its torque follows.
+    const SimulationLag followed = columns.lag({columns.friction + columns.inertia + columns.gravity, true});
+    if (!by_motion.is_compared && !fault) answer.torque_to_motion_lag = followed;
     const SimulationLag* lag = answer.lag();
     const Torques torques{columns, columns.products(lag != nullptr ? lag->delay_s : 0.0)};
     if (!fault) fault = torques.factor(context);
     if (!fault) fault = torques.turned_gravity();
-    if (!fault && !is_same_motion && torques.are_of_other_motions(by_torque.explained))
+    // A torque of no account may follow nothing.
+    if (!fault && !is_same_motion && by_torque.explained < least_told &&
+        followed.explained < least_explained && torques.relative_square() > least_size * least_size)
         fault = other_motion(by_torque.explained,
-                             "does its torque explain the measured one, and it is not that of the "
-                             "motion of the log");
+                             "of its torque, which the motion of the log does not explain either");
     if (fault) faults.push_back(*std::move(fault));
     return answer;
 }
