@@ -12,6 +12,7 @@
 #include "core/functions/many_numbers.hpp"
 #include "core/matrices/least_squares.hpp"
 #include "core/rows/row_facts.hpp"
+#include "core/rows/uneven_rows.hpp"
 #include "diagnose/answer/advice.hpp"
 #include "diagnose/answer/log_faults.hpp"
 #include "diagnose/answer/remaining.hpp"
@@ -61,18 +62,9 @@ void check_rows(std::span<const GivenTerm> given, std::size_t rows, std::string_
 
 // Values of a torque that came later by so much.
 std::vector<double> advanced(const TraceView& log, double delay_s) {
-    std::vector<double> found;
-    std::size_t next = 0;
-    for (const double t : log.time_s) {
-        while (next < log.size() && log.time_s[next] < t + delay_s) ++next;
-        if (next == 0 || next == log.size()) {
-            found.push_back(next == 0 ? log.torque_nm.front() : log.torque_nm.back());
-            continue;
-        }
-        const double share = (t + delay_s - log.time_s[next - 1]) / (log.time_s[next] - log.time_s[next - 1]);
-        found.push_back(log.torque_nm[next - 1] + share * (log.torque_nm[next] - log.torque_nm[next - 1]));
-    }
-    return found;
+    std::vector<double> at_s(log.time_s.begin(), log.time_s.end());
+    for (double& t : at_s) t += delay_s;
+    return interpolate(log.time_s, log.torque_nm, at_s);
 }
 
 // Friction that turns over with the direction, over a speed or over an angle: one effect to the joint, told

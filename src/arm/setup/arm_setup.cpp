@@ -12,6 +12,7 @@
 
 #include "arm/fit/arm_fit.hpp"
 #include "core/matrices/least_squares.hpp"
+#include "core/rows/uneven_rows.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
@@ -336,15 +337,9 @@ AdvancedLog::AdvancedLog(const ArmLog& of, double delay_s) : log(of), torques_nm
     for (std::size_t j = 0; j < torques_nm.size(); ++j) {
         const TraceView& joint = of.joints[j];
         if (joint.torque_nm.empty() || delay_s == 0.0) continue;
-        std::size_t at = 0;
-        for (std::size_t k = 0; k < joint.size(); ++k) {
-            const double wanted_s = joint.time_s[k] + delay_s;
-            while (at + 2 < joint.size() && joint.time_s[at + 1] <= wanted_s) ++at;
-            const double step_s = joint.time_s[at + 1] - joint.time_s[at];
-            const double into = std::clamp((wanted_s - joint.time_s[at]) / step_s, 0.0, 1.0);
-            torques_nm[j].push_back(joint.torque_nm[at] +
-                                    into * (joint.torque_nm[at + 1] - joint.torque_nm[at]));
-        }
+        std::vector<double> at_s(joint.time_s.begin(), joint.time_s.end());
+        for (double& t : at_s) t += delay_s;
+        torques_nm[j] = interpolate(joint.time_s, joint.torque_nm, at_s);
         log.joints[j].torque_nm = torques_nm[j];
     }
 }

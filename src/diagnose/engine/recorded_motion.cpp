@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 
 #include "core/functions/many_numbers.hpp"
+#include "core/rows/uneven_rows.hpp"
 #include "core/vectors/dot.hpp"
 #include "diagnose/engine/gram.hpp"
 #include "diagnose/engine/settings.hpp"
@@ -20,25 +20,6 @@ constexpr std::size_t fewest_slots = 200;
 constexpr double longest_gap = 2000.0;  // slots that a gap in the log takes at most: they hold nothing
 // Travel in units of the noise of the position below which a joint stands still.
 constexpr double least_travel = 30.0;
-
-// Linear interpolation at rising places; constant beyond the ends. `known` rises, equal places are allowed.
-std::vector<double> interpolate(std::span<const double> known, std::span<const double> values,
-                                std::span<const double> places) {
-    std::vector<double> found(places.size());
-    std::size_t next = 0;
-    for (std::size_t k = 0; k < places.size(); ++k) {
-        while (next < known.size() && known[next] <= places[k]) ++next;
-        if (next == 0) {
-            found[k] = values.front();
-        } else if (next == known.size()) {
-            found[k] = values.back();
-        } else {
-            const double share = (places[k] - known[next - 1]) / (known[next] - known[next - 1]);
-            found[k] = values[next - 1] + share * (values[next] - values[next - 1]);
-        }
-    }
-    return found;
-}
 
 // Sum of squares of third differences.
 double roughness(std::span<const double> values) {
@@ -59,14 +40,6 @@ double deviation_from_slots(std::span<const double> time_s, double rate_hz) {
     }
     const double count = static_cast<double>(time_s.size());
     return squares / count - (sum / count) * (sum / count);
-}
-
-double usual_step_s(std::span<const double> time_s) {
-    std::vector<double> steps;
-    for (std::size_t k = 1; k < time_s.size(); ++k) steps.push_back(time_s[k] - time_s[k - 1]);
-    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-    std::nth_element(steps.begin(), middle, steps.end());
-    return *middle;
 }
 
 void place_rows(Clock& clock, std::span<const double> time_s) {

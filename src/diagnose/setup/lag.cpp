@@ -7,9 +7,9 @@
 #include <numeric>
 
 #include "core/matrices/least_squares.hpp"
+#include "core/rows/uneven_rows.hpp"
 #include "diagnose/engine/gram.hpp"
 #include "diagnose/engine/recorded_motion.hpp"
-#include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
@@ -35,12 +35,6 @@ constexpr double loop_width_deg = 2.0;
 // Of the misfit as a delay, to the interval of a torque's lag: blocks do not show an effect that neither the
 // simulation nor a column has. 54 of 57 intervals then covered the delay, and 48 without it.
 constexpr double misfit_share = 0.25;
-
-double usual_step_s(std::span<const double> time_s) {
-    std::vector<double> steps;
-    for (std::size_t k = 1; k < time_s.size(); ++k) steps.push_back(time_s[k] - time_s[k - 1]);
-    return median_in(steps);
-}
 
 double sum_of(const std::vector<double>& values) {
     return std::accumulate(values.begin(), values.end(), 0.0);
