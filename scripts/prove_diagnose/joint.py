@@ -95,20 +95,12 @@ def warm_up(x, e):
 
 
 def ringing(x, e):
-    moving, total = abs(x.v[0]) > 1.0, np.zeros_like(x.t)
-    speeds = np.abs(x.v)
-    for k in range(1, len(x.t)):
-        event = 0.0
-        if not moving and speeds[k] > 1.0:
-            moving, event, sense = True, 1.0, math.copysign(1.0, x.v[k])
-        elif moving and speeds[k] < 0.5:
-            moving, event = False, -1.0
-            sense = math.copysign(1.0, x.v[k - 1])
-        if event:
-            since = x.t[k:] - x.t[k]
-            total[k:] += (event * sense * e["amplitude_nm"] * np.exp(-since / e["decay_s"])
-                          * np.cos(2 * np.pi * e["frequency_hz"] * since + math.radians(e["phase_deg"])))
-    return total
+    turn = np.exp((2j * np.pi * e["frequency_hz"] - 1 / e["decay_s"]) * (x.t[1] - x.t[0]))
+    states, state = np.zeros(len(x.t), complex), 0j
+    for k, change in enumerate(np.diff(x.a), 1):
+        state = state * turn + change / 100
+        states[k] = state
+    return e["amplitude_nm"] * (states * np.exp(1j * math.radians(e["phase_deg"]))).real
 
 
 def wave(amplitude, cycles, phase_deg):
@@ -272,8 +264,8 @@ RARER = {
     "asymmetric-viscous-friction": lambda r: effect("asymmetric-viscous-friction", difference_nm_per_deg_s=sign(r) * r.uniform(0.003, 0.01)),
     "load-friction": lambda r: effect("load-friction", torque_nm=r.uniform(0.08, 0.2), exponent=r.uniform(0.8, 1.3)),
     "ripple-direction-dependence": lambda r: effect("ripple-direction-dependence", gain_percent=r.uniform(15.0, 40.0), phase_deg=r.uniform(5.0, 30.0)),
-    "start-stop-ringing": lambda r: effect("start-stop-ringing", amplitude_nm=r.uniform(0.4, 0.8), phase_deg=turn(r),
-                                           frequency_hz=r.uniform(4.0, 12.0), decay_s=r.uniform(0.1, 0.3)),
+    "start-stop-ringing": lambda r: effect("start-stop-ringing", amplitude_nm=r.uniform(0.1, 0.3), phase_deg=turn(r),
+                                           frequency_hz=r.uniform(4.0, 10.0), decay_s=r.uniform(0.4, 0.9)),
     "small gear-ratio": lambda r: effect("gear-ratio", error_percent=sign(r) * r.uniform(0.02, 0.4)),
     "velocity-bias": lambda r: effect("velocity-bias", bias_deg_s=sign(r) * r.uniform(0.02, 0.1)),
 }

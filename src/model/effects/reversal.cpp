@@ -10,9 +10,6 @@
 namespace ripplenotch {
 namespace {
 
-// Detectors of the direction of motion, its starts and its stops from a noisy speed, sample by sample. Two
-// thresholds each, so that noise about one of them does not count as motion.
-
 // The direction in which the joint last clearly moved: -1, 1, or 0 before it first did.
 class HeldDirection {
   public:
@@ -24,34 +21,6 @@ class HeldDirection {
 
   private:
     int held_ = 0;
-};
-
-// Starts and stops. A log may begin in motion; that is no start.
-class Movement {
-  public:
-    // Chosen, not derived: apart, so that noise does not start it again.
-    static constexpr double start_deg_s = 1.0, stop_deg_s = 0.5;
-    // At a start the direction, 1 or -1; at a stop the direction before it, negated; else 0.
-    double kick(double velocity_deg_s) {
-        const double speed = std::abs(velocity_deg_s);
-        const bool first = !begun_;
-        begun_ = true;
-        if (direction_ == 0.0 && speed > start_deg_s) {
-            direction_ = velocity_deg_s > 0.0 ? 1.0 : -1.0;
-            return first ? 0.0 : direction_;
-        }
-        if (direction_ != 0.0 && speed < stop_deg_s) {
-            const double before = direction_;
-            direction_ = 0.0;
-            return -before;
-        }
-        if (speed > start_deg_s) direction_ = velocity_deg_s > 0.0 ? 1.0 : -1.0;
-        return 0.0;
-    }
-
-  private:
-    bool begun_ = false;
-    double direction_ = 0.0;
 };
 
 }  // namespace
@@ -139,13 +108,13 @@ const Effect effects::backlash{
 
 const Effect effects::start_stop_ringing{
     .name = "start-stop-ringing",
-    .summary = "the joint rings when it starts and stops",
+    .summary = "a load on a spring swings when the acceleration of the joint changes",
     .equation =
-        "torque = sum over starts (+) and stops (-) of direction * amplitude_nm * exp(-s / decay_s) * "
-        "cos(360 deg * frequency_hz * s + phase_deg), s = time since",
+        "torque = sum over changes of the acceleration of change / (100 deg/s2) * amplitude_nm * exp(-s / "
+        "decay_s) * cos(360 deg * frequency_hz * s + phase_deg), s = time since",
     .symptom =
-        "a residual that swings and decays after each start and stop, the other way round in the other "
-        "direction",
+        "a residual that swings and decays after each start, stop and end of an acceleration, the other way "
+        "round in the other direction",
     .look_alikes = {{"stribeck-friction", "every slow sample belongs to a start or a stop",
                      "a long pass at low speed"},
                     {"inertia", "the acceleration was smoothed more than the start lasts",
@@ -156,28 +125,27 @@ const Effect effects::start_stop_ringing{
         "the answer of a lightly damped mass to a step; both ends of the move in Kim, Kim, Song, Trans. KSME "
         "A, 2011, fig. 11",
     .domain = Domain::time,
-    .parameters = {linear("amplitude_nm", "Nm",
-                          "zero to peak just after a start; a stop has the opposite sign", {0.5, 0.0, 1e5}),
-                   plain("phase_deg", "deg", "of the cosine at the start or stop", {0.0, -360.0, 360.0}),
+    .parameters = {linear("amplitude_nm", "Nm", "zero to peak just after the acceleration grew by 100 deg/s2",
+                          {0.5, 0.0, 1e5}),
+                   plain("phase_deg", "deg", "of the cosine at the change", {0.0, -360.0, 360.0}),
                    logarithmic("frequency_hz", "Hz", "of the ringing", {5.0, 0.05, 1e4, 5.0},
                                {1.5, 2.0, 2.7, 3.6, 4.7, 6.2, 8.0, 10.5, 14.0, 18.0, 24.0}),
-                   logarithmic("decay_s", "s", "time in which it falls to 37 %", {0.2, 0.001, 100.0, 0.2},
-                               {0.08, 0.25})},  // chosen, not derived
+                   logarithmic("decay_s", "s", "time in which it falls to 37 %", {0.5, 0.001, 100.0, 0.5},
+                               {0.25, 0.8})},  // chosen, not derived
     .polar = Polar{0, 1},
     .apply = [](const Situation& situation, Values values, Torques torque_nm) {
-        const Motion& motion = situation.motion;
-        const double step_s = 1.0 / motion.sample_rate.value();
+        const std::vector<double>& acceleration = situation.motion.acceleration_deg_s2;
+        const double step_s = 1.0 / situation.motion.sample_rate.value();
         const double turn_deg = 360.0 * values[2] * step_s;
         const double shrink = portable::exp(-std::min(step_s / values[3], 700.0));
         const double turn_real = shrink * portable::cos_degrees(turn_deg),
                      turn_imaginary = shrink * portable::sin_degrees(turn_deg);
         const double cosine = portable::cos_degrees(values[1]), sine = portable::sin_degrees(values[1]);
         double real = 0.0, imaginary = 0.0;
-        Movement movement;
-        for (std::size_t k = 0; k < torque_nm.size(); ++k) {
+        for (std::size_t k = 1; k < torque_nm.size(); ++k) {
             const double turned = real * turn_real - imaginary * turn_imaginary;
             imaginary = real * turn_imaginary + imaginary * turn_real;
-            real = turned + movement.kick(motion.velocity_deg_s[k]);
+            real = turned + 0.01 * (acceleration[k] - acceleration[k - 1]);
             torque_nm[k] += values[0] * (real * cosine - imaginary * sine);
         }
     }};
