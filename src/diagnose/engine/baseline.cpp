@@ -168,16 +168,6 @@ Baseline make_baseline(const RecordedMotion& recorded, const KnownSide& known,
             base.columns.push_back(
                 {.name = "nuisance", .torque_nm = friction_loop(motion.position_deg, width_deg)});
     }
-    const auto share = [&](double of) {
-        return inertia_nm_per_deg_s2 ? std::abs(*inertia_nm_per_deg_s2) * of
-                                     : std::numeric_limits<double>::infinity();
-    };
-    std::vector<double> jerk = gradient(motion.acceleration_deg_s2, recorded.step_s());
-    std::vector<double> snap = gradient(jerk, recorded.step_s());
-    base.columns.push_back(
-        {.name = "nuisance", .torque_nm = std::move(jerk), .deviation = share(jerk_share_s)});
-    base.columns.push_back(
-        {.name = "nuisance", .torque_nm = std::move(snap), .deviation = share(snap_share_s2)});
     if (known.is_simulated && known.is_scale_known) {
         base.known_nm = motion.known_nm;
         base.is_scale_known = true;
@@ -189,6 +179,8 @@ Baseline make_baseline(const RecordedMotion& recorded, const KnownSide& known,
         if (known.is_scale_known) {
             base.columns[base.inertia_place].deviation = known_mass_deviation * std::abs(inertia);
             base.known_inertia_nm_per_deg_s2 = inertia;
+        } else if (inertia_nm_per_deg_s2) {
+            *inertia_nm_per_deg_s2 += inertia;  // that is what the simulation lacks
         }
         const double mass_deviation = known.is_scale_known ? known_mass_deviation : known_deviation;
         for (auto& column : cosine_and_sine(motion.position_deg))
@@ -196,6 +188,16 @@ Baseline make_baseline(const RecordedMotion& recorded, const KnownSide& known,
                                     .torque_nm = std::move(column),
                                     .deviation = mass_deviation * gravity_nm + least_gravity_nm});
     }
+    const auto share = [&](double of) {
+        return inertia_nm_per_deg_s2 ? std::abs(*inertia_nm_per_deg_s2) * of
+                                     : std::numeric_limits<double>::infinity();
+    };
+    std::vector<double> jerk = gradient(motion.acceleration_deg_s2, recorded.step_s());
+    std::vector<double> snap = gradient(jerk, recorded.step_s());
+    base.columns.push_back(
+        {.name = "nuisance", .torque_nm = std::move(jerk), .deviation = share(jerk_share_s)});
+    base.columns.push_back(
+        {.name = "nuisance", .torque_nm = std::move(snap), .deviation = share(snap_share_s2)});
     for (const GivenTerm& given : known.given_terms) {
         // Its columns hold the inertia of this joint.
         if (given.name == "arm") base.columns[base.inertia_place].deviation = no_inertia_nm_per_deg_s2;

@@ -8,6 +8,7 @@
 #include "core/vectors/dot.hpp"
 #include "diagnose/engine/gram.hpp"
 #include "diagnose/engine/settings.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch::engine {
 
@@ -17,6 +18,7 @@ namespace {
 
 constexpr double refused_squares = 1e15;
 constexpr double no_prior = std::numeric_limits<double>::infinity();
+constexpr double most_scale_log = 1.1;  // a torque off by a factor of three
 constexpr std::size_t fewest_block_samples = 50, fewest_blocks = 40;
 constexpr std::size_t most_held_numbers = 16'000'000;  // of columns in memory: 128 MB
 
@@ -244,14 +246,14 @@ std::vector<double> Criterion::prior_weights(const Design& design, const MatrixX
     return weights;
 }
 
-// What changes a friction needs one; what rings does so for a cycle at least.
+// What changes a friction needs one; what rings does so for some cycles.
 bool Criterion::is_possible(const SearchedTerms& terms) const {
     const auto is_there = [&](std::string_view name) {
         return contains(terms, name) || base_.has(name) || base_.states(name) || base_.is_simulated;
     };
     for (const SearchedTerm& term : terms) {
         const bool changes_friction = term.is("position-dependent-friction") || term.is("friction-warm-up") ||
-                                      term.is("asymmetric-friction");
+                                      term.is("asymmetric-friction") || term.is("backlash");
         if (changes_friction && !is_there("coulomb-friction") && !is_there("hysteresis")) return false;
         if (term.is("asymmetric-viscous-friction") && !is_there("viscous-friction")) return false;
         if (term.is("position-dependent-friction")) {
@@ -261,7 +263,7 @@ bool Criterion::is_possible(const SearchedTerms& terms) const {
         }
         // Of what can be lifted the weight is known first.
         if (term.is("payload-change") && !is_there("gravity")) return false;
-        if (term.is("start-stop-ringing") && term.values[0] * term.values[1] < 1.0) return false;
+        if (term.is("start-stop-ringing") && term.values[0] * term.values[1] < fewest_cycles) return false;
     }
     return true;
 }
@@ -283,6 +285,15 @@ const LinearFit& Criterion::fit(const SearchedTerms& given) {
         found.squares += (weights[c] - ridge) * factor * factor * power;
     }
     if (!is_possible(terms)) found.is_physical = false;
+    if (!terms.empty() && !base_.columns.empty() && base_.columns.front().name == "simulated") {
+        // The simulation's size does not hang on a term: its inertia and a term's would cancel, to leave what
+        // neither regression holds.
+        const auto off = [](double scale) {
+            return scale > 0.0 ? std::abs(portable::log(scale)) : std::numeric_limits<double>::infinity();
+        };
+        if (off(found.factors[0]) > std::max(most_scale_log, off(fit({}).factors[0])))
+            found.is_physical = false;
+    }
     for (std::size_t i = 0; i < terms.size(); ++i) {
         const Effect& effect = *terms[i].kind->effect;
         // Nothing that resists drives the joint, unless the user states more of it or a simulation may hold

@@ -42,6 +42,7 @@ Prepared prepare(RecordedMotion& recorded, const KnownSide& known, std::vector<C
         if (left < least) least = left, best_s = window_s;
     }
     measure(best_s);
+    now.noise = std::make_shared<const SaturatedFit>(fit_saturated(recorded, now.base, {}, now.noise.get()));
     const std::vector<std::size_t> spikes = find_spikes(recorded, *now.noise);
     if (!spikes.empty()) {
         auto& fault = faults.emplace_back();

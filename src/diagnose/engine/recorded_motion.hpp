@@ -60,6 +60,8 @@ class RecordedMotion {
     [[nodiscard]] const Motion& motion() const { return motion_; }
     [[nodiscard]] const std::vector<double>& torque_nm() const { return torque_nm_; }
     [[nodiscard]] const std::vector<unsigned char>& usable() const { return usable_; }
+    /// Usable samples and those at standstill.
+    [[nodiscard]] const std::vector<unsigned char>& recorded() const { return recorded_; }
     [[nodiscard]] std::size_t usable_count() const;
     [[nodiscard]] double travel_deg() const;
     [[nodiscard]] double fastest_deg_s() const;

@@ -21,6 +21,8 @@ using Columns = std::vector<std::vector<double>>;
 // Splines a quantity: enough that no smooth law leaves more than the noise, few enough to leave the noise.
 constexpr std::size_t position_splines = 13, speed_splines = 18, time_splines = 16;
 constexpr std::array loop_widths_deg = {0.1, 0.5, 2.0};
+// A load on a spring, damped by a tenth, so that the next frequency is within the width of the last.
+constexpr std::array ringing_hz = {1.6, 2.0, 2.5, 3.1, 3.9, 4.9, 6.1, 7.6};
 constexpr std::size_t most_lines = 4;
 // Power over the median at which a line or tone is taken; a line of white noise is at 10 or 15.
 constexpr double line_power = 30.0;
@@ -269,6 +271,13 @@ SaturatedFit fit_saturated(const RecordedMotion& recorded, const Baseline& base,
     append(columns, splines(root_speed, speed_splines));
     append(columns, over_time);
     append(columns, loops);
+    // What swings is found beside all else; the smoothing is chosen without, as both take a delay for their
+    // own.
+    for (std::size_t i = 0; before && i < ringing_hz.size(); ++i) {
+        const SearchedTerm ringing{&term_kind("start-stop-ringing"), {ringing_hz[i], 1.6 / ringing_hz[i]}};
+        append(columns,
+               unit_columns(*ringing.kind->effect, unit_values(ringing), {.motion = motion, .ratio = ratio}));
+    }
     const std::size_t first_ripple = columns.size();
     const Columns ripple = ripple_columns(of_ripple, base.orders, ratio);
     append(columns, ripple);
@@ -298,8 +307,15 @@ SaturatedFit fit_saturated(const RecordedMotion& recorded, const Baseline& base,
         if (!transforms.elastic_joint.empty())
             for (const auto& wave : ripple) columns.push_back(transformed(wave, transforms.sensor, motion));
     }
-    const std::vector<double> known =
+    std::vector<double> known =
         base.known_nm.empty() ? std::vector<double>(count, 0.0) : sensed(base.known_nm);
+    const bool has_scale = !base.columns.empty() && base.columns.front().name == "simulated";
+    if (has_scale) {
+        // Free beside the inertia, its size would cancel the noise of the measured acceleration.
+        const std::vector<double> scale =
+            regress({columns.front(), std::vector<double>(count, 1.0)}, recorded.torque_nm(), use);
+        add_scaled(scale[0], columns.front().data(), known.data(), count);
+    }
     std::vector<double> target = recorded.torque_nm();
     add_scaled(-1.0, known.data(), target.data(), count);
 
@@ -310,7 +326,9 @@ SaturatedFit fit_saturated(const RecordedMotion& recorded, const Baseline& base,
         std::vector<const std::vector<double>*> all = {&target};
         for (const auto& column : columns) all.push_back(&column);
         extend_gram(gram, all, use);
-        factors = solve_normal_equations(gram);
+        std::vector<double> weights(columns.size(), ridge);
+        if (has_scale) weights.front() = 1.0 / ridge;
+        factors = solve_normal_equations(gram, weights);
         residual = target;
         for (std::size_t c = 0; c < columns.size(); ++c)
             add_scaled(-factors[static_cast<Eigen::Index>(c)], columns[c].data(), residual.data(), count);

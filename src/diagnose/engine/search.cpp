@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "diagnose/engine/gram.hpp"
 #include "diagnose/engine/settings.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
@@ -16,15 +17,15 @@ constexpr int most_rounds = 6, most_exchanges = 5;  // a search that goes on bey
 constexpr std::size_t tried_of_finalists = 3;
 constexpr std::size_t exchange_finalists = 5;
 constexpr std::size_t rival_paths = 2;
-constexpr double much_left = 1.5;           // squares over those of the noise from which other paths compete
-constexpr int payload_parts = 24;           // in which a change of the load is looked for
-constexpr int most_bias_steps = 40;         // an error of ten cycles when the log ends
-constexpr double smallest_delay_s = 1e-4;   // the valley of a delay may be narrower than any grid
-constexpr double least_gap = 0.02;          // of the squares of the noise: a gap is no smaller
-constexpr double best_block_share = 0.15;   // of the blocks, which a dominant term must not depend on
-constexpr double least_spread = 100.0;      // reduction without them
-constexpr double large_spread = 0.02;       // the same per sample, where another term closes most of the gap
-constexpr double least_line_spread = 30.0;  // the same of a ripple
+constexpr double much_left = 1.5;          // squares over those of the noise from which other paths compete
+constexpr int payload_parts = 24;          // in which a change of the load is looked for
+constexpr int most_bias_steps = 40;        // an error of ten cycles when the log ends
+constexpr double smallest_delay_s = 1e-4;  // the valley of a delay may be narrower than any grid
+constexpr double least_gap = 0.02;         // of the squares of the noise: a gap is no smaller
+constexpr double best_block_share = 0.15;  // of the blocks, which a dominant term must not depend on
+constexpr double least_spread = 100.0;     // reduction without them
+// The same per sample, of friction beside another; Stribeck friction is the usual correction of a form.
+constexpr double form_spread = 0.015, stribeck_spread = 0.1;
 
 // Of two terms that say nearly the same the plainer is preferred.
 struct Plainer {
@@ -38,6 +39,7 @@ constexpr std::array plainer_pairs = {
     Plainer{"coulomb-friction", "hysteresis", plain_friction_share},
     Plainer{"coulomb-friction", "stribeck-friction", plain_friction_share},
     Plainer{"hysteresis", "stribeck-friction", plain_friction_share},
+    Plainer{"quadratic-viscous-friction", "stribeck-friction", plain_friction_share},
     Plainer{"coulomb-friction", "backlash", plain_friction_share},
     Plainer{"hysteresis", "backlash", plain_friction_share},
     Plainer{"coulomb-friction", "position-dependent-friction", plain_friction_share},
@@ -68,7 +70,8 @@ double t_value(const std::vector<double>& values) {
 
 // A transform, a ratio or a ripple changes what the saturated regression can explain.
 bool changes_noise(const SearchedTerm& term) {
-    return term.is_transform() || term.kind->role == Role::motor_angle || term.is("ripple");
+    return term.is_transform() || term.kind->role == Role::motor_angle || term.is("ripple") ||
+           term.is("start-stop-ringing");
 }
 
 bool has_sensor(const SearchedTerms& terms) {
@@ -78,6 +81,8 @@ bool has_sensor(const SearchedTerms& terms) {
 bool is_at_bound(const SearchedTerm& term) {
     if (term.kind->may_be_at_bound || !term.kind->is_refined || term.kind->role == Role::motor_angle)
         return false;
+    // At the least number of cycles that is possible it is the form of a filter.
+    if (term.is("start-stop-ringing") && term.values[0] * term.values[1] < 1.1 * fewest_cycles) return true;
     for (std::size_t i = 0; i < term.kind->searched.size(); ++i) {
         const double size = std::abs(term.values[i]);
         if (size <= term.kind->searched[i].lower * 1.02 || size >= term.kind->searched[i].upper * 0.98)
@@ -143,7 +148,6 @@ Admission Search::admission(Criterion& criterion, const SearchedTerms& shorter, 
         found.gap_share = sum(plain) / std::max(sum(criterion.plain_block_squares(shorter)) - noise_squares,
                                                 least_gap * noise_squares);
     }
-    const double whole_share = found.reduction / std::max(criterion.fit({}).squares - samples, least_squares);
     std::vector<double> held_out = difference(fit_before.held_out, fit_after.held_out);
     std::sort(held_out.begin(), held_out.end());
     double held_out_sum = sum(held_out);
@@ -152,25 +156,27 @@ Admission Search::admission(Criterion& criterion, const SearchedTerms& shorter, 
     const auto best = std::max<std::size_t>(
         2, static_cast<std::size_t>(best_block_share * static_cast<double>(by_block.size())));
     by_block.resize(by_block.size() - std::min(best, by_block.size()));
-    // A ripple is at its order exactly, and may swell in a few fast strokes only; a friction may act at a few
-    // reversals, beside a term that closes most of the gap. Stribeck friction also corrects the form of
-    // others.
-    const bool is_line = added != longer.end() && added->is("ripple");
-    const bool is_friction =
-        added != longer.end() && added->kind->effect->resists && !added->is("stribeck-friction");
-    const double dominant = is_line ? least_gap_share : dominant_gap_share;
-    const double least_beyond = is_line                  ? least_line_spread
-                                : whole_share > dominant ? least_spread
-                                                         : std::max(least_spread, large_spread * samples);
-    const bool is_dominant = found.gap_share > dominant &&
-                             (is_line || is_friction || whole_share > dominant) &&
-                             sum(by_block) > least_beyond;
+    // Few stretches are enough for what closes most of the gap, if much remains without the best of them.
+    // Friction beside another friction may only correct the form of that.
+    const bool corrects_form =
+        added != longer.end() && added->is_friction_loop() &&
+        (std::ranges::any_of(shorter, [](const SearchedTerm& t) { return t.is_friction_loop(); }) ||
+         criterion.base().has("coulomb-friction") || criterion.base().states("coulomb-friction") ||
+         criterion.base().is_simulated);
+    const bool is_friction = added != longer.end() && added->kind->effect->resists;
+    const double least_beyond = !corrects_form                   ? least_spread
+                                : added->is("stribeck-friction") ? stribeck_spread * samples
+                                                                 : form_spread * samples;
+    // What is no friction, which acts at reversals, must be a share of the whole gap as well.
+    const double whole_share = found.reduction / std::max(criterion.fit({}).squares - samples, least_squares);
+    const bool is_spread = found.gap_share > dominant_gap_share && sum(by_block) > least_beyond &&
+                           (is_friction || whole_share > least_gap_share);
     const bool is_silent =
         added != longer.end() && is_below_resolution(*added, criterion.recorded().step_s());
     // Each condition is refused by a value that is no number, too.
     if (!(found.reduction > least_reduction))
         found.reason = "it reduces the residual no more than chance";
-    else if (!(found.block_t > least_block_t) && !is_dominant)
+    else if (!(found.block_t > least_block_t) && !is_spread)
         found.reason = "few stretches of the log carry it";
     else if (!(held_out_sum > 0.0))
         found.reason = "it does not predict stretches that were left out";
@@ -378,15 +384,55 @@ std::vector<SearchedTerms> Search::extensions(Criterion& criterion, const Search
         return criterion.cost(a) < criterion.cost(b);
     });
     for (std::size_t i = 1; i < found.size(); ++i) {
-        const Plainer* pair = plainer_than(found[i].back(), found[0].back());
-        const double before = criterion.cost(terms);
-        if (!pair || before - criterion.cost(found[i]) <= pair->share * (before - criterion.cost(found[0])))
+        if (!is_preferred(criterion, terms, {found[i], found[i].back()}, {found[0], found[0].back()}))
             continue;
         const auto place = found.begin() + static_cast<std::ptrdiff_t>(i);
         std::rotate(found.begin(), place, place + 1);
         break;
     }
     return found;
+}
+
+// Squares of the torque that a set of terms leaves, with what was logged at standstill.
+double Search::squares_with_rests(const Criterion& criterion, const SearchedTerms& terms) const {
+    const Motion& motion = recorded_.motion();
+    const MotorAngle angle = motor_angle(terms, base_.ratio);
+    std::vector<std::vector<double>> columns = ripple_columns(motion, base_.orders, angle.ratio);
+    for (const BaseColumn& column : base_.columns) columns.push_back(column.torque_nm);
+    for (const SearchedTerm& term : terms) {
+        if (term.kind->role != Role::joint_torque && term.kind->role != Role::sensor_torque) continue;
+        for (auto& column : unit_columns(*term.kind->effect, unit_values(term),
+                                         {motion, angle.ratio, criterion.noise().load_nm}))
+            columns.push_back(std::move(column));
+    }
+    std::vector<double> residual = recorded_.torque_nm();
+    if (!base_.known_nm.empty()) residual = difference(residual, base_.known_nm);
+    const std::vector<double> factors = regress(columns, residual, recorded_.recorded());
+    double squares = 0.0;
+    for (std::size_t k = 0; k < residual.size(); ++k) {
+        for (std::size_t c = 0; c < columns.size(); ++c) residual[k] -= factors[c] * columns[c][k];
+        if (recorded_.recorded()[k] != 0) squares += residual[k] * residual[k];
+    }
+    return squares;
+}
+
+// Of two models that say nearly the same the plainer. At standstill an offset stays and a difference of
+// friction is gone: there what was logged decides.
+bool Search::is_preferred(Criterion& criterion, const SearchedTerms& fewer, const Choice& one,
+                          const Choice& other) const {
+    const double before = criterion.cost(fewer);
+    const auto reaches = [&](double share) {
+        return before - criterion.cost(one.terms) > share * (before - criterion.cost(other.terms));
+    };
+    const auto differs = [](const SearchedTerm& term) {
+        return term.is("asymmetric-friction") || term.is("asymmetric-viscous-friction");
+    };
+    if ((differs(one.newest) && other.newest.is("offset")) ||
+        (one.newest.is("offset") && differs(other.newest)))
+        return reaches(plain_friction_share) &&
+               squares_with_rests(criterion, one.terms) < squares_with_rests(criterion, other.terms);
+    const Plainer* pair = plainer_than(one.newest, other.newest);
+    return pair && reaches(pair->share);
 }
 
 SearchState Search::with_new_noise(const SearchState& state) const {
@@ -423,11 +469,7 @@ void Search::exchange(SearchState& state, std::vector<SearchedTerms>& seen) cons
                     criterion.cost(rival) >= criterion.cost(terms) - clearly_better ||
                     !admission(criterion, fewer, rival).is_admissible)
                     continue;
-                const Plainer* pair = plainer_than(terms[i], rival.back());
-                const double before = criterion.cost(fewer);
-                if (pair && before - criterion.cost(terms) > pair->share * (before - criterion.cost(rival)))
-                    continue;
-                offer(rival);
+                if (!is_preferred(criterion, fewer, {terms, terms[i]}, {rival, rival.back()})) offer(rival);
             }
         }
         if (!best) return;

@@ -69,6 +69,14 @@ class Search {
     std::vector<Candidate> ranked(Criterion& criterion, const SearchedTerms& terms) const;
     SearchState path(SearchState state, std::vector<RefusedTerm>& refused) const;
     void exchange(SearchState& state, std::vector<SearchedTerms>& seen) const;
+    /// A model and the term of it that another could stand for.
+    struct Choice {
+        const SearchedTerms& terms;
+        const SearchedTerm& newest;
+    };
+    [[nodiscard]] double squares_with_rests(const Criterion& criterion, const SearchedTerms& terms) const;
+    [[nodiscard]] bool is_preferred(Criterion& criterion, const SearchedTerms& fewer, const Choice& one,
+                                    const Choice& other) const;
     [[nodiscard]] SearchState with_new_noise(const SearchState& state) const;
 
     const RecordedMotion& recorded_;

@@ -15,7 +15,7 @@ inline constexpr double least_reduction = 12.0;
 /// Mean reduction of a block over its standard error: one stretch of the log must not decide.
 inline constexpr double least_block_t = 4.0;
 /// rms torque of a term in units of the noise, below which it is there and does not matter.
-inline constexpr double least_noise_share = 0.4;
+inline constexpr double least_noise_share = 0.3;
 /// Share of the squares still to be explained that a term must take: else it corrects the form of another.
 inline constexpr double least_gap_share = 0.1;
 /// Share of the whole gap above which a term is accepted although few blocks carry it, as those of a drift
@@ -32,8 +32,8 @@ inline constexpr double clearly_better = 8.0;
 /// Difference within which two explanations are equally good: odds of 400 to 1, as 2 log(odds).
 inline constexpr double tie_margin = 12.0;
 /// A plainer term is preferred if it reaches this share of the other's reduction.
-inline constexpr double plain_delay_share = 0.93;
-inline constexpr double plain_friction_share = 0.97;
+inline constexpr double plain_delay_share = 0.985;
+inline constexpr double plain_friction_share = 0.96;
 /// Below this share of the rms speed for longer than `standstill_s` the joint is at standstill, where
 /// friction takes any value.
 inline constexpr double standstill_speed_share = 0.01;

@@ -62,8 +62,8 @@ std::vector<TermKind> make_term_kinds() {
     hysteresis.may_be_at_bound = true;
     search(add("backlash", Role::joint_torque), "width_deg", 0.05, 15.0, {0.2, 0.5, 1.0, 2.0, 4.0, 8.0});
     TermKind& ringing = add("start-stop-ringing", Role::joint_torque);
-    search(ringing, "frequency_hz", 1.0, 30.0, {1.5, 2.0, 2.7, 3.6, 4.7, 6.2, 8.0, 10.5, 14.0, 18.0, 24.0});
-    search(ringing, "decay_s", 0.02, 3.0, {0.2});
+    search(ringing, "frequency_hz", 1.0, 12.0, {1.5, 2.0, 2.7, 3.6, 4.7, 6.2, 8.0});
+    search(ringing, "decay_s", 0.02, 3.0, {0.3, 0.8});
     TermKind& drift = add("drift", Role::sensor_torque);
     search(drift, "time_constant_s", 2.0, 200.0, {4.0, 12.0, 40.0, 1e5});
     drift.may_be_at_bound = true;

@@ -16,6 +16,9 @@
 
 namespace ripplenotch::engine {
 
+/// Cycles in which what rings falls to 37 %: with fewer, at a damping above a tenth, it is a filter's form.
+inline constexpr double fewest_cycles = 1.5;
+
 /// How an effect enters the model.
 enum class Role {
     joint_torque,   ///< a column per linear value, through elastic joint and sensor
@@ -63,6 +66,10 @@ struct SearchedTerm {
     [[nodiscard]] bool is(std::string_view effect) const { return kind->effect->name == effect; }
     [[nodiscard]] bool is_transform() const {
         return kind->role == Role::sensor || kind->role == Role::elastic_joint;
+    }
+    /// Friction that turns over with the direction of the motion.
+    [[nodiscard]] bool is_friction_loop() const {
+        return is("coulomb-friction") || is("hysteresis") || is("stribeck-friction") || is("backlash");
     }
     [[nodiscard]] bool changes_ripple() const { return kind->role == Role::ripple_change; }
 };
