@@ -60,14 +60,16 @@ class Spectrum:
             yield sums, weight.sum(), np.where(told, self.local(np.abs(sums) ** 2, span), np.inf)
 
     def local(self, power, span):
-        """Mean power of the noise at each order, from the medians of 12 cells on either side, two cells away."""
+        """Mean power of the noise at each order, from the medians of 12 cells on either side, two cells away; what changes slowly was
+        taken off below, and takes noise with it."""
+        first = min(int(CYCLES / span / self.step), len(power) - 1)
         apart = max(1, int(round(0.5 / span / self.step)))
-        coarse = power[::apart]
+        coarse = power[first::apart]
         if len(coarse) < 32:
-            return np.full(len(power), np.median(power) / math.log(2) + 1e-300)
+            return np.full(len(power), np.median(coarse) / math.log(2) + 1e-300)
         middle = np.median(np.lib.stride_tricks.sliding_window_view(np.pad(coarse, 27, mode="reflect"), 24), axis=1)
         both = np.sqrt(middle[: len(coarse)] * middle[31 : 31 + len(coarse)]) / math.log(2)
-        return np.interp(np.arange(len(power)), apart * np.arange(len(coarse)), both) + 1e-300
+        return np.interp(np.arange(len(power)), first + apart * np.arange(len(coarse)), both) + 1e-300
 
     def looked_at(self):
         """(-ln p of each order under noise alone with any phase in each sweep, standard error of an amplitude there)."""
