@@ -43,10 +43,10 @@ class Spectrum:
         return bool(self.rows) and np.count_nonzero(self.searched) > 100
 
     def slow(self, a, b):
-        """What changes slower than the lowest order: cosines over the sweep, speed and acceleration."""
+        """What changes slower than the lowest order, as cosines over the sweep. Not the speed: it has the ripple in it."""
         share = (self.along[a:b] - self.along[a]) / (self.along[b - 1] - self.along[a])
         waves = np.cos(math.pi * share[:, None] * np.arange(int(self.lowest * np.ptp(self.along[a:b])) + 3))
-        return np.column_stack([waves, share, self.step_of[a:b], np.gradient(self.step_of[a:b])])
+        return np.column_stack([waves, share])
 
     def amplitudes(self):
         """For each sweep: complex sum over orders, sum of weights, local power of the noise (infinite where it says nothing)."""
@@ -102,14 +102,19 @@ class Spectrum:
 
 
 def without_lines(time, torque, turns):
-    """The torque without what stands out over the angle, or over time, so far that every other log of noise would not show it."""
+    """The torque without what stands out over the angle, or over time, so far that every other log of noise would not show it; None
+    where it stays, as the motion's own does."""
     rows = runs(time, turns)
     for along, lowest in ((turns, 12.0), (time - time[0], 1.0), (turns, 12.0)):
         spectrum = Spectrum(torque, along, rows, lowest, 0.5, 0.5)
-        for _ in range(80 if spectrum.usable() else 0):
+        removed = []
+        while spectrum.usable():
             evidence, _ = spectrum.looked_at()
             if evidence.max() < math.log(2 * spectrum.cells()):
                 break
-            spectrum.remove(spectrum.orders[int(evidence.argmax())])
+            removed.append(spectrum.orders[int(evidence.argmax())])
+            if removed.count(removed[-1]) > 2 or len(removed) > 150:
+                return None
+            spectrum.remove(removed[-1])
         torque = spectrum.torque
     return torque

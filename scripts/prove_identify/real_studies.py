@@ -29,7 +29,7 @@ def empty_orders(spectrum, evidence, ratio):
     """Orders without anything of their own within 2.5 cells, away from the multiples that a gear of this ratio would have."""
     near = max(1, int(2.5 / spectrum.span / spectrum.step))
     loudest = np.lib.stride_tricks.sliding_window_view(np.pad(evidence, near, mode="edge"), 2 * near + 1).max(axis=1)
-    free = spectrum.searched & (loudest < 5.0) & (spectrum.orders < 0.95 * spectrum.highest)
+    free = spectrum.searched & (loudest < 5.0) & (spectrum.orders < min(2000.0, 0.95 * spectrum.highest))
     for n in range(1, 13) if ratio else ():
         for comb in (ratio, ratio + 1):
             free &= np.abs(spectrum.orders - n * comb) > 3.0 / spectrum.span
@@ -81,7 +81,10 @@ def stretched(seed, options):
         return {**row, "outcome": "no sweep"}, window, []
     borders = [0, *((rows[k][1] + rows[k + 1][0]) // 2 for k in range(len(rows) - 1)), len(window.time)]
     stretch = np.repeat(np.exp(rng.uniform(-0.2, 0.2, len(rows))), np.diff(borders))
-    text = window.csv(own_spectrum.without_lines(window.time, window.torque, window.turns), stretch)
+    torque = own_spectrum.without_lines(window.time, window.torque, window.turns)
+    if torque is None:
+        return {**row, "outcome": "motion left"}, window, []
+    text = window.csv(torque, stretch)
     try:
         found = answer.identify(options.program, text)
     except answer.Failed as failure:

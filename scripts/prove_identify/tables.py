@@ -7,6 +7,7 @@ import statistics
 
 import page_tables
 
+from .real import SILENT
 from .real_studies import STRENGTHS
 
 
@@ -69,14 +70,6 @@ def shown(name, caption, heads, body, classes=(), left_out=()):
     return f"{short}\n{page_tables.detail(name, caption, markdown(heads, body))}\n"
 
 
-def outcomes(rows, names, classes):
-    body = []
-    for name, of in grouped(rows, classes):
-        counts = [sum(row["outcome"] == outcome for row in of) for outcome in names]
-        body.append([name, str(len(of))] + [f"{share(count, len(of))}" for count in counts])
-    return body
-
-
 def measured(asked, count, total):
     return f"Required: {asked}. Measured: {share(count, total)} ({count} of {total}).\n\n"
 
@@ -85,8 +78,9 @@ def noise(rows):
     names = ("false line", "false tone", "tone as unknown", "gravity", "nothing", "cannot tell", "failed")
     asked = measured("lines of an order in at most 1 % of logs", sum(row["outcome"] == "false line" for row in rows), len(rows))
     heads = ["logs without ripple", "logs", *("undecided" if name == "cannot tell" else name for name in names)]
-    return asked + shown("identify-noise", "By travel, ratio, sample rate, motion, noise and position", heads,
-                         outcomes(rows, names, ("travel", "ratio", "sample rate", "motion", "noise", "position")), (), ("failed",))
+    body = [[name, str(len(of)), *(share(sum(row["outcome"] == outcome for row in of), len(of)) for outcome in names)]
+            for name, of in grouped(rows, ("travel", "ratio", "sample rate", "motion", "noise", "position"))]
+    return asked + shown("identify-noise", "By travel, ratio, sample rate, motion, noise and position", heads, body, (), ("failed",))
 
 
 def median(values):
@@ -131,24 +125,23 @@ def left_out(rows, kept):
 
 
 def power(rows):
-    tried = [row for row in rows if row["outcome"] == "tried"]
-    body = []
-    for name, of in by_length(tried):
-        bound = [row for row in of if "found_X" in row]
-        over = [row["bound_in_least"] for row in of]
+    every = [row for row in rows if row["outcome"] == "tried"]
+    # Noise that was filtered out before publication is none to be told from: such logs are shown and not counted.
+    filtered, tried = ([row for row in every if (row["log"] in SILENT) == silent] for silent in (True, False))
+    body, asked = [], ""
+    for name, of in [*by_length(tried), *([("not counted: filtered logs", filtered)] if filtered else [])]:
+        bound, over = [row["found_X"] for row in of if "found_X" in row], [row["bound_in_least"] for row in of]
         body.append([name, str(len(of)), *(share(sum(row[f"found_{times}"] for row in of), len(of)) for times in STRENGTHS),
-                     share(sum(row["found_X"] for row in bound), len(bound)), str(len(of) - len(bound)),
-                     median([row.get("amplitude") for row in of]),
+                     share(sum(bound), len(bound)), str(len(of) - len(bound)), median([row.get("amplitude") for row in of]),
                      f"{statistics.median(row['bound_in_errors'] for row in of):.3g}", f"{statistics.median(over):.3g}", tenth(over)])
-    asked = "".join(measured(f"lines of {times} standard errors found in at least {percent} %", sum(row[f"found_{times}"] for row in tried),
-                             len(tried)) for times, percent in ((7, 50), (10, 90), (14, 98)))
-    bound = [row["found_X"] for row in tried if "found_X" in row]
-    asked += measured("lines of X found in 95 %", sum(bound), len(bound))
+    for size, percent in ((7, 50), (10, 90), (14, 98), ("X", 95)):
+        found = [row[f"found_{size}"] for row in tried if f"found_{size}" in row]
+        asked += measured(f"lines of {size}{'' if size == 'X' else ' standard errors'} found in at least {percent} %", sum(found), len(found))
     asked += f"Required: X at most 3 times what least squares needs, in the median. Measured: {body[0][-2]}.\n\n"
     heads = ["a line put in", "windows", *(f"{times} standard errors" for times in STRENGTHS), "X", "no X",
              "amplitude / truth", "X / standard error", "X / what least squares needs", "10 % and 90 % quantile"]
-    return asked + shown("identify-power", "Each length and log", heads, body, ("length",)) + \
-        f"\nOf {len(rows)} windows: {len(tried)} tried{left_out(rows, ('tried',))}.\n"
+    return asked + shown("identify-power", "Each length and log", heads, body, ("length", "not counted")) + \
+        f"\nOf {len(rows)} windows: {len(every)} tried{left_out(rows, ('tried',))}.\n"
 
 
 def stretched(rows):
