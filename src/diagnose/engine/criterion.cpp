@@ -19,6 +19,9 @@ namespace {
 constexpr double refused_squares = 1e15;
 constexpr double no_prior = std::numeric_limits<double>::infinity();
 constexpr double most_scale_log = 1.1;  // a torque off by a factor of three
+// Of a block: longer than what remains correlated after whitening, short enough for many blocks.
+constexpr double block_s = 1.0;
+constexpr std::size_t fold_count = 8;  // groups of blocks that are left out in turn
 constexpr std::size_t fewest_block_samples = 50, fewest_blocks = 40;
 constexpr std::size_t most_held_numbers = 16'000'000;  // of columns in memory: 128 MB
 

@@ -81,7 +81,8 @@ AdoptedTerm judged(const Search& search, Criterion& criterion, const SearchedTer
         (sum(criterion.plain_block_squares(fewer)) - sum(criterion.plain_block_squares(terms))) / before;
     for (const SearchedTerms& other : search.extensions(criterion, fewer, exchange_finalists)) {
         const double margin = criterion.cost(other) - criterion.cost(terms);
-        if (other.back().kind == terms[place].kind || margin > tie_margin ||
+        if (other.back().kind == terms[place].kind || margin > least_reduction ||
+            search.is_preferred(criterion, fewer, {terms, terms[place]}, {other, other.back()}) ||
             !Search::admission(criterion, fewer, other).is_admissible)
             continue;
         found.rivals.push_back({valued_terms(criterion, other).back().term, margin});

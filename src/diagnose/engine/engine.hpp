@@ -44,7 +44,7 @@ struct AdoptedTerm {
     double block_t = 0.0;          ///< mean reduction of a block over its standard error
     double noise_share = 0.0;      ///< rms torque that only this term explains, in units of the noise
     double explained_share = 0.0;  ///< part of the squares of the first residual that only it explains
-    std::vector<Rival> rivals;     ///< with less than `tie_margin` between them, nearest first
+    std::vector<Rival> rivals;     ///< with less than `least_reduction` between them, nearest first
 };
 
 struct NearlyAdopted {

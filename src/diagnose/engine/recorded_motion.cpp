@@ -9,13 +9,15 @@
 #include "core/rows/uneven_rows.hpp"
 #include "core/vectors/dot.hpp"
 #include "diagnose/engine/gram.hpp"
-#include "diagnose/engine/settings.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch::engine {
 namespace {
 
+// Below this share of the rms speed for longer than this the joint is at standstill, where friction takes any
+// value.
+constexpr double standstill_speed_share = 0.01, standstill_s = 0.15;
 constexpr std::size_t fewest_slots = 200;
 constexpr double longest_gap = 2000.0;  // slots that a gap in the log takes at most: they hold nothing
 // Travel in units of the noise of the position below which a joint stands still.

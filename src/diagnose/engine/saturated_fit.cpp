@@ -9,7 +9,6 @@
 #include "core/matrices/factorisations.hpp"
 #include "core/vectors/dot.hpp"
 #include "diagnose/engine/gram.hpp"
-#include "diagnose/engine/settings.hpp"
 #include "ripplenotch/analysis/fourier.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
@@ -23,6 +22,7 @@ constexpr std::size_t position_splines = 13, speed_splines = 18, time_splines = 
 constexpr std::array loop_widths_deg = {0.1, 0.5, 2.0};
 // A load on a spring, damped by a tenth, so that the next frequency is within the width of the last.
 constexpr std::array ringing_hz = {1.6, 2.0, 2.5, 3.1, 3.9, 4.9, 6.1, 7.6};
+constexpr std::size_t noise_order = 12;  // residual correlation beyond it was within its own error
 constexpr std::size_t most_lines = 4;
 // Power over the median at which a line or tone is taken; a line of white noise is at 10 or 15.
 constexpr double line_power = 30.0;

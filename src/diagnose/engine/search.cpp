@@ -17,15 +17,11 @@ constexpr int most_rounds = 6, most_exchanges = 5;  // a search that goes on bey
 constexpr std::size_t tried_of_finalists = 3;
 constexpr std::size_t exchange_finalists = 5;
 constexpr std::size_t rival_paths = 2;
-constexpr double much_left = 1.5;          // squares over those of the noise from which other paths compete
+constexpr std::size_t finalist_count = 7;  // refined: the best by grid is not always the best refined
 constexpr int payload_parts = 24;          // in which a change of the load is looked for
 constexpr int most_bias_steps = 40;        // an error of ten cycles when the log ends
 constexpr double smallest_delay_s = 1e-4;  // the valley of a delay may be narrower than any grid
 constexpr double least_gap = 0.02;         // of the squares of the noise: a gap is no smaller
-constexpr double best_block_share = 0.15;  // of the blocks, which a dominant term must not depend on
-constexpr double least_spread = 100.0;     // reduction without them
-// The same per sample, of friction beside another; Stribeck friction is the usual correction of a form.
-constexpr double form_spread = 0.015, stribeck_spread = 0.1;
 
 // Of two terms that say nearly the same the plainer is preferred.
 struct Plainer {
@@ -171,6 +167,7 @@ Admission Search::admission(Criterion& criterion, const SearchedTerms& shorter, 
     const double whole_share = found.reduction / std::max(criterion.fit({}).squares - samples, least_squares);
     const bool is_spread = found.gap_share > dominant_gap_share && sum(by_block) > least_beyond &&
                            (is_friction || whole_share > least_gap_share);
+    const bool changes_form = added != longer.end() && added->changes_ripple();
     const bool is_silent =
         added != longer.end() && is_below_resolution(*added, criterion.recorded().step_s());
     // Each condition is refused by a value that is no number, too.
@@ -182,7 +179,8 @@ Admission Search::admission(Criterion& criterion, const SearchedTerms& shorter, 
         found.reason = "it does not predict stretches that were left out";
     else if (!is_silent && !(found.noise_share > least_noise_share))
         found.reason = "its torque is far below the noise";
-    else if (!is_silent && !(found.gap_share > least_gap_share))
+    else if (!is_silent &&
+             (!(found.gap_share > least_gap_share) || (changes_form && whole_share < least_whole_share)))
         found.reason = "it explains a small part of what is unexplained";
     else if (!is_silent && added != longer.end() &&
              (is_at_bound(*added) || is_at_end(*added, criterion.recorded())))
@@ -416,8 +414,7 @@ double Search::squares_with_rests(const Criterion& criterion, const SearchedTerm
     return squares;
 }
 
-// Of two models that say nearly the same the plainer. At standstill an offset stays and a difference of
-// friction is gone: there what was logged decides.
+// At standstill an offset stays and a difference of friction is gone: there what was logged decides.
 bool Search::is_preferred(Criterion& criterion, const SearchedTerms& fewer, const Choice& one,
                           const Choice& other) const {
     const double before = criterion.cost(fewer);
@@ -466,7 +463,7 @@ void Search::exchange(SearchState& state, std::vector<SearchedTerms>& seen) cons
             rivals.resize(std::min(rivals.size(), tried_of_finalists));
             for (const SearchedTerms& rival : rivals) {
                 if (rival.back().kind == terms[i].kind ||
-                    criterion.cost(rival) >= criterion.cost(terms) - clearly_better ||
+                    criterion.cost(rival) >= criterion.cost(terms) - least_reduction ||
                     !admission(criterion, fewer, rival).is_admissible)
                     continue;
                 if (!is_preferred(criterion, fewer, {terms, terms[i]}, {rival, rival.back()})) offer(rival);
@@ -525,7 +522,7 @@ SearchResult Search::run() {
     }
     for (std::size_t i = 0; i < rivals.size(); ++i) {
         Criterion& criterion = *result.best.criterion;
-        if (criterion.cost(rivals[i].terms) >= criterion.cost(result.best.terms) - clearly_better) continue;
+        if (criterion.cost(rivals[i].terms) >= criterion.cost(result.best.terms) - least_reduction) continue;
         result.best = rivals[i];
         result.refused = rival_refused[i];
     }

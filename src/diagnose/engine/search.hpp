@@ -56,6 +56,15 @@ class Search {
     [[nodiscard]] static Admission admission(Criterion& criterion, const SearchedTerms& shorter,
                                              const SearchedTerms& longer);
 
+    /// A model and the term of it that another could stand for.
+    struct Choice {
+        const SearchedTerms& terms;
+        const SearchedTerm& newest;
+    };
+    /// Of two models that say nearly the same, `one` is the plainer, or the rests speak for it.
+    [[nodiscard]] bool is_preferred(Criterion& criterion, const SearchedTerms& fewer, const Choice& one,
+                                    const Choice& other) const;
+
   private:
     struct Candidate {
         SearchedTerm term;
@@ -69,14 +78,7 @@ class Search {
     std::vector<Candidate> ranked(Criterion& criterion, const SearchedTerms& terms) const;
     SearchState path(SearchState state, std::vector<RefusedTerm>& refused) const;
     void exchange(SearchState& state, std::vector<SearchedTerms>& seen) const;
-    /// A model and the term of it that another could stand for.
-    struct Choice {
-        const SearchedTerms& terms;
-        const SearchedTerm& newest;
-    };
     [[nodiscard]] double squares_with_rests(const Criterion& criterion, const SearchedTerms& terms) const;
-    [[nodiscard]] bool is_preferred(Criterion& criterion, const SearchedTerms& fewer, const Choice& one,
-                                    const Choice& other) const;
     [[nodiscard]] SearchState with_new_noise(const SearchState& state) const;
 
     const RecordedMotion& recorded_;
