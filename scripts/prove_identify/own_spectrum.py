@@ -21,12 +21,17 @@ def runs(time, turns, least=0.03):
     return [(a, b) for a, b in zip(borders[:-1], borders[1:]) if way[a] and abs(turns[b - 1] - turns[a]) >= least and b - a > 40]
 
 
+def fitted(basis, values, weight):
+    root = np.sqrt(weight)
+    return np.linalg.lstsq(basis * root[:, None], values * root, rcond=None)[0]
+
+
 class Spectrum:
     """Of each sweep with a Hann window over the coordinate, all on one grid of orders."""
 
     def __init__(self, torque, along, rows, lowest=12.0, share=0.4, fast=0.9):
         """To `share` cycles a sample at the `fast` quantile of the speed of each sweep."""
-        self.torque, self.along = torque.astype(float), along
+        self.torque, self.along, self.first = torque.astype(float), along, {}
         self.rows = [(a, b) for a, b in rows if np.ptp(along[a:b]) > 0]
         self.spans = [float(np.ptp(along[a:b])) for a, b in self.rows]
         self.step_of = np.abs(np.gradient(along))
@@ -48,16 +53,23 @@ class Spectrum:
         waves = np.cos(math.pi * share[:, None] * np.arange(int(self.lowest * np.ptp(self.along[a:b])) + 3))
         return np.column_stack([waves, share])
 
+    def weight(self, a, b):
+        """A Hann window over the coordinate, whatever the time that each part of it takes."""
+        along = self.along[a:b]
+        return np.sin(math.pi * (along - along.min()) / np.ptp(along)) ** 2 * self.step_of[a:b]
+
     def amplitudes(self):
         """For each sweep: complex sum over orders, sum of weights, local power of the noise (infinite where it says nothing)."""
-        for (a, b), span, top in zip(self.rows, self.spans, self.tops):
-            along, slow = self.along[a:b], self.slow(a, b)
-            rest = self.torque[a:b] - slow @ np.linalg.lstsq(slow, self.torque[a:b], rcond=None)[0]
-            weight = np.sin(math.pi * (along - along.min()) / span) ** 2 * self.step_of[a:b]
+        for k, ((a, b), span, top) in enumerate(zip(self.rows, self.spans, self.tops)):
+            along, weight, slow = self.along[a:b], self.weight(a, b), self.slow(a, b)
+            rest = self.torque[a:b] - slow @ fitted(slow, self.torque[a:b], weight)
             place = ((along - along.min()) * self.bins).astype(int)
             sums = np.fft.rfft(np.bincount(place, weight * rest, self.count))[: len(self.orders)]
             told = (self.orders < top) & (self.orders * span >= CYCLES)
-            yield sums, weight.sum(), np.where(told, self.local(np.abs(sums) ** 2, span), np.inf)
+            noise = self.local(np.abs(sums) ** 2, span)
+            # Each line that is subtracted takes noise with it: where many were, nothing but holes would be compared with.
+            noise = np.maximum(noise, 0.5 * self.first.setdefault(k, noise))
+            yield sums, weight.sum(), np.where(told, noise, np.inf)
 
     def local(self, power, span):
         """Mean power of the noise at each order, from the medians of 12 cells on either side, two cells away; what changes slowly was
@@ -96,7 +108,7 @@ class Spectrum:
             course = ((along - along.mean()) / span)[:, None] ** np.arange(3 if order * span > 15 else 1)
             waves = [wave(2 * math.pi * order * along)[:, None] * course for wave in (np.cos, np.sin)]
             basis = np.column_stack([*waves, slow])
-            found = np.linalg.lstsq(basis, self.torque[a:b], rcond=None)[0]
+            found = fitted(basis, self.torque[a:b], self.weight(a, b))
             found[2 * course.shape[1] :] = 0.0
             self.torque[a:b] -= basis @ found
 
