@@ -9,7 +9,6 @@
 #include <numbers>
 #include <optional>
 
-#include "core/functions/many_numbers.hpp"
 #include "core/matrices/least_squares.hpp"
 #include "core/rows/row_facts.hpp"
 #include "core/rows/uneven_rows.hpp"
@@ -300,23 +299,10 @@ class DiagnosisRun {
             if (own_term("inertia") != nullptr) continue;
             const double unit = degrees_per_radian;
             depart("inertia", column.factor * unit, column.standard_error * unit,
-                   rms_where(along_.motion.acceleration_deg_s2, along_.use) / unit, simulated_inertia());
+                   rms_where(along_.motion.acceleration_deg_s2, along_.use) / unit,
+                   std::abs(found.simulated_inertia_nm_per_deg_s2) * unit);
             break;  // the first column of that name is the engine's own
         }
-    }
-
-    // Of the simulation's torque on the motion.
-    [[nodiscard]] double simulated_inertia() const {
-        if (simulated_ == nullptr) return 0.0;
-        const Motion& motion = along_.motion;
-        std::vector<std::vector<double>> columns = {motion.acceleration_deg_s2, motion.velocity_deg_s,
-                                                    std::vector<double>(motion.size(), 1.0)};
-        columns.resize(6, std::vector<double>(motion.size()));
-        for (std::size_t k = 0; k < motion.size(); ++k) columns[3][k] = motion.velocity_deg_s[k] / 0.5;
-        portable::tanh(columns[3], columns[3]);
-        portable::cos_degrees(motion.position_deg, columns[4]);
-        portable::sin_degrees(motion.position_deg, columns[5]);
-        return degrees_per_radian * std::abs(least_squares(columns, motion.known_nm).front());
     }
 
     void depart(std::string_view name, double value, double error, double unit_rms_nm, double known) {

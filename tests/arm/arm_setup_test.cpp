@@ -89,6 +89,12 @@ TEST_CASE("a torque in mNm and exchanged joints are found", "[arm]") {
     faults = record.faults();
     REQUIRE(faults.size() == 1);
     CHECK(faults.front().kind == SetupFaultKind::wrong_joint);
+    std::swap(record.traces[1], record.traces[2]);
+    std::swap(record.traces[1].torque_nm, record.traces[2].torque_nm);
+    faults = record.faults();
+    REQUIRE(faults.size() == 1);
+    CHECK(faults.front().kind == SetupFaultKind::wrong_joint);
+    CHECK_THAT(faults.front().statement, Catch::Contains("the torques of joints"));
 }
 
 // The delay of an arm's torques behind its motion: one for all joints, and a joint that contradicts it.

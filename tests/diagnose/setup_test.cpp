@@ -244,6 +244,26 @@ TEST_CASE("the joint whose motion is simulated is named", "[diagnose]") {
                 [&](Pair& pair, SetupContext&) { pair.simulation = other.simulation; });
 }
 
+TEST_CASE("a torque alone is aligned by the motion that it follows, and that of another motion is told",
+          "[diagnose]") {
+    const Pair other = hard_pair(50);
+    for (std::uint64_t seed = 0; seed < 3; ++seed) {
+        PairOptions options;
+        options.hides_effects = true;
+        options.delay_s = 0.1;
+        Pair pair = random_pair(seed + 30000, options);
+        const SetupAnswer answer =
+            suspect_setup(pair.log.view(), torque_alone(pair.simulation), context_of(pair));
+        CHECK(answer.faults.empty());
+        REQUIRE(answer.lag() != nullptr);
+        CHECK_THAT(answer.lag()->delay_s, WithinAbs(0.1, 5e-3));
+        const auto faults =
+            suspect_setup(pair.log.view(), torque_alone(other.simulation), context_of(pair)).faults;
+        REQUIRE_FALSE(faults.empty());
+        CHECK(setup_fault_name(faults.front().kind) == "other-motion");
+    }
+}
+
 TEST_CASE("gravity that acts the other way is told from a torque that does", "[diagnose]") {
     const Motion motion =
         make_motion(std::vector<std::string>{"multisine,amplitude=100deg,frequency=0.1Hz,count=5,"

@@ -76,8 +76,8 @@ struct SetupAnswer {
     std::optional<SimulationLag> motion_lag, torque_lag, torque_to_motion_lag;
     std::optional<SimulationLag> shift;  ///< by which the simulation is taken to be early
 
-    /// The one that can be relied on: by the motions, or else by the torque that follows the motion of the
-    /// log, or else by the torques; null: none is identifiable.
+    /// The one that can be relied on: by the motions, or else where the motion of the log explains the
+    /// simulated torque, which the torques may tell more precisely, or else by the torques; null: none.
     [[nodiscard]] const SimulationLag* lag() const;
 };
 

@@ -176,6 +176,7 @@ Baseline make_baseline(const RecordedMotion& recorded, const KnownSide& known,
     }
     if (known.is_simulated) {
         const auto [inertia, gravity_nm] = inertia_and_gravity_of(motion.known_nm, recorded, base.direction);
+        base.simulated_inertia_nm_per_deg_s2 = inertia;
         if (known.is_scale_known) {
             base.columns[base.inertia_place].deviation = known_mass_deviation * std::abs(inertia);
             base.known_inertia_nm_per_deg_s2 = inertia;

@@ -33,8 +33,9 @@ struct Baseline {
     std::vector<BaseColumn> columns;
     std::vector<double> known_nm;  ///< torque at the prior means, subtracted; empty where it is 0
     std::size_t inertia_place = 0;
-    double known_inertia_nm_per_deg_s2 = 0.0;  ///< that is part of known_nm
-    std::vector<double> orders;                ///< of the model's ripple, in cycles per motor revolution
+    double known_inertia_nm_per_deg_s2 = 0.0;      ///< that is part of known_nm
+    double simulated_inertia_nm_per_deg_s2 = 0.0;  ///< of a simulation
+    std::vector<double> orders;                    ///< of the model's ripple, in cycles per motor revolution
     GearRatio ratio;
     bool is_simulated = false;      ///< a simulation holds what is not in the model
     bool is_scale_known = false;    ///< there is a simulation, and its torque is part of known_nm

@@ -144,6 +144,7 @@ Result find_missing_effects(const Input& input) {
                                          refused.admission.reduction, refused.admission.reason});
     }
     result.baseline = valued_columns(criterion, terms);
+    result.simulated_inertia_nm_per_deg_s2 = criterion.base().simulated_inertia_nm_per_deg_s2;
     if (recorded.removed_bias_deg_s() == 0.0) result.rms_before_nm = criterion.rms_nm({});
     result.rms_after_nm = criterion.rms_nm(terms);
     result.noise_nm = criterion.noise().noise_nm;

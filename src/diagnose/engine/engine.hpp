@@ -63,7 +63,8 @@ struct Result {
     std::vector<std::vector<double>> baseline_factors;
     std::vector<ConverterFault> faults;
     double rms_before_nm = 0.0, rms_after_nm = 0.0;
-    double noise_nm = 0.0;  ///< the least that any smooth law leaves
+    double noise_nm = 0.0;                         ///< the least that any smooth law leaves
+    double simulated_inertia_nm_per_deg_s2 = 0.0;  ///< 0 without a simulation
     /// Residual of the model as given and of the improved one, an entry per row of the log; 0 where the row
     /// does not count.
     std::vector<double> residual_before_nm, residual_after_nm;

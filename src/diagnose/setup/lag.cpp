@@ -204,7 +204,7 @@ void Alignment::add_motion(const TraceView& log, std::optional<GearRatio> gear_r
             angle_deg[k] = angle_deg[k - 1] +
                            0.5 * (log.time_s[k] - log.time_s[k - 1]) * (velocity[k - 1] + velocity[k]);
     }
-    add(load, engine::friction_loop(angle_deg, loop_width_deg));
+    add(loop, engine::friction_loop(angle_deg, loop_width_deg));
     if (!gear_ratio) return;
     for (const double order : {1.0, 2.0}) {
         for (const double quarter_deg : {0.0, 90.0}) {

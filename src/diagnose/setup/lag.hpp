@@ -100,9 +100,9 @@ class Alignment {
     [[nodiscard]] SimulationLag lag(const Question& of) const;
 
     /// Places of columns: an offset, Coulomb friction of two widths and viscous friction; inertia; cosine and
-    /// sine of the position; ripple; friction that grows with the torque and hysteresis. Empty where the log
-    /// has not what they need.
-    Places friction{constant}, inertia, gravity, ripple, load;
+    /// sine of the position; ripple; friction that grows with the torque; hysteresis. Empty where the log has
+    /// not what they need.
+    Places friction{constant}, inertia, gravity, ripple, load, loop;
 
   private:
     struct Candidate;

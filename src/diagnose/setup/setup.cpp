@@ -25,9 +25,9 @@ constexpr double least_blocks = 0.9;  // that improve: at a fair coin 1 of 93 fo
 // About a factor: friction and payload change the torque's scale; a controller follows the motion.
 constexpr double torque_tolerance = 1.5, motion_tolerance = 1.1, gravity_tolerance = 1.25;
 constexpr double same_motion = 0.9;  // correlation
-constexpr double least_told = 0.1,
-                 least_size = 0.5;       // by a simulation of another motion, and of its own torque
-constexpr double least_turn_deg = 60.0;  // less is an error of the position's zero or of the mount
+constexpr double least_size = 0.1;   // of a simulated torque beside the measured one, to follow a motion
+constexpr double longest_of_sensor_s = 0.03;  // a delay within is an effect of the joint, and searched
+constexpr double least_turn_deg = 60.0;       // less is an error of the position's zero or of the mount
 
 // The measured series less the simulated one times a factor.
 VectorXd less(const BlockProducts& both, double factor) {
@@ -49,7 +49,9 @@ bool proves(const BlockProducts& both, const Places& beside, const VectorXd& rep
     for (std::size_t b = 0; b < before.size(); ++b) improved += after[b] < before[b] ? 1.0 : 0.0;
     fault.explained_before = 1.0 - before_all / total;
     fault.explained_after = 1.0 - after_all / total;
-    return total > 0.0 && before_all >= least_ratio * after_all && fault.explained_after >= least_explained &&
+    // Of a simulation that explains nothing the less is left the smaller it is made.
+    const double alone = both.squares(less(both, 0.0), beside);
+    return before_all >= least_ratio * after_all && (1.0 - least_explained) * alone >= after_all &&
            improved >= least_blocks * static_cast<double>(before.size());
 }
 
@@ -144,7 +146,7 @@ std::optional<SetupFault> other_joint(const SetupContext& context, double own, s
 
 SetupFault other_motion(double explained, std::string_view what) {
     return {SetupFaultKind::other_motion,
-            fmt::format("the simulation is of another motion: no delay makes the measured one {}", what),
+            fmt::format("the simulation is of another motion: at no delay does its {}", what),
             {},
             1.0,
             explained,
@@ -155,7 +157,7 @@ SetupFault other_motion(double explained, std::string_view what) {
 struct Torques {
     const Alignment& columns;
     BlockProducts both;
-    const Places& beside = columns.friction;  // and an offset
+    Places beside = columns.friction + columns.loop;  // and an offset
 
     [[nodiscard]] Places motion() const { return beside + columns.inertia + columns.gravity; }
     [[nodiscard]] VectorXd simulated() const { return both.column(Alignment::simulated); }
@@ -174,7 +176,7 @@ struct Torques {
         const VectorXd values = both.values(less(both, factor), beside);
         VectorXd friction = VectorXd::Zero(simulated().size());
         for (std::size_t c = 1; c < beside.size(); ++c) friction[beside[c]] = values[static_cast<Index>(c)];
-        return both.product(friction, both.column(beside.back())) < 0.0;
+        return both.product(friction, both.column(columns.friction.back())) < 0.0;
     }
 
     [[nodiscard]] std::optional<SetupFault> factor(const SetupContext& context) const {
@@ -235,6 +237,12 @@ struct Torques {
     }
 };
 
+// By more than its interval and a time within which the delay is not the simulation's.
+bool is_behind(const SimulationLag& lag, double least_s) {
+    return lag.identifiable && std::abs(lag.delay_s) > least_s &&
+           (lag.delay_95_s.low > 0.0 || lag.delay_95_s.high < 0.0);
+}
+
 bool changes(std::span<const double> values) {
     if (values.size() < 8) return false;
     const auto [low, high] = std::ranges::minmax(values);
@@ -252,7 +260,7 @@ Alignment torques_of(const TraceView& log, const SimulatedMotion& simulation,
 SimulationLag lag_of_torques(const Alignment& both) {
     Places beside = both.friction + both.ripple;
     SimulationLag chosen = both.lag({beside});
-    for (const Places& added : {both.inertia, both.gravity, both.load}) {
+    for (const Places& added : {both.inertia, both.gravity, both.load + both.loop}) {
         if (added.empty() || !chosen.is_compared) continue;
         beside = beside + added;
         const SimulationLag lag = both.lag({beside});
@@ -289,9 +297,16 @@ SimulationLag lag_by_motion(const TraceView& log, const SimulatedMotion& simulat
 }
 
 const SimulationLag* SetupAnswer::lag() const {
-    for (const auto* lag : {&motion_lag, &torque_to_motion_lag, &torque_lag})
-        if (*lag && (*lag)->identifiable) return &**lag;
-    return nullptr;
+    if (motion_lag && motion_lag->identifiable) return &*motion_lag;
+    const SimulationLag* torque = torque_lag && torque_lag->identifiable ? &*torque_lag : nullptr;
+    if (!torque_to_motion_lag || torque_to_motion_lag->explained < same_motion) return torque;
+    // A torque that the motion of the log explains, at whatever delay, is not late by more than a sensor is.
+    const SimulationLag& followed = *torque_to_motion_lag;
+    if (!followed.identifiable) return nullptr;
+    const auto width_s = [](const SimulationLag& lag) { return lag.delay_95_s.high - lag.delay_95_s.low; };
+    const bool is_torque_nearer = torque != nullptr && width_s(*torque) < width_s(followed) &&
+                                  std::abs(torque->delay_s - followed.delay_s) <= longest_of_sensor_s;
+    return is_torque_nearer ? torque : &followed;
 }
 
 SetupAnswer suspect_setup(const TraceView& log, const SimulatedMotion& simulation,
@@ -309,9 +324,10 @@ SetupAnswer suspect_setup(const TraceView& log, const SimulatedMotion& simulatio
         if (other)
             faults.push_back(*std::move(other));
         else if (by_motion.explained < least_explained)
-            faults.push_back(other_motion(by_motion.explained, "of its velocity"));
+            faults.push_back(other_motion(by_motion.explained, "velocity explain that of the log"));
         if (!faults.empty()) return answer;
         add_motion_faults(log, simulation, *answer.motion_lag, context, faults);
+        if (is_behind(*answer.motion_lag, 0.5 / log.sample_rate.value())) answer.shift = answer.motion_lag;
     }
     if (!changes(log.torque_nm) || !changes(simulation.torque_nm)) return answer;
     const Alignment columns = torques_of(log, simulation, context.gear_ratio);
@@ -327,18 +343,20 @@ SetupAnswer suspect_setup(const TraceView& log, const SimulatedMotion& simulatio
                 std::abs(portable::log(std::max(lag.scale, 1e-9))) <= portable::log(torque_tolerance);
             return is_full ? lag.explained : 0.0;
         });
-    // The motion that a simulation without one has had is that which its torque follows.
+    // A simulation without motion has had the one that its torque follows.
     const SimulationLag followed = columns.lag({columns.friction + columns.inertia + columns.gravity, true});
     if (!by_motion.is_compared && !fault) answer.torque_to_motion_lag = followed;
     const SimulationLag* lag = answer.lag();
+    if (lag != nullptr && !by_motion.identifiable && is_behind(*lag, longest_of_sensor_s))
+        answer.shift = *lag;
     const Torques torques{columns, columns.products(lag != nullptr ? lag->delay_s : 0.0)};
     if (!fault) fault = torques.factor(context);
     if (!fault) fault = torques.turned_gravity();
     // A torque of no account may follow nothing.
-    if (!fault && !is_same_motion && by_torque.explained < least_told &&
+    if (!fault && !is_same_motion && by_torque.explained < least_explained &&
         followed.explained < least_explained && torques.relative_square() > least_size * least_size)
         fault = other_motion(by_torque.explained,
-                             "of its torque, which the motion of the log does not explain either");
+                             "torque explain the measured one, or the motion of the log explain it");
     if (fault) faults.push_back(*std::move(fault));
     return answer;
 }

@@ -122,14 +122,6 @@ std::vector<Log> other_joints(const ReadOptions& reading, const GivenLog& log) {
     return others;
 }
 
-// Whether the delay differs from 0 by more than its interval and half a sample; where torques show it, by
-// more than a sensor's delay, which is an effect of the joint and is searched.
-bool is_behind(const SimulationLag& lag, const Trace& log, bool is_by_motion) {
-    constexpr double longest_of_sensor_s = 0.03;
-    const double least_s = is_by_motion ? 0.5 / log.sample_rate.value() : longest_of_sensor_s;
-    return std::abs(lag.delay_s) > least_s && (lag.delay_95_s.low > 0.0 || lag.delay_95_s.high < 0.0);
-}
-
 }  // namespace
 
 void GivenSource::check_setup(GivenTerms& terms, SimulationSource& simulated, const ModelWithGiven& stated,
@@ -148,11 +140,7 @@ void GivenSource::check_setup(GivenTerms& terms, SimulationSource& simulated, co
         for (const Log& other : others) context.others.push_back({other.trace.joint, other.trace.view()});
         if (!others.empty()) terms.setup = suspect_setup(log.log.trace.view(), motion, context);
     }
-    const SimulationLag* lag = terms.setup->lag();
-    const auto& by_motion = terms.setup->motion_lag;
-    if (lag == nullptr || !is_behind(*lag, log.log.trace, by_motion && lag == &*by_motion)) return;
-    terms.setup->shift = *lag;
-    simulated.set_delay(-lag->delay_s);
+    if (terms.setup->shift) simulated.set_delay(-terms.setup->shift->delay_s);
 }
 
 void GivenSource::add_simulated(GivenTerms& terms, const ModelWithGiven& stated, const ReadOptions& reading,
