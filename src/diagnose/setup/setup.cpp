@@ -343,9 +343,18 @@ SetupAnswer suspect_setup(const TraceView& log, const SimulatedMotion& simulatio
                 std::abs(portable::log(std::max(lag.scale, 1e-9))) <= portable::log(torque_tolerance);
             return is_full ? lag.explained : 0.0;
         });
-    // A simulation without motion has had the one that its torque follows.
-    const SimulationLag followed = columns.lag({columns.friction + columns.inertia + columns.gravity, true});
-    if (!by_motion.is_compared && !fault) answer.torque_to_motion_lag = followed;
+    // A simulation without motion has had the one that its torque follows. Of a single sine that has no one
+    // delay, and then that of the torques counts, unless beside the motion of the log far more is left with
+    // it.
+    const Places motion = columns.friction + columns.inertia + columns.gravity;
+    const SimulationLag followed = columns.lag({motion, true});
+    const auto left_at = [&](double delay_s) {
+        const BlockProducts both = columns.products(delay_s);
+        return both.squares(less(both, 0.0), Places{Alignment::simulated} + motion);
+    };
+    if (!by_motion.is_compared && !fault &&
+        (followed.identifiable || left_at(by_torque.delay_s) >= least_ratio * left_at(0.0)))
+        answer.torque_to_motion_lag = followed;
     const SimulationLag* lag = answer.lag();
     if (lag != nullptr && !by_motion.identifiable && is_behind(*lag, longest_of_sensor_s))
         answer.shift = *lag;
