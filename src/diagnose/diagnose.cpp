@@ -11,7 +11,6 @@
 
 #include "core/matrices/least_squares.hpp"
 #include "core/rows/row_facts.hpp"
-#include "core/rows/uneven_rows.hpp"
 #include "diagnose/answer/advice.hpp"
 #include "diagnose/answer/log_faults.hpp"
 #include "diagnose/answer/remaining.hpp"
@@ -57,13 +56,6 @@ void check_rows(std::span<const GivenTerm> given, std::size_t rows, std::string_
                 raise<UsageError>("{}: {} values for the {} rows of {}", term.name, column.size(), rows, log);
         }
     }
-}
-
-// Values of a torque that came later by so much.
-std::vector<double> advanced(const TraceView& log, double delay_s) {
-    std::vector<double> at_s(log.time_s.begin(), log.time_s.end());
-    for (double& t : at_s) t += delay_s;
-    return interpolate(log.time_s, log.torque_nm, at_s);
 }
 
 // Friction that turns over with the direction, over a speed or over an angle: one effect to the joint, told
@@ -165,12 +157,6 @@ class DiagnosisRun {
         return names;
     }
 
-    // The delay that the model states.
-    [[nodiscard]] double known_delay_s() const {
-        const Term* delay = own_term("delay");
-        return delay != nullptr ? delay->values.front().value_or(0.0) : 0.0;
-    }
-
     // Beside a simulation the engine takes its torque for all of what the user knows: terms of the model are
     // given as columns.
     [[nodiscard]] std::vector<GivenTerm> columns_of_model() const {
@@ -201,11 +187,9 @@ class DiagnosisRun {
 
     void search() {
         std::vector<std::string> without = not_tried();
-        const double delay_s = known_delay_s();
-        std::vector<double> torque_nm = along_.torque_nm, simulated_nm;
+        std::vector<double> simulated_nm;
         TraceView log = log_;
-        if (delay_s != 0.0) torque_nm = advanced(log_, delay_s);
-        log.torque_nm = torque_nm;
+        log.torque_nm = along_.torque_nm;
         std::vector<GivenTerm> given;
         for (const GivenTerm& term : options_.given)
             if (&term != simulated_) given.push_back(term);
@@ -333,8 +317,12 @@ class DiagnosisRun {
 
     void take(const engine::AdoptedTerm& adopted, FindingStatus status) {
         const Effect& effect = *adopted.term.effect;
-        // An effect of sensor, motion or ripple that the model has already is not the engine's to know.
-        if (own_term(effect.name) != nullptr && effect.side != Side::joint) return;
+        // What the model leaves open of sensor, motion or ripple is fitted with it; beside what it states a
+        // finding is more of that.
+        const Term* own = own_term(effect.name);
+        if (own != nullptr && effect.side != Side::joint &&
+            std::ranges::any_of(own->values, [](const auto& value) { return !value; }))
+            return;
         Finding finding;
         finding.term = adopted.term;
         finding.status = status;

@@ -87,7 +87,6 @@ class Joint(Case):
 class Written(Joint):
     RATE = "250Hz"  # what is written is read here, not driven along the log
 
-    @unittest.expectedFailure  # the search does not reach it yet
     def test_values_are_those_of_the_model_in_units_of_rad(self):
         self.logged(*EFFECTS)
         self.model()

@@ -216,7 +216,6 @@ class Simulated(Case):
         done = self.run_tool("identify", "log.csv", "--json", "-q")
         self.assertIn(231, [round(line["order_output"]) for line in json.loads(done.stdout)["lines"] if line["order_output"]])
 
-    @unittest.expectedFailure  # the search does not reach it yet
     def test_a_file_of_its_own_on_the_same_clock_gives_the_same_names_and_rows_outside_it_do_not_count(self):
         simulation = [[t, v, arm_nm(t, q, 1.0)] for t, v, _, q in self.rows[100:-100:2]]
         written(self.folder / "sim.csv", ["time_s", "velocity_deg_s", "torque_nm"], simulation)

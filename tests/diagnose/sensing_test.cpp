@@ -107,7 +107,7 @@ TEST_CASE("beside an arm nothing is named where nothing is hidden") {
     CHECK(found.verdict == DiagnosisVerdict::matches);
 }
 
-TEST_CASE("a delay acts on the arm's torque as well, and is told with its time", "[!shouldfail]") {
+TEST_CASE("a delay acts on the arm's torque as well, and is told with its time") {
     for (const double delay_s : {0.0062, -0.0045}) {
         const std::string term = "delay,delay_s=" + std::to_string(delay_s);
         const Diagnosis found = diagnosed(measured({term.c_str()}, 12));
@@ -120,7 +120,7 @@ TEST_CASE("a delay acts on the arm's torque as well, and is told with its time",
     }
 }
 
-TEST_CASE("a delay does not hide friction beside it", "[!shouldfail]") {
+TEST_CASE("a delay does not hide friction beside it") {
     const Diagnosis found =
         diagnosed(measured({"delay,delay_s=0.005", "coulomb-friction,torque_nm=0.8,width_deg_s=0.5"}, 13));
     INFO(told_with_values(found));
@@ -128,7 +128,7 @@ TEST_CASE("a delay does not hide friction beside it", "[!shouldfail]") {
     check_holds(finding_of(found, "delay").values[0], 0.005);
 }
 
-TEST_CASE("a lag is told from a delay by what it makes of the ripple", "[!shouldfail]") {
+TEST_CASE("a lag is told from a delay by what it makes of the ripple") {
     const Diagnosis found = diagnosed(measured({"lag,time_constant_s=0.005"}, 14));
     INFO(told_with_values(found));
     REQUIRE(named(found) == std::vector<std::string>{"lag"});

@@ -66,6 +66,40 @@ double stated_size(const Term& term) {
     return size;
 }
 
+std::optional<std::vector<double>> all_stated(const Term& term) {
+    std::vector<double> values;
+    for (std::size_t p = 0; p < term.values.size(); ++p) {
+        const Parameter& parameter = term.effect->parameters[p];
+        if (!term.values[p] && parameter.left_out != LeftOut::assumed) return std::nullopt;
+        values.push_back(term.values[p].value_or(parameter.start));
+    }
+    return values;
+}
+
+// What a model states of its sensors, its elastic joint, its position and its ripple.
+void add_stated(Baseline& base, const Model& model, const Situation& situation) {
+    for (const Term& term : model.terms) {
+        const auto kind =
+            std::ranges::find_if(term_kinds(), [&](const TermKind& k) { return k.effect == term.effect; });
+        const auto values = all_stated(term);
+        if (kind == term_kinds().end() || !values) continue;
+        if (kind->role == Role::ripple_change && !term.effect->uses_load) {
+            base.ripple_gain.resize(base.orders.size(),
+                                    std::vector<std::complex<double>>(situation.motion.size(), 1.0));
+            for (std::size_t i = 0; i < base.orders.size(); ++i)
+                term.effect->change_ripple(situation, Order(base.orders[i]), *values, base.ripple_gain[i]);
+        }
+        if (kind->effect->name == "gear-ratio")
+            base.ratio = GearRatio(base.ratio.value() * (1.0 + 0.01 * values->front()));
+        else if (kind->role == Role::sensor || kind->role == Role::elastic_joint ||
+                 kind->role == Role::motor_angle) {
+            SearchedTerm& stated = base.stated.emplace_back(SearchedTerm{&*kind, {}});
+            for (std::size_t i = 0; i < kind->searched.size(); ++i)
+                stated.values[i] = (*values)[kind->searched[i].parameter];
+        }
+    }
+}
+
 // Inertia in Nm/(deg/s2) and size of the gravity in a torque, by its regression on the motion.
 std::pair<double, double> inertia_and_gravity_of(const std::vector<double>& torque_nm,
                                                  const RecordedMotion& recorded,
@@ -107,6 +141,19 @@ std::vector<std::vector<double>> ripple_columns(const Motion& motion, std::span<
     return columns;
 }
 
+std::vector<std::vector<double>> Baseline::ripple_waves(const Motion& motion, GearRatio at) const {
+    auto waves = ripple_columns(motion, orders, at);
+    for (std::size_t i = 0; i < ripple_gain.size(); ++i) {
+        for (std::size_t k = 0; k < motion.size(); ++k) {
+            const std::complex<double> wave(waves[2 * i][k], waves[2 * i + 1][k]);
+            const std::complex<double> changed = ripple_gain[i][k] * wave;
+            waves[2 * i][k] = changed.real();
+            waves[2 * i + 1][k] = changed.imag();
+        }
+    }
+    return waves;
+}
+
 Baseline make_baseline(const RecordedMotion& recorded, const KnownSide& known,
                        std::optional<double> inertia_nm_per_deg_s2) {
     const Motion& motion = recorded.motion();
@@ -114,9 +161,10 @@ Baseline make_baseline(const RecordedMotion& recorded, const KnownSide& known,
     Baseline base;
     base.ratio = known.model->gear_ratio;
     base.is_simulated = known.is_simulated;
-    base.direction = step_of_direction(motion, friction_step_deg_s);
+    base.direction = step_of_direction(motion, friction_step_deg_s * recorded.speed_scale());
     for (const Term& term : known.model->terms)
         if (term.effect->ripple_order) base.orders.push_back(term.values[*term.effect->ripple_order].value());
+    add_stated(base, *known.model, situation);
     if (known.is_simulated && !known.is_scale_known)
         base.columns.push_back({.name = "simulated", .torque_nm = motion.known_nm, .bears_load = true});
     base.inertia_place = base.columns.size();
@@ -150,7 +198,7 @@ Baseline make_baseline(const RecordedMotion& recorded, const KnownSide& known,
                 if (effect.name != "coulomb-friction") continue;
                 // How softly it turns over is not stated, which changes its form and not its size.
                 for (const double width_deg : known_loops_deg) {
-                    auto loop = friction_loop(motion.position_deg, width_deg);
+                    auto loop = friction_loop(motion.position_deg, width_deg * recorded.angle_scale());
                     add_scaled(-1.0 / size_nm, torque.data(), loop.data(), loop.size());
                     base.columns.push_back(
                         {.name = "nuisance", .torque_nm = std::move(loop), .deviation = size_nm});
@@ -166,7 +214,8 @@ Baseline make_baseline(const RecordedMotion& recorded, const KnownSide& known,
     if (base.has("coulomb-friction")) {
         for (const double width_deg : known_loops_deg)
             base.columns.push_back(
-                {.name = "nuisance", .torque_nm = friction_loop(motion.position_deg, width_deg)});
+                {.name = "nuisance",
+                 .torque_nm = friction_loop(motion.position_deg, width_deg * recorded.angle_scale())});
     }
     if (known.is_simulated && known.is_scale_known) {
         base.known_nm = motion.known_nm;

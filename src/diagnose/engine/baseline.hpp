@@ -2,6 +2,7 @@
 #pragma once
 // What every model of the search contains: the user's known torque and terms, and nuisance columns.
 
+#include <complex>
 #include <limits>
 #include <optional>
 #include <span>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "diagnose/engine/recorded_motion.hpp"
+#include "diagnose/engine/terms.hpp"
 #include "ripplenotch/model/model.hpp"
 
 namespace ripplenotch::engine {
@@ -37,10 +39,15 @@ struct Baseline {
     double simulated_inertia_nm_per_deg_s2 = 0.0;  ///< of a simulation
     std::vector<double> orders;                    ///< of the model's ripple, in cycles per motor revolution
     GearRatio ratio;
+    SearchedTerms stated;  ///< sensors, an elastic joint and errors of the position that the model states
+    /// What the ripple changes that the model states make of each order; empty: it states none.
+    std::vector<std::vector<std::complex<double>>> ripple_gain;
     bool is_simulated = false;      ///< a simulation holds what is not in the model
     bool is_scale_known = false;    ///< there is a simulation, and its torque is part of known_nm
     std::vector<double> direction;  ///< of the motion: -1 to 1, over 0.5 deg/s
 
+    /// Cosine and sine columns of each order, with the changes that the model states.
+    [[nodiscard]] std::vector<std::vector<double>> ripple_waves(const Motion& motion, GearRatio at) const;
     /// A free column of this effect.
     [[nodiscard]] bool has(std::string_view name) const;
     /// Its size is known within a prior: of a mass or of a scale.

@@ -159,15 +159,17 @@ std::vector<std::vector<double>> Criterion::term_columns(const SearchedTerm& ter
 
 std::vector<std::vector<double>> Criterion::ripple_waves(const MotorAngle& angle) const {
     const Motion& motion = recorded_.motion();
-    if (angle.errors.empty()) return ripple_columns(motion, base_.orders, angle.ratio);
-    return ripple_columns(without_errors(motion, angle.errors), base_.orders, angle.ratio);
+    if (angle.errors.empty()) return base_.ripple_waves(motion, angle.ratio);
+    return base_.ripple_waves(without_errors(motion, angle.errors), angle.ratio);
 }
 
 Design Criterion::design(const SearchedTerms& terms, ColumnProducts& columns, const Parts& parts) {
     const Motion& motion = recorded_.motion();
-    const Transforms transforms(terms);
+    SearchedTerms with_stated = base_.stated;
+    with_stated.insert(with_stated.end(), terms.begin(), terms.end());
+    const Transforms transforms(with_stated);
     const SearchedTerms every = transforms.all();
-    const MotorAngle angle = motor_angle(terms, base_.ratio), fixed{base_.ratio, {}};
+    const MotorAngle angle = motor_angle(with_stated, base_.ratio), fixed{base_.ratio, {}};
     Design made;
     const auto add = [&](const SearchedTerm& term, int group, const SearchedTerms& behind,
                          const MotorAngle& at, auto make) {
@@ -331,7 +333,35 @@ const BlockSquares& Criterion::block_squares(const SearchedTerms& given) {
         for (std::size_t block = fold; block < by_block.size(); block += fold_count)
             found.held_out[block] = squares_left(factors, by_block[block]);
     }
+    const std::size_t stretches = std::min(by_block.size(), most_stretches);
+    const VectorXd unit = products.diagonal().tail(whole.factors.size()).cwiseSqrt();
+    found.without_stretch.resize(unit.size(), static_cast<Index>(stretches));
+    for (std::size_t stretch = 0; stretch < stretches; ++stretch) {
+        MatrixXd rest = products;
+        for (std::size_t block = stretch * by_block.size() / stretches;
+             block < (stretch + 1) * by_block.size() / stretches; ++block)
+            rest -= by_block[block];
+        found.without_stretch.col(static_cast<Index>(stretch)) =
+            solve_normal_equations(rest, weights).cwiseProduct(unit);
+    }
     return found;
+}
+
+double Criterion::size_t_value(const SearchedTerms& given, const SearchedTerm& term) {
+    SearchedTerms terms = given;
+    std::sort(terms.begin(), terms.end());
+    const MatrixXd& all = block_squares(terms).without_stretch;
+    const auto place = static_cast<std::size_t>(std::ranges::find(terms, term) - terms.begin());
+    const std::vector<std::size_t> first = design(terms, white_, {}).first_of_term;
+    const auto from = static_cast<Index>(first[place]);
+    const Index end = place + 1 < first.size() ? static_cast<Index>(first[place + 1]) : all.rows();
+    if (from == end) return 0.0;
+    const MatrixXd own = all.middleRows(from, end - from);
+    const VectorXd mean = own.rowwise().mean();
+    const VectorXd along = own.transpose() * mean.normalized();
+    const auto count = static_cast<double>(along.size());
+    const double spread = (along.array() - along.mean()).square().sum() * (1.0 - 1.0 / count);
+    return mean.norm() / (std::sqrt(spread) + 1e-300);
 }
 
 double Criterion::cost(const SearchedTerms& terms) {

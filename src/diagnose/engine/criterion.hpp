@@ -80,8 +80,14 @@ struct LinearFit {
     Eigen::VectorXd factors;  ///< of Design::columns
 };
 
+/// Stretches of the log that are left out in turn where a size is judged: longer than what an error of the
+/// model correlates over, and many enough for Student's t to be near the normal distribution.
+inline constexpr std::size_t most_stretches = 20;
+
 struct BlockSquares {
     std::vector<double> fitted, held_out;  ///< of each block, with it and without it in the fit
+    /// A column per stretch of the log: the factors without it, in units of their columns' rms.
+    Eigen::MatrixXd without_stretch;
 };
 
 /// Which columns a set of terms has.
@@ -99,6 +105,8 @@ class Criterion {
 
     [[nodiscard]] const LinearFit& fit(const SearchedTerms& terms);
     [[nodiscard]] const BlockSquares& block_squares(const SearchedTerms& terms);
+    /// Size of a term's columns over its standard error, by leaving stretches out; 0 of a transform.
+    [[nodiscard]] double size_t_value(const SearchedTerms& terms, const SearchedTerm& term);
     /// Squares of the fit and the penalty of its numbers.
     [[nodiscard]] double cost(const SearchedTerms& terms);
 

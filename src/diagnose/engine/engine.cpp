@@ -109,18 +109,28 @@ Result find_missing_effects(const Input& input) {
                             {input.without.begin(), input.without.end()});
         Criterion criterion(recorded, prepared.base, prepared.noise);
         if (const auto bias = search.velocity_bias(criterion)) {
+            const SearchedTerms alone = polished(criterion, {*bias});
             result.terms.push_back(
-                judged(search, criterion, {*bias}, 0, std::move(valued_terms(criterion, {*bias})[0])));
+                judged(search, criterion, alone, 0, std::move(valued_terms(criterion, alone)[0])));
             result.rms_before_nm = criterion.rms_nm({});
-            recorded.remove_velocity_bias(bias->values[0]);
+            recorded.remove_velocity_bias(alone[0].values[0]);
             prepared = prepare(recorded, known, result.faults);
         }
     }
     Search search(recorded, prepared.base, prepared.noise, {input.without.begin(), input.without.end()});
     const SearchResult found = search.run();
     Criterion& criterion = *found.best.criterion;
-    const SearchedTerms& terms = found.best.terms;
+    SearchedTerms terms = polished(criterion, found.best.terms);
     std::vector<ValuedTerm> valued = valued_terms(criterion, terms);
+    for (;;) {
+        // The last of them says least.
+        const auto absent = std::find_if(valued.rbegin(), valued.rend(), may_be_absent);
+        if (absent == valued.rend()) break;
+        result.nearly_adopted.push_back({absent->term, 0.0, "its size may be none"});
+        terms.erase(terms.begin() + (valued.rend() - absent - 1));
+        terms = polished(criterion, terms);
+        valued = valued_terms(criterion, terms);
+    }
     SearchedTerms so_far;
     const auto add_factors = [&] {
         const Eigen::VectorXd& factors = criterion.fit(so_far).factors;

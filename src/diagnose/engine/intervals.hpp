@@ -15,9 +15,15 @@ struct ValuedTerm {
     std::vector<FittedValue> values;  ///< FittedValue::term is the term's place in the set
 };
 
-/// A term of the catalogue for each term of the set. Intervals are of the sandwich covariance over blocks, of
-/// all linear values and the linearised others together, with the priors.
+/// A term of the catalogue for each term of the set. Intervals are of a jackknife over
+/// stretches of the log, of all linear values and the linearised others together, with the priors.
 [[nodiscard]] std::vector<ValuedTerm> valued_terms(Criterion& criterion, const SearchedTerms& terms);
+
+/// The intervals of its sizes hold those of no effect.
+[[nodiscard]] bool may_be_absent(const ValuedTerm& valued);
+
+/// The terms with their searched values at the minimum, which the search reaches to some per cent.
+[[nodiscard]] SearchedTerms polished(Criterion& criterion, const SearchedTerms& terms);
 
 /// The factor of a column of the baseline.
 struct ValuedColumn {

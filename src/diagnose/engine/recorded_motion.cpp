@@ -23,6 +23,14 @@ constexpr double longest_gap = 2000.0;  // slots that a gap in the log takes at 
 // Travel in units of the noise of the position below which a joint stands still.
 constexpr double least_travel = 30.0;
 
+// rms speed and travel of robots' joints, within a factor of two to four.
+constexpr double usual_speed_deg_s = 80.0, usual_travel_deg = 400.0;
+
+double coarse_scale(double ratio) {
+    return portable::pow(4.0,
+                         std::max(0.0, std::nearbyint(0.5 * portable::log10(ratio) / portable::log10(2.0))));
+}
+
 // Sum of squares of third differences.
 double roughness(std::span<const double> values) {
     double sum = 0.0;
@@ -382,6 +390,15 @@ double RecordedMotion::travel_deg() const {
     const auto [low, high] = std::minmax_element(motion_.position_deg.begin(), motion_.position_deg.end());
     return *high - *low;
 }
+
+double RecordedMotion::speed_scale() const {
+    const auto& velocity = motion_.velocity_deg_s;
+    return coarse_scale(
+        std::sqrt(dot(velocity.data(), velocity.data(), size()) / static_cast<double>(size())) /
+        usual_speed_deg_s);
+}
+
+double RecordedMotion::angle_scale() const { return coarse_scale(travel_deg() / usual_travel_deg); }
 
 double RecordedMotion::fastest_deg_s() const {
     double fastest = 0.0;

@@ -65,6 +65,10 @@ class RecordedMotion {
     [[nodiscard]] std::size_t usable_count() const;
     [[nodiscard]] double travel_deg() const;
     [[nodiscard]] double fastest_deg_s() const;
+    /// By which widths of a friction over speed and angle are wider than those of a robot's joint: powers of
+    /// four, 1 for every joint of a robot. A screw's nut travels tens of turns.
+    [[nodiscard]] double speed_scale() const;
+    [[nodiscard]] double angle_scale() const;
     /// The log's row nearest to a slot.
     [[nodiscard]] std::size_t row_of(std::size_t slot) const { return row_of_[slot]; }
     [[nodiscard]] const Clock& clock() const { return clock_; }

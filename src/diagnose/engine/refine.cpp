@@ -66,7 +66,8 @@ SearchedTerms refined(Criterion& criterion, SearchedTerms terms, std::size_t pla
     const int sweeps = kind.searched.size() > 1 ? 2 : 1;
     for (int sweep = 0; sweep < sweeps; ++sweep) {
         for (std::size_t value = 0; value < kind.searched.size(); ++value) {
-            const SearchedValue& bounds = kind.searched[value];
+            SearchedValue bounds = kind.searched[value];
+            bounds.upper *= width_scale(kind, bounds, criterion.recorded());
             search.value = value;
             if (is_delay) {
                 search.run(7, 0.002, shrink, [&](double delay_s, double by) -> std::optional<double> {

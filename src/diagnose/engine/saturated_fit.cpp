@@ -238,11 +238,13 @@ SaturatedFit fit_saturated(const RecordedMotion& recorded, const Baseline& base,
     const Motion& motion = recorded.motion();
     const std::vector<unsigned char>& use = recorded.usable();
     const std::size_t count = motion.size();
-    const MotorAngle angle = motor_angle(terms, base.ratio);
+    SearchedTerms with_stated = base.stated;
+    with_stated.insert(with_stated.end(), terms.begin(), terms.end());
+    const MotorAngle angle = motor_angle(with_stated, base.ratio);
     const GearRatio ratio = angle.ratio;
     const Motion at_motor = angle.errors.empty() ? Motion{} : without_errors(motion, angle.errors);
     const Motion& of_ripple = angle.errors.empty() ? motion : at_motor;
-    const Transforms transforms(terms);
+    const Transforms transforms(with_stated);
     const auto sensed = [&](std::vector<double> column) {
         return transformed(std::move(column), transforms.all(), motion);
     };
@@ -258,7 +260,7 @@ SaturatedFit fit_saturated(const RecordedMotion& recorded, const Baseline& base,
     const Columns over_time = splines(motion.time_s, time_splines);
     Columns loops;
     for (const double width_deg : loop_widths_deg)
-        loops.push_back(friction_loop(motion.position_deg, width_deg));
+        loops.push_back(friction_loop(motion.position_deg, width_deg * recorded.angle_scale()));
 
     Columns columns;
     for (const BaseColumn& column : base.columns) columns.push_back(column.torque_nm);
@@ -279,7 +281,7 @@ SaturatedFit fit_saturated(const RecordedMotion& recorded, const Baseline& base,
                unit_columns(*ringing.kind->effect, unit_values(ringing), {.motion = motion, .ratio = ratio}));
     }
     const std::size_t first_ripple = columns.size();
-    const Columns ripple = ripple_columns(of_ripple, base.orders, ratio);
+    const Columns ripple = base.ripple_waves(of_ripple, ratio);
     append(columns, ripple);
     const Columns turn = waves_over_angle(motion, 1.0);
     for (const auto& wave : ripple)

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "diagnose/engine/gram.hpp"
+#include "diagnose/engine/intervals.hpp"
 #include "diagnose/engine/settings.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
@@ -19,6 +20,7 @@ constexpr std::size_t exchange_finalists = 5;
 constexpr std::size_t rival_paths = 2;
 constexpr std::size_t finalist_count = 7;  // refined: the best by grid is not always the best refined
 constexpr int payload_parts = 24;          // in which a change of the load is looked for
+constexpr double least_way = 0.02;         // of the samples, in either direction on either side of a change
 constexpr int most_bias_steps = 40;        // an error of ten cycles when the log ends
 constexpr double smallest_delay_s = 1e-4;  // the valley of a delay may be narrower than any grid
 constexpr double least_gap = 0.02;         // of the squares of the noise: a gap is no smaller
@@ -40,6 +42,10 @@ constexpr std::array plainer_pairs = {
     Plainer{"hysteresis", "backlash", plain_friction_share},
     Plainer{"coulomb-friction", "position-dependent-friction", plain_friction_share},
     Plainer{"drift", "payload-change", plain_friction_share},
+    // Four values in place of one or two: a step in time fits whatever happens once.
+    Plainer{"coulomb-friction", "payload-change", 0.7},
+    Plainer{"hysteresis", "payload-change", 0.7},
+    Plainer{"viscous-friction", "payload-change", 0.7},
     Plainer{"load-friction", "position-dependent-friction", 0.7},
 };
 const Plainer* plainer_than(const SearchedTerm& plain, const SearchedTerm& other) {
@@ -74,15 +80,16 @@ bool has_sensor(const SearchedTerms& terms) {
     return std::ranges::any_of(terms, [](const SearchedTerm& t) { return t.kind->role == Role::sensor; });
 }
 
-bool is_at_bound(const SearchedTerm& term) {
+bool is_at_bound(const SearchedTerm& term, const RecordedMotion& recorded) {
     if (term.kind->may_be_at_bound || !term.kind->is_refined || term.kind->role == Role::motor_angle)
         return false;
     // At the least number of cycles that is possible it is the form of a filter.
     if (term.is("start-stop-ringing") && term.values[0] * term.values[1] < 1.1 * fewest_cycles) return true;
     for (std::size_t i = 0; i < term.kind->searched.size(); ++i) {
         const double size = std::abs(term.values[i]);
-        if (size <= term.kind->searched[i].lower * 1.02 || size >= term.kind->searched[i].upper * 0.98)
-            return true;
+        const SearchedValue& bounds = term.kind->searched[i];
+        const double upper = bounds.upper * width_scale(*term.kind, bounds, recorded);
+        if (size <= bounds.lower * 1.02 || size >= upper * 0.98) return true;
     }
     return false;
 }
@@ -108,7 +115,8 @@ SearchedTerms without_place(SearchedTerms terms, std::size_t place) {
 bool is_below_resolution(const SearchedTerm& term, double step_s) {
     const double value = std::abs(term.values[0]);
     if (term.is("delay") || term.is("lag")) return value < 1.5 * step_s;
-    return term.is("sensor-lowpass") && value > 0.1 / step_s;
+    // A low-pass delays what is slow by sqrt(2) / (2 pi cutoff).
+    return term.is("sensor-lowpass") && value > 0.15 / step_s;
 }
 
 Search::Search(const RecordedMotion& recorded, const Baseline& base,
@@ -160,13 +168,18 @@ Admission Search::admission(Criterion& criterion, const SearchedTerms& shorter, 
          criterion.base().has("coulomb-friction") || criterion.base().states("coulomb-friction") ||
          criterion.base().is_simulated);
     const bool is_friction = added != longer.end() && added->kind->effect->resists;
+    // All events that carry a friction or an offset, few as they may be, have to agree on its size.
+    if ((is_friction && !added->is("stribeck-friction")) ||
+        (added != longer.end() && (added->kind->effect->differs || added->is("offset"))))
+        found.block_t = std::max(found.block_t, criterion.size_t_value(longer, *added));
     const double least_beyond = !corrects_form                   ? least_spread
                                 : added->is("stribeck-friction") ? stribeck_spread * samples
                                                                  : form_spread * samples;
     // What is no friction, which acts at reversals, must be a share of the whole gap as well.
     const double whole_share = found.reduction / std::max(criterion.fit({}).squares - samples, least_squares);
     const bool is_spread = found.gap_share > dominant_gap_share && sum(by_block) > least_beyond &&
-                           (is_friction || whole_share > least_gap_share);
+                           (is_friction || whole_share > least_gap_share) &&
+                           !(added != longer.end() && added->is("payload-change"));
     const bool changes_form = added != longer.end() && added->changes_ripple();
     const bool is_silent =
         added != longer.end() && is_below_resolution(*added, criterion.recorded().step_s());
@@ -183,7 +196,7 @@ Admission Search::admission(Criterion& criterion, const SearchedTerms& shorter, 
              (!(found.gap_share > least_gap_share) || (changes_form && whole_share < least_whole_share)))
         found.reason = "it explains a small part of what is unexplained";
     else if (!is_silent && added != longer.end() &&
-             (is_at_bound(*added) || is_at_end(*added, criterion.recorded())))
+             (is_at_bound(*added, criterion.recorded()) || is_at_end(*added, criterion.recorded())))
         found.reason = "its best value is a bound";
     found.is_admissible = found.reason.empty();
     return found;
@@ -283,6 +296,19 @@ bool Search::may_be_missing(const TermKind& kind, const SearchedTerms& terms) co
     return true;
 }
 
+// A friction that turns over with the only reversal is no change of the load.
+bool Search::moves_both_ways_about(double time_s) const {
+    std::array<double, 4> samples{};
+    const Motion& motion = recorded_.motion();
+    for (std::size_t k = 0; k < motion.size(); ++k) {
+        if (recorded_.usable()[k] == 0) continue;
+        const int side = motion.time_s[k] < time_s ? 0 : 2;
+        samples[static_cast<std::size_t>(side + (motion.velocity_deg_s[k] > 0.0 ? 1 : 0))] += 1.0;
+    }
+    const double total = std::accumulate(samples.begin(), samples.end(), 0.0);
+    return *std::ranges::min_element(samples) >= least_way * total;
+}
+
 // Values that the search of a kind begins with.
 std::vector<SearchedTerm> Search::begins(const TermKind& kind, const SearchedTerms& terms) const {
     const std::string_view name = kind.effect->name;
@@ -291,8 +317,10 @@ std::vector<SearchedTerm> Search::begins(const TermKind& kind, const SearchedTer
         found.push_back({&kind, {}});
     } else if (name == "payload-change") {
         const double duration_s = recorded_.motion().time_s.back();
-        for (int part = 0; part <= payload_parts; ++part)
-            found.push_back({&kind, {rounded(duration_s * (0.05 + 0.9 * part / payload_parts), 5), 0.0}});
+        for (int part = 0; part <= payload_parts; ++part) {
+            const double time_s = rounded(duration_s * (0.05 + 0.9 * part / payload_parts), 5);
+            if (moves_both_ways_about(time_s)) found.push_back({&kind, {time_s, 0.0}});
+        }
     } else if (name == "velocity-bias") {
         const double step = bias_step_deg_s(recorded_, base_);
         for (int steps = 1; steps <= most_bias_steps; ++steps)
@@ -310,11 +338,14 @@ std::vector<SearchedTerm> Search::begins(const TermKind& kind, const SearchedTer
             name == "hysteresis" && (base_.has("coulomb-friction") || base_.states("coulomb-friction"))
                 ? 0.3
                 : -1e9;
+        const double scale = width_scale(kind, kind.searched[0], recorded_);
         for (const double first : kind.searched[0].grid) {
             if (first < least) continue;
-            if (kind.searched.size() == 1) found.push_back({&kind, {first, 0.0}});
+            if (kind.searched.size() == 1) found.push_back({&kind, {first * scale, 0.0}});
             if (kind.searched.size() == 2)
-                for (const double second : kind.searched[1].grid) found.push_back({&kind, {first, second}});
+                for (const double second : kind.searched[1].grid)
+                    found.push_back(
+                        {&kind, {first * scale, second * width_scale(kind, kind.searched[1], recorded_)}});
         }
     }
     return found;
@@ -493,6 +524,7 @@ SearchState Search::path(SearchState state, std::vector<RefusedTerm>& refused) c
         }
         if (!has_grown) break;
         if (changes_noise(state.terms.back())) state = with_new_noise(state);
+        state.terms = polished(*state.criterion, state.terms);
         exchange(state, seen);
     }
     return state;

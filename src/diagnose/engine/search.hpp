@@ -74,6 +74,7 @@ class Search {
     [[nodiscard]] bool is_left_out(const TermKind& kind) const;
     [[nodiscard]] bool may_be_missing(const TermKind& kind, const SearchedTerms& terms) const;
     std::vector<SearchedTerm> begins(const TermKind& kind, const SearchedTerms& terms) const;
+    [[nodiscard]] bool moves_both_ways_about(double time_s) const;
     void add_lines(Criterion& criterion, const SearchedTerms& terms, std::vector<SearchedTerm>& found) const;
     std::vector<Candidate> ranked(Criterion& criterion, const SearchedTerms& terms) const;
     SearchState path(SearchState state, std::vector<RefusedTerm>& refused) const;

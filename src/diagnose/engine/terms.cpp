@@ -230,6 +230,12 @@ Motion without_errors(const Motion& motion, const SearchedTerms& errors) {
     return corrected;
 }
 
+double width_scale(const TermKind& kind, const SearchedValue& value, const RecordedMotion& recorded) {
+    if (!kind.effect->resists && kind.effect->name != "backlash") return 1.0;
+    const std::string_view unit = kind.effect->parameters[value.parameter].unit;
+    return unit == "deg/s" ? recorded.speed_scale() : unit == "deg" ? recorded.angle_scale() : 1.0;
+}
+
 std::size_t fitted_values(const SearchedTerm& term, std::size_t ripple_orders) {
     const TermKind& kind = *term.kind;
     switch (kind.role) {

@@ -16,6 +16,8 @@
 
 namespace ripplenotch::engine {
 
+class RecordedMotion;
+
 /// Cycles in which what rings falls to 37 %: with fewer, at a damping above a tenth, it is a filter's form.
 inline constexpr double fewest_cycles = 1.5;
 
@@ -107,6 +109,10 @@ struct MotorAngle {
 [[nodiscard]] MotorAngle motor_angle(const SearchedTerms& terms, GearRatio known);
 /// The motion without errors of its position.
 [[nodiscard]] Motion without_errors(const Motion& motion, const SearchedTerms& errors);
+
+/// By which grid and upper bound of a width of friction are wider in this log.
+[[nodiscard]] double width_scale(const TermKind& kind, const SearchedValue& value,
+                                 const RecordedMotion& recorded);
 
 /// Numbers that a term fits, with so many ripple orders in the model.
 [[nodiscard]] std::size_t fitted_values(const SearchedTerm& term, std::size_t ripple_orders);
