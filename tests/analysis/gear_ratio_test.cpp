@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "ripplenotch/analysis/identification.hpp"
+#include "ripplenotch/analysis/gear_ratio.hpp"
 
 #include <algorithm>
 #include <array>
-
 #include <cmath>
 
 #include "analysis/traces.hpp"
@@ -16,24 +15,36 @@ using Catch::Matchers::WithinRel;
 
 namespace {
 
-OrderLine line_at(double order_output, double amplitude, double error = 0.01, double speed = 120.0) {
-    return {order_output, error, 50.0, amplitude, true, speed};
+OrderLine line_at(double order_output, double amplitude, double error = 0.01, double snr = 50.0) {
+    return {order_output, error, snr, amplitude, 120.0};
+}
+
+/// Lines as real joints show them: a few times the noise.
+OrderLine faint(double order_output, double amplitude, double error = 0.2) {
+    return line_at(order_output, amplitude, error, 10.0);
 }
 
 double best(const GearRatioResult& result) { return result.fit.candidates.at(0).value; }
 
+double probability_of(const GearRatioResult& result, double ratio) {
+    for (const RatioCandidate& one : result.fit.candidates)
+        if (std::abs(one.value - ratio) < 0.02 * ratio) return one.score;
+    return 0.0;
+}
+
 }  // namespace
 
-TEST_CASE("two lines at 1 : 2 are orders 1 and 2, and the half ratio is named as rival with its reason") {
-    const std::vector lines{line_at(100.0, 0.8), line_at(200.0, 0.5)};
+TEST_CASE("clear lines at 1 : 2 are orders 1 and 2, and the half ratio is a rival with its lines") {
+    const std::vector lines{line_at(100.0, 0.8, 0.01, 400.0), line_at(200.0, 0.5, 0.01, 300.0)};
     const auto result = fit_gear_ratio(lines, {});
     REQUIRE(result.fit.value.has_value());
-    CHECK_THAT(*result.fit.value, WithinAbs(100.0, 1e-6));
+    CHECK_THAT(*result.fit.value, WithinAbs(100.0, 0.01));
     CHECK(result.order_of_line[0] == 1);
     CHECK(result.order_of_line[1] == 2);
+    CHECK(result.fit.candidates[0].score > conclusive_probability);
     REQUIRE(result.fit.candidates.size() > 1);
     CHECK_THAT(result.fit.candidates[1].value, WithinRel(50.0, 0.02));
-    CHECK_THAT(result.fit.candidates[1].reason, Contains("no odd order: cannot be distinguished from 100"));
+    CHECK_THAT(result.fit.candidates[1].reason, Contains("in catalogues; n = 2, 4"));
     CHECK_FALSE(result.fit.second_comb.has_value());
     double total = 0.0;
     for (const auto& candidate : result.fit.candidates) total += candidate.score;
@@ -41,100 +52,59 @@ TEST_CASE("two lines at 1 : 2 are orders 1 and 2, and the half ratio is named as
 }
 
 TEST_CASE("an odd line decides between a ratio and its double") {
-    // Lines at 2 and 3 times 120: neither 240 nor 360 nor 60 explains both as well.
     const std::vector lines{line_at(240.0, 0.5), line_at(360.0, 0.2)};
-    CHECK_THAT(best(fit_gear_ratio(lines, {})), WithinRel(120.0, 1e-6));
+    CHECK_THAT(best(fit_gear_ratio(lines, {})), WithinRel(120.0, 1e-3));
+}
+
+TEST_CASE("lines of 80 that are those of 160 as well leave both, and a faint one at n = 6 decides") {
+    std::vector lines{faint(160.0, 0.056), faint(320.4, 0.037), faint(640.0, 0.057)};
+    const auto open = fit_gear_ratio(lines, {});
+    CHECK(probability_of(open, 80.0) + probability_of(open, 160.0) > 0.95);
+    CHECK(probability_of(open, 80.0) > 0.05);
+    CHECK(probability_of(open, 160.0) > 0.05);
+    lines.push_back(faint(480.3, 0.02));
+    const auto decided = fit_gear_ratio(lines, {});
+    REQUIRE(decided.fit.value.has_value());
+    CHECK_THAT(*decided.fit.value, WithinRel(80.0, 0.01));
+    CHECK(probability_of(decided, 80.0) > probability_of(open, 80.0));
 }
 
 TEST_CASE("a missing fundamental does not halve or double the ratio: lines at 2, 4 and 6 with a weak 1") {
-    const std::vector lines{line_at(240.6, 0.39, 0.1), line_at(481.0, 0.23, 0.1), line_at(721.0, 0.07, 0.2),
-                            line_at(120.0, 0.14, 0.2)};
-    // 2, 4, 8 and 12 times 60 are not excluded, and neither has an odd order that is clear: 120 leads by far.
-    const auto result = fit_gear_ratio(lines, {});
-    REQUIRE(result.fit.candidates.size() > 1);
-    CHECK_THAT(result.fit.candidates[0].value, WithinRel(120.2, 0.003));
-    CHECK(result.fit.candidates[0].score > 2.0 * result.fit.candidates[1].score);
-}
-
-TEST_CASE("a line on its own settles no ratio: at 202, 101 as n = 2 is the most probable") {
-    const std::vector lines{line_at(202.0, 0.5)};
-    const auto result = fit_gear_ratio(lines, {});
-    CHECK_FALSE(result.fit.value.has_value());
-    CHECK_THAT(result.fit.candidates[0].value, WithinRel(101.0, 0.011));
-    CHECK_THAT(result.fit.candidates[0].reason, Contains("catalogue"));
-    CHECK_THAT(result.fit.candidates[1].value, WithinRel(202.0, 0.006));
-}
-
-TEST_CASE("two lines that 100 and 200 explain as well leave both, whichever a catalogue has") {
-    const auto result = fit_gear_ratio(std::vector{line_at(200.0, 0.8), line_at(400.0, 0.5)}, {});
-    CHECK_FALSE(result.fit.value.has_value());
-    const std::vector<double> ratios = undecided_ratios(result.fit);
-    REQUIRE(ratios.size() >= 2);
-    CHECK_THAT(std::min(ratios[0], ratios[1]), WithinRel(100.0, 0.01));
-    CHECK_THAT(std::max(ratios[0], ratios[1]), WithinRel(200.0, 0.01));
-    CHECK_FALSE(fit_gear_ratio(std::vector{line_at(240.0, 0.5), line_at(480.0, 0.3), line_at(720.0, 0.1)}, {})
-                    .fit.value.has_value());
-}
-
-TEST_CASE("strong lines off the comb of a multiple decide for the ratio that explains them") {
-    std::vector<OrderLine> lines;  // 45, of which 135 explains three
-    for (const int n : {1, 2, 3, 4, 5, 6, 9, 18}) lines.push_back(line_at(45.0 * n, 0.3));
+    const std::vector lines{faint(240.6, 0.39), faint(481.0, 0.23), faint(721.0, 0.07), faint(120.0, 0.14)};
     const auto result = fit_gear_ratio(lines, {});
     REQUIRE(result.fit.value.has_value());
-    CHECK_THAT(*result.fit.value, WithinRel(45.0, 1e-6));
+    CHECK_THAT(*result.fit.value, WithinRel(120.2, 0.005));
+    CHECK(result.fit.candidates[0].score > conclusive_probability);
 }
 
-TEST_CASE("two reasons for the same ratio are one ratio") {
-    GearRatioFit fit;
-    fit.candidates = {
-        {100.0, 0.3, "the speed is in rpm", true}, {100.0001, 0.2, "n = 12"}, {120.0, 0.1, "n = 10"}};
-    CHECK(undecided_ratios(fit) == std::vector{100.0, 120.0});
-    fit.candidates.pop_back();
-    CHECK(undecided_ratios(fit).empty());
-}
-
-TEST_CASE(
-    "a low ratio is found as any other: 16 or its half, not 32, and 6 is what a shaft without a gear may "
-    "show, "
-    "too") {
-    const auto of = [](double ratio, std::optional<GearRatio> hint) {
-        const std::vector lines{line_at(ratio, 0.4, 0.002), line_at(2.0 * ratio, 0.3, 0.002)};
-        return fit_gear_ratio(lines, {hint}).fit;
-    };
-    CHECK(undecided_ratios(of(16.0, {})) == std::vector{16.0, 8.0});
-    REQUIRE(of(16.0, GearRatio(16.0)).value.has_value());
-    CHECK_THAT(*of(16.0, GearRatio(16.0)).value, WithinRel(16.0, 1e-6));
-    CHECK_FALSE(of(6.0, {}).value.has_value());
-    CHECK(undecided_ratios(of(6.0, {})) == std::vector{6.0, 1.0, 3.0});
-    REQUIRE(of(6.0, GearRatio(6.0)).value.has_value());
-    CHECK_THAT(*of(6.0, GearRatio(6.0)).value, WithinRel(6.0, 1e-6));
-    REQUIRE(of(6.0, GearRatio(1.0)).value.has_value());
-    CHECK_THAT(*of(6.0, GearRatio(1.0)).value, WithinRel(1.0, 1e-6));
-}
-
-TEST_CASE("orders of a shaft without a gear make no ratio") {
-    const auto result = fit_gear_ratio(
-        std::vector{line_at(12.0, 0.03, 0.002), line_at(18.0, 0.02, 0.002), line_at(36.0, 0.01, 0.004)}, {});
+TEST_CASE("a line on its own: at 202, 101 as n = 2 is the most probable; at 1768 nothing is") {
+    const auto result = fit_gear_ratio(std::vector{faint(202.0, 0.5)}, {});
+    CHECK_THAT(best(result), WithinRel(101.0, 0.011));
     CHECK_FALSE(result.fit.value.has_value());
-    CHECK(std::any_of(result.fit.candidates.begin(), result.fit.candidates.end(), [](const auto& one) {
-        return one.value == 1.0 && one.reason.find("no gear") != std::string::npos;
-    }));
+    const auto alone = fit_gear_ratio(std::vector{faint(1768.0, 0.06)}, {.lowest = 12.0, .highest = 2500.0});
+    CHECK_FALSE(alone.fit.value.has_value());
+    CHECK_FALSE(alone.order_of_line[0].has_value());
 }
 
-TEST_CASE("lines once and twice a turn of the joint neither make a ratio nor hide one") {
-    const OrderLine once = line_at(1.0, 2.0, 0.003), twice = line_at(2.0, 1.0, 0.003);
-    CHECK_FALSE(fit_gear_ratio(std::vector{once, twice}, {}).fit.value.has_value());
-    const auto result =
-        fit_gear_ratio(std::vector{once, twice, line_at(100.0, 0.5, 0.02), line_at(200.0, 0.4, 0.02)}, {});
-    REQUIRE(result.fit.value.has_value());
-    CHECK_THAT(*result.fit.value, WithinRel(100.0, 1e-4));
-    CHECK_FALSE(result.order_of_line[0].has_value());
+TEST_CASE("lines that have nothing to do with each other make no conclusive ratio") {
+    tests::Noise noise(7);
+    int conclusive = 0;
+    constexpr int runs = 200;
+    for (int run = 0; run < runs; ++run) {
+        std::vector<OrderLine> lines;
+        for (int i = 0; i < 1 + run % 6; ++i)
+            lines.push_back(faint(30.0 + std::fmod(std::abs(noise()) * 3000.0, 850.0), 0.2 + 0.01 * i));
+        const auto fit = fit_gear_ratio(lines, {}).fit;
+        conclusive += fit.value && fit.candidates[0].score > conclusive_probability ? 1 : 0;
+    }
+    INFO(conclusive << " of " << runs);
+    CHECK(conclusive <= runs / 20);
 }
 
-TEST_CASE("lines of both splines give one ratio: 2, 4 and 6 times 100 and 1, 8, 16 and 18 times 101") {
+TEST_CASE("lines of both splines give one ratio: 2, 4 and 6 times 100 and 1 and 8 times 101") {
     std::vector<OrderLine> lines;
     for (const int n : {2, 4, 6}) lines.push_back(line_at(100.0 * n, 0.5, 0.03));
-    for (const int n : {1, 8, 16, 18}) lines.push_back(line_at(101.0 * n, 0.2, 0.05));
+    for (const int n : {1, 8}) lines.push_back(line_at(101.0 * n, 0.2, 0.05));
     const auto result = fit_gear_ratio(lines, {});
     REQUIRE(result.fit.value.has_value());
     CHECK_THAT(*result.fit.value, WithinAbs(100.0, 0.01));
@@ -145,76 +115,62 @@ TEST_CASE("lines of both splines give one ratio: 2, 4 and 6 times 100 and 1, 8, 
     CHECK_THAT(*result.order_of_line[4], WithinRel(8.08, 1e-4));
 }
 
+TEST_CASE("lines of the other spline alone make its turns the ratio") {
+    const auto result =
+        fit_gear_ratio(std::vector{line_at(101.0, 0.1), line_at(202.0, 0.5), line_at(404.0, 0.2)}, {});
+    REQUIRE(result.fit.value.has_value());
+    CHECK_THAT(*result.fit.value, WithinAbs(101.0, 0.01));
+    CHECK_FALSE(result.fit.second_comb.has_value());
+}
+
 TEST_CASE("combs too close together to be separated widen the interval: 480 beside 484.7 is 120") {
     const std::vector lines{line_at(120.0, 0.1, 0.1), line_at(240.4, 0.5, 0.1), line_at(480.0, 0.5, 0.1),
                             line_at(484.7, 0.3, 0.1), line_at(721.0, 0.2, 0.2), line_at(726.0, 0.2, 0.2)};
     const auto result = fit_gear_ratio(lines, {});
     REQUIRE(result.fit.value.has_value());
     CHECK_THAT(*result.fit.value, WithinRel(120.0, 0.005));
-    CHECK(result.fit.ci95_low < 120.0);
-    CHECK(result.fit.ci95_high > 120.0);
-    CHECK(result.fit.ci95_high - result.fit.ci95_low > 0.3);  // each line alone claims 0.1 or better
+    CHECK(result.fit.ci95_low < 120.1);
+    CHECK(result.fit.ci95_high > 119.9);
+    CHECK(result.fit.second_comb.has_value());
 }
 
 TEST_CASE("80 is not taken for 160 where a line at 6 times 81 shows the second comb") {
     const std::vector lines{line_at(160.5, 0.05, 0.06),  line_at(640.17, 0.03, 0.11),
                             line_at(320.56, 0.03, 0.18), line_at(960.16, 0.02, 0.67),
                             line_at(485.96, 0.02, 0.37), line_at(1279.2, 0.01, 0.86)};
-    const auto result = fit_gear_ratio(lines, {});
-    CHECK_THAT(best(result), WithinRel(80.0, 0.01));
-    if (result.fit.value) CHECK_THAT(*result.fit.value, WithinRel(80.0, 0.01));
+    CHECK_THAT(best(fit_gear_ratio(lines, {.highest = 1500.0})), WithinRel(80.0, 0.01));
 }
 
-TEST_CASE("a lone line that nothing explains leaves the ratio open and lists what it could be") {
-    const std::vector lines{line_at(1768.0, 0.06)};
-    const auto result = fit_gear_ratio(lines, {});
-    CHECK_FALSE(result.fit.value.has_value());
-    CHECK_FALSE(result.fit.candidates.empty());
-    CHECK_FALSE(result.order_of_line[0].has_value());
-}
-
-TEST_CASE("a hint settles what the lines leave open, and is refused when no line agrees with it") {
-    const std::vector lines{line_at(1768.0, 0.06)};
-    const auto agreed = fit_gear_ratio(lines, {GearRatio(221.0)});
+TEST_CASE("a stated ratio settles what the lines leave open, and is fitted") {
+    const auto agreed =
+        fit_gear_ratio(std::vector{line_at(1768.0, 0.06)}, {.hint = GearRatio(221.0), .highest = 2500.0});
     REQUIRE(agreed.fit.value.has_value());
     CHECK_THAT(*agreed.fit.value, WithinAbs(221.0, 1e-6));
     CHECK(agreed.order_of_line[0] == 8);
-    CHECK_THAT(agreed.fit.candidates[0].reason, Contains("agrees with the hint 221"));
-
-    const auto refused =
-        fit_gear_ratio(std::vector{line_at(100.0, 0.8), line_at(200.0, 0.5)}, {GearRatio(130.0)});
-    REQUIRE(refused.fit.value.has_value());
-    CHECK_THAT(*refused.fit.value, WithinAbs(100.0, 1e-6));
-    REQUIRE_FALSE(refused.notes.empty());
-    CHECK_THAT(refused.notes[0], Contains("hint 130 is not supported"));
+    CHECK_THAT(agreed.fit.candidates[0].reason, Contains("stated; n = 8"));
+    for (const double ratio : {6.0, 16.0, 45.0, 257.0}) {
+        CAPTURE(ratio);
+        const std::vector lines{line_at(ratio, 0.4, 0.002), line_at(2.0 * ratio, 0.3, 0.002)};
+        const auto low = fit_gear_ratio(lines, {.hint = GearRatio(ratio), .lowest = 0.9 * ratio});
+        REQUIRE(low.fit.value.has_value());
+        CHECK_THAT(*low.fit.value, WithinRel(ratio, 1e-4));
+        CHECK(low.fit.candidates[0].score > conclusive_probability);
+    }
 }
 
-TEST_CASE("a speed in the wrong unit is the likeliest explanation of its lines, and no ratio is given then") {
-    struct Slip {
-        double factor;
-        std::string reason;
-    };
-    // A speed in rad/s read as deg/s makes every order 57.3 times too large, and so on. A factor of 6 (rpm)
-    // puts the lines at n = 6 and 12 of the true ratio: nothing in them tells.
-    for (const Slip& slip : {Slip{degrees_per_radian, "if the speed is in rad/s, not deg/s"},
-                             Slip{1.0 / degrees_per_radian, "if the speed is in deg/s, not rad/s"},
-                             Slip{60.0, "if the speed is wrong by a factor of 60"},
-                             Slip{360.0, "if the speed is in turns/s, not deg/s"}}) {
-        const std::vector lines{line_at(100.0 * slip.factor, 0.8), line_at(200.0 * slip.factor, 0.5)};
-        for (const bool hinted : {false, true}) {
-            CAPTURE(slip.reason, hinted);
-            RatioQuestion question;
-            if (hinted) question.hint = GearRatio(100.0);
-            const auto result = fit_gear_ratio(lines, question);
-            CHECK_FALSE(result.fit.value.has_value());
-            REQUIRE_FALSE(result.fit.candidates.empty());
-            CHECK_THAT(result.fit.candidates[0].value, WithinRel(100.0, 1e-6));
-            CHECK(result.fit.candidates[0].score > 0.5);
-            CHECK_THAT(result.fit.candidates[0].reason, Contains(slip.reason));
-            REQUIRE_FALSE(result.notes.empty());
-            CHECK_THAT(result.notes.back(), Contains(slip.reason));
-        }
-    }
+TEST_CASE("a stated ratio is kept where the lines contradict it, which is told with what they give") {
+    const auto refused =
+        fit_gear_ratio(std::vector{line_at(100.0, 0.8), line_at(200.0, 0.5)}, {.hint = GearRatio(130.0)});
+    CHECK(refused.fit.value == 130.0);
+    CHECK(refused.fit.contradicted);
+    CHECK(probability_of(refused, 100.0) + probability_of(refused, 50.0) > 0.9);
+    // Of a belt the stated ratio is the motor's: its own line is named, and those of the gear behind it
+    // speak.
+    const auto belt =
+        fit_gear_ratio(std::vector{faint(200.0, 0.5), faint(100.2, 0.3), faint(84.3, 0.2), faint(400.0, 0.1)},
+                       {.hint = GearRatio(84.1666)});
+    CHECK(belt.fit.value.value() == Approx(84.1666).epsilon(0.02));
+    CHECK(belt.order_of_line[2] == 1.0);
 }
 
 TEST_CASE("one line that is off hardly moves the ratio") {
@@ -231,11 +187,9 @@ TEST_CASE("the 95 % interval covers the truth in 93 to 97 of a hundred fits") {
     int covered = 0, given = 0;
     constexpr int runs = 1000;
     for (int run = 0; run < runs; ++run) {
-        std::vector<OrderLine> lines{line_at(100.0, 0.8, 0.05), line_at(200.0, 0.5, 0.08)};
+        std::vector<OrderLine> lines{line_at(100.0, 0.8, 0.05, 400.0), line_at(200.0, 0.5, 0.08, 400.0)};
         for (OrderLine& line : lines) line.order_output += line.error * noise();
         const auto result = fit_gear_ratio(lines, {});
-        // Where the errors put the lines on combs of their own, several ratios are possible and none is
-        // given.
         if (!result.fit.value) continue;
         ++given;
         covered += result.fit.ci95_low <= 100.0 && 100.0 <= result.fit.ci95_high;
@@ -251,8 +205,7 @@ TEST_CASE("the comb of five published peaks has its base at 40.26 Hz") {
     // a joint at 720 deg/s.
     std::vector<OrderLine> lines;
     for (const double hz : {39.01628, 81.93419, 120.95047, 159.96675, 241.90094})
-        lines.push_back(line_at(0.5 * hz, 1.0, 0.6, 720.0));
-    // So coarse, half of it stays possible: which of the two is stated.
+        lines.push_back({0.5 * hz, 0.6, 50.0, 1.0, 720.0});
     const auto result = fit_gear_ratio(lines, {.hint = GearRatio(20.1)});
     CHECK_THAT(best(result), WithinRel(0.5 * 40.2577, 1e-4));
     for (std::size_t i = 0; i < lines.size(); ++i)
@@ -264,31 +217,27 @@ TEST_CASE("the comb of five published peaks has its base at 40.26 Hz") {
 }
 
 TEST_CASE("no lines, no ratio, no candidates") {
-    const auto result = fit_gear_ratio({}, {GearRatio(100.0)});
+    const auto result = fit_gear_ratio({}, {.hint = GearRatio(100.0)});
     CHECK_FALSE(result.fit.value.has_value());
     CHECK(result.fit.candidates.empty());
 }
 
 TEST_CASE("a hinted order settles what a lone line is, and leaves it open when no line is there") {
     const std::vector lines{line_at(1768.0, 0.06)};
-    CHECK_FALSE(fit_gear_ratio(lines, {}).fit.value.has_value());
     const std::vector<int> eight{8};
-    const auto hinted = fit_gear_ratio(lines, {std::nullopt, eight});
+    const auto hinted = fit_gear_ratio(lines, {.hinted_orders = eight, .highest = 2500.0});
     REQUIRE(hinted.fit.value.has_value());
-    CHECK_THAT(*hinted.fit.value, WithinRel(221.0, 1e-6));
+    CHECK_THAT(*hinted.fit.value, WithinRel(221.0, 1e-3));
     CHECK(hinted.order_of_line[0] == 8);
 }
 
-TEST_CASE("a ratio half a per cent off a hint names the scale error, one within its error does not") {
+TEST_CASE("a ratio half a per cent off the stated one names the scale error, one within its error does not") {
     const std::vector off{line_at(99.5, 0.8), line_at(199.0, 0.5)};
-    const auto odd = fit_gear_ratio(off, {GearRatio(100.0)});
+    const auto odd = fit_gear_ratio(off, {.hint = GearRatio(100.0)});
     REQUIRE(odd.fit.value.has_value());
     CHECK_THAT(*odd.fit.value, WithinRel(99.5, 1e-6));
     REQUIRE_FALSE(odd.notes.empty());
     CHECK(odd.notes.back().find("scale reads 0.50 % high") != std::string::npos);
-    REQUIRE(odd.fit.candidates.size() > 1);
-    CHECK(odd.fit.candidates[1].value == 100.0);
-    CHECK(odd.fit.candidates[1].score > 0.2);
     const std::vector right{line_at(100.0, 0.8), line_at(200.0, 0.5)};
-    CHECK(fit_gear_ratio(right, {GearRatio(100.0)}).notes.empty());
+    CHECK(fit_gear_ratio(right, {.hint = GearRatio(100.0)}).notes.empty());
 }

@@ -160,6 +160,14 @@ TEST_CASE("a joint at rest: cannot tell") {
     CHECK_THAT(found.verdict, Contains("Cannot tell: the joint is at rest"));
 }
 
+TEST_CASE("at rest slow tones are found, too") {
+    const Identification found = identify_all({at_speed(0, 1, 10.0, {}, {{7.0, 0.3, 0.0}})});
+    REQUIRE(found.lines.size() == 1);
+    CHECK(found.lines[0].kind == LineKind::tone);
+    CHECK_THAT(found.lines[0].hz.value(), WithinAbs(7.0, 0.02));
+    CHECK_FALSE(found.conclusive);
+}
+
 TEST_CASE("the paper's move alone gives the ratio within 0.05 %") {
     // 180 deg in 2 s, rest to rest, speed 30 u^2 (1 - u)^2 times the mean.
     const auto speed = [](double t) {

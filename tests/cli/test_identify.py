@@ -126,10 +126,14 @@ class Answers(Case):
         self.assertEqual(done.returncode, 0)
         self.assertTrue(done.stdout.startswith("No ripple: no line above"), done.stdout)
 
-    def test_a_hint_that_no_line_supports_is_not_believed(self):
-        found = identified(*PAPER, "--gear-ratio", "130")
-        self.assertAlmostEqual(found["gear_ratio"]["value"], 100.0, delta=0.2)
-        self.assertTrue(any("hint 130 is not supported" in note for note in found["notes"]))
+    def test_a_stated_ratio_is_kept_and_that_the_lines_contradict_it_is_told(self):
+        done = run("identify", *PAPER, "--gear-ratio", "130", "--json", "--require-conclusive")
+        self.assertEqual(done.returncode, 5, done.stdout)
+        found = json.loads(done.stdout)
+        self.assertEqual(found["gear_ratio"]["value"], 130)
+        self.assertFalse(found["conclusive"])
+        self.assertIn("they contradict the stated gear ratio 130: probable are 100.00 (", found["verdict"])
+        self.assertEqual([line["order"] for line in found["lines"]], [None, None])
 
     def test_equal_speeds_in_other_units_give_the_same_ratio(self):
         def in_unit(text, unit, factor):
@@ -187,16 +191,24 @@ class Doubts(Case):
         self.assertIsNone(found["gear_ratio"]["value"])
         self.assertEqual(orders(found, ("order", "unknown")), [])
 
-    def test_two_ratios_that_explain_the_lines_as_well(self):
-        run("simulate", "--gear-ratio", "100", "--ripple", "2:0.8Nm", "--ripple", "4:0.5Nm", "--motion",
+    def test_two_ratios_that_explain_the_lines_about_as_well(self):
+        run("simulate", "--gear-ratio", "80", "--ripple", "2:0.8Nm", "--ripple", "4:0.5Nm", "--motion",
             "constant,speed=40deg/s,duration=5s", "--motion", "constant,speed=70deg/s,duration=5s", "--sample-rate", "1kHz",
             "--noise", "0.05Nm", "-o", "log.csv", cwd=self.folder)
         done = run("identify", "log.csv", "-o", "joint.json", "--require-conclusive", "-q", cwd=self.folder)
         self.assertEqual(done.returncode, 5, done.stdout)
-        self.assertIn("cannot tell which of 100 and 200 is the gear ratio", done.stdout)
+        self.assertRegex(done.stdout, r"the ratio has a probability of 0\.[0-9]+: 160\.[0-9]+ \(0\.[0-9]+\), 80\.[0-9]+ \(0\.[0-9]+\)")
+        found = json.loads((self.folder / "joint.json").read_text())
+        self.assertEqual([round(one["value"]) for one in found["gear_ratio"]["candidates"][:2]], [160, 80])
+        # Where none is more probable than all others together there is no value, and design asks for one.
+        found["gear_ratio"] |= {"value": None, "stderr": None, "ci95": None}
+        for one in found["gear_ratio"]["candidates"][:2]:
+            one["score"] = 0.4
+        (self.folder / "joint.json").write_text(json.dumps(found))
         refused = run("design", "joint.json", "-q", cwd=self.folder)
         self.assertEqual(refused.returncode, 3)
-        self.assertIn("identify could not decide between 100 or 200; give --gear-ratio", refused.stderr)
+        self.assertIn("give --gear-ratio", refused.stderr)
+        self.assertRegex(refused.stderr, r"identify could not decide between 160\S* or 80")
 
     def test_a_motor_in_radians_without_a_unit_is_asked_for_its_unit(self):
         noise = random.Random(5)
@@ -382,19 +394,28 @@ class AnyTravelAnyRatio(Case):
 
     def test_a_bound_names_its_range_and_holds_there(self):
         motions = self.to_and_fro(200, 1.0, 10)
-        found = identified(self.simulated(100, *motions, rate="77Hz", ripple=(), noise="0.1Nm"))
+        found = identified(self.simulated(100, *motions, rate="154Hz", ripple=(), noise="0.1Nm"))
         self.assertEqual((found["finding"], found["lines"]), ("nothing", []))
         searched = found["searched"]
-        # 77 rows a sweep, 20 sweeps: least squares of one amplitude has a standard error of 0.1 Nm sqrt(2 / 1540).
-        self.assertGreater(searched["detectable_nm"], 3 * 0.1 * math.sqrt(2 / 1540))
+        # 154 rows a sweep, 20 sweeps: least squares of one amplitude has a standard error of 0.1 Nm sqrt(2 / 3080).
+        self.assertGreater(searched["detectable_nm"], 3 * 0.1 * math.sqrt(2 / 3080))
+        self.assertLess(searched["detectable_nm"], 0.1)
         self.assertLess(searched["lowest_order"], searched["highest_order"])
         self.assertIn(f"to {searched['highest_order']:.4g} cycles per output turn", found["verdict"])
         self.assertEqual([bound["detectable_nm"] for bound in searched["bounds"]],
                          sorted((bound["detectable_nm"] for bound in searched["bounds"]), reverse=True))
         middle = math.sqrt(searched["lowest_order"] * searched["highest_order"])
-        path = self.simulated(middle, *motions, rate="77Hz", ripple=(f"1:{2 * searched['detectable_nm']:.4g}Nm",), noise="0.1Nm")
+        path = self.simulated(middle, *motions, rate="154Hz", ripple=(f"1:{2 * searched['detectable_nm']:.4g}Nm",), noise="0.1Nm")
         lines = [line["order_output"] for line in identified(path)["lines"] if line["kind"] in ("order", "unknown")]
         self.assertTrue(any(abs(order - middle) < 2.0 for order in lines), lines)
+
+    def test_a_bound_above_the_noise_itself_is_no_claim(self):
+        path = self.simulated(100, *self.to_and_fro(200, 1.0, 10), rate="77Hz", ripple=(), noise="0.1Nm")
+        done = run("identify", path, "--json", "--require-conclusive")
+        self.assertEqual(done.returncode, 5, done.stdout)
+        found = json.loads(done.stdout)
+        self.assertEqual((found["finding"], found["conclusive"], found["lines"]), ("too noisy", False, []))
+        self.assertRegex(found["verdict"], r"^Cannot tell: too noisy or too short: a line of 0\.\d+ Nm at .* would be missed")
 
     def test_a_joint_that_hardly_moves_allows_no_claim(self):
         found = identified(self.simulated(100, "poly6,to=2deg,duration=1s", ripple=()))
@@ -439,7 +460,8 @@ class RealLogs(unittest.TestCase):
             self.assertIn("only one speed", found["verdict"])
             self.assertFalse(found["conclusive"])
         else:
-            self.assertGreater(found["searched"]["detectable_nm"], 0.6)
+            searched = found["searched"]
+            self.assertTrue(searched["detectable_nm"] > 0.6 or searched["lowest_order"] > 202, searched)
 
     def test_kuka_ratios_by_either_hint_in_each_log_and_in_both_together(self):
         logs = [str(LOGS / f"kuka_kr300_traj{name}_all.csv") for name in "AB"]

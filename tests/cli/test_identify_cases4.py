@@ -35,14 +35,12 @@ class CasesOfUsers(Case):
         if found["conclusive"]:
             self.assertAlmostEqual(found["gear_ratio"]["value"], 100.0, delta=1.0)
 
-    @unittest.expectedFailure  # On the motor's side nothing above 25 per turn is searched.
     def test_the_strongest_order_of_a_motor(self):
         found = self.answered("motor_order42_no_ratio", "--side", "motor")
         self.assert_line(found, "order", 42.0, 0.12)
         self.assert_line(found, "order", 7.0, 0.06)
         self.assert_line(found, "hz", 87.0, 0.04)
 
-    @unittest.expectedFailure  # The ratio of the wave generator takes the place of the stated one.
     def test_a_stated_ratio_is_not_replaced(self):
         found = self.answered("belt_84_1666", "--gear-ratio", "84.1666")
         self.assert_line(found, "order_output", 100.0, 0.8)

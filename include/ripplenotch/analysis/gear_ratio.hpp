@@ -14,21 +14,22 @@ namespace ripplenotch {
 
 struct RatioCandidate {
     double value = 0.0;
-    double score = 0.0;  ///< 0..1, sums to at most 1 over the candidates
+    double score = 0.0;  ///< posterior probability; what is left over 1 is that of no gear at all
     std::string reason;
-    bool other_unit = false;  ///< only if the motion is in another unit than it was read in
 };
 
 /// Gear ratio from f = n Kg |v| / 360.
 struct GearRatioFit {
-    std::optional<double> value;  ///< empty when nothing supports one
+    /// The most probable one, or the stated one; empty where none is more probable than all others together.
+    std::optional<double> value;
     double standard_error = 0.0;
     double ci95_low = 0.0, ci95_high = 0.0;
     /// Turns of the wave generator against the other spline, value + 1 or value - 1, where lines lie on its
     /// multiples as well.
     std::optional<double> second_comb;
-    bool coarse = false;  ///< ci95 holds ratios one apart, as those of both splines are; not in joint.json
-    std::vector<RatioCandidate> candidates;  ///< likeliest first
+    /// The lines contradict the stated ratio, which is `value` all the same; not in joint.json.
+    bool contradicted = false;
+    std::vector<RatioCandidate> candidates;  ///< the stated one, then the most probable first
     /// One entry per line used: its mean speed, its frequency there and the residual of the fit, in hertz.
     struct Residual {
         double speed_deg_s = 0.0, hz = 0.0, order = 0.0, residual_hz = 0.0, weight = 1.0;
@@ -46,9 +47,9 @@ struct OrderLine {
     double error = 0.0;  ///< standard error of order_output from the line's own noise
     double snr = 0.0;
     double amplitude_nm = 0.0;
-    bool certain = true;        ///< false: it may also be a fixed tone
     double speed_deg_s = 0.0;   ///< mean, at which the residual is stated
     double shared_error = 0.0;  ///< relative standard error of the angle, which all lines have in common
+    double sweeps = 1.0;        ///< that show it, each with a noise of amplitude_nm / snr
 };
 
 struct GearRatioResult {
@@ -61,20 +62,26 @@ struct GearRatioResult {
 
 /// What is known in addition to the lines.
 struct RatioQuestion {
-    std::optional<GearRatio> hint{};
-    std::span<const int> hinted_orders{};  ///< n at which the strongest line is assumed to lie
+    std::optional<GearRatio> hint{};        ///< stated
+    std::span<const int> hinted_orders{};   ///< n at which the strongest line is assumed to lie
+    double resolution = 0.0;                ///< width of a line in output orders
+    double lowest = 12.0, highest = 900.0;  ///< output orders that were searched; below are motion and load
 };
+/// The n that hinted_orders may hold: 1 to this.
+inline constexpr int highest_motor_order = 16;
 
-/// Ratios are compared by their posterior probability. A line lies on a tooth of a comb within its error, or
-/// anywhere by chance, which is the less probable the more clearly it is seen; a tooth has the prior
-/// probability of its n (1 to 32), so that a dense comb pays for what it explains by chance. Ratios have
-/// equal prior probability in the logarithm from 1 to 320, more where a catalogue has them, and more near the
-/// hint. Compared as well: no gear at all (whole orders of the shaft that was measured), no connection
-/// between the lines, and a mistaken unit. The scores are these probabilities. The value is left empty unless
-/// one ratio has at least 0.8 and explains two lines, or one and the hint. Fit: over the lines, by Huber's
-/// weights (k = 1.345); where they scatter more than their errors make likely (1 %), that widens the
-/// interval, by Student's t; the error that they share comes on top. Lines that both combs make up, too close
-/// together to be separated, count with the distance between the combs as their error.
+/// A ratio whose probability is above this is conclusive.
+inline constexpr double conclusive_probability = 0.95;
+
+/// Ratios are compared by their posterior probability: those of strain wave gears that are sold, ratios
+/// between 22 and 400 that are in no catalogue, the stated one, and no gear at all. A line is at n = 1 to 16
+/// of a comb of the ratio (N, and N + 1 against the other spline) with the share of known joints that show
+/// this n, or anywhere by chance; orders that were searched and are absent count against a ratio; the
+/// strongest line counts by the share of joints in which this n is the strongest. A stated ratio is kept
+/// within 2 % and fitted; where its probability is below 0.05 it is contradicted. Fit: over the lines, by
+/// Huber's weights (k = 1.345); where they scatter more than their errors make likely (1 %), that widens the
+/// interval, by Student's t; the error that they share comes on top. A line that may be on either comb counts
+/// with the distance between the combs in its error.
 [[nodiscard]] GearRatioResult fit_gear_ratio(std::span<const OrderLine> lines, const RatioQuestion& question);
 
 }  // namespace ripplenotch

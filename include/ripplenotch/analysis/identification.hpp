@@ -34,6 +34,7 @@ enum class RippleFinding {
     orders,      ///< ripple that turns with the joint; its gear ratio stays open
     one_speed,   ///< lines, all at one speed, where an order and a fixed tone look alike
     nothing,     ///< surely no ripple above SearchedOrders::detectable_nm in that range
+    too_noisy,   ///< no line, but one of SearchedOrders::detectable_nm would be missed
     too_little,  ///< the joint is at standstill, or moves too little to determine anything
 };
 [[nodiscard]] std::string_view finding_name(RippleFinding finding);
@@ -112,6 +113,9 @@ struct Disagreement {
 struct SearchedOrders {
     double lowest_order = 0.0, highest_order = 0.0;  ///< cycles per output turn
     double detectable_nm = 0.0;                      ///< zero to peak, the largest of the range
+    /// Standard deviation of what was searched, without smooth part and lines; not in joint.json. A line of
+    /// more than that would show in any case: a larger detectable_nm says nothing.
+    double deviation_nm = 0.0;
     /// From this order on up to the highest, a smaller amplitude would have been found.
     struct Bound {
         double from_order = 0.0, detectable_nm = 0.0;
@@ -161,6 +165,11 @@ struct Identification {
     std::string verdict;             ///< verdict_sentence of all this: one sentence with numbers
     std::vector<std::string> notes;  ///< tests that were made and why they failed, one sentence each
     bool conclusive = false;  ///< lines found and a ratio, or certainly nothing, and no reason against it
+
+    /// A range was searched, and nothing in it is, or may be, ripple.
+    [[nodiscard]] bool shows_no_line() const {
+        return finding == RippleFinding::nothing || finding == RippleFinding::too_noisy;
+    }
 };
 
 /// Cycles per motor turn of a line that follows the motor; empty for others. A line that was seen at one
@@ -187,6 +196,7 @@ struct IdentifyOptions {
     std::optional<GearRatio> hint;   ///< checked against the lines
     std::vector<int> hinted_orders;  ///< n at which the strongest line is expected
     double false_alarm = 0.01;       ///< chance that a log of noise gives any line
+    double highest_order = 2560.0;   ///< per output turn, that is searched (StackRule)
     std::vector<Doubt> doubts;       ///< reasons against these logs that are known beforehand
 };
 

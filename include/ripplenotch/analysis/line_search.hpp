@@ -35,8 +35,9 @@ struct MotionLinesOptions {
     StackRule stack;
     double false_alarm = 0.01;     ///< chance that noise gives any line at all, orders and tones together
     double least_share = 1e-4;     ///< share of the torque's range: smaller lines are not reported
-    double lowest_tone_hz = 10.0;  ///< slower tones are those of the motion itself
-    std::size_t most_lines = 12;   ///< chosen, not derived: each costs a further pass over all sweeps
+    double lowest_tone_hz = 10.0;  ///< in motion, which makes slower ones itself
+    double lowest_tone_at_rest_hz = 1.0;
+    std::size_t most_lines = 12;  ///< chosen, not derived: each costs a further pass over all sweeps
 };
 
 struct MotionLines {

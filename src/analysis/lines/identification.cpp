@@ -37,6 +37,7 @@ constexpr std::array findings{Named<RippleFinding>{RippleFinding::ratio, "ratio"
                               Named<RippleFinding>{RippleFinding::orders, "orders"},
                               Named<RippleFinding>{RippleFinding::one_speed, "one speed"},
                               Named<RippleFinding>{RippleFinding::nothing, "nothing"},
+                              Named<RippleFinding>{RippleFinding::too_noisy, "too noisy"},
                               Named<RippleFinding>{RippleFinding::too_little, "too little motion"}};
 constexpr std::array doubt_reasons{Named<DoubtReason>{DoubtReason::clock, "clock"},
                                    Named<DoubtReason>{DoubtReason::unit, "unit"}};
@@ -141,21 +142,23 @@ Grounds grounds_of(const MotionLines& motion, const IdentifyOptions& options) {
 }
 
 RippleFinding finding_in(const Identification& result) {
-    if (result.gear_ratio.value) return RippleFinding::ratio;
+    if (result.gear_ratio.value && !result.gear_ratio.contradicted) return RippleFinding::ratio;
     if (any_of_kind(result, LineKind::order)) return RippleFinding::orders;
     if (any_of_kind(result, LineKind::unknown)) return RippleFinding::one_speed;
-    return result.searched ? RippleFinding::nothing : RippleFinding::too_little;
+    if (!result.searched) return RippleFinding::too_little;
+    return result.searched->detectable_nm > result.searched->deviation_nm ? RippleFinding::too_noisy
+                                                                          : RippleFinding::nothing;
 }
 
-/// A ratio from lines of one speed alone is the likeliest, but not settled; nor is one of several, or one
-/// that cannot be distinguished from that of the other spline.
+/// A ratio from lines of one speed alone is the likeliest, but not settled; nor is one of several.
 bool settled(const Identification& result) {
     const bool two_ratios =
         std::any_of(result.disagreements.begin(), result.disagreements.end(),
                     [](const Disagreement& one) { return one.about == Disagreement::About::ratio; });
     if (two_ratios) return false;
     if (result.finding == RippleFinding::nothing) return true;
-    return result.finding == RippleFinding::ratio && !result.gear_ratio.coarse &&
+    const auto& ratios = result.gear_ratio.candidates;
+    return result.finding == RippleFinding::ratio && ratios.front().score > conclusive_probability &&
            std::any_of(result.lines.begin(), result.lines.end(), [](const Line& line) {
                return line.kind == LineKind::order && line.order.has_value();
            });
@@ -185,6 +188,17 @@ void settle(Identification& result) {
     result.verdict = verdict_sentence(result);
 }
 
+/// The range begins where less than the deviation of what is left would have been found.
+void keep_telling_bounds(SearchedOrders& searched) {
+    const auto first = std::find_if(
+        searched.bounds.begin(), searched.bounds.end(),
+        [&](const SearchedOrders::Bound& bound) { return bound.detectable_nm <= searched.deviation_nm; });
+    if (first == searched.bounds.end()) return;
+    searched.bounds.erase(searched.bounds.begin(), first);
+    searched.lowest_order = searched.bounds.front().from_order;
+    searched.detectable_nm = searched.bounds.front().detectable_nm;
+}
+
 /// Writes finding, grounds, notes, conclusive and verdict from the lines and the ratio already in `result`.
 void conclude(const MotionLines& motion, const IdentifyOptions& options, Identification& result) {
     if (motion.sweeps_left_out > 0) {
@@ -199,6 +213,8 @@ void conclude(const MotionLines& motion, const IdentifyOptions& options, Identif
     }
     result.grounds = grounds_of(motion, options);
     result.searched = motion.searched;
+    if (result.searched && finding_in(result) == RippleFinding::too_noisy)
+        keep_telling_bounds(*result.searched);
     settle(result);
 }
 
@@ -294,9 +310,9 @@ Reported from_motion(const MotionLines& motion, std::size_t source, double rate_
                                    found.order_stderr,
                                    found.snr,
                                    found.amplitude_nm,
-                                   found.kind == LineKind::order,
                                    0.5 * (motion.slowest_deg_s + motion.fastest_deg_s),
-                                   motion.order_share_error};
+                                   motion.order_share_error,
+                                   static_cast<double>(std::max<std::size_t>(1, found.by_speed.size()))};
     }
     if (found.phase_deg) {
         line.phase_deg = *found.phase_deg;
@@ -308,20 +324,31 @@ Reported from_motion(const MotionLines& motion, std::size_t source, double rate_
     return reported;
 }
 
-/// Effects of the joint's load repeat once a turn, with and without a gear: such a line carries no
-/// information on the ratio.
-bool is_once_a_turn(const OrderLine& line) {
-    // Chosen, not derived: share of the joint's turn, in addition to the line's own error.
-    constexpr double tolerance = 0.02;
-    return std::abs(line.order_output - 1.0) < std::max(tolerance, 3.0 * line.error);
-}
+/// Of a stated ratio, from where on its lines are asked for.
+constexpr double stated_part = 0.9;
 
 /// Fits the ratio to what may be orders and writes each line's order per motor turn.
-void add_ratio(std::vector<Reported>& reported, const RatioQuestion& question, Identification& result) {
+void add_ratio(std::vector<Reported>& reported, const MotionLines& motion, const IdentifyOptions& options,
+               Identification& result) {
+    RatioQuestion question{options.hint, options.hinted_orders, motion.resolution_orders};
+    if (options.hint) question.lowest = std::min(question.lowest, stated_part * options.hint->value());
+    if (motion.searched) {
+        question.lowest = std::max(question.lowest, motion.searched->lowest_order);
+        // The shares of orders are of lines up to question.highest, which stands where nothing is stated.
+        double highest = motion.searched->highest_order;
+        if (options.hint || !options.hinted_orders.empty()) {
+            for (const MotionLine& line : motion.lines) highest = std::max(highest, line.order_output + 1.0);
+        } else {
+            highest = std::min(question.highest, highest);
+        }
+        question.highest = std::max(highest, 2.0 * question.lowest);
+    }
     std::vector<OrderLine> orders;
     std::vector<std::size_t> owner;
     for (std::size_t i = 0; i < reported.size(); ++i) {
-        if (!reported[i].order || is_once_a_turn(*reported[i].order)) continue;
+        if (!reported[i].order) continue;
+        const double order = reported[i].order->order_output;
+        if (order < question.lowest || order > question.highest) continue;
         orders.push_back(*reported[i].order);
         owner.push_back(i);
     }
@@ -353,6 +380,7 @@ Identification identify_together(std::span<const TraceView> logs, const Identify
     result.sample_rate = mean_sample_rate(logs);
     MotionLinesOptions search;
     search.false_alarm = options.false_alarm;
+    search.stack.highest_order = options.highest_order;
     const MotionLines motion = find_motion_lines(logs, search);
     std::vector<Reported> reported;
     for (std::size_t i = 0; i < motion.lines.size(); ++i)
@@ -361,7 +389,7 @@ Identification identify_together(std::span<const TraceView> logs, const Identify
     for (const TraceView& log : logs)
         result.velocity_noise = std::max(result.velocity_noise, velocity_noise(log));
     if (motion.sweeps > 0) result.evidence = "order spectrum";
-    add_ratio(reported, {options.hint, options.hinted_orders}, result);
+    add_ratio(reported, motion, options, result);
     for (Reported& r : reported) {
         result.lines.push_back(std::move(r.line));
     }

@@ -119,6 +119,15 @@ std::string of_both_splines(const GearRatioFit& ratio, int decimals) {
         *ratio.second_comb > *ratio.value ? "circular" : "flexible");
 }
 
+/// "100.00 (0.73), 50.00 (0.21)", with their probabilities.
+std::string candidates(const Identification& found) {
+    constexpr std::size_t most = 4;  // chosen, not derived: a sentence that a person reads
+    const auto& all = found.gear_ratio.candidates;
+    return joined(std::span(all).first(std::min(most, all.size())), ", ", [](const RatioCandidate& one) {
+        return fmt::format("{:.2f} ({:.2f})", one.value, one.score);
+    });
+}
+
 std::string with_ratio(const Identification& found) {
     std::vector<const Line*> lines;
     for (const Line& line : found.lines) {
@@ -144,11 +153,8 @@ std::string with_ratio(const Identification& found) {
                             doubted.size() == 1 ? "" : "s", listed(doubted), doubted.size() == 1 ? "" : "s");
     }
     const GearRatioFit& ratio = found.gear_ratio;
-    if (ratio.coarse)
-        doubt +=
-            "; ratios one apart, as those of both splines are, cannot be distinguished: record longer sweeps "
-            "to "
-            "decide";
+    if (const double probability = ratio.candidates.front().score; probability <= conclusive_probability)
+        doubt += fmt::format("; the ratio has a probability of {:.2f}: {}", probability, candidates(found));
     const double half = 0.5 * (ratio.ci95_high - ratio.ci95_low);
     const int decimals = half < 0.005 ? 4 : half < 0.05 ? 3 : half < 0.5 ? 2 : 1;
     const std::string subject = !all_doubted        ? "Ripple"
@@ -162,29 +168,15 @@ std::string with_ratio(const Identification& found) {
         besides(found));
 }
 
-// One number may have several reasons, such as another unit of the speed: it is listed once, with each of
-// them.
-std::string candidates(const Identification& found) {
-    std::vector<std::pair<std::string, std::string>> merged;
-    for (const RatioCandidate& candidate : found.gear_ratio.candidates) {
-        if (!(candidate.score > 0.0)) continue;
-        const std::string value = fmt::format("{:.2f}", candidate.value);
-        const auto same = std::ranges::find(merged, value, &std::pair<std::string, std::string>::first);
-        if (same != merged.end())
-            same->second += "; or " + candidate.reason;
-        else if (merged.size() < 4)
-            merged.emplace_back(value, candidate.reason);
-    }
-    return joined(merged, ", ",
-                  [](const auto& one) { return fmt::format("{} ({})", one.first, one.second); });
-}
-
-/// "cannot tell which of 100 and 200 is the gear ratio: 100.00 (why), 200.00 (why)"
+/// "cannot tell which of 80 and 160 is the gear ratio: 80.00 (0.48), 160.00 (0.47)"
 std::string undecided(const Identification& found) {
+    const std::string all = candidates(found);
+    if (found.gear_ratio.contradicted)
+        return fmt::format("they contradict the stated gear ratio {:.6g}{}", *found.gear_ratio.value,
+                           all.empty() ? "" : ": probable are " + all);
     std::vector<std::string> ratios;
     for (const double ratio : undecided_ratios(found.gear_ratio))
         ratios.push_back(fmt::format("{:.5g}", ratio));
-    const std::string all = candidates(found);
     const std::string question =
         ratios.empty() ? "the gear ratio cannot be determined from these lines"
                        : fmt::format("cannot tell which of {} is the gear ratio", listed(ratios));
@@ -228,6 +220,15 @@ std::string nothing(const Identification& found) {
         "alarms){}{}.",
         fmt::join(bounds, ", "), searched.highest_order, basis(found.grounds),
         100.0 * found.grounds.false_alarm, at_rest(found), besides(found));
+}
+
+std::string too_noisy(const Identification& found) {
+    const SearchedOrders& searched = *found.searched;
+    return fmt::format(
+        "Cannot tell: too noisy or too short: a line of {:.2g} Nm at {:.3g} to {:.4g} cycles per output turn "
+        "would be missed, in {}{}{}.",
+        searched.detectable_nm, searched.lowest_order, searched.highest_order, basis(found.grounds),
+        at_rest(found), besides(found));
 }
 
 std::string too_little(const Identification& found) {
@@ -290,6 +291,8 @@ std::string verdict_sentence(const Identification& found) {
             return one_speed(found);
         case RippleFinding::nothing:
             return nothing(found);
+        case RippleFinding::too_noisy:
+            return too_noisy(found);
         case RippleFinding::too_little:
             return too_little(found);
     }

@@ -235,12 +235,14 @@ class LineSearch {
             const std::vector<Sweep> sweeps = with_line(sweeps_, out_, i);
             const auto& [axis, place] = out_[i];
             MotionLine line = measured(sweeps, i);
-            if (!(shares_of_threshold(sweeps, i).line > 1.0) || !recurs(sweeps, stack_of(axis), place)) {
+            const bool is_line = shares_of_threshold(sweeps, i).line > 1.0;
+            if (!is_line || !recurs(sweeps, stack_of(axis), place)) {
                 const double order = axis == Axis::angle ? place : line.order_seen;
                 double largest_nm = 0.0;
                 for (const AmplitudeAtSpeed& seen : line.by_speed)
                     largest_nm = std::max(largest_nm, seen.amplitude_nm);
                 unreported_.push_back({order, largest_nm});
+                if (is_line) once_nm_ = std::max(once_nm_, largest_nm);
                 continue;
             }
             if (line.amplitude_nm < least_amplitude_) continue;
@@ -254,6 +256,9 @@ class LineSearch {
     /// Lines that lines() left out, by order: nothing smaller is claimed to be absent there.
     [[nodiscard]] std::span<const SearchedOrders::Bound> unreported() const { return unreported_; }
 
+    /// The largest of lines that lines() left out because only one sweep shows it.
+    [[nodiscard]] double once_nm() const { return once_nm_; }
+
     [[nodiscard]] Stacks& stacks() { return stacks_; }
     [[nodiscard]] const SpeedRange& range() const { return range_; }
     [[nodiscard]] double least_amplitude() const { return least_amplitude_; }
@@ -263,6 +268,9 @@ class LineSearch {
         return axis == Axis::angle ? stacks_.angle : stacks_.time;
     }
     [[nodiscard]] double false_alarm() const { return 0.5 * options_.false_alarm; }  // two axes are searched
+    [[nodiscard]] double lowest_tone_hz() const {
+        return range_.fast > 0.0 ? options_.lowest_tone_hz : options_.lowest_tone_at_rest_hz;
+    }
 
     /// False when nothing is prominent.
     bool remove_clearest() {
@@ -272,7 +280,7 @@ class LineSearch {
             if (i == 0)
                 order = clearest(sweeps_, angle, false_alarm(), taken_orders_, 0.0);
             else
-                tone = clearest(sweeps_, time, false_alarm(), taken_hz_, options_.lowest_tone_hz);
+                tone = clearest(sweeps_, time, false_alarm(), taken_hz_, lowest_tone_hz());
         });
         if (!order && !tone) return false;
         CandidateLine line;
@@ -282,7 +290,7 @@ class LineSearch {
         // Slow tones are not looked for, since the motion makes them: what is seen over the angle is an order
         // or such a tone. Of two tones at two speeds an order may explain half of each: what is seen at both
         // speeds is a tone.
-        const bool slow = line.rivals.hz < options_.lowest_tone_hz;
+        const bool slow = line.rivals.hz < lowest_tone_hz();
         if (slow && line.kind == LineKind::tone) line.kind = LineKind::unknown;
         const bool as_tone = line.kind == LineKind::tone || (line.kind == LineKind::unknown && !slow &&
                                                              at_two_speeds(sweeps_, time, line.rivals.hz) &&
@@ -425,9 +433,22 @@ class LineSearch {
     Stacks stacks_;
     std::vector<double> taken_orders_, taken_hz_, orders_;
     std::vector<SearchedOrders::Bound> unreported_;
+    double once_nm_ = 0.0;
     std::vector<KnownLine> out_;             ///< removed from the sweeps
     std::vector<CandidateLine> candidates_;  ///< the same, with what is known of each
 };
+
+/// Standard deviation of what is left of the torque in motion, under the weights of the sweeps.
+double deviation_of(std::span<const Sweep> sweeps) {
+    double squares = 0.0, weights = 0.0;
+    for (const Sweep& sweep : sweeps) {
+        if (sweep.rest()) continue;
+        for (std::size_t k = 0; k < sweep.torque_nm.size(); ++k)
+            squares += sweep.weight[k] * sweep.torque_nm[k] * sweep.torque_nm[k];
+        weights += sweep.weight_sum;
+    }
+    return weights > 0.0 ? std::sqrt(squares / weights) : 0.0;
+}
 
 struct MotionSearch {
     MotionLines found;
@@ -460,9 +481,12 @@ MotionSearch search_sweeps(Sweeps cut, std::span<const TraceView> logs, const Mo
         searched_orders(sweeps, angle, 0.5 * options.false_alarm, search_of.orders(), search_of.unreported());
     if (found.searched) {
         const double least_nm = search_of.least_amplitude();
+        found.searched->deviation_nm = std::max(deviation_of(sweeps), least_nm);
         found.searched->detectable_nm = std::max(found.searched->detectable_nm, least_nm);
         for (auto& bound : found.searched->bounds)
             bound.detectable_nm = std::max(bound.detectable_nm, least_nm);
+        // A line that one sweep shows leaves the whole range open.
+        if (search_of.once_nm() > found.searched->deviation_nm) found.searched->bounds.resize(1);
     }
     search.angle = std::move(search_of.stacks().angle);
     for (std::size_t i = 0; i < values.size(); ++i) sweeps[i].value = std::move(values[i]);

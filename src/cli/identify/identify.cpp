@@ -197,7 +197,8 @@ std::string identification_report(const CommonOptions& common, const Identificat
                                   const std::vector<std::string>& recordings) {
     std::string text = paragraph(common, (found.joint.empty() ? "" : found.joint + ": ") + found.verdict);
     const GearRatioFit& ratio = found.gear_ratio;
-    if (ratio.value) {
+    const bool told = ratio.value && !ratio.contradicted;
+    if (told) {
         text += fmt::format("\ngear ratio {:.4f}, standard error {:.2g}, 95 % interval {:.4f} to {:.4f}\n",
                             *ratio.value, ratio.standard_error, ratio.ci95_low, ratio.ci95_high);
     }
@@ -213,13 +214,10 @@ std::string identification_report(const CommonOptions& common, const Identificat
         text += fmt::format("second comb: {:.4f} turns of the wave generator against the other spline\n",
                             *ratio.second_comb);
     text += amplitude_table(found.by_speed);
-    if (ratio.candidates.size() > (ratio.value ? 1U : 0U)) {
-        text += ratio.value ? "\nrival ratios\n" : "\npossible ratios\n";
-        for (std::size_t i = ratio.value ? 1 : 0; i < ratio.candidates.size(); ++i) {
-            const RatioCandidate& candidate = ratio.candidates[i];
-            text += fmt::format("{:>10.3f}  score {:.3f}  {}\n", candidate.value, candidate.score,
-                                candidate.reason);
-        }
+    if (ratio.candidates.size() > (told ? 1U : 0U)) {
+        text += told ? "\nrival ratios\n" : "\npossible ratios\n";
+        for (const RatioCandidate& one : std::span(ratio.candidates).subspan(told ? 1 : 0))
+            text += fmt::format("{:>10.3f}  probability {:.3f}  {}\n", one.value, one.score, one.reason);
     }
     for (const Disagreement& one : found.disagreements) text += disagreement_table(one, recordings);
     text += other_motors_table(found);
@@ -342,8 +340,8 @@ void check_identify(IdentifyRequest& request) {
     check_gear(request.gear);
     if (request.gear.ratio) request.identify.hint = GearRatio(*request.gear.ratio);
     for (const double n : request.order_hint) {
-        if (n < 1.0 || n > 16.0 || n != std::floor(n))
-            raise<UsageError>("--order-hint {} is not a whole number from 1 to 16", n);
+        if (n < 1.0 || n > highest_motor_order || n != std::floor(n))
+            raise<UsageError>("--order-hint {} is not a whole number from 1 to {}", n, highest_motor_order);
         request.identify.hinted_orders.push_back(static_cast<int>(n));
     }
     const double rate = request.identify.false_alarm;

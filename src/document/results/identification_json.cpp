@@ -31,7 +31,6 @@ void describe(auto& archive, Is<RatioCandidate> auto& candidate) {
     archive("value", candidate.value);
     archive("score", candidate.score);
     archive("reason", candidate.reason);
-    archive("other_unit", candidate.other_unit, if_there);
 }
 
 void describe(auto& archive, Is<GearRatioFit::Residual> auto& residual) {

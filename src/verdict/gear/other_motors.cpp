@@ -44,15 +44,13 @@ std::optional<GearAccount> gear_of_motor(const Identification& found, const Stat
         stated.ratio &&
         (!fit.value || (fit.ci95_low <= stated.ratio->value() && stated.ratio->value() <= fit.ci95_high));
     // Where 50 and 100 are both possible the lines are the same, and the angle of either map.
-    const auto possible = std::find_if(fit.candidates.begin(), fit.candidates.end(),
-                                       [](const RatioCandidate& one) { return !one.other_unit; });
     if (agrees) {
         gear.ratio = *stated.ratio;
         gear.source = "--gear-ratio";
     } else if (fit.value) {
         gear.ratio = GearRatio(*fit.value);
-    } else if (found.doubts.empty() && possible != fit.candidates.end()) {
-        gear.ratio = GearRatio(possible->value);
+    } else if (found.doubts.empty() && !fit.candidates.empty()) {
+        gear.ratio = GearRatio(fit.candidates.front().value);
         gear.source = "the most probable ratio in its own torque";
     } else {
         return std::nullopt;

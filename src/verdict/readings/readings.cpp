@@ -141,6 +141,7 @@ Identification identified(std::span<const Log> logs, const IdentifyOptions& opti
     for (std::size_t i = 0; i < logs.size(); ++i)
         views.push_back(as_taken ? logs[i].trace.view() : traces[i].view());
     IdentifyOptions doubting = options;
+    if (motor) doubting.highest_order *= stand_in_ratio;  // to half the sample rate, per turn of the motor
     for (const Log& log : logs) {
         for (Doubt& doubt : log_doubts(log, read)) doubting.doubts.push_back(std::move(doubt));
     }
@@ -159,7 +160,7 @@ std::optional<double> stated_order(const Identification& found) {
 }
 
 bool agree(const Identification& a, const Identification& b) {
-    if (a.finding == RippleFinding::nothing && b.finding == RippleFinding::nothing) return true;
+    if (a.shows_no_line() && b.shows_no_line()) return true;
     if (a.conclusive != b.conclusive || a.gear_ratio.value.has_value() != b.gear_ratio.value.has_value())
         return false;
     if (a.gear_ratio.value) return std::abs(*a.gear_ratio.value / *b.gear_ratio.value - 1.0) < same_ratio;
