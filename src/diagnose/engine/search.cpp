@@ -46,6 +46,7 @@ constexpr std::array plainer_pairs = {
     Plainer{"coulomb-friction", "payload-change", 0.7},
     Plainer{"hysteresis", "payload-change", 0.7},
     Plainer{"viscous-friction", "payload-change", 0.7},
+    Plainer{"gravity", "position-dependent-friction", plain_friction_share},
     Plainer{"load-friction", "position-dependent-friction", 0.7},
 };
 const Plainer* plainer_than(const SearchedTerm& plain, const SearchedTerm& other) {
