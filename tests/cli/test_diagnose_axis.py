@@ -93,6 +93,5 @@ class LinearAxis(Case):
         for forth, back in ((167, 240), (240, 167)):
             self.check_friction(forth, back, "coulomb-friction", "viscous-friction", "asymmetric-viscous-friction", "offset")
 
-    @unittest.expectedFailure  # the search does not reach it yet
     def test_friction_that_is_the_same_in_both_directions_has_no_difference(self):
         self.check_friction(203.5, 203.5, "coulomb-friction", "viscous-friction", "offset")
