@@ -179,8 +179,7 @@ Admission Search::admission(Criterion& criterion, const SearchedTerms& shorter, 
     // What is no friction, which acts at reversals, must be a share of the whole gap as well.
     const double whole_share = found.reduction / std::max(criterion.fit({}).squares - samples, least_squares);
     const bool is_spread = found.gap_share > dominant_gap_share && sum(by_block) > least_beyond &&
-                           (is_friction || whole_share > least_gap_share) &&
-                           !(added != longer.end() && added->is("payload-change"));
+                           (is_friction || whole_share > least_gap_share);
     const bool changes_form = added != longer.end() && added->changes_ripple();
     const bool is_silent =
         added != longer.end() && is_below_resolution(*added, criterion.recorded().step_s());
