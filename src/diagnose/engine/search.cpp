@@ -20,7 +20,7 @@ constexpr std::size_t exchange_finalists = 5;
 constexpr std::size_t rival_paths = 2;
 constexpr std::size_t finalist_count = 7;  // refined: the best by grid is not always the best refined
 constexpr int payload_parts = 24;          // in which a change of the load is looked for
-constexpr double least_way = 0.02;         // of the samples, in either direction on either side of a change
+constexpr double most_turned = 0.8;        // of the samples, whose direction turns with a change of the load
 constexpr int most_bias_steps = 40;        // an error of ten cycles when the log ends
 constexpr double smallest_delay_s = 1e-4;  // the valley of a delay may be narrower than any grid
 constexpr double least_gap = 0.02;         // of the squares of the noise: a gap is no smaller
@@ -305,8 +305,9 @@ bool Search::moves_both_ways_about(double time_s) const {
         const int side = motion.time_s[k] < time_s ? 0 : 2;
         samples[static_cast<std::size_t>(side + (motion.velocity_deg_s[k] > 0.0 ? 1 : 0))] += 1.0;
     }
-    const double total = std::accumulate(samples.begin(), samples.end(), 0.0);
-    return *std::ranges::min_element(samples) >= least_way * total;
+    const double before = samples[1] / std::max(samples[0] + samples[1], 1.0);
+    const double after = samples[3] / std::max(samples[2] + samples[3], 1.0);
+    return std::abs(after - before) < most_turned;
 }
 
 // Values that the search of a kind begins with.
