@@ -11,6 +11,7 @@
 
 #include "core/matrices/least_squares.hpp"
 #include "core/rows/row_facts.hpp"
+#include "core/vectors/dot.hpp"
 #include "diagnose/answer/advice.hpp"
 #include "diagnose/answer/log_faults.hpp"
 #include "diagnose/answer/remaining.hpp"
@@ -581,13 +582,14 @@ class DiagnosisRun {
             ++place;
         }
         add_faults_to_model();
-        result_.residual_before_nm = alone_.residual_nm;
+        result_.residual_before_nm = with_ripple(alone_.residual_nm, options_.given);
         result_.residual_after_nm = residual_along(result_.model, along_, improved_.departure);
         gap.before_nm = rms(result_.residual_before_nm);
         gap.after_nm = rms(result_.residual_after_nm);
         gap.closed_percent = closed_percent(gap.before_nm, gap.after_nm, gap.noise_floor_nm);
         if (other_) {
-            gap.validation_before_nm = rms_of_other(alone_);
+            gap.validation_before_nm = rms(with_ripple(
+                residual_along(alone_.model, *other_, alone_.departure), options_.validation_given));
             gap.validation_after_nm = rms(residual_along(result_.model, *other_, improved_.departure));
             gap.validation_closed_percent =
                 closed_percent(*gap.validation_before_nm, *gap.validation_after_nm, gap.noise_floor_nm);
@@ -610,6 +612,7 @@ class DiagnosisRun {
                 gap.noise_floor_nm);
         result_.accepted = accepted_;
         std::erase_if(result_.rounds, [&](const Finding& finding) { return is_replaced(finding); });
+        add_ripple();
         name_findings(result_);
         for (const std::string& name : unknown_)
             result_.not_accepted.push_back(why_not_accepted(result_, name));
@@ -618,6 +621,31 @@ class DiagnosisRun {
             (result_.verdict == DiagnosisVerdict::matches || result_.verdict == DiagnosisVerdict::explained))
             result_.verdict = DiagnosisVerdict::partly_explained;
         result_.next = next_steps(result_, along_.motion);
+    }
+
+    // The residual with the ripple in it that was found beforehand.
+    [[nodiscard]] std::vector<double> with_ripple(std::vector<double> residual_nm,
+                                                  std::span<const GivenTerm> given) const {
+        const GivenTerm* ripple = find_given(given, "ripple");
+        if (ripple == nullptr || options_.found_ripple.empty()) return residual_nm;
+        add_scaled(1.0, ripple->torque_nm.front().data(), residual_nm.data(), residual_nm.size());
+        return residual_nm;
+    }
+
+    // It is reported before all that was searched.
+    void add_ripple() {
+        std::vector<Finding> found;
+        for (const Term& term : options_.found_ripple) {
+            Finding& finding = found.emplace_back();
+            finding.term = term;
+            finding.is_given = true;
+            finding.reason = "taken off first; the gap is that of all orders and motors";
+            const std::size_t size = term.effect->polar->size;
+            finding.values = {{0, size, *term.values[size], {}, {}, false}};
+            finding.gap_before_nm = result_.gap.before_nm;
+            finding.gap_after_nm = rms(alone_.residual_nm);
+        }
+        result_.rounds.insert(result_.rounds.begin(), found.begin(), found.end());
     }
 
     // A fault of the converter belongs to the model where that predicts the log better with it.

@@ -337,21 +337,6 @@ TEST_CASE("values for another joint are refused", "[arm]") {
     CHECK_THROWS_AS(arm_values(chain, fit, 1, std::vector<double>(30, 0.0)), UsageError);
 }
 
-TEST_CASE("a nuisance is an offset, and friction of the widths that the fit has", "[arm]") {
-    const Chain chain = chain_of_dh("three.csv", three_dh);
-    const RecordedArm log(chain, 3);
-    const auto only = [&](const ArmNuisance& nuisance) {
-        return nuisance_torque(chain, nuisance, log.joints[1].view(), 1);
-    };
-    CHECK(only({.offset_nm = 0.7}) == std::vector<double>(log.joints[1].size(), 0.7));
-    const auto coulomb = only({.coulomb_nm = 2.0}), viscous = only({.viscous_nm_per_deg_s = 0.1});
-    for (std::size_t k = 20; k + 20 < coulomb.size(); ++k) {
-        const double v = log.joints[1].velocity_deg_s[k];
-        CHECK_THAT(viscous[k], WithinAbs(0.1 * v, 0.05));
-        if (std::abs(v) > 5.0) CHECK_THAT(coulomb[k], WithinAbs(v > 0 ? 2.0 : -2.0, 0.02));
-    }
-}
-
 // Arms fitted to logs of real robots and judged on rows that nothing was fitted to. The logs are not part of
 // the project; run with test_arm "[real]".
 

@@ -136,7 +136,6 @@ TEST_CASE("an arm is read back as it was written, and refused where nobody knows
     arm.values.emplace();
     for (int v = 0; v < 40; ++v) arm.values->links.push_back(0.1 * v - 1.3);
     arm.values->rotor_inertia_kgm2 = 0.25;
-    arm.nuisance = {.offset_nm = 0.4, .coulomb_nm = 1.0, .viscous_nm_per_deg_s = 0.02, .stribeck_nm = 0.3};
     const ModelWithGiven model{
         {GearRatio(101.0), {parse_term("coulomb-friction,torque_nm=1,width_deg_s=1")}}, std::nullopt, arm};
     const std::string text = write_model(model, {});
@@ -145,7 +144,6 @@ TEST_CASE("an arm is read back as it was written, and refused where nobody knows
     CHECK(back.arm->joint == arm.joint);
     CHECK(back.arm->log_joints == arm.log_joints);
     CHECK(back.arm->values == arm.values);
-    CHECK(back.arm->nuisance == arm.nuisance);
     CHECK(back.arm->smoothing->value() == 0.12);
     CHECK(back.arm->chain.lengths_are_guessed);
     CHECK(back.arm->chain.gravity_m_s2 == arm.chain.gravity_m_s2);

@@ -111,14 +111,6 @@ struct ArmValues {
     bool operator==(const ArmValues&) const = default;
 };
 
-/// Nuisance torques of an arm: an offset, and friction as in BesideArm.
-struct ArmNuisance {
-    double offset_nm = 0.0, coulomb_nm = 0.0, viscous_nm_per_deg_s = 0.0, stribeck_nm = 0.0;
-
-    [[nodiscard]] bool any() const { return *this != ArmNuisance{}; }
-    bool operator==(const ArmNuisance&) const = default;
-};
-
 struct StatedArm {
     Chain chain;
     std::string joint;                     ///< joint of the chain that the torque belongs to
@@ -126,7 +118,6 @@ struct StatedArm {
     std::optional<ArmValues> values = {};  ///< left out: fitted
     /// Smoothing of the motion that the arm terms use; left out: chosen by a fit.
     std::optional<Seconds> smoothing = {};
-    ArmNuisance nuisance = {};
 
     /// Which joint of the chain is which of a log.
     [[nodiscard]] StatedJoints stated_joints() const;
@@ -142,9 +133,5 @@ struct StatedArm {
 /// so that it is the same torque. Throws what arm_motions throws.
 [[nodiscard]] std::vector<double> stated_torque(const Chain& chain, const ArmValues& values,
                                                 Seconds smoothing, const ArmLog& log, std::size_t joint);
-
-/// The nuisance torque, at the speeds of the joint's own log.
-[[nodiscard]] std::vector<double> nuisance_torque(const Chain& chain, const ArmNuisance& nuisance,
-                                                  const TraceView& log, std::size_t joint);
 
 }  // namespace ripplenotch

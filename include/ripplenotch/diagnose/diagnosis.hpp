@@ -70,9 +70,10 @@ struct Finding {
     double gap_before_nm = 0.0, gap_after_nm = 0.0;  ///< in the order of the findings
     /// rms residual of the validation log, without it and with it, together with all others.
     std::optional<double> validation_before_nm, validation_after_nm;
-    std::string reason;  ///< of a status other than confirmed, a clause
+    std::string reason;     ///< of a status other than confirmed, a clause
+    bool is_given = false;  ///< found beforehand, and part of what is given
 
-    [[nodiscard]] bool is_in_model() const { return status <= FindingStatus::correction; }
+    [[nodiscard]] bool is_in_model() const { return !is_given && status <= FindingStatus::correction; }
 };
 
 /// A candidate that the search did not add in its last step.
@@ -183,6 +184,8 @@ struct DiagnosisOptions {
     /// Terms that are stated and not searched, a column per value and a row per row of the log; the same of
     /// the validation log, where there is one.
     std::span<const GivenTerm> given = {}, validation_given = {};
+    /// Ripple that was found in this log beforehand, of which the given term "ripple" is the torque.
+    std::span<const Term> found_ripple = {};
     /// The simulation's own motion, an entry per row of the log; empty: not known.
     std::span<const double> simulated_velocity_deg_s = {}, simulated_position_deg = {};
     /// Faults of the set-up that are known beforehand. The known terms are wrong then: nothing is searched.

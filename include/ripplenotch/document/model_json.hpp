@@ -8,6 +8,7 @@
 
 #include "ripplenotch/arm/arm_fit.hpp"
 #include "ripplenotch/document/provenance.hpp"
+#include "ripplenotch/filter/map_fit.hpp"
 #include "ripplenotch/model/model.hpp"
 
 namespace ripplenotch {
@@ -25,6 +26,7 @@ struct ModelWithGiven {
     Model model;
     std::optional<SimulatedTerm> simulated = {};
     std::optional<StatedArm> arm = {};
+    std::optional<MapFit> ripple = {};  ///< of the joint's own motor and of others
 
     [[nodiscard]] bool any_given() const { return simulated || arm; }
 };

@@ -21,6 +21,7 @@
 #include "ripplenotch/document/model_json.hpp"
 #include "ripplenotch/log/log.hpp"
 #include "ripplenotch/model/model.hpp"
+#include "ripplenotch/verdict/other_motors.hpp"
 
 namespace ripplenotch {
 
@@ -71,6 +72,9 @@ class GivenArm {
     /// One fit for all joints; where lengths are guessed, rows of two joints do not agree, and each has a fit
     /// of its own. Made when it is first asked for.
     const ArmFit& fit(std::size_t joint);
+    /// What a joint's torque holds of its own motor and of those of other joints, in what arm and friction
+    /// leave of it.
+    [[nodiscard]] MapFit ripple(std::size_t joint, GearRatio ratio);
     /// Faults of arm and log, of all joints at once where they have one fit. Found when first asked for.
     const std::vector<SetupFault>& setup_faults(std::size_t joint);
     /// Columns for the rows of the log that the arm was fitted to, or for those of another one; `log` is
@@ -96,6 +100,12 @@ class GivenArm {
     };
     [[nodiscard]] const Fitted& fitted(std::size_t joint);
     [[nodiscard]] bool is_applied(const ArmLag& lag) const;
+    struct Remaining {
+        std::vector<Log> log;  ///< its torque less arm and friction, ahead by the common lag
+        Identification found;
+    };
+    const Remaining& remaining(std::size_t joint);
+    std::map<std::size_t, Remaining> remaining_;  ///< by joint
     [[nodiscard]] ArmFitOptions options_for(std::size_t joint) const;
     std::map<std::size_t, Fitted> fits_;  ///< by joint; all joints at once: under 0
 };
@@ -106,6 +116,7 @@ class GivenArm {
 struct GivenOptions {
     std::optional<std::string> simulated;  ///< "tau_model,scale=1"
     std::optional<std::string> arm;        ///< "urdf,file=robot.urdf"
+    bool finds_ripple = true;              ///< beside an arm, where the model states none
 
     [[nodiscard]] bool any() const { return simulated || arm; }
 };
@@ -126,6 +137,7 @@ struct GivenTerms {
     std::vector<double> simulated_velocity_deg_s, simulated_position_deg;
     std::optional<StatedArm> arm;          ///< as stated, or as --arm has it
     std::optional<ArmAccount> account;     ///< of the arm
+    std::optional<MapFit> ripple;          ///< as stated, or as it is found beside the arm
     std::vector<std::string> files;        ///< that were read in addition to the logs
     std::optional<SetupAnswer> setup;      ///< of simulation and log, where it was asked for
     std::shared_ptr<GivenArm> fitted_arm;  ///< whose values are found with the rest; null: all are stated

@@ -314,18 +314,4 @@ std::vector<double> stated_torque(const Chain& chain, const ArmValues& values, S
     return smooth_along(log.joints[joint].time_s, torque_nm, smoothing);
 }
 
-std::vector<double> nuisance_torque(const Chain& chain, const ArmNuisance& nuisance, const TraceView& log,
-                                    std::size_t joint) {
-    std::vector<double> torque_nm(log.size(), nuisance.offset_nm);
-    if (ArmNuisance{.offset_nm = nuisance.offset_nm} == nuisance) return torque_nm;
-    const Motion motion = motion_along(log, default_smoothing);
-    const double unit = deg_s_of(chain.joints[joint].kind);
-    for (std::size_t k = 0; k < torque_nm.size(); ++k) {
-        const FrictionBeside friction = friction_beside(unit * motion.velocity_deg_s[k]);
-        torque_nm[k] += nuisance.coulomb_nm * friction.side + nuisance.stribeck_nm * friction.stribeck +
-                        nuisance.viscous_nm_per_deg_s * unit * motion.velocity_deg_s[k];
-    }
-    return torque_nm;
-}
-
 }  // namespace ripplenotch

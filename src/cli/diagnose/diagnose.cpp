@@ -180,7 +180,9 @@ ExitCode run_diagnose(const DiagnoseRequest& request, const std::string& command
     if (const auto table = friction_table_of(request))
         return run_friction_table(request, *table, command_line);
     check(request);
-    GivenSource given(request.given, true);
+    GivenOptions options = request.given;
+    options.finds_ripple = std::ranges::find(request.without, "ripple") == request.without.end();
+    GivenSource given(std::move(options), true);
     return request.all_joints() ? run_all(request, given, command_line)
                                 : run_one(request, given, command_line);
 }

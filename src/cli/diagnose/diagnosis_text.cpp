@@ -156,10 +156,12 @@ std::string round_text(const Diagnosis& diagnosis, const Finding& finding, std::
         text += fmt::format("  {}\n", value_text(finding.term, value));
     if (drives(diagnosis, finding))
         text += "  negative friction is not physical: the simulation includes too much friction already\n";
-    if (finding.is_in_model())
+    if (finding.is_given || finding.is_in_model())
         text += fmt::format("  gap {} -> {} Nm\n", short_number(finding.gap_before_nm),
                             short_number(finding.gap_after_nm));
-    text += fmt::format("  alone it explains {} times the noise; t over blocks {}\n",
+    if (!finding.is_given)
+        text +=
+            fmt::format("  alone it explains {} times the noise; t over blocks {}\n",
                         short_number(finding.evidence.noise_share), short_number(finding.evidence.block_t));
     if (finding.validation_before_nm) {
         text += fmt::format("  on the validation log {} -> {} Nm with it\n",
@@ -287,7 +289,8 @@ std::string arm_text(const ArmAccount& account) {
                account.all_joints_at_once ? "all joints fitted at once" : "this joint fitted alone",
                account.smoothing.value(), account.lengths_are_guessed ? ", lengths of its links guessed" : "",
                account.gap_before_nm, account.gap_nm) +
-           lag_text(account);
+           lag_text(account) +
+           (account.ripple.empty() ? "" : fmt::format("  taken off first: {}\n", account.ripple));
 }
 
 }  // namespace ripplenotch

@@ -7,6 +7,8 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <complex>
+#include <numeric>
 #include <string>
 #include <string_view>
 
@@ -19,6 +21,7 @@
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/files.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/core/progress.hpp"
 #include "ripplenotch/core/spec.hpp"
 #include "ripplenotch/core/visible_text.hpp"
@@ -66,6 +69,7 @@ void add_given(JointMjcf& parts, const JointDiagnosis& one, const std::optional<
                         *tree)});
     if (one.given.arm && !tree)
         parts.not_held.push_back({"arm", "its bodies are not in this file; --arm mjcf,file=FILE has them"});
+    if (one.given.ripple) parts.not_held.push_back({"ripple", "its map is not in this file"});
     if (one.given.simulated) parts.not_held.push_back({"simulated", "its torque is not in this file"});
 }
 
@@ -337,9 +341,28 @@ std::vector<std::string> take_lag(const DiagnoseRequest& request, const JointDia
     return without;
 }
 
+// The ripple that was found beside the arm, an effect an order: the rms of its amplitude, the mean of its
+// phases.
+std::vector<Term> found_ripple(const GivenTerms& given) {
+    std::vector<Term> terms;
+    if (!given.ripple || !given.fitted_arm) return terms;
+    const RippleMap& map = given.ripple->map;
+    for (std::size_t i = 0; i < map.orders.size(); ++i) {
+        const auto score =
+            std::ranges::find(given.ripple->scores, map.orders[i].value(), &MapOrderScore::order);
+        const std::complex<double> sum =
+            std::accumulate(map.values[i].begin(), map.values[i].end(), std::complex<double>());
+        terms.push_back(parse_term(fmt::format("ripple,order={},amplitude_nm={},phase_deg={}",
+                                               shortest(map.orders[i].value()), shortest(score->ripple_nm),
+                                               shortest(-portable::arg(sum) * degrees_per_radian))));
+    }
+    return terms;
+}
+
 Diagnosis diagnosed(const DiagnoseRequest& request, Model model, const JointDiagnosis& one,
                     const std::optional<Log>& other) {
     const std::vector<std::string> without = take_lag(request, one, model);
+    const std::vector<Term> ripple = found_ripple(one.given);
     try {
         return diagnose_readings(
             model, one.log, other ? &*other : nullptr,
@@ -348,6 +371,7 @@ Diagnosis diagnosed(const DiagnoseRequest& request, Model model, const JointDiag
              .accept = request.accept,
              .given = one.given.log,
              .validation_given = one.given.validation,
+             .found_ripple = ripple,
              .simulated_velocity_deg_s = one.given.simulated_velocity_deg_s,
              .simulated_position_deg = one.given.simulated_position_deg,
              .setup = one.given.setup ? std::span<const SetupFault>(one.given.setup->faults)

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "core/vectors/dot.hpp"
 #include "diagnose/engine/gram.hpp"
@@ -22,6 +23,9 @@ constexpr double most_scale_log = 1.1;  // a torque off by a factor of three
 // Of a block: longer than what remains correlated after whitening, short enough for many blocks.
 constexpr double block_s = 1.0;
 constexpr std::size_t fold_count = 8;  // groups of blocks that are left out in turn
+// Windows that are one measurement to a slowly changing column: as of the fit of the arm, whose other joints
+// are the prior.
+constexpr double memory_s = 0.05;
 constexpr std::size_t fewest_block_samples = 50, fewest_blocks = 40;
 constexpr std::size_t most_held_numbers = 16'000'000;  // of columns in memory: 128 MB
 
@@ -399,6 +403,51 @@ std::vector<double> Criterion::residual_nm(const SearchedTerms& given, Ripple ri
     std::vector<double> residual(recorded_.size(), 0.0);
     for (std::size_t i = 0; i < packed.size(); ++i) residual[blocks_.sample[i]] = packed[i];
     return residual;
+}
+
+VectorXd Criterion::settled_factors(const SearchedTerms& given) {
+    SearchedTerms terms = given;
+    std::sort(terms.begin(), terms.end());
+    VectorXd factors = fit(terms).factors;
+    const Design made = design(terms, plain_, {});
+    std::vector<Index> known;
+    for (std::size_t c = 0; c < base_.columns.size(); ++c) {
+        // No model holds them.
+        if (base_.columns[c].name == "nuisance")
+            factors[static_cast<Index>(c)] = 0.0;
+        else if (base_.columns[c].has_prior())
+            known.push_back(static_cast<Index>(c));
+    }
+    if (known.empty()) return factors;
+    const std::span<const double> torque = plain_.column(made.target);
+    std::vector<double> residual(torque.begin(), torque.end());
+    for (std::size_t c = 0; c < made.columns.size(); ++c)
+        add_scaled(-factors[static_cast<Index>(c)], plain_.column(made.columns[c]).data(), residual.data(),
+                   residual.size());
+    const auto length = std::max<std::size_t>(1, static_cast<std::size_t>(memory_s / recorded_.step_s()));
+    double squares = 0.0;
+    for (std::size_t k = 0; k + length <= residual.size(); k += length) {
+        const double sum = std::accumulate(&residual[k], &residual[k] + length, 0.0);
+        squares += sum * sum;
+    }
+    const MatrixXd products = gram(made, plain_, nullptr);
+    const std::vector<double> weights = prior_weights(made, products, std::sqrt(squares / samples()));
+    for (const Index c : known) factors[c] = 0.0;
+    // Products of the known columns with the torque less all others, and with each other.
+    const auto size = static_cast<Index>(known.size());
+    MatrixXd among(size + 1, size + 1);
+    std::vector<double> priors;
+    for (Index a = 0; a < size; ++a) {
+        const Index column = known[static_cast<std::size_t>(a)];
+        priors.push_back(weights[static_cast<std::size_t>(column)]);
+        among(a + 1, 0) =
+            products(column + 1, 0) - products.row(column + 1).tail(factors.size()).dot(factors);
+        for (Index b = 0; b < size; ++b)
+            among(a + 1, b + 1) = products(column + 1, known[static_cast<std::size_t>(b)] + 1);
+    }
+    const VectorXd found = solve_normal_equations(among, priors);
+    for (Index a = 0; a < size; ++a) factors[known[static_cast<std::size_t>(a)]] = found[a];
+    return factors;
 }
 
 double Criterion::rms_nm(const SearchedTerms& terms) {

@@ -115,6 +115,9 @@ class Criterion {
     /// Residual in Nm, 0 where samples do not count; without ripple, or without what changes it, on demand.
     enum class Ripple { fitted, left };
     [[nodiscard]] std::vector<double> residual_nm(const SearchedTerms& terms, Ripple ripple = Ripple::fitted);
+    /// Factors of the columns, those of the baseline with a prior from the residual itself instead of what is
+    /// white of it, the others as they are.
+    [[nodiscard]] Eigen::VectorXd settled_factors(const SearchedTerms& terms);
     /// rms of residual_nm over the samples that count.
     [[nodiscard]] double rms_nm(const SearchedTerms& terms);
 

@@ -133,7 +133,7 @@ Result find_missing_effects(const Input& input) {
     }
     SearchedTerms so_far;
     const auto add_factors = [&] {
-        const Eigen::VectorXd& factors = criterion.fit(so_far).factors;
+        const Eigen::VectorXd factors = criterion.settled_factors(so_far);
         result.baseline_factors.emplace_back(
             factors.begin(), factors.begin() + static_cast<std::ptrdiff_t>(prepared.base.columns.size()));
     };

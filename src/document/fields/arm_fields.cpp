@@ -33,13 +33,6 @@ void describe(auto& archive, Is<LinkValues> auto& link) {
     archive("inertia_kgm2", link.inertia, no_minus_zero);
 }
 
-void describe(auto& archive, Is<ArmNuisance> auto& nuisance) {
-    archive("offset_nm", nuisance.offset_nm, if_any);
-    archive("coulomb_nm", nuisance.coulomb_nm, if_any);
-    archive("viscous_nm_per_deg_s", nuisance.viscous_nm_per_deg_s, if_any);
-    archive("stribeck_nm", nuisance.stribeck_nm, if_any);
-}
-
 namespace {
 
 // By joint, the ten values of its link.
@@ -108,7 +101,6 @@ void describe_arm(Archive& archive, auto& arm) {
     if (archive.holds("rotor_inertia_kgm2", known)) archive("rotor_inertia_kgm2", rotor);
     if constexpr (Archive::reading)
         if (known) arm.values->rotor_inertia_kgm2 = rotor;
-    if (archive.holds("nuisance", arm.nuisance.any())) archive("nuisance", arm.nuisance);
 }
 
 }  // namespace

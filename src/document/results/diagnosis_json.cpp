@@ -241,6 +241,7 @@ void describe(JsonWriter& json, const ArmAccount& arm) {
     json("values_are_stated", arm.values_are_stated, if_any);
     if (arm.values_are_stated) return;
     json("values_there", arm.values_there);
+    json("ripple", arm.ripple, if_any);
     json("values_told", arm.values_told);
     json("all_joints_at_once", arm.all_joints_at_once);
     json("lambda", arm.pull);

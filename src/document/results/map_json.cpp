@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "core/matrices/least_squares.hpp"
+#include "document/fields/arm_fields.hpp"
 #include "document/fields/fields.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/files.hpp"
@@ -129,7 +130,7 @@ std::string_view angle_name(bool anchored) { return anchored ? "position" : "int
 }  // namespace
 
 template <class Archive>
-void describe(Archive& archive, Is<MapFit> auto& fit) {
+void describe_map(Archive& archive, auto& fit) {
     auto& map = fit.map;
     archive.derived("verdict", [&] { return map_verdict(fit); });
     archive("finding", fit.finding, Names{map_finding_name, MapFinding::too_little});
@@ -166,6 +167,10 @@ void describe(Archive& archive, Is<MapFit> auto& fit) {
             if (!other.map.orders.empty() && other.doubt.empty()) map.others.push_back(other.map);
     }
 }
+
+void describe(JsonWriter& json, const MapFit& fit) { describe_map(json, fit); }
+
+void describe(JsonReader& reader, MapFit& fit) { describe_map(reader, fit); }
 
 std::string map_text(const MapFit& fit, const Provenance& provenance) {
     return to_fitted_text(document_of("map", provenance, fit));

@@ -20,6 +20,7 @@ template <class Archive>
 void describe(Archive& archive, Is<ModelWithGiven> auto& given) {
     archive("simulated", given.simulated, if_any);
     archive("arm", given.arm, if_any);
+    archive("ripple_map", given.ripple, if_any);
     if constexpr (Archive::reading) given.model.beside_simulation = given.simulated.has_value();
     describe(archive, given.model);
     if constexpr (Archive::reading) {

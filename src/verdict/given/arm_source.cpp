@@ -15,6 +15,7 @@
 #include "ripplenotch/arm/chain.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/spec.hpp"
+#include "ripplenotch/verdict/readings.hpp"
 
 namespace ripplenotch {
 
@@ -234,6 +235,39 @@ bool GivenArm::is_applied(const ArmLag& lag) const {
 const ArmFit& GivenArm::fit(std::size_t joint) { return fitted(joint).fit; }
 
 const std::vector<SetupFault>& GivenArm::setup_faults(std::size_t joint) { return fitted(joint).faults; }
+
+const GivenArm::Remaining& GivenArm::remaining(std::size_t joint) {
+    const auto [entry, is_new] = remaining_.try_emplace(joint);
+    Remaining& left = entry->second;
+    if (!is_new) return left;
+    const Fitted& found = fitted(joint);
+    const bool moves = found.lag && is_applied(*found.lag);
+    const AdvancedLog moved(reading_.view(), moves ? found.lag->delay_s : 0.0);
+    left.log = {reading_.logs[joint]};
+    std::vector<double>& torque_nm = left.log.front().trace.torque_nm;
+    const std::vector<double> arm_nm = fitted_torque(chain(), found.fit, moved.log, joint);
+    for (std::size_t k = 0; k < torque_nm.size(); ++k)
+        torque_nm[k] = moved.log.joints[joint].torque_nm[k] - arm_nm[k];
+    left.found = identify_readings(left.log, {});
+    return left;
+}
+
+MapFit GivenArm::ripple(std::size_t joint, GearRatio ratio) {
+    OtherMotors others;
+    for (std::size_t j = 0; j < chain().size(); ++j) {
+        if (j == joint || fit(joint).find(j) == nullptr) continue;
+        ++others.looked_at;
+        if (const auto gear = gear_of_motor(remaining(j).found, {ratio, {}}))
+            others.motors.push_back({reading_.names[j], *gear, {reading_.logs[j].trace.view()}});
+    }
+    // Lines beside the teeth of the gear are of other things.
+    GearAccount own{ratio, {}, {}, {}, "--gear-ratio"};
+    if (const auto gear = gear_of_motor(remaining(joint).found, {ratio, {}}))
+        std::ranges::copy_if(gear->orders, std::back_inserter(own.orders),
+                             [](Order order) { return order.value() == std::round(order.value()); });
+    if (own.orders.empty()) own.orders = default_orders();
+    return map_readings(remaining(joint).log, own, Degrees(0.0), others);
+}
 
 GivenTerm GivenArm::term(std::size_t joint, const ArmReading& log) {
     const ArmFit& found = fit(joint);

@@ -32,7 +32,7 @@ namespace ripplenotch {
 
 namespace {
 
-constexpr std::string_view arm_name = "arm", nuisance_name = "nuisance",
+constexpr std::string_view arm_name = "arm", ripple_name = "ripple",
                            once = "arm: standard input cannot be read twice; give the log as a file";
 
 // The term's rows that the log still has; both are in order of time and come from one file.
@@ -58,18 +58,35 @@ GivenTerm stated_term(std::string_view name, std::vector<double> torque_nm) {
     return {std::string(name), {std::move(torque_nm)}, {1.0}, {stated_deviation}};
 }
 
-// The terms of an arm along one log: its torque, and what is stated beside it.
-void add_arm_terms(std::vector<GivenTerm>& terms, GivenArm& arm, const StatedArm& stated,
+// The torque of a map along a log, with that of other motors.
+GivenTerm ripple_term(const RippleMap& map, const GivenArm& arm, const ArmReading& reading,
+                      std::size_t joint) {
+    std::vector<double> torque_nm = map_along(map, reading.logs[joint].trace.view());
+    for (const RippleMap& other : map.others) {
+        const TraceView motion = reading.logs[reading.find(arm.chain(), other.joint)].trace.view();
+        const std::vector<double> other_nm = map_along(other, motion);
+        add_scaled(1.0, other_nm.data(), torque_nm.data(), other_nm.size());
+    }
+    return stated_term(ripple_name, std::move(torque_nm));
+}
+
+// Whether anything of a map is to be taken off.
+bool holds_ripple(const MapFit& fit) {
+    return fit.doubt.empty() && (!fit.map.orders.empty() || !fit.map.others.empty());
+}
+
+// The terms of an arm along one log: its torque, and that of the ripple.
+void add_arm_terms(std::vector<GivenTerm>& terms, GivenArm& arm, const GivenTerms& stated,
                    const ArmReading& reading, const Log& log, std::size_t joint) {
     const Log& whole = reading.logs[joint];
-    GivenTerm term = stated.values
-                         ? stated_term(arm_name, stated_torque(arm.chain(), *stated.values, *stated.smoothing,
+    const std::optional<ArmValues>& values = stated.arm->values;
+    GivenTerm term = values
+                         ? stated_term(arm_name, stated_torque(arm.chain(), *values, *stated.arm->smoothing,
                                                                reading.view(), joint))
                          : arm.term(joint, reading);
     terms.push_back(at_rows_of(log, whole, std::move(term)));
-    if (!stated.nuisance.any()) return;
-    auto beside_nm = nuisance_torque(arm.chain(), stated.nuisance, whole.trace.view(), joint);
-    terms.push_back(at_rows_of(log, whole, stated_term(nuisance_name, std::move(beside_nm))));
+    if (!stated.ripple) return;
+    terms.push_back(at_rows_of(log, whole, ripple_term(stated.ripple->map, arm, reading, joint)));
 }
 
 ArmSource option_of(const StatedArm& arm) { return {arm.chain, arm.stated_joints(), "of the model"}; }
@@ -175,6 +192,7 @@ void GivenSource::add_arm(GivenTerms& terms, const ModelWithGiven& stated, const
                           stated.arm->joint);
     terms.arm->joint = given->chain().joints[joint].name;
     terms.arm->log_joints = given->reading().names;
+    terms.ripple = stated.ripple;
     if (!terms.arm->values) terms.fitted_arm = given;
     if (given->file()) terms.files.push_back(*given->file());
     if (terms.arm->values && !terms.arm->smoothing) terms.arm->smoothing = default_smoothing;
@@ -184,11 +202,18 @@ void GivenSource::add_arm(GivenTerms& terms, const ModelWithGiven& stated, const
         if (!terms.setup) terms.setup.emplace();
         const auto& faults = given->setup_faults(joint);
         terms.setup->faults.insert(terms.setup->faults.begin(), faults.begin(), faults.end());
+        const bool states_ripple = std::ranges::any_of(
+            stated.model.terms, [](const Term& term) { return term.effect->ripple_order.has_value(); });
+        if (options_.finds_ripple && faults.empty() && !states_ripple && stated.model.has_gear_ratio()) {
+            terms.ripple = given->ripple(joint, stated.model.gear_ratio);
+            terms.account->ripple = map_verdict(*terms.ripple);
+            if (!holds_ripple(*terms.ripple)) terms.ripple.reset();
+        }
     }
-    add_arm_terms(terms.log, *given, *terms.arm, given->reading(), log.log, joint);
+    add_arm_terms(terms.log, *given, terms, given->reading(), log.log, joint);
     if (validation == nullptr) return;
-    add_arm_terms(terms.validation, *given, *terms.arm, given->other(validation->path, reading),
-                  validation->log, joint);
+    add_arm_terms(terms.validation, *given, terms, given->other(validation->path, reading), validation->log,
+                  joint);
 }
 
 namespace {
@@ -260,6 +285,7 @@ ModelWithGiven improved_model(const GivenTerms& given, const Diagnosis& diagnosi
     ModelWithGiven model{with_fitted_digits(diagnosis.model)};
     if (given.simulated) model.simulated = fitted(*given.simulated);
     if (given.arm) model.arm = fitted(given, diagnosis);
+    model.ripple = given.ripple;
     return model;
 }
 
