@@ -639,7 +639,7 @@ class DiagnosisRun {
             Finding& finding = found.emplace_back();
             finding.term = term;
             finding.is_given = true;
-            finding.reason = "taken off first; the gap is that of all orders and motors";
+            finding.reason = "subtracted first; the gap is that of all orders and motors";
             const std::size_t size = term.effect->polar->size;
             finding.values = {{0, size, *term.values[size], {}, {}, false}};
             finding.gap_before_nm = result_.gap.before_nm;

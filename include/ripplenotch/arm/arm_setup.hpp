@@ -87,7 +87,7 @@ struct ArmAccount {
     double gap_nm = 0.0;          ///< rms residual of arm and friction, on held-out fifths
     std::optional<ArmLag> lag;    ///< lag of the torques of all joints behind their motion
     bool lag_is_applied = false;  ///< known to the model as a delay of that size
-    std::string ripple;           ///< that is taken off first, a sentence; empty: not looked for
+    std::string ripple;           ///< that is subtracted first, a sentence; empty: not looked for
     std::vector<std::string> warnings, notes;
 };
 

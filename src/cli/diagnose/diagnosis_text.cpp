@@ -290,7 +290,7 @@ std::string arm_text(const ArmAccount& account) {
                account.smoothing.value(), account.lengths_are_guessed ? ", lengths of its links guessed" : "",
                account.gap_before_nm, account.gap_nm) +
            lag_text(account) +
-           (account.ripple.empty() ? "" : fmt::format("  taken off first: {}\n", account.ripple));
+           (account.ripple.empty() ? "" : fmt::format("  subtracted first: {}\n", account.ripple));
 }
 
 }  // namespace ripplenotch

@@ -70,7 +70,7 @@ GivenTerm ripple_term(const RippleMap& map, const GivenArm& arm, const ArmReadin
     return stated_term(ripple_name, std::move(torque_nm));
 }
 
-// Whether anything of a map is to be taken off.
+// Whether anything of a map is to be subtracted.
 bool holds_ripple(const MapFit& fit) {
     return fit.doubt.empty() && (!fit.map.orders.empty() || !fit.map.others.empty());
 }
