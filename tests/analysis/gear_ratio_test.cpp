@@ -77,7 +77,7 @@ TEST_CASE("a missing fundamental does not halve or double the ratio: lines at 2,
     CHECK(result.fit.candidates[0].score > conclusive_probability);
 }
 
-TEST_CASE("a line on its own: at 202, 101 as n = 2 is the most probable; at 1768 nothing is") {
+TEST_CASE("a line on its own: at 202, 101 as n = 2 is the most probable, and at 1768 nothing is") {
     const auto result = fit_gear_ratio(std::vector{faint(202.0, 0.5)}, {});
     CHECK_THAT(best(result), WithinRel(101.0, 0.011));
     CHECK_FALSE(result.fit.value.has_value());

@@ -189,7 +189,6 @@ class Arm(Case):
         self.assertFalse((self.folder / "one.json").exists())
 
     @unittest.skipUnless((LOGS / "ur10_unisa_exciting_all.csv").is_file(), "the real log is not here")
-    @unittest.expectedFailure  # the search does not reach it yet
     def test_a_real_shoulder_has_names_and_its_gap_closes_on_rows_that_nothing_was_fitted_to(self):
         lines = (LOGS / "ur10_unisa_exciting_all.csv").read_text().splitlines(keepends=True)
         cut = 1 + 3 * (len(lines) - 1) // 5
