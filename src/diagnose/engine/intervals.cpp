@@ -19,8 +19,8 @@ namespace {
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
 // Of the model, as standard errors beside those of the noise: frictions of integrated joints build up
-// otherwise than Dahl's by so much of their values, and their delays are off by this share of a sample (37
-// logs of scripts/prove-diagnose --physics).
+// otherwise than Dahl's by so much of their values, and their delays are off by this share of a sample
+// (numbers 41 and 902 of scripts/prove-diagnose --physics).
 constexpr double loop_form_error = 0.02, sampling_error = 0.04;
 constexpr int most_polishes = 4;
 constexpr double least_polish = 0.1;  // in squares of the noise: a third of a standard error
