@@ -92,5 +92,5 @@ def tables(program, folder):
 
 def short(head, lines):
     """For the page: the first model, without what is not confirmed."""
-    kept = (0, 5, 6, 9)
+    kept = (0, 2, 4, 5, 8)
     return table.markdown([head[k] for k in kept], [[line[k] for k in kept] for line in lines if line[1] == MODELS[0][0] or not line[2]])

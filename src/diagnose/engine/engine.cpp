@@ -90,9 +90,7 @@ AdoptedTerm judged(const Search& search, Criterion& criterion, const SearchedTer
     return found;
 }
 
-}  // namespace
-
-Result find_missing_effects(const Input& input) {
+Result searched(const Input& input) {
     Result result;
     RecordedMotion recorded(input.log, input.simulation);
     std::vector<unsigned char> good(input.is_good_row.begin(), input.is_good_row.end());
@@ -166,6 +164,38 @@ Result find_missing_effects(const Input& input) {
     result.is_position_integrated = recorded.is_position_integrated();
     result.evaluations = found.evaluations;
     return result;
+}
+
+}  // namespace
+
+Result find_missing_effects(const Input& input) {
+    Result result = searched(input);
+    // A simulation seldom has ripple. What changes a ripple, and the motor angle that it follows, show once
+    // the ripple is there: then the log is searched again with its orders known.
+    Model with_ripple = input.model;
+    std::vector<AdoptedTerm> ripples;
+    for (const AdoptedTerm& adopted : result.terms) {
+        if (!adopted.term.effect->ripple_order) continue;
+        ripples.push_back(adopted);
+        Term known{adopted.term.effect, std::vector<std::optional<double>>(adopted.term.values.size())};
+        known.values[*known.effect->ripple_order] = adopted.term.values[*known.effect->ripple_order];
+        with_ripple.terms.push_back(std::move(known));
+    }
+    const auto follows_ripple = [](const AdoptedTerm& adopted) {
+        const Role role = term_kind(adopted.term.effect->name).role;
+        return role == Role::ripple_change || role == Role::motor_angle;
+    };
+    const bool has_ripple = std::ranges::any_of(
+        input.model.terms, [](const Term& term) { return bool(term.effect->ripple_order); });
+    if (ripples.empty() || has_ripple) return result;
+    Input again{input.log,         with_ripple,   input.simulation,
+                input.given_terms, input.without, input.is_good_row};
+    Result second = searched(again);
+    if (std::ranges::none_of(second.terms, follows_ripple)) return result;
+    second.terms.insert(second.terms.begin(), ripples.begin(), ripples.end());
+    second.rms_before_nm = result.rms_before_nm;
+    second.residual_before_nm = std::move(result.residual_before_nm);
+    return second;
 }
 
 }  // namespace ripplenotch::engine
