@@ -158,7 +158,7 @@ class DiagnosisRun {
         return names;
     }
 
-    // Beside a simulation the engine takes its torque for all of what the user knows: terms of the model are
+    // With a simulation the engine takes its torque for all of what the user knows: terms of the model are
     // given as columns.
     [[nodiscard]] std::vector<GivenTerm> columns_of_model() const {
         std::vector<GivenTerm> columns;
@@ -256,7 +256,7 @@ class DiagnosisRun {
         return found == model_.terms.end() ? nullptr : &*found;
     }
 
-    // The factors of an arm, as the engine fits them beside its first terms, which are the findings so far.
+    // The factors of an arm, as the engine fits them with its first terms, which are the findings so far.
     void take_known_values(const engine::Result& found, std::size_t terms) {
         departures_.resize(result_.rounds.size() + 1);
         departures_.back().clear();
@@ -268,7 +268,7 @@ class DiagnosisRun {
         }
     }
 
-    // That of the uncertain factors beside the first so many findings.
+    // That of the uncertain factors with the first so many findings.
     [[nodiscard]] std::span<const double> departure_beside(std::size_t findings) const {
         if (departures_.empty()) return {};
         return departures_[std::min(findings, departures_.size() - 1)];
@@ -318,7 +318,7 @@ class DiagnosisRun {
 
     void take(const engine::AdoptedTerm& adopted, FindingStatus status) {
         const Effect& effect = *adopted.term.effect;
-        // What the model leaves open of sensor, motion or ripple is fitted with it; beside what it states a
+        // What the model leaves open of sensor, motion or ripple is fitted with it; next to what it states a
         // finding is more of that.
         const Term* own = own_term(effect.name);
         if (own != nullptr && effect.side != Side::joint &&

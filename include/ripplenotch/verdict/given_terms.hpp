@@ -116,7 +116,7 @@ class GivenArm {
 struct GivenOptions {
     std::optional<std::string> simulated;  ///< "tau_model,scale=1"
     std::optional<std::string> arm;        ///< "urdf,file=robot.urdf"
-    bool finds_ripple = true;              ///< beside an arm, where the model states none
+    bool finds_ripple = true;              ///< with an arm, where the model states none
 
     [[nodiscard]] bool any() const { return simulated || arm; }
 };
@@ -137,7 +137,7 @@ struct GivenTerms {
     std::vector<double> simulated_velocity_deg_s, simulated_position_deg;
     std::optional<StatedArm> arm;          ///< as stated, or as --arm has it
     std::optional<ArmAccount> account;     ///< of the arm
-    std::optional<MapFit> ripple;          ///< as stated, or as it is found beside the arm
+    std::optional<MapFit> ripple;          ///< as stated, or as it is found with the arm
     std::vector<std::string> files;        ///< that were read in addition to the logs
     std::optional<SetupAnswer> setup;      ///< of simulation and log, where it was asked for
     std::shared_ptr<GivenArm> fitted_arm;  ///< whose values are found with the rest; null: all are stated

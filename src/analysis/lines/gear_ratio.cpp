@@ -60,7 +60,7 @@ constexpr std::array joint_kinds{JointKind{0.98,
                                            false}};
 constexpr double study_snr = 8.0;           // of the strongest lines there; chosen, not derived
 constexpr double counts_when_absent = 0.8;  // an order may be there and too small to be found
-constexpr double away_from_hint = 1e-4;     // strongest at another n than the stated ones: they are believed
+constexpr double away_from_hint = 1e-4;     // strongest at another n than the stated ones: these count more
 
 // Deviation of a line from its comb: a share of the width of a line, and of the scales of a log.
 constexpr double place_share = 0.23, scale_share = 0.001;
@@ -436,11 +436,11 @@ GearRatioResult fit_gear_ratio(std::span<const OrderLine> lines, const RatioQues
         all_told.insert(one.stated ? all_told.begin() : all_told.end(),
                         {*fitted.value, one.probability, reason_of(one)});
     }
-    auto told = groups.begin();
+    auto chosen = groups.begin();
     if (question.hint) {
-        told = std::find_if(groups.begin(), groups.end(), [](const RatioGroup& one) { return one.stated; });
-        result.fit.contradicted = told->probability < 1.0 - share_when_stated;
-    } else if (told->probability <= 0.5) {
+        chosen = std::find_if(groups.begin(), groups.end(), [](const RatioGroup& one) { return one.stated; });
+        result.fit.contradicted = chosen->probability < 1.0 - share_when_stated;
+    } else if (chosen->probability <= 0.5) {
         return result;
     }
     if (result.fit.contradicted) {
@@ -449,10 +449,10 @@ GearRatioResult fit_gear_ratio(std::span<const OrderLine> lines, const RatioQues
         name_lines(lines, stated, question.resolution, result);
         return result;
     }
-    if (!enough_lines(*told->best, question)) return result;
-    const std::vector<Estimate> estimates = fit(lines, *told->best, result.fit);
+    if (!enough_lines(*chosen->best, question)) return result;
+    const std::vector<Estimate> estimates = fit(lines, *chosen->best, result.fit);
     if (question.hint) note_wrong_scale(result.fit, question.hint->value(), result.notes);
-    name_lines(lines, *told->best, question.resolution, result);
+    name_lines(lines, *chosen->best, question.resolution, result);
     add_residuals(lines, estimates, result);
     return result;
 }

@@ -341,7 +341,7 @@ std::vector<std::string> take_lag(const DiagnoseRequest& request, const JointDia
     return without;
 }
 
-// The ripple that was found beside the arm, an effect an order: the rms of its amplitude, the mean of its
+// The ripple that was found with the arm, an effect an order: the rms of its amplitude, the mean of its
 // phases.
 std::vector<Term> found_ripple(const GivenTerms& given) {
     std::vector<Term> terms;

@@ -197,8 +197,8 @@ std::string identification_report(const CommonOptions& common, const Identificat
                                   const std::vector<std::string>& recordings) {
     std::string text = paragraph(common, (found.joint.empty() ? "" : found.joint + ": ") + found.verdict);
     const GearRatioFit& ratio = found.gear_ratio;
-    const bool told = ratio.value && !ratio.contradicted;
-    if (told) {
+    const bool has_ratio = ratio.value && !ratio.contradicted;
+    if (has_ratio) {
         text += fmt::format("\ngear ratio {:.4f}, standard error {:.2g}, 95 % interval {:.4f} to {:.4f}\n",
                             *ratio.value, ratio.standard_error, ratio.ci95_low, ratio.ci95_high);
     }
@@ -214,9 +214,9 @@ std::string identification_report(const CommonOptions& common, const Identificat
         text += fmt::format("second comb: {:.4f} turns of the wave generator against the other spline\n",
                             *ratio.second_comb);
     text += amplitude_table(found.by_speed);
-    if (ratio.candidates.size() > (told ? 1U : 0U)) {
-        text += told ? "\nrival ratios\n" : "\npossible ratios\n";
-        for (const RatioCandidate& one : std::span(ratio.candidates).subspan(told ? 1 : 0))
+    if (ratio.candidates.size() > (has_ratio ? 1U : 0U)) {
+        text += has_ratio ? "\nrival ratios\n" : "\npossible ratios\n";
+        for (const RatioCandidate& one : std::span(ratio.candidates).subspan(has_ratio ? 1 : 0))
             text += fmt::format("{:>10.3f}  probability {:.3f}  {}\n", one.value, one.score, one.reason);
     }
     for (const Disagreement& one : found.disagreements) text += disagreement_table(one, recordings);

@@ -33,7 +33,7 @@ struct SettledModel {
     std::vector<double> residual_nm;  ///< measured less predicted, all rows
 };
 
-/// Fits the open values by least squares on the rows that count, beside the uncertain factors as they are.
+/// Fits the open values by least squares on the rows that count, with the uncertain factors as they are.
 [[nodiscard]] SettledModel settled(const Model& open, const LogAlong& log, std::span<const double> departure,
                                    const Model* first_guess = nullptr);
 

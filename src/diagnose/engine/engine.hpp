@@ -59,7 +59,7 @@ struct Result {
         corrections;  ///< below what the log resolves: fitted and not reported as missing
     std::vector<NearlyAdopted> nearly_adopted;
     std::vector<ValuedColumn> baseline;  ///< what the columns of the user's side come to
-    /// Their factors beside the first so many of `terms` and then `corrections`, from none to all.
+    /// Their factors with the first so many of `terms` and then `corrections`, from none to all.
     std::vector<std::vector<double>> baseline_factors;
     std::vector<ConverterFault> faults;
     double rms_before_nm = 0.0, rms_after_nm = 0.0;

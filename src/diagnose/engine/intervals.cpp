@@ -18,7 +18,7 @@ namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
-// Of the model, as standard errors beside those of the noise: frictions of integrated joints build up
+// Of the model, as standard errors in addition to those of the noise: frictions of integrated joints build up
 // otherwise than Dahl's by so much of their values, and their delays are off by this share of a sample
 // (numbers 41 and 902 of scripts/prove-diagnose --physics).
 constexpr double loop_form_error = 0.02, sampling_error = 0.04;

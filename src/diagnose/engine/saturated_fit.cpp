@@ -273,7 +273,7 @@ SaturatedFit fit_saturated(const RecordedMotion& recorded, const Baseline& base,
     append(columns, splines(root_speed, speed_splines));
     append(columns, over_time);
     append(columns, loops);
-    // What swings is found beside all else; the smoothing is chosen without, as both take a delay for their
+    // What swings is found with all else; the smoothing is chosen without, as both take a delay for their
     // own.
     for (std::size_t i = 0; before && i < ringing_hz.size(); ++i) {
         const SearchedTerm ringing{&term_kind("start-stop-ringing"), {ringing_hz[i], 1.6 / ringing_hz[i]}};
@@ -313,7 +313,7 @@ SaturatedFit fit_saturated(const RecordedMotion& recorded, const Baseline& base,
         base.known_nm.empty() ? std::vector<double>(count, 0.0) : sensed(base.known_nm);
     const bool has_scale = !base.columns.empty() && base.columns.front().name == "simulated";
     if (has_scale) {
-        // Free beside the inertia, its size would cancel the noise of the measured acceleration.
+        // Free with the inertia, its size would cancel the noise of the measured acceleration.
         const std::vector<double> scale =
             regress({columns.front(), std::vector<double>(count, 1.0)}, recorded.torque_nm(), use);
         add_scaled(scale[0], columns.front().data(), known.data(), count);

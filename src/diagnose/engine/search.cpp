@@ -144,7 +144,7 @@ Admission Search::admission(Criterion& criterion, const SearchedTerms& shorter, 
     found.gap_share = found.reduction / std::max(before - samples, least_squares);
     const auto added = std::ranges::find_if(
         longer, [&](const SearchedTerm& term) { return std::ranges::find(shorter, term) == shorter.end(); });
-    // What is known is fitted within its prior all the same: beside it a departure is worth what it explains
+    // What is known is fitted within its prior all the same: with it a departure is worth what it explains
     // of the torque, not what it spares the prior.
     if (added != longer.end() && criterion.base().is_known(added->kind->effect->name)) {
         const double noise_squares = samples * noise_nm * noise_nm;
@@ -162,7 +162,7 @@ Admission Search::admission(Criterion& criterion, const SearchedTerms& shorter, 
         2, static_cast<std::size_t>(best_block_share * static_cast<double>(by_block.size())));
     by_block.resize(by_block.size() - std::min(best, by_block.size()));
     // Few stretches are enough for what closes most of the gap, if much remains without the best of them.
-    // Friction beside another friction may only correct the form of that.
+    // Friction with another friction may only correct the form of that.
     const bool corrects_form =
         added != longer.end() && added->is_friction_loop() &&
         (std::ranges::any_of(shorter, [](const SearchedTerm& t) { return t.is_friction_loop(); }) ||

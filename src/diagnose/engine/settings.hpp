@@ -29,7 +29,7 @@ inline constexpr double plain_friction_share = 0.96;
 /// Squares over those of the noise from which paths that begin with other terms compete.
 inline constexpr double much_left = 1.5;
 /// Part of the blocks, the best, without which a term of few stretches is judged; what it must reduce there;
-/// and, per sample, what a friction beside another must, and Stribeck friction, the usual correction of a
+/// and, per sample, what a friction with another must, and Stribeck friction, the usual correction of a
 /// form.
 inline constexpr double best_block_share = 0.15;
 inline constexpr double least_spread = 100.0;

@@ -250,14 +250,14 @@ struct Alignment::Candidate {
 // Columns that are fitted at a delay: first those whose factors tell it. A lag of first order differs from a
 // delay by the second derivative, which for a single sine is the value itself.
 Places Alignment::fitted(const BlockProducts& products, const Question& of, bool with_clock) const {
-    if (of.is_simulated) return Places{slope} + of.beside;
+    if (of.is_simulated) return Places{slope} + of.nuisance;
     Places first{simulated, slope};
     if (with_clock) first.push_back(drift);
     const VectorXd second = products.column(bend);
-    if (products.squares(second, Places{simulated} + of.beside, false) >=
+    if (products.squares(second, Places{simulated} + of.nuisance, false) >=
         1e-2 * products.product(second, second))
         first.push_back(bend);
-    return std::move(first) + of.beside;
+    return std::move(first) + of.nuisance;
 }
 
 Alignment::Candidate Alignment::refined(double delay_s, bool with_clock, const Question& of) const {

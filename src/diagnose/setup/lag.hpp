@@ -43,7 +43,7 @@ using Places = std::vector<Eigen::Index>;
     return left;
 }
 
-/// Products of columns by block of rows: what is left of any combination of them beside others of them.
+/// Products of columns by block of rows: what is left of any combination of them with others of them.
 class BlockProducts {
   public:
     /// Ten blocks leave nine degrees of freedom: intervals are 15 % wider than with a known variance, and
@@ -67,14 +67,14 @@ class BlockProducts {
     Eigen::MatrixXd all_;
 };
 
-/// A measured and a simulated series, and columns of what the measured one may have beside it.
+/// A measured and a simulated series, and columns of what the measured one may have with it.
 class Alignment {
   public:
     /// Columns of products(): both series, the derivatives of the simulated one by its delay, then others.
     enum : Eigen::Index { measured, simulated, slope, drift, bend, third, constant };
 
     /// Of positions the slopes are compared, where that is wanted. `log`: whose motion makes the columns
-    /// beside an offset; null: there are none.
+    /// with an offset; null: there are none.
     Alignment(std::span<const double> log_s, std::span<const double> left, bool is_slope_of_left,
               const SimulatedMotion& simulation, std::span<const double> right, bool is_slope_of_right,
               const TraceView* log = nullptr, std::optional<GearRatio> gear_ratio = {});
@@ -86,11 +86,13 @@ class Alignment {
     /// Which series the other one and these columns are to explain: the measured one; or the simulated one by
     /// the columns alone.
     struct Question {
-        Places beside;
+        Places nuisance;
         bool is_simulated = false;
         [[nodiscard]] Eigen::Index target() const { return is_simulated ? simulated : measured; }
-        [[nodiscard]] Places at_a_delay() const { return is_simulated ? beside : Places{simulated} + beside; }
-        [[nodiscard]] Places alone() const { return is_simulated ? Places{constant} : beside; }
+        [[nodiscard]] Places at_a_delay() const {
+            return is_simulated ? nuisance : Places{simulated} + nuisance;
+        }
+        [[nodiscard]] Places alone() const { return is_simulated ? Places{constant} : nuisance; }
         /// By which the delay is longer, from the first factors.
         [[nodiscard]] double delay_of(const Eigen::VectorXd& factors) const {
             return is_simulated ? factors[0] : -factors[1] / factors[0];
@@ -116,7 +118,7 @@ class Alignment {
     SmoothedSeries right_;
     int derivative_;
     std::vector<double> at_s_;
-    Columns rows_;  ///< measured, then beside
+    Columns rows_;  ///< measured, then with
 };
 
 }  // namespace ripplenotch

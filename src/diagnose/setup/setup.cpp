@@ -25,7 +25,7 @@ constexpr double least_blocks = 0.9;  // that improve: at a fair coin 1 of 93 fo
 // About a factor: friction and payload change the torque's scale; a controller follows the motion.
 constexpr double torque_tolerance = 1.5, motion_tolerance = 1.1, gravity_tolerance = 1.25;
 constexpr double same_motion = 0.9;  // correlation
-constexpr double least_size = 0.1;   // of a simulated torque beside the measured one, to follow a motion
+constexpr double least_size = 0.1;   // of a simulated torque with the measured one, to follow a motion
 constexpr double longest_of_sensor_s = 0.03;  // a delay within is an effect of the joint, and searched
 constexpr double least_turn_deg = 60.0;       // less is an error of the position's zero or of the mount
 
@@ -39,28 +39,29 @@ double scale_of(const BlockProducts& both, Places by) {
     return both.values(less(both, 0.0), by)[0];
 }
 
-// Fills in what a repair explains, beside an offset and friction of any size; whether that is clear.
-bool proves(const BlockProducts& both, const Places& beside, const VectorXd& repaired, SetupFault& fault) {
-    const auto before = both.left(less(both, 1.0), beside, true), after = both.left(repaired, beside, true);
+// Fills in what a repair explains, with an offset and friction of any size; whether that is clear.
+bool proves(const BlockProducts& both, const Places& nuisance, const VectorXd& repaired, SetupFault& fault) {
+    const auto before = both.left(less(both, 1.0), nuisance, true),
+               after = both.left(repaired, nuisance, true);
     const double total = both.squares(less(both, 0.0), {Alignment::constant}),
-                 after_all = both.squares(repaired, beside),
-                 before_all = both.squares(less(both, 1.0), beside);
+                 after_all = both.squares(repaired, nuisance),
+                 before_all = both.squares(less(both, 1.0), nuisance);
     double improved = 0.0;
     for (std::size_t b = 0; b < before.size(); ++b) improved += after[b] < before[b] ? 1.0 : 0.0;
     fault.explained_before = 1.0 - before_all / total;
     fault.explained_after = 1.0 - after_all / total;
     // Of a simulation that explains nothing the less is left the smaller it is made.
-    const double alone = both.squares(less(both, 0.0), beside);
+    const double alone = both.squares(less(both, 0.0), nuisance);
     return before_all >= least_ratio * after_all && (1.0 - least_explained) * alone >= after_all &&
            improved >= least_blocks * static_cast<double>(before.size());
 }
 
 // The mistaken factor that is nearest to the scale of a series, with its sign; nothing where 1 is as near.
-std::optional<SetupFault> factor_fault(const BlockProducts& both, const Places& beside,
+std::optional<SetupFault> factor_fault(const BlockProducts& both, const Places& nuisance,
                                        std::string_view series, const std::optional<GearRatio>& ratio) {
     using Kind = SetupFaultKind;
     const bool is_torque = series == "torque";
-    const double scale = scale_of(both, beside), size = portable::log(std::max(std::abs(scale), 1e-300));
+    const double scale = scale_of(both, nuisance), size = portable::log(std::max(std::abs(scale), 1e-300));
     double least = portable::log(is_torque ? torque_tolerance : motion_tolerance);
     if (scale > 0.0) least = std::min(least, std::abs(size));
     SetupFault fault;
@@ -83,7 +84,7 @@ std::optional<SetupFault> factor_fault(const BlockProducts& both, const Places& 
             consider(factor(ratio->value()), is_torque ? Kind::motor_side_torque : Kind::motor_side_motion,
                      is_larger == is_torque, "is on the motor side of the gear");
     }
-    if (fault.factor == 1.0 || !proves(both, beside, less(both, fault.factor), fault)) return {};
+    if (fault.factor == 1.0 || !proves(both, nuisance, less(both, fault.factor), fault)) return {};
     const bool is_sign = std::abs(fault.factor) == 1.0;
     fault.statement =
         fmt::format("the {} of the log is {:.4g} times the simulated one: {}{}", series, scale,
@@ -157,15 +158,15 @@ SetupFault other_motion(double explained, std::string_view what) {
 struct Torques {
     const Alignment& columns;
     BlockProducts both;
-    Places beside = columns.friction + columns.loop;  // and an offset
+    Places nuisance = columns.friction + columns.loop;  // and an offset
 
-    [[nodiscard]] Places motion() const { return beside + columns.inertia + columns.gravity; }
+    [[nodiscard]] Places motion() const { return nuisance + columns.inertia + columns.gravity; }
     [[nodiscard]] VectorXd simulated() const { return both.column(Alignment::simulated); }
 
     // -1 or 1; 0 where a set of blocks has another.
     [[nodiscard]] double sign_of_inertia(const VectorXd& torque) const {
         if (columns.inertia.empty()) return 0.0;
-        const auto at = static_cast<Index>(beside.size());
+        const auto at = static_cast<Index>(nuisance.size());
         const double inertia = both.values(torque, motion())[at];
         for (std::size_t b = 0; b < BlockProducts::blocks; ++b)
             if (!(both.values(torque, motion(), b)[at] * inertia > 0.0)) return 0.0;
@@ -173,14 +174,15 @@ struct Torques {
     }
 
     [[nodiscard]] bool friction_drives(double factor) const {
-        const VectorXd values = both.values(less(both, factor), beside);
+        const VectorXd values = both.values(less(both, factor), nuisance);
         VectorXd friction = VectorXd::Zero(simulated().size());
-        for (std::size_t c = 1; c < beside.size(); ++c) friction[beside[c]] = values[static_cast<Index>(c)];
+        for (std::size_t c = 1; c < nuisance.size(); ++c)
+            friction[nuisance[c]] = values[static_cast<Index>(c)];
         return both.product(friction, both.column(columns.friction.back())) < 0.0;
     }
 
     [[nodiscard]] std::optional<SetupFault> factor(const SetupContext& context) const {
-        auto fault = factor_fault(both, beside, "torque", context.gear_ratio);
+        auto fault = factor_fault(both, nuisance, "torque", context.gear_ratio);
         if (!fault) return {};
         fault->option = fmt::format("scale={:.6g}", context.torque_scale * fault->factor);
         if (fault->kind == SetupFaultKind::torque_unit && fault->factor > 0.0 && fault->factor < 1.0)
@@ -201,7 +203,7 @@ struct Torques {
 
     // Of the simulated torque's square to that of the measured one.
     [[nodiscard]] double relative_square() const {
-        return both.squares(simulated(), beside) / both.squares(less(both, 0.0), beside);
+        return both.squares(simulated(), nuisance) / both.squares(less(both, 0.0), nuisance);
     }
 
     // Of the simulated torque, by the motion of the log at its delay.
@@ -233,7 +235,7 @@ struct Torques {
                         "another zero",
                         real_size, turn * degrees_per_radian),
             {}};
-        return proves(both, beside, repaired, fault) ? std::optional(std::move(fault)) : std::nullopt;
+        return proves(both, nuisance, repaired, fault) ? std::optional(std::move(fault)) : std::nullopt;
     }
 };
 
@@ -258,12 +260,12 @@ Alignment torques_of(const TraceView& log, const SimulatedMotion& simulation,
 // have any scale and delay: more columns count where they halve the squares of blocks held out at about the
 // same scale.
 SimulationLag lag_of_torques(const Alignment& both) {
-    Places beside = both.friction + both.ripple;
-    SimulationLag chosen = both.lag({beside});
+    Places nuisance = both.friction + both.ripple;
+    SimulationLag chosen = both.lag({nuisance});
     for (const Places& added : {both.inertia, both.gravity, both.load + both.loop}) {
         if (added.empty() || !chosen.is_compared) continue;
-        beside = beside + added;
-        const SimulationLag lag = both.lag({beside});
+        nuisance = nuisance + added;
+        const SimulationLag lag = both.lag({nuisance});
         const bool is_better =
             lag.left < 0.5 * chosen.left && lag.scale * chosen.scale > 0.0 &&
             std::abs(portable::log(lag.scale / chosen.scale)) <= portable::log(torque_tolerance);
@@ -344,7 +346,7 @@ SetupAnswer suspect_setup(const TraceView& log, const SimulatedMotion& simulatio
             return is_full ? lag.explained : 0.0;
         });
     // A simulation without motion has had the one that its torque follows. Of a single sine that has no one
-    // delay, and then that of the torques counts, unless beside the motion of the log far more is left with
+    // delay, and then that of the torques counts, unless with the motion of the log far more is left with
     // it.
     const Places motion = columns.friction + columns.inertia + columns.gravity;
     const SimulationLag followed = columns.lag({motion, true});

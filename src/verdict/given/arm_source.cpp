@@ -260,7 +260,7 @@ MapFit GivenArm::ripple(std::size_t joint, GearRatio ratio) {
         if (const auto gear = gear_of_motor(remaining(j).found, {ratio, {}}))
             others.motors.push_back({reading_.names[j], *gear, {reading_.logs[j].trace.view()}});
     }
-    // Lines beside the teeth of the gear are of other things.
+    // Lines with the teeth of the gear are of other things.
     GearAccount own{ratio, {}, {}, {}, "--gear-ratio"};
     if (const auto gear = gear_of_motor(remaining(joint).found, {ratio, {}}))
         std::ranges::copy_if(gear->orders, std::back_inserter(own.orders),
