@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -19,6 +20,7 @@
 #include "analysis/shared_limits.hpp"
 #include "core/matrices/least_squares.hpp"
 #include "ripplenotch/analysis/line_search.hpp"
+#include "ripplenotch/analysis/ripple_estimate.hpp"
 #include "ripplenotch/analysis/verdict_sentence.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
@@ -374,6 +376,27 @@ Hertz mean_sample_rate(std::span<const TraceView> logs) {
     return Hertz(seconds > 0.0 ? samples / seconds : 0.0);
 }
 
+/// The amplitudes of lines that turn with the joint are those of estimate_ripple, in windows of eight turns
+/// of the motor, or of eight periods of the lowest line where the gear is not known. A line that such windows
+/// hardly show, or do not separate from the next, keeps what the sums over whole sweeps give.
+void estimate_amplitudes(std::span<const TraceView> logs, Identification& result) {
+    std::vector<Line*> turning;
+    double lowest = std::numeric_limits<double>::infinity();
+    for (Line& line : result.lines) {
+        if (line.kind == LineKind::tone || !line.order_output) continue;
+        turning.push_back(&line);
+        lowest = std::min(lowest, *line.order_output);
+    }
+    if (turning.empty()) return;
+    const double ratio = result.gear_ratio.value.value_or(lowest);
+    std::vector<Order> orders;
+    for (const Line* line : turning) orders.emplace_back(*line->order_output / ratio);
+    const std::vector<RippleEstimate> found = estimate_ripple(logs, GearRatio(ratio), orders);
+    for (std::size_t i = 0; i < found.size(); ++i)
+        if (found[i].amplitude_nm > normal_95_errors * found[i].standard_error_nm)
+            turning[i]->amplitude_nm = found[i].amplitude_nm;
+}
+
 /// The result of all logs together, without testing whether each agrees.
 Identification identify_together(std::span<const TraceView> logs, const IdentifyOptions& options) {
     Identification result;
@@ -394,6 +417,7 @@ Identification identify_together(std::span<const TraceView> logs, const Identify
         result.lines.push_back(std::move(r.line));
     }
     name_mains(result.lines);
+    estimate_amplitudes(logs, result);
     std::stable_sort(result.lines.begin(), result.lines.end(),
                      [](const Line& a, const Line& b) { return a.amplitude_nm > b.amplitude_nm; });
     conclude(motion, options, result);

@@ -15,9 +15,7 @@
 #include <numbers>
 #include <vector>
 
-#include "analysis/kernels/point_kernel.hpp"
 #include "analysis/kernels/spreading_kernel.hpp"
-#include "analysis/spectrum/pieces.hpp"
 #include "core/functions/many_numbers.hpp"
 #include "core/vectors/dot.hpp"
 #include "ripplenotch/core/portable_math.hpp"
@@ -163,18 +161,12 @@ std::complex<double> unit_phasor(double angle) { return portable::phasor(angle);
 class Places {
   public:
     explicit Places(std::span<const double> where) : where_(where) {
-        if (where.empty()) return;
         // Places are taken from the middle so that the derivatives stay well conditioned.
-        middle_ = 0.5 * (where.front() + where.back());
-        if (where.size() > 1) step_ = (where.back() - where.front()) / static_cast<double>(where.size() - 1);
-        off_grid_ = look_at_even(where, where, step_).worst;
+        if (!where.empty()) middle_ = 0.5 * (where.front() + where.back());
     }
 
     /// Sums whose phase is that of places from the middle.
     [[nodiscard]] FourierPoint centred(std::span<const double> value, double frequency) const {
-        // No place is off an even grid by more than a ten-thousandth of a cycle.
-        if (off_grid_ * std::abs(frequency) <= 1e-4)
-            return even_point(where_, value, middle_, step_, frequency);
         FourierPoint point;
         std::array<double, 256> angle{}, cosine{}, sine{}, weight{};
         for (std::size_t first = 0; first < where_.size(); first += angle.size()) {
@@ -201,7 +193,7 @@ class Places {
 
   private:
     std::span<const double> where_;
-    double middle_ = 0.0, step_ = 0.0, off_grid_ = 0.0;
+    double middle_ = 0.0;
 };
 
 }  // namespace
