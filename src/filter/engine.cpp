@@ -153,13 +153,6 @@ std::vector<StreamReport> StreamPass::reports(const Layout& layout) const {
 
 }  // namespace
 
-std::optional<RunningDesign> running_design(const Method& method, const Settings& settings,
-                                            Hertz sample_rate) {
-    if (method.name == "tracking") return tracking_design(settings, sample_rate);
-    if (method.name == "oscillator") return oscillator_design(settings, sample_rate);
-    return std::nullopt;
-}
-
 namespace {
 
 // Digits after the decimal mark of a number as it is written in a log.

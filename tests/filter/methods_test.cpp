@@ -154,6 +154,41 @@ void check(const std::string& name, const std::string& spec) {
 
 }  // namespace
 
+TEST_CASE("the settings that a method holds worth trying start, and each states its multiplications") {
+    const GearAccount gear{GearRatio(100.0), {Order(1.0), Order(2.0)}, {}, {}, "test"};
+    const auto tried = [&](const Method& method, double fastest_deg_s) {
+        return method.trials({gear, Hertz(1000.0), Hertz(1000.0), DegPerSec(10.0), DegPerSec(60.0),
+                              DegPerSec(fastest_deg_s), ""});
+    };
+    std::map<std::string_view, double> multiplications;
+    for (const Method* method : methods()) {
+        INFO(method->name);
+        CHECK((method->multiplications == nullptr) == (method->part == MethodPart::control));
+        CHECK((method->trials == nullptr) == (method->part == MethodPart::control));
+        if (method->trials == nullptr) continue;
+        for (const Trial& trial : tried(*method, 60.0).all) {
+            std::string text = std::string(method->name) + trial.settings;
+            const bool follows = std::any_of(method->keys.begin(), method->keys.end(),
+                                             [](const Key& key) { return key.name == "gear-ratio"; });
+            if (follows) text += ",gear-ratio=100,orders=1:2";
+            std::optional<CandidateTable> table;
+            if (trial.table) table = CandidateTable::design(*trial.table);
+            const Settings settings("method", parse_spec(text), method->keys);
+            CHECK(method->start(settings, Hertz(1000.0), table ? &*table : nullptr) != nullptr);
+            multiplications.emplace(method->name,
+                                    method->multiplications(settings, table ? &*table : nullptr));
+        }
+    }
+    // One section; two in the paper's form; two in the state-variable form; two that are retuned; six states.
+    CHECK(multiplications["lowpass"] == 5.0);
+    CHECK(multiplications["fixed"] == 10.0);
+    CHECK(multiplications["switching"] == 22.0);
+    CHECK(multiplications["tracking"] == 1.0 + 2.0 * (13.0 + 6.0 + 9.0 + 22.0));
+    CHECK(multiplications["oscillator"] == 1.5 * 36.0 + 5.5 * 6.0 + 2.0 * 36.0 + 22.0);
+    CHECK(tried(find_method("fixed"), 90.0).none_because != "");
+    CHECK(tried(find_method("map"), 60.0).all.empty());
+}
+
 TEST_CASE("methods have a name, a summary, and keys with help, each name once") {
     std::set<std::string_view> names;
     for (const Method* method : methods()) {

@@ -54,9 +54,8 @@ struct Target {
 // Methods whose coefficients change while they run, as C99: constants, a state, and one function a sample,
 // without allocation, in bounded time.
 
-/// Whether this export target takes such methods, and whether it has the code of this one.
+/// Whether this export target takes such methods.
 [[nodiscard]] bool is_code_target(std::string_view target);
-[[nodiscard]] bool has_code(std::string_view method);
 
 /// name, precision.
 [[nodiscard]] std::span<const Key> method_code_keys();

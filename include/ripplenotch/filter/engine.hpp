@@ -25,13 +25,6 @@ namespace ripplenotch {
 [[nodiscard]] SwitchingDesign switching_design(const Settings& settings, Hertz sample_rate,
                                                const CandidateTable& table);
 
-// The numbers that a method runs on, for exports.
-
-/// Empty for methods that are coefficients, tables or maps. Throws UsageError on what cannot be designed at
-/// this sample rate, and on settings that no code is written for, naming them.
-[[nodiscard]] std::optional<RunningDesign> running_design(const Method& method, const Settings& settings,
-                                                          Hertz sample_rate);
-
 /// The rate that a table was designed for, and that of a log.
 struct TableAndLogRate {
     Hertz table, log;

@@ -5,16 +5,19 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
 
+#include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/core/quantity.hpp"
 #include "ripplenotch/core/spec.hpp"
 #include "ripplenotch/design/candidate_table.hpp"
 #include "ripplenotch/design/notch.hpp"
+#include "ripplenotch/design/running_design.hpp"
 
 namespace ripplenotch {
 
@@ -71,11 +74,40 @@ enum class MethodPart {
 /// One design of the same coefficients at every speed: notches in series, or a low-pass.
 using SteadyDesign = std::variant<std::vector<NotchSpec>, LowPassSpec>;
 
+/// What decides which settings of a method are worth trying on a log.
+struct TrialConditions {
+    const GearAccount& gear;
+    Hertz sample_rate, update_rate;  ///< of the rows, and of the torque in them
+    DegPerSec slowest, median, fastest;
+    std::string map;  ///< file of the log's ripple map; empty where it has none
+
+    [[nodiscard]] Hertz line(std::size_t order, DegPerSec speed) const {
+        return ripple_frequency(gear.orders[order], gear.ratio, speed);
+    }
+};
+
+struct Trial {
+    std::string settings;                 ///< what follows the name where it is typed: ",q=1"
+    std::optional<TableSpec> table = {};  ///< to be designed, for the file that the settings name
+};
+
+struct Trials {
+    std::vector<Trial> all;
+    std::string none_because = {};  ///< a clause; empty where there are some
+};
+
+/// Multiplications and divisions of a cosine and a sine of one angle.
+inline constexpr double circle_multiplications = 22.0;
+/// The same of a second-order section.
+inline constexpr double section_multiplications = 5.0;
+
 struct Method {
     std::string_view name, summary, source;
+    std::string_view noun;  ///< in a sentence: "a tracking notch"
     MethodPart part = MethodPart::contender;
     std::span<const Key> keys;
     bool needs_table = false;  ///< the key "table" names a table.json, loaded by the caller
+    bool is_map = false;       ///< all that it does is in its map, which is what is exported of it
     /// `table` is null unless needs_table. Throws UsageError on what cannot be designed at this sample rate.
     std::unique_ptr<CausalFilter> (*start)(const Settings& settings, Hertz sample_rate,
                                            const CandidateTable* table) = nullptr;
@@ -85,6 +117,13 @@ struct Method {
     bool frozen_is_dear = false;  ///< frozen() is too slow to be called for every window of a log
     /// What can be exported as coefficients; null for methods whose coefficients change while they run.
     SteadyDesign (*steady)(const Settings& settings) = nullptr;
+    /// The numbers that exported code of it runs on; null where there is none. Throws UsageError for settings
+    /// that no code is written for.
+    RunningDesign (*running)(const Settings& settings, Hertz sample_rate) = nullptr;
+    /// Settings worth trying on a log; null: it is tried as it is.
+    Trials (*trials)(const TrialConditions& log) = nullptr;
+    /// Multiplications and divisions in a sample of a moving joint, as its runtime has them; null: none.
+    double (*multiplications)(const Settings& settings, const CandidateTable* table) = nullptr;
 };
 
 [[nodiscard]] std::span<const Method* const> methods();

@@ -16,6 +16,7 @@
 #include <string>
 
 #include "cli/command.hpp"
+#include "cli/export/target_choice.hpp"
 #include "cli/options/lists.hpp"
 #include "cli/options/options.hpp"
 #include "cli/options/verdict_options.hpp"
@@ -171,11 +172,11 @@ ExitCode export_code(const CodeExport& request, const std::string& command_line)
     }
     const Settings settings(fmt::format("target {}", spec.name), spec, method_code_keys());
     check_output_name(request.common.output, spec.name, ".h .hpp");
-    const auto design = running_design(*request.method.method, request.method.settings, request.sample_rate);
-    const Written written = write_method_code(*design, settings, generated_by({{}, command_line}));
+    const RunningDesign design = request.method.method->running(request.method.settings, request.sample_rate);
+    const Written written = write_method_code(design, settings, generated_by({{}, command_line}));
     write_export(written, request.common);
     const ReadBack again = read_back(written, request.common);
-    const LoadedCode code = read_method_code(again.bytes, again.source, *design, settings);
+    const LoadedCode code = read_method_code(again.bytes, again.source, design, settings);
     const CodeCheck check = run_beside(request, code);
     tell_check(fmt::format("{}: {}, read back and compared with the method over {} samples in {}.\nlargest "
                            "output          {:.4g} Nm\nlargest difference      {:.1e} Nm\n",
@@ -305,7 +306,7 @@ struct ExportRequest {
 
 /// Methods that an export can hold: coefficients, a table of them, or code.
 bool can_export(const Method& method) {
-    return method.steady != nullptr || method.needs_table || has_code(method.name);
+    return method.steady != nullptr || method.needs_table || method.running != nullptr;
 }
 std::string exported_methods() {
     std::vector<const Method*> all;
@@ -352,15 +353,6 @@ Contender method_of(const ExportRequest& request) {
     return choose_method("switching", request.table, gear);
 }
 
-FilterSet filters_of(const Contender& method, const std::optional<Hertz>& sample_rate) {
-    if (method.table != nullptr) {
-        const Hertz rate = method.table->spec().sample_rate;
-        return filter_set(*method.table, switching_design(method.settings, rate, *method.table));
-    }
-    return std::visit([&](const auto& design) { return filter_set(design, *sample_rate); },
-                      method.method->steady(method.settings));
-}
-
 // What a target without code of its own leaves to whoever switches its filters.
 std::optional<std::string> left_to_caller(const Target& target, const FilterSet& filters) {
     const SwitchingDesign& design = filters.switching;
@@ -399,7 +391,7 @@ ExitCode run_export(const ExportRequest& request, const std::string& command_lin
     const Spec spec = parse_spec(request.to);
     const Target& target = find_target(spec.name);
     const Contender method = method_of(request);
-    if (has_code(method.method->name)) {
+    if (method.method->running != nullptr) {
         if (request.tolerance_percent)
             raise<UsageError>("--tolerance is for coefficients, and those of this method change");
         return export_code({method, *request.sample_rate, request.to, request.common}, command_line);

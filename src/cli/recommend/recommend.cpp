@@ -125,26 +125,6 @@ std::string recommendation_view(const CommonOptions& common, const Recommendatio
            bulleted(common, "Not tried:", report.left_out);
 }
 
-template <class Entries>
-auto named(const Entries& entries, const std::string& name) -> decltype(*entries.begin()) {
-    const auto found =
-        std::find_if(entries.begin(), entries.end(), [&](const auto* entry) { return entry->name == name; });
-    static constexpr typename std::iterator_traits<decltype(entries.begin())>::value_type none = nullptr;
-    return found == entries.end() ? none : *found;
-}
-
-// Throws UsageError with all names.
-TargetChoice find_any_target(const std::string& text) {
-    TargetChoice choice{parse_spec(text), nullptr, nullptr};
-    choice.filters = named(export_targets(), choice.spec.name);
-    choice.maps = named(map_targets(), choice.spec.name);
-    if (choice.filters == nullptr && choice.maps == nullptr) {
-        raise<UsageError>("--target {}: there is none of this name; of filters {}; of maps {}",
-                          choice.spec.name, name_list(export_targets()), name_list(map_targets()));
-    }
-    return choice;
-}
-
 constexpr std::size_t most_other_lines = 3;  // by hand: of a sentence
 
 struct RecommendRequest {
@@ -325,8 +305,7 @@ Recommendation judged_methods(TriedMethods& candidates, const Parts& parts, cons
                               const RecommendationLimits& limits, const std::optional<TorqueBand>& band) {
     std::erase_if(candidates.contenders, [&](const Contender& one) {
         const std::string why = one.refusal(parts.judge.recording.clock.nominal_rate);
-        auto& all = candidates.left_out;
-        if (!why.empty() && std::find(all.begin(), all.end(), why) == all.end()) all.push_back(why);
+        if (!why.empty()) candidates.leave_out(why);
         return !why.empty();
     });
     try {
@@ -335,7 +314,7 @@ Recommendation judged_methods(TriedMethods& candidates, const Parts& parts, cons
         if (std::erase_if(candidates.contenders, [](const Contender& one) { return one.map != nullptr; }) ==
             0)
             throw;
-        candidates.left_out.emplace_back(error.what());
+        candidates.leave_out(error.what());
         return judged_at(candidates.contenders, parts, gear, limits, band);
     }
 }

@@ -117,8 +117,6 @@ std::vector<double> CodeStyle::read_constants(TextReader& reader, std::size_t co
 
 bool is_code_target(std::string_view target) { return target == "c-header"; }
 
-bool has_code(std::string_view method) { return method == "tracking" || method == "oscillator"; }
-
 std::span<const Key> method_code_keys() { return keys; }
 
 namespace {

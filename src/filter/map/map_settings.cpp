@@ -8,6 +8,7 @@
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/visible_text.hpp"
 #include "ripplenotch/filter/map_fit.hpp"
+#include "ripplenotch/filter/method.hpp"
 
 namespace ripplenotch {
 
@@ -54,6 +55,17 @@ std::optional<RippleMap> map_of(std::string_view method, const Settings& setting
     }
     map.spread_nm = per_order(method, settings, "spread", ripple, 0.0);
     return map;
+}
+
+// MapRunner: the amplitudes of each order here, and its phase; that of the joint, too, for a second comb.
+double map_multiplications(const Settings& settings) {
+    if (!settings.has("cosines")) return 0.0;
+    const auto orders = static_cast<double>(settings.list("orders").size());
+    const auto values = static_cast<double>(settings.list("cosines").size());
+    constexpr double of_order = 6.0 + circle_multiplications, of_comb = 8.0 + circle_multiplications;
+    constexpr double of_sample = 8.0;
+    return of_sample + 2.0 * values +
+           orders * (of_order + (settings.number("second-comb") != 0.0 ? of_comb : 0.0));
 }
 
 std::vector<std::pair<std::string, std::string>> map_as_keys(const RippleMap& fitted) {

@@ -92,6 +92,9 @@ constexpr auto required_map_keys() {
 [[nodiscard]] std::optional<RippleMap> map_of(std::string_view method, const Settings& settings,
                                               const RippleOrders& ripple);
 
+/// Multiplications in a sample of the map that the keys hold; 0 without one.
+[[nodiscard]] double map_multiplications(const Settings& settings);
+
 // Keys of the method oscillator.
 
 inline constexpr std::array<std::string_view, 2> oscillator_gains = {"exact", "scheduled"};

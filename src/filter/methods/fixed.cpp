@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Notches that stay where they are: right for a joint that moves at one speed, and for lines that do not
 // follow speed.
+#include <fmt/format.h>
+
 #include <array>
 
 #include "filter/cascade_filter.hpp"
@@ -60,6 +62,24 @@ std::unique_ptr<CausalFilter> start(const Settings& settings, Hertz sample_rate,
     return std::make_unique<CascadeFilter>(cascade(settings, sample_rate));
 }
 
+constexpr double same_speed = 1.1;       // of the median speed: notches that stand still are for one speed
+constexpr double highest_center = 0.45;  // of the rate at which the torque is updated
+
+Trials trials(const TrialConditions& log) {
+    const std::size_t orders = log.gear.orders.size();
+    if (log.fastest > same_speed * log.median ||
+        !(log.line(orders - 1, log.fastest) < highest_center * log.update_rate))
+        return {{}, "the speed changes, and with it the frequency of the ripple"};
+    std::string centers;
+    for (std::size_t i = 0; i < orders; ++i)
+        centers += fmt::format("{}{:.3g}Hz", i == 0 ? "" : ":", log.line(i, log.median).value());
+    return {{{fmt::format(",centers={},q=0.25", centers)}, {fmt::format(",centers={},q=1", centers)}}};
+}
+
+double multiplications(const Settings& settings, const CandidateTable*) {
+    return section_multiplications * static_cast<double>(settings.list("centers").size());
+}
+
 FrozenFilter frozen(const Settings& settings, Hertz sample_rate, const CandidateTable*, DegPerSec) {
     return {cascade(settings, sample_rate), "notches at " + settings.text("centers")};
 }
@@ -70,10 +90,13 @@ const Method filter_methods::fixed = {
     .name = "fixed",
     .summary = "notches at stated frequencies, whatever the speed",
     .source = "Kim, Kim, Song 2011, eq. 2 (q=0.25)",
+    .noun = "fixed notches",
     .keys = keys,
     .start = start,
     .frozen = frozen,
     .steady = steady,
+    .trials = trials,
+    .multiplications = multiplications,
 };
 
 }  // namespace ripplenotch

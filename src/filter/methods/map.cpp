@@ -63,16 +63,29 @@ FrozenFilter frozen(const Settings& settings, Hertz, const CandidateTable*, DegP
     return {{}, "subtracts the map; passes all else", true};
 }
 
+Trials trials(const TrialConditions& log) {
+    if (log.map.empty()) return {};
+    return {{{",map=" + log.map}}};
+}
+
+double multiplications(const Settings& settings, const CandidateTable*) {
+    return map_multiplications(settings);
+}
+
 }  // namespace
 
 const Method filter_methods::map = {
     .name = "map",
     .summary = "the ripple of a map, subtracted at the measured angle: no delay, no memory",
     .source = "cogging feed-forward by harmonics of the motor angle, as drives store it",
+    .noun = "a ripple map",
     .keys = keys,
+    .is_map = true,
     .start = start,
     .frozen = frozen,
     .frozen_is_dear = true,  // and independent of the ripple, which does not change a linear filter
+    .trials = trials,
+    .multiplications = multiplications,
 };
 
 }  // namespace ripplenotch

@@ -27,6 +27,7 @@ const Method filter_methods::none = {
     .name = "none",
     .summary = "the torque as it is; the control in every comparison",
     .source = "",
+    .noun = "no filter",
     .part = MethodPart::control,
     .keys = {},
     .start = start,

@@ -218,9 +218,7 @@ FrozenFilter frozen(const Settings& settings, Hertz sample_rate, const Candidate
             note, p.source == MotorAngle::Source::velocity || p.largest_slip > 0.0 || p.map.has_value()};
 }
 
-}  // namespace
-
-OscillatorDesign oscillator_design(const Settings& settings, Hertz sample_rate) {
+RunningDesign running(const Settings& settings, Hertz sample_rate) {
     const Plan p = plan(settings, sample_rate);
     const auto refuse = [](bool is, std::string_view what) {
         if (is) raise<UsageError>("method oscillator as code: {} is not written; leave it out", what);
@@ -254,14 +252,37 @@ OscillatorDesign oscillator_design(const Settings& settings, Hertz sample_rate) 
     return design;
 }
 
+// Longer and shorter memories, and what is left of a map where there is one.
+Trials trials(const TrialConditions& log) {
+    Trials found{{{""}, {",output=minus-ripple"}, {",memory=0.15"}, {",memory=2"}, {",gain=scheduled"}}};
+    if (log.map.empty()) return found;
+    for (const char* const settings : {"", ",output=minus-ripple"})
+        found.all.push_back({fmt::format(",map={}{}", log.map, settings)});
+    return found;
+}
+
+// RippleKalman, with m states: update, gain and prediction; of an order its angle and its phase.
+double multiplications(const Settings& settings, const CandidateTable*) {
+    const auto orders = static_cast<double>(settings.list("orders").size()), m = 2.0 + 2.0 * orders;
+    const double of_states = settings.text("gain") == "scheduled" ? 6.0 * m : 1.5 * m * m + 5.5 * m;
+    constexpr double of_order = 14.0 + circle_multiplications, of_sample = 22.0;
+    return of_states + orders * of_order + of_sample + map_multiplications(settings);
+}
+
+}  // namespace
+
 const Method filter_methods::oscillator = {
     .name = "oscillator",
     .summary = "Kalman filter of torque and ripple, the ripple locked to the motor angle: no delay",
     .source = "R. E. Kalman 1960; harmonic drive ripple so estimated: Taghirad and Belanger 1998",
+    .noun = "an oscillator",
     .keys = oscillator_keys,
     .start = start,
     .frozen = frozen,
     .frozen_is_dear = true,  // the solution of a Riccati equation
+    .running = running,
+    .trials = trials,
+    .multiplications = multiplications,
 };
 
 }  // namespace ripplenotch

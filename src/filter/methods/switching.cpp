@@ -281,6 +281,45 @@ FrozenFilter frozen(const Settings& settings, Hertz sample_rate, const Candidate
     return {band.cascade(), note};
 }
 
+constexpr double paper_spacing_hz = 5.0;  // of a table's centres, in the lowest order
+constexpr int most_bands_tried = 60;
+constexpr double highest_center = 0.45;  // of the rate at which the torque is updated
+
+double two_digits(double value) { return *parse_number(fmt::format("{:.1e}", value)); }
+
+Trials trials(const TrialConditions& log) {
+    double width = two_digits(paper_spacing_hz / log.line(0, DegPerSec(1.0)).value());
+    const double highest = highest_center * log.update_rate.value() /
+                           log.line(log.gear.orders.size() - 1, DegPerSec(1.0)).value();
+    const double top = std::min(log.fastest.value(), highest);
+    while (top / width > most_bands_tried) width = two_digits(2.0 * width);
+    const double from = width * std::max(1.0, std::floor(log.slowest.value() / width));
+    const double bands = std::floor(top / width) - from / width + (top < highest ? 1.0 : 0.0);
+    if (!(bands >= 1.0)) return {{}, "the speeds are too low for a table of notches"};
+    TableSpec spec;
+    spec.gear_ratio = log.gear.ratio;
+    spec.orders = log.gear.orders;
+    spec.sample_rate = log.sample_rate;
+    spec.bands =
+        bands_by_spacing({DegPerSec(from), DegPerSec(from + std::round(bands) * width)}, DegPerSec(width));
+    Trials found{{{",table=table.json", spec}, {",table=table_narrow.json", spec}}};
+    found.all.back().table->q = 1.0;
+    return found;
+}
+
+// The state-variable form of the active band, or the sections of all bands where all of them run.
+double multiplications(const Settings& settings, const CandidateTable* table) {
+    const bool one_runs = settings.text("transition").starts_with("keep");
+    constexpr double of_variable_section = 11.0;
+    double most = 0.0, all = 0.0;
+    for (const Band& band : required(table).bands()) {
+        const auto sections = static_cast<double>(band.cascade().size());
+        most = std::max(most, sections);
+        all += sections;
+    }
+    return one_runs ? of_variable_section * most : section_multiplications * all;
+}
+
 }  // namespace
 
 SwitchingDesign switching_design(const Settings& settings, Hertz sample_rate, const CandidateTable& table) {
@@ -297,10 +336,13 @@ const Method filter_methods::switching = {
     .name = "switching",
     .summary = "the notches of the table's band for the present speed (the paper's method)",
     .source = "Kim, Kim, Song 2011, fig. 3 and 4, table 1",
+    .noun = "a table of notches",
     .keys = keys,
     .needs_table = true,
     .start = start,
     .frozen = frozen,
+    .trials = trials,
+    .multiplications = multiplications,
 };
 
 }  // namespace ripplenotch

@@ -96,8 +96,6 @@ std::vector<double> spread_of(double q, std::size_t count) {
     return {1.0 - aside, 1.0, 1.0 + aside};
 }
 
-}  // namespace
-
 TrackingDesign tracking_design(const Settings& settings, Hertz sample_rate) {
     const RippleOrders ripple = ripple_orders("tracking", settings);
     TrackingDesign p;
@@ -133,7 +131,9 @@ TrackingDesign tracking_design(const Settings& settings, Hertz sample_rate) {
     return p;
 }
 
-namespace {
+RunningDesign running(const Settings& settings, Hertz sample_rate) {
+    return tracking_design(settings, sample_rate);
+}
 
 double warped(double center_hz, double relative, double sample_rate_hz) {
     return portable::tan(std::numbers::pi * center_hz * relative / sample_rate_hz);
@@ -155,6 +155,20 @@ class TrackingFilter final : public CausalFilter {
 
 std::unique_ptr<CausalFilter> start(const Settings& settings, Hertz sample_rate, const CandidateTable*) {
     return std::make_unique<TrackingFilter>(tracking_design(settings, sample_rate));
+}
+
+// Wider and narrower notches.
+Trials trials(const TrialConditions&) {
+    return {{{""}, {",max-delay=2ms"}, {",max-delay=10ms"}, {",q=2.5"}, {",q=1"}}};
+}
+
+// TrackingRun: its notches, and a new centre for each order.
+double multiplications(const Settings& settings, const CandidateTable*) {
+    const std::string composite = settings.text("composite");
+    const double notches = composite == "triple" ? 3.0 : composite == "double" ? 2.0 : 1.0;
+    constexpr double of_notch = 6.0, of_retuned_notch = 9.0 + circle_multiplications, of_order = 13.0;
+    return 1.0 + static_cast<double>(settings.list("orders").size()) *
+                     (of_order + notches * (of_notch + of_retuned_notch));
 }
 
 FrozenFilter frozen(const Settings& settings, Hertz sample_rate, const CandidateTable*, DegPerSec speed) {
@@ -185,9 +199,13 @@ const Method filter_methods::tracking = {
     .source =
         "trapezoidal state-variable form (Zavalishin); weight and fade as Betaflight's rpm_filter, parking "
         "and composite notches as ArduPilot's harmonic notch",
+    .noun = "tracking notches",
     .keys = keys,
     .start = start,
     .frozen = frozen,
+    .running = running,
+    .trials = trials,
+    .multiplications = multiplications,
 };
 
 }  // namespace ripplenotch
