@@ -48,7 +48,6 @@ class CasesOfUsers(Case):
         self.assertAlmostEqual(found["gear_ratio"]["value"], 84.1666, delta=0.1)
         self.assertIn("100", " ".join([found["verdict"], *map(str, found["doubts"])]))
 
-    @unittest.expectedFailure  # Steps of the encoder are not foretold.
     def test_lines_of_a_quantised_encoder_are_none(self):
         found = self.answered("dynamixel_12bit", "--scale", "torque=0.0033333Nm", "--scale", "velocity=0.229rpm", "--scale", "position=360deg/4096")
         self.assert_line(found, "order_output", 100.0, 0.8)

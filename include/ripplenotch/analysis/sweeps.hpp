@@ -18,6 +18,7 @@ namespace ripplenotch {
 struct OutputAngle {
     std::vector<double> turns;
     bool absolute = false;  ///< counted from the zero of the joint's position; else from the first sample
+    double step_turns = 0.0;  ///< of a coarse encoder, between whose steps the angle is smooth; 0: none
 };
 
 /// From the position, which is the joint's where there is one, jumps of more than half a turn between

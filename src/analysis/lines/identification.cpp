@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "analysis/lines/disagreement.hpp"
+#include "analysis/lines/encoder_lines.hpp"
 #include "analysis/shared_limits.hpp"
 #include "core/matrices/least_squares.hpp"
 #include "ripplenotch/analysis/line_search.hpp"
@@ -404,7 +405,10 @@ Identification identify_together(std::span<const TraceView> logs, const Identify
     MotionLinesOptions search;
     search.false_alarm = options.false_alarm;
     search.stack.highest_order = options.highest_order;
-    const MotionLines motion = find_motion_lines(logs, search);
+    MotionLines motion = find_motion_lines(logs, search);
+    if (const std::size_t of_steps = take_off_encoder_lines(logs, search.sweeps, motion.lines); of_steps > 0)
+        result.notes.push_back(fmt::format("{} made by the steps of the position's encoder, not listed",
+                                           how_many(of_steps, "line")));
     std::vector<Reported> reported;
     for (std::size_t i = 0; i < motion.lines.size(); ++i)
         reported.push_back(from_motion(motion, i, result.sample_rate.value()));

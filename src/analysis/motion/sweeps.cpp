@@ -7,6 +7,7 @@
 #include <numbers>
 #include <vector>
 
+#include "analysis/motion/encoder_steps.hpp"
 #include "analysis/motion/sweep_fit.hpp"
 #include "core/functions/many_numbers.hpp"
 #include "core/process/two_cores.hpp"
@@ -45,7 +46,10 @@ std::vector<double> unwrapped_position(const TraceView& log) {
 }  // namespace
 
 OutputAngle output_angle(const TraceView& log) {
-    if (log.has_position()) return {unwrapped_position(log), true};
+    if (log.has_position()) {
+        SteppedAngle angle = between_steps(log, unwrapped_position(log));
+        return {std::move(angle.turns), true, angle.step_turns};
+    }
     return {integrated_velocity(log), false};
 }
 
