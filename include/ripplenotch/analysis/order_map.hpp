@@ -38,9 +38,9 @@ struct SpeedMap {
 };
 
 /// Windows of equal length in turns of `shaft_turns` (or in time), half overlapping, within runs of one
-/// direction; Hann window in angle, each sample weighted by the angle it represents, no interpolation; a
-/// cubic trend removed. A window belongs to its mean speed. When no run is as long as the requested
-/// resolution needs, the longest run is one window and `resolution` reports it. `shaft_turns` and
+/// direction; Hann window in angle, each sample weighted by the angle it represents, no interpolation; the
+/// trend of the ripple estimates removed. A window belongs to its mean speed. When no run is as long as the
+/// requested resolution needs, the longest run is one window and `resolution` reports it. `shaft_turns` and
 /// `speed_deg_s` have one value a sample. Throws DataError for a log without motion. O(n + windows * bins log
 /// bins).
 [[nodiscard]] SpeedMap speed_map(const TraceView& log, std::span<const double> shaft_turns,

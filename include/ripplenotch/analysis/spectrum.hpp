@@ -3,13 +3,15 @@
 // Amplitude of torque against frequency: the paper's windowed DFT, in newton-metres, with its lines and their
 // false-alarm probability.
 
+#include <complex>
 #include <cstddef>
-#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "ripplenotch/analysis/fourier.hpp"
+#include "ripplenotch/analysis/line_test.hpp"
 #include "ripplenotch/core/quantity.hpp"
 #include "ripplenotch/core/trace.hpp"
 
@@ -18,12 +20,12 @@ namespace ripplenotch {
 /// A line of a spectrum, between bins. Amplitudes are zero to peak.
 struct SpectralPeak {
     double hz = 0.0;
-    double hz_stderr = 0.0;  ///< Cramer-Rao bound at this floor, times 1.53 for the Hann window
-    double amplitude_nm = 0.0;
-    double phase_deg = 0.0;    ///< phase in cos(2 pi f t + phase), t as in the log
-    double floor_nm = 0.0;     ///< amplitude that noise alone shows here, rms
-    double snr = 0.0;          ///< amplitude_nm / floor_nm
-    double false_alarm = 1.0;  ///< chance that noise shows such a line anywhere in this spectrum
+    double hz_stderr = 0.0;  ///< Cramer-Rao bound at this floor, times 1.75 for three bins of a Hann window
+    double amplitude_nm = 0.0;  ///< rms over pieces, noise power subtracted
+    double phase_deg = 0.0;     ///< phase in cos(2 pi f t + phase) in the first piece, t as in the log
+    double floor_nm = 0.0;      ///< amplitude that noise alone shows here, rms
+    double snr = 0.0;           ///< amplitude_nm / floor_nm
+    double false_alarm = 1.0;   ///< chance that noise shows such a line anywhere in this spectrum
 };
 
 struct SpectrumOptions {
@@ -52,38 +54,37 @@ void require_piece_length(std::size_t length, const SpectrumOptions& options);
 
 /// Hann window, straight line removed per piece. Samples are taken at their own times, so that a jittered
 /// clock moves no line and makes none (regular clocks use a plain FFT). Throws DataError for fewer than 64
-/// samples. Cost O(n log n). Method: Heinzel, Ruediger, Schilling 2002 (windows and scaling); peaks by
-/// log-parabola, then Newton on the windowed sum itself.
+/// samples. Cost O(n log n). Method: Heinzel, Ruediger, Schilling 2002 (windows and scaling); peaks by the
+/// powers of the three bins around a maximum, in which a sine has its place and size exactly.
 [[nodiscard]] Spectrum torque_spectrum(const TraceView& trace, const SpectrumOptions& options);
 
-// torque_spectrum in pieces, of samples that go by and are not held: once for the power, and once more for
-// the lines found in it.
-
+/// torque_spectrum of samples that go by and are not held.
 class SpectrumStream {
   public:
-    /// `length` samples a piece, from piece_length. The rate may be a guess until settle().
+    /// `length` samples a piece, from piece_length.
     SpectrumStream(std::size_t length, Hertz rate);
-    ~SpectrumStream();
-    SpectrumStream(SpectrumStream&&) noexcept;
-    SpectrumStream& operator=(SpectrumStream&&) noexcept;
 
-    /// First pass: consecutive samples, seconds and Nm, any number at a time. Holds two pieces at most,
-    /// besides what was handed over last.
+    /// Consecutive samples, seconds and Nm, any number at a time. Holds one piece besides.
     void add(std::span<const double> time_s, std::span<const double> torque_nm);
-    /// Sets the sample rate. False when the result of the samples might have been different with it: they
-    /// have to be added again, to a new stream.
-    [[nodiscard]] bool settle(Hertz rate);
-    /// Between the passes. False when there is no line, and so no need of a second pass.
-    bool find_lines(double false_alarm);
-    /// Second pass, the same samples.
-    void measure(std::span<const double> time_s, std::span<const double> torque_nm);
-
-    /// That of torque_spectrum for the same samples, bit for bit.
-    [[nodiscard]] Spectrum spectrum() const;
+    /// That of torque_spectrum for the same samples, bit for bit. At least one piece has been added.
+    [[nodiscard]] Spectrum spectrum(double false_alarm) const;
 
   private:
-    struct Work;
-    std::unique_ptr<Work> work_;
+    void add_piece(std::span<const double> time_s, std::span<const double> torque_nm);
+    [[nodiscard]] double bin_hz() const { return rate_ / static_cast<double>(length_); }
+    [[nodiscard]] SpectralPeak peak(const SignificantPeak& found, std::span<const double> power,
+                                    double floor) const;
+
+    std::size_t length_;
+    double rate_;
+    RealTransform transform_;
+    std::vector<double> time_s_ = {}, torque_nm_ = {};  ///< of the piece under way
+    std::vector<double> place_s_ = {}, window_ = {};    ///< of a piece, for the next one to reuse
+    std::size_t pieces_ = 0;
+    std::vector<double> power_;  ///< squared amplitude of a line, sum over pieces
+    double gain_ = 0.0;          ///< ratio of density times rate to squared amplitude, likewise
+    std::vector<std::complex<double>> first_sums_ = {};  ///< of the first piece, from its middle
+    double first_middle_s_ = 0.0;
 };
 
 }  // namespace ripplenotch

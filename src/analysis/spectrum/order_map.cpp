@@ -2,12 +2,12 @@
 #include "ripplenotch/analysis/order_map.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <complex>
 #include <map>
 #include <numbers>
 
-#include "core/matrices/factorisations.hpp"
+#include "analysis/track/window_fit.hpp"
 #include "ripplenotch/analysis/fourier.hpp"
 #include "ripplenotch/analysis/order_track.hpp"
 #include "ripplenotch/analysis/sweeps.hpp"
@@ -18,10 +18,6 @@ namespace ripplenotch {
 
 namespace {
 
-// Number of terms of the polynomial trend that is removed from a window: a cubic, since a quadratic leaks
-// into order 2 where a joint reverses.
-constexpr std::ptrdiff_t window_trend_terms = 4;
-
 constexpr double bins_per_resolution = 3.0;           // chosen, not derived
 constexpr std::size_t fewest_samples_of_window = 32;  // chosen, not derived
 constexpr double window_share = 1.0 / 16.0;           ///< share of the longest run
@@ -31,74 +27,33 @@ double default_length(Axis axis, double longest) {
     return std::clamp(window_share * longest, std::min(least, 0.25 * longest), most);
 }
 
-std::vector<SampleRun> half_overlapping(const SampleRun& run, std::span<const double> place, double length) {
-    const double start = place[run.first];
-    const double whole = std::abs(place[run.end - 1] - start);
-    if (whole < length * (1.0 - 1e-9)) return {};
-    // No more windows than samples, however far apart those are.
-    const double hops = std::min(std::ceil(2.0 * (whole - length) / length), static_cast<double>(run.size()));
-    std::vector<SampleRun> windows;
-    std::size_t from = run.first, to = run.first;
-    for (double i = 0.0; i <= hops; i += 1.0) {
-        const double begin = hops > 0.0 ? (whole - length) * i / hops : 0.0;
-        while (from < run.end && std::abs(place[from] - start) < begin) ++from;
-        to = std::max(to, from);
-        while (to < run.end && std::abs(place[to] - start) <= begin + length * (1.0 + 1e-9)) ++to;
-        windows.push_back({from, to});
-    }
-    return windows;
-}
-
-/// One window: places from its start, Hann weights that count how much of the axis a sample stands for.
-struct MapWindow {
-    std::vector<double> where, weight, value;
-    double weight_sum = 0.0;
-};
-
-/// A cubic under the window's own weights: at its edges, where it matters least, it fits least.
-void remove_cubic(MapWindow& window, std::span<const double> torque) {
-    const double length = std::abs(window.where.back() - window.where.front());
-    Eigen::Matrix4d normal = Eigen::Matrix4d::Zero();
-    Eigen::Vector4d right = Eigen::Vector4d::Zero(), row;
-    const auto fill = [&](std::size_t k) {
-        const double s = 2.0 * std::abs(window.where[k] - window.where.front()) / length - 1.0;
-        double power = 1.0;
-        for (Eigen::Index i = 0; i < window_trend_terms; ++i, power *= s) row[i] = power;
-    };
-    for (std::size_t k = 0; k < torque.size(); ++k) {
-        fill(k);
-        normal += window.weight[k] * row * row.transpose();
-        right += window.weight[k] * torque[k] * row;
-    }
-    const Eigen::Vector4d trend = SymmetricFactors(normal).solve(Eigen::VectorXd(right));
-    window.value.resize(torque.size());
-    for (std::size_t k = 0; k < torque.size(); ++k) {
-        fill(k);
-        window.value[k] = window.weight[k] * (torque[k] - trend.dot(row));
-    }
-}
-
-MapWindow make_window(const TraceView& log, const SampleRun& run, std::span<const double> place,
-                      std::span<const double> torque) {
-    MapWindow window;
-    const std::size_t n = run.size();
-    const double start = place[run.first], length = place[run.end - 1] - start;
-    window.where.resize(n);
-    window.weight.resize(n);
-    const double most = 3.0 / log.sample_rate.value();  // a lost stretch is not the business of one sample
-    for (std::size_t k = 0; k < n; ++k) {
-        const std::size_t at = run.first + k;
-        const std::size_t before = k > 0 ? at - 1 : at, after = k + 1 < n ? at + 1 : at;
-        const double u = std::clamp((place[at] - start) / length, 0.0, 1.0);
-        const double seconds = log.time_s[after] - log.time_s[before];
+/// Squared amplitudes of the torque in a window, under a Hann window along its places, in which each sample
+/// counts as much of the axis as it stands for, and less the trend of every ripple estimate.
+std::vector<double> powers_of(const TraceView& log, const SampleRun& run, std::span<const double> all_places,
+                              double spacing, std::size_t bins) {
+    const auto place = all_places.subspan(run.first, run.size());
+    const auto time_s = log.time_s.subspan(run.first, run.size());
+    const double longest_s =
+        3.0 / log.sample_rate.value();  // a lost stretch is not the business of one sample
+    std::vector<double> where, root_weight;
+    for (std::size_t k = 0; k < place.size(); ++k) {
+        const std::size_t before = k > 0 ? k - 1 : k, after = std::min(k + 1, place.size() - 1);
+        const double seconds = std::max(time_s[after] - time_s[before], 1e-12);
         const double share =
-            std::abs(place[after] - place[before]) * std::min(1.0, 2.0 * most / std::max(seconds, 1e-12));
-        window.where[k] = place[at] - start;
-        window.weight[k] = (0.5 - 0.5 * portable::cos(2.0 * std::numbers::pi * u)) * share;
-        window.weight_sum += window.weight[k];
+            std::abs(place[after] - place[before]) * std::min(1.0, 2.0 * longest_s / seconds);
+        where.push_back(place[k] - place.front());
+        const double u = std::clamp(where[k] / (place.back() - place.front()), 0.0, 1.0);
+        root_weight.push_back(portable::sin(std::numbers::pi * u) * std::sqrt(share));
     }
-    if (window.weight_sum > 0.0) remove_cubic(window, torque.subspan(run.first, n));
-    return window;
+    WindowFit fit(place, root_weight, 0.0, {}, 0);
+    if (!(fit.weight() > 0.0)) return {};
+    fit.factorise();
+    std::vector<double> value = fit.fit(log.torque_nm.subspan(run.first, run.size())).residual;
+    for (std::size_t k = 0; k < value.size(); ++k) value[k] *= root_weight[k];
+    std::vector<double> powers;
+    for (const std::complex<double>& sum : nonuniform_fourier(where, value, spacing, bins))
+        powers.push_back((powers.empty() ? 1.0 : 4.0) * std::norm(sum) / (fit.weight() * fit.weight()));
+    return powers;
 }
 
 struct Gathered {
@@ -128,7 +83,7 @@ std::vector<SampleRun> cut(const std::vector<SampleRun>& runs, std::span<const d
     length = std::min(wanted, longest);
     std::vector<SampleRun> windows;
     for (const SampleRun& run : runs) {
-        const auto found = half_overlapping(run, place, length);
+        const auto found = cut_windows(run, place, length, length * (1.0 - 1e-9), 0.5);
         if (found.empty()) ++too_short;
         for (const SampleRun& window : found) {
             if (window.size() >= fewest_samples_of_window) windows.push_back(window);
@@ -172,17 +127,13 @@ SpeedMap speed_map(const TraceView& log, std::span<const double> shaft_turns,
 
     std::map<long long, Gathered> rows;
     for (std::size_t i = 0; i < windows.size(); ++i) {
-        const MapWindow window = make_window(log, windows[i], place, log.torque_nm);
-        if (!(window.weight_sum > 0.0)) continue;
+        const std::vector<double> powers = powers_of(log, windows[i], place, map.spacing, bins);
+        if (powers.empty()) continue;
         Gathered& row = rows[std::llround(speeds[i] / map.speed_step_deg_s)];
         row.power.resize(bins, 0.0);
         row.speed_sum += speeds[i];
         ++row.windows;
-        const auto sums = nonuniform_fourier(window.where, window.value, map.spacing, bins);
-        for (std::size_t k = 0; k < bins; ++k) {
-            const double amplitude = (k == 0 ? 1.0 : 2.0) * std::abs(sums[k]) / window.weight_sum;
-            row.power[k] += amplitude * amplitude;
-        }
+        for (std::size_t k = 0; k < bins; ++k) row.power[k] += powers[k];
     }
     for (auto& [range, row] : rows) {
         const double n = static_cast<double>(row.windows);
