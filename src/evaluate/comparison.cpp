@@ -416,7 +416,8 @@ LogLevels measure_on_log(std::span<const Contender> contenders, const ComparedLo
             }
         });
     const RippleLevels levels = meter.levels();
-    LogLevels result{{}, levels.windows, levels.measured_share, ""};
+    LogLevels result{
+        {}, levels.windows > 0 ? ripple_rms_nm(levels, 0) : 0.0, levels.windows, levels.measured_share, ""};
     if (levels.windows == 0) {
         result.why_none = levels.windows_too_few_samples > 0
                               ? "too few samples per motor turn for so many orders"

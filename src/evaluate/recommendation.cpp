@@ -19,64 +19,80 @@ namespace ripplenotch {
 
 namespace {
 
-// "attenuates order 1 by 16.0 dB and order 2 by 24.3 dB"
-std::string attenuation_text(const JudgedMethod& method, const std::vector<RippleEstimate>& orders) {
+// Words for a sentence of a page.
+constexpr std::size_t longest_name = 40, most_orders_named = 2;
+
+// The method as it is typed with the gear as options.
+std::string settings_text(const MethodFigures& figures) {
+    Spec spec = parse_spec(figures.method);
+    std::erase_if(spec.values,
+                  [](const auto& entry) { return entry.first == "gear-ratio" || entry.first == "orders"; });
+    const std::string text = spec.text();
+    return text.size() <= longest_name ? text : spec.name;
+}
+
+// "a ripple map (map.json)", "tracking notches (tracking,q=1)"
+std::string noun_of(const MethodFigures& figures) {
+    const Spec spec = parse_spec(figures.method);
+    std::string made_of = settings_text(figures);
+    for (const auto& [key, value] : spec.values)
+        if ((key == "map" || key == "table") && spec.values.size() == 1) made_of = value;
+    return fmt::format("{} ({})", find_method(spec.name).noun, made_of);
+}
+
+std::string order_words(double order) { return fmt::format("order {:g}", order); }
+
+// "order 1 down 9 dB, order 2 down 10 dB"
+std::string attenuation_text(const Recommendation& found, const MethodFigures& figures) {
     std::vector<std::string> parts;
-    for (std::size_t i = 0; i < orders.size(); ++i) {
-        if (!orders[i].present() || i >= method.figures.attenuation.size()) continue;
-        const OrderAttenuation& entry = method.figures.attenuation[i];
-        if (entry.db) parts.push_back(fmt::format("order {:g} by {:.1f} dB", entry.order, *entry.db));
+    std::vector<double> db;
+    for (std::size_t i = 0; i < found.orders.size() && i < figures.attenuation.size(); ++i) {
+        const OrderAttenuation& entry = figures.attenuation[i];
+        if (!found.asks_for(i) || !entry.db) continue;
+        parts.push_back(fmt::format("{} down {} dB", order_words(entry.order), rounded(*entry.db, 0)));
+        db.push_back(*entry.db);
     }
-    if (parts.empty()) return "attenuation not measured";
-    const std::string last = parts.back();
-    parts.pop_back();
-    return fmt::format("attenuates {}{}{}", fmt::join(parts, ", "), parts.empty() ? "" : " and ", last);
+    if (parts.empty()) return "attenuation not known";
+    if (parts.size() <= most_orders_named) return fmt::format("{}", fmt::join(parts, ", "));
+    const auto [least, most] = std::minmax_element(db.begin(), db.end());
+    return fmt::format("{} orders down {} to {} dB", parts.size(), rounded(*least, 0), rounded(*most, 0));
 }
 
-// "no delay at 0 Hz, 0.2 to 9.3 ms of delay at a gain of 0.98 to 1.21 within 0 to 5 Hz, a step overshoots by
-// 40 %"
-std::string delay_text(const JudgedMethod& method, const TorqueBand& band) {
-    const std::string dc_ms = rounded(method.figures.dc_delay_ms.value_or(0.0), 1);
-    std::string text = dc_ms == "0.0" ? "no delay at 0 Hz" : fmt::format("{} ms of delay at 0 Hz", dc_ms);
-    const double overshoot_percent = method.figures.overshoot_percent.value_or(0.0);
-    if (const auto& within = method.response) {
-        const std::string least = rounded(1e3 * within->least_delay.value(), 1),
-                          longest = rounded(1e3 * within->longest_delay.value(), 1),
-                          gain = fmt::format("{:.2f}", within->least_gain),
-                          largest = fmt::format("{:.2f}", within->largest_gain);
-        const bool passes = dc_ms == "0.0" && least == "0.0" && longest == "0.0" && gain == "1.00" &&
-                            largest == "1.00" && overshoot_percent < 0.5;
-        if (passes) return "without delay";
-        text +=
-            fmt::format(", {} ms of delay at a gain of {} within {:.3g} to {:.3g} Hz",
-                        least == longest ? least : least + " to " + longest,
-                        gain == largest ? gain : gain + " to " + largest, band.from.value(), band.to.value());
-    }
-    if (overshoot_percent >= 0.5) text += fmt::format(", a step overshoots by {:.0f} %", overshoot_percent);
-    return text;
+std::string delay_text(const JudgedMethod& method) {
+    if (!method.delay) return "delay not known";
+    const std::string ms = rounded(1e3 * method.delay->value(), 1);
+    return ms == "0.0" ? "no delay" : fmt::format("at most {} ms delay", ms);
 }
 
-std::string short_text(const MethodFigures& figures) {
-    constexpr std::size_t longest_text = 60;  // chosen, not derived: a line of the page
-    if (figures.method.size() <= longest_text) return figures.method;
-    return figures.method.substr(0, figures.method.find(',')) + ",...";
+// "0.10"
+std::string two_digits(double value) {
+    const double size = portable::log10(std::max(std::abs(value), 1e-9));
+    return rounded(value, std::clamp(1 - static_cast<int>(std::floor(size)), 0, 9));
+}
+
+std::string error_text(const Recommendation& found, const JudgedMethod& method) {
+    return fmt::format("error {} instead of {} Nm rms", two_digits(method.error_nm),
+                       two_digits(found.taken()->error_nm));
+}
+
+// Chosen, not derived: what is a trade, and how much larger the error of it may be.
+constexpr double less_delay_ms = 0.5, less_overshoot_percent = 10.0, less_cost = 0.5, larger_error = 1.5;
+
+// What it has less of than the one to take, at least; empty where it trades nothing.
+std::string traded(const JudgedMethod& taken, const JudgedMethod& other) {
+    if (taken.delay && other.delay && 1e3 * (*taken.delay - *other.delay).value() >= less_delay_ms)
+        return fmt::format("{} ms less delay", rounded(1e3 * (*taken.delay - *other.delay).value(), 1));
+    const double mine = taken.figures.overshoot_percent.value_or(0.0),
+                 theirs = other.figures.overshoot_percent.value_or(mine);
+    if (mine - theirs >= less_overshoot_percent)
+        return fmt::format("{} instead of {} % overshoot", rounded(theirs, 0), rounded(mine, 0));
+    if (other.multiplications <= less_cost * taken.multiplications)
+        return fmt::format("{:.0f} instead of {:.0f} multiplications per sample", other.multiplications,
+                           taken.multiplications);
+    return "";
 }
 
 bool is_control(const MethodFigures& figures) { return part_of(figures) == MethodPart::control; }
-
-std::string one_sentence(const Recommendation& found, const JudgedMethod& method) {
-    return fmt::format("{}, {}, remaining ripple {:.3g} Nm rms", attenuation_text(method, found.orders),
-                       delay_text(method, *found.band), method.figures.ripple_rms_nm.value_or(0.0));
-}
-
-std::string next_to(const Recommendation& found, const JudgedMethod& taken, const JudgedMethod& other) {
-    if (!other.meets() && taken.meets())
-        return fmt::format(" Nothing else is within the limits; nearest, {}: {}.", short_text(other.figures),
-                           fmt::join(other.shortfalls, "; "));
-    const std::string figures = one_sentence(found, other);
-    return fmt::format(" Next, {}: {}; output error {:.3g} Nm rms against {:.3g} Nm rms.",
-                       short_text(other.figures), figures, other.error_nm, taken.error_nm);
-}
 
 }  // namespace
 
@@ -87,23 +103,25 @@ std::string recommendation_verdict(const Recommendation& found) {
     if (found.finding == RecommendationFinding::no_ripple)
         return fmt::format("No filter recommended: {}.", found.why);
     if (taken == nullptr) return "No method was tried.";
-    const JudgedMethod* const other = found.runner_up();
-    if (found.finding == RecommendationFinding::out_of_reach) {
-        return fmt::format("Nothing is within the limits. The nearest is {}: {} ({}).",
-                           short_text(taken->figures), fmt::join(taken->shortfalls, "; "),
-                           one_sentence(found, *taken));
+    const bool is_reached = found.finding != RecommendationFinding::out_of_reach;
+    if (!is_reached && is_control(taken->figures)) return fmt::format("None fits: {}.", found.why);
+    if (!is_reached)
+        return fmt::format("None fits: the nearest is {} at {}.", settings_text(taken->figures),
+                           taken->shortfalls.front());
+    if (is_control(taken->figures)) {
+        const auto best =
+            std::find_if(found.methods.begin() + 1, found.methods.end(), std::mem_fn(&JudgedMethod::meets));
+        return fmt::format(
+            "Leave the torque as it is: each filter tried errs by more than its ripple. The best, {}: {}.",
+            settings_text(best->figures), error_text(found, *best));
     }
-    std::string text;
-    if (!is_control(taken->figures)) {
-        text = fmt::format("Use {}: {}.", short_text(taken->figures), one_sentence(found, *taken));
-    } else {
-        text = fmt::format("Leave the torque as it is{} ({:.3g} Nm rms).",
-                           other != nullptr && !other->meets()
-                               ? ", with its ripple"
-                               : ": a filter would distort more than the ripple that it removes",
-                           taken->figures.ripple_rms_nm.value_or(0.0));
-    }
-    if (other != nullptr) text += next_to(found, *taken, *other);
+    std::string text = fmt::format("Use {}: {}, {}; {} Nm of {} Nm rms is left.", noun_of(taken->figures),
+                                   attenuation_text(found, taken->figures), delay_text(*taken),
+                                   two_digits(taken->figures.ripple_rms_nm.value_or(0.0)),
+                                   two_digits(found.raw_ripple_rms_nm));
+    if (const JudgedMethod* const other = found.runner_up())
+        text += fmt::format(" With {}: {}, {}.", traded(*taken, *other), settings_text(other->figures),
+                            error_text(found, *other));
     return text;
 }
 
@@ -111,10 +129,11 @@ void judge(Comparison& comparison, std::span<const Contender> contenders, const 
            const RecommendationLimits& limits) {
     if (comparison.subject() == nullptr || !comparison.lines) return;
     const GearAccount& lines = *comparison.lines;
-    Recommendation found = recommend(
-        contenders, log, lines, limits, estimate_ripple({&log.trace, 1}, lines.ratio, lines.orders),
-        std::nullopt,
-        LogLevels{comparison.methods, comparison.windows, comparison.measured_share, comparison.why_none});
+    Recommendation found =
+        recommend(contenders, log, lines, limits, estimate_ripple({&log.trace, 1}, lines.ratio, lines.orders),
+                  std::nullopt,
+                  LogLevels{comparison.methods, comparison.raw_ripple_rms_nm, comparison.windows,
+                            comparison.measured_share, comparison.why_none});
     comparison.best_sentence = recommendation_verdict(found);
     if (found.finding == RecommendationFinding::recommended)
         comparison.best = std::move(found.methods.front());
@@ -128,11 +147,13 @@ constexpr Seconds run_in{2.0};             // chosen, not derived: the motor has
 // Speeds of the log at which delays within the band are looked at, alike many rows apart.
 constexpr std::size_t speeds_judged = 9;
 
-std::pair<Seconds, DegPerSec> longest_of(const Contender& contender, Hertz sample_rate, DegPerSec slowest,
-                                         DegPerSec fastest) {
+// Empty for a method without a linear filter at a constant speed.
+std::optional<std::pair<Seconds, DegPerSec>> longest_of(const Contender& contender, Hertz sample_rate,
+                                                        DegPerSec slowest, DegPerSec fastest) {
+    if (contender.method->frozen == nullptr) return std::nullopt;
     if (contender.table == nullptr) {
         const LongestDelay longest = longest_delay(contender, sample_rate, {slowest, fastest});
-        return {longest.delay, longest.speed};
+        return std::pair(longest.delay, longest.speed);
     }
     std::pair<Seconds, DegPerSec> longest{Seconds(0.0), fastest};
     for (const Band& band : contender.table->bands()) {
@@ -143,33 +164,25 @@ std::pair<Seconds, DegPerSec> longest_of(const Contender& contender, Hertz sampl
     return longest;
 }
 
-std::optional<OrderAttenuation> weakest_of(const MethodFigures& figures,
-                                           const std::vector<RippleEstimate>& orders) {
-    std::optional<OrderAttenuation> weakest;
-    for (std::size_t i = 0; i < figures.attenuation.size(); ++i) {
-        const OrderAttenuation& entry = figures.attenuation[i];
-        if (!orders[i].present() || !entry.db) continue;
-        if (!weakest || *entry.db < *weakest->db) weakest = entry;
-    }
-    return weakest;
-}
-
-void hold_to(JudgedMethod& method, const RecommendationLimits& limits,
-             const std::vector<RippleEstimate>& orders) {
+void hold_to(JudgedMethod& method, const Recommendation& found) {
+    const RecommendationLimits& limits = found.limits;
     for (std::size_t i = 0; limits.min_attenuation_db && i < method.figures.attenuation.size(); ++i) {
         const OrderAttenuation& entry = method.figures.attenuation[i];
         const double limit = *limits.min_attenuation_db, db = entry.db.value_or(0.0);
-        if (!orders[i].present() || db >= limit) continue;
+        if (!found.asks_for(i) || db >= limit) continue;
         method.shortfalls.push_back(
-            fmt::format("attenuates order {:g} by {:.1f} dB, {:.1f} dB less than {:g} dB", entry.order, db,
-                        limit - db, limit));
+            fmt::format("{:.1f} dB of {} (asked: {:g} dB)", db, order_words(entry.order), limit));
         method.excess += (limit - db) / std::max(limit, 1.0);
     }
-    if (!limits.max_delay || method.delay <= *limits.max_delay) return;
-    const double limit_ms = 1e3 * limits.max_delay->value(), delay_ms = 1e3 * method.delay.value();
-    method.shortfalls.push_back(fmt::format("{:.1f} ms of delay at {:.3g} deg/s, {:.1f} ms more than {:g} ms",
-                                            delay_ms, method.delay_at.value(), delay_ms - limit_ms,
-                                            limit_ms));
+    if (!limits.max_delay || (method.delay && *method.delay <= *limits.max_delay)) return;
+    const double limit_ms = 1e3 * limits.max_delay->value();
+    if (!method.delay) {
+        method.shortfalls.push_back(fmt::format("a delay that is not known (asked: {:g} ms)", limit_ms));
+        method.excess += 1.0;
+        return;
+    }
+    const double delay_ms = 1e3 * method.delay->value();
+    method.shortfalls.push_back(fmt::format("{:.1f} ms of delay (asked: {:g} ms)", delay_ms, limit_ms));
     method.excess += (delay_ms - limit_ms) / std::max(limit_ms, 1.0);
 }
 
@@ -197,20 +210,33 @@ JudgedMethod judged(const Contender& contender, MethodFigures&& measured, const 
     } catch (const UsageError&) {
         // A filter that does not settle has no such figure; the others still count.
     }
-    std::tie(method.delay, method.delay_at) =
-        longest_of(contender, trace.sample_rate, DegPerSec(speeds.front()), DegPerSec(speeds.back()));
+    if (const auto longest =
+            longest_of(contender, trace.sample_rate, DegPerSec(speeds.front()), DegPerSec(speeds.back())))
+        std::tie(method.delay, method.delay_at) = *longest;
+    if (contender.method->multiplications != nullptr)
+        method.multiplications = contender.method->multiplications(contender.settings, contender.table.get());
     method.response = band_response(contender, trace.sample_rate, median, *found.band);
     const auto moving = std::upper_bound(speeds.begin(), speeds.end(), speeds.back() / 20.0);
     for (std::size_t i = 0; i < speeds_judged && moving != speeds.end(); ++i) {
         const auto apart = static_cast<std::size_t>(speeds.end() - moving - 1);
         const DegPerSec speed(moving[static_cast<std::ptrdiff_t>(apart * i / (speeds_judged - 1))]);
         const auto response = band_response(contender, trace.sample_rate, speed, *found.band);
-        if (!response || response->longest_delay <= method.delay) continue;
+        if (!response || !(response->longest_delay > *method.delay)) continue;
         method.delay = response->longest_delay;
         method.delay_at = speed;
     }
-    method.weakest = weakest_of(method.figures, found.orders);
     return method;
+}
+
+// Of many orders one sentence: the first that was not searched, or the largest bound.
+std::string without_ripple_text(const std::vector<RippleEstimate>& orders) {
+    if (orders.size() <= most_orders_named) return ripple_text(orders);
+    const auto worse = [](const RippleEstimate& a, const RippleEstimate& b) {
+        return std::pair(!a.searched(), a.detectable_nm) < std::pair(!b.searched(), b.detectable_nm);
+    };
+    const RippleEstimate& worst = *std::max_element(orders.begin(), orders.end(), worse);
+    return fmt::format("{}, {} {} orders", ripple_text({&worst, 1}),
+                       worst.searched() ? "the largest bound of" : "one of", orders.size());
 }
 
 bool better(const JudgedMethod& a, const JudgedMethod& b) {
@@ -240,9 +266,22 @@ std::string_view recommendation_finding_name(RecommendationFinding finding) {
 }
 
 const JudgedMethod* Recommendation::runner_up() const {
-    for (const JudgedMethod& method : methods)
-        if (name_of(method.figures) != name_of(methods.front().figures)) return &method;
+    if (finding != RecommendationFinding::recommended || is_control(taken()->figures)) return nullptr;
+    for (const JudgedMethod& method : methods) {
+        if (!method.meets() || is_control(method.figures)) continue;
+        if (method.error_nm > larger_error * taken()->error_nm) break;
+        if (name_of(method.figures) != name_of(taken()->figures) && !traded(*taken(), method).empty())
+            return &method;
+    }
     return nullptr;
+}
+
+bool Recommendation::asks_for(std::size_t order) const {
+    if (limits.every_order) return orders[order].present();
+    double strongest_nm = 0.0;
+    for (const RippleEstimate& one : orders)
+        if (one.present()) strongest_nm = std::max(strongest_nm, one.amplitude_nm);
+    return orders[order].present() && orders[order].amplitude_nm >= faint_share * strongest_nm;
 }
 
 double torque_rate_nm_s(const TraceView& trace, GearRatio ratio) {
@@ -286,11 +325,12 @@ Recommendation recommend(std::span<const Contender> contenders, const ComparedLo
         const bool searched =
             std::all_of(found.orders.begin(), found.orders.end(), std::mem_fn(&RippleEstimate::searched));
         if (searched) found.finding = RecommendationFinding::no_ripple;
-        found.why = ripple_text(found.orders);
+        found.why = without_ripple_text(found.orders);
         return found;
     }
     LogLevels levels = measured ? std::move(*measured) : measure_on_log(contenders, log, lines);
     found.windows = levels.windows;
+    found.raw_ripple_rms_nm = levels.raw_ripple_rms_nm;
     if (levels.windows < fewest_judged_windows) {
         found.why = levels.windows == 0
                         ? fmt::format("nothing can be judged on this log: {}", levels.why_none)
@@ -311,12 +351,17 @@ Recommendation recommend(std::span<const Contender> contenders, const ComparedLo
         method.error_nm = portable::hypot(
             portable::hypot(method.figures.ripple_rms_nm.value_or(0.0), method.distortion.in_band_nm),
             method.distortion.added_nm);
-        hold_to(method, limits, found.orders);
+        hold_to(method, found);
         found.methods.push_back(std::move(method));
     }
     std::stable_sort(found.methods.begin(), found.methods.end(), better);
-    const bool any = !found.methods.empty() && found.methods.front().meets();
+    const auto fits = [](const JudgedMethod& one) { return one.meets() && !is_control(one.figures); };
+    const bool any = std::any_of(found.methods.begin(), found.methods.end(), fits);
     found.finding = any ? RecommendationFinding::recommended : RecommendationFinding::out_of_reach;
+    // What removes nothing is no answer to limits that no filter meets: the nearest filter is named.
+    if (!any)
+        std::stable_partition(found.methods.begin(), found.methods.end(),
+                              [](const JudgedMethod& one) { return !is_control(one.figures); });
     return found;
 }
 

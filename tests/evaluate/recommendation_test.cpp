@@ -170,12 +170,13 @@ TEST_CASE("looser limits give the same or a better answer, and every answer is w
             const JudgedMethod& first = *found.taken();
             if (!first.meets()) {
                 CHECK(found.finding == RecommendationFinding::out_of_reach);
-                CHECK_THAT(recommendation_verdict(found), Catch::Contains("Nothing is within the limits"));
+                CHECK_THAT(recommendation_verdict(found), Catch::Contains("None fits: the nearest is"));
                 CHECK(before == 1e9);
                 continue;
             }
-            CHECK(1e3 * first.delay.value() <= ms);
-            CHECK(*first.weakest->db >= db);
+            CHECK(1e3 * first.delay->value() <= ms);
+            for (const OrderAttenuation& order : first.figures.attenuation)
+                if (order.order == 1.0) CHECK(*order.db >= db);
             CHECK(first.error_nm <= before);
             before = first.error_nm;
         }

@@ -63,11 +63,13 @@ struct BandResponse {
 /// One method on the log.
 struct JudgedMethod {
     MethodFigures figures;
-    Seconds delay;       ///< the longest, at 0 Hz and within the torque's band, at speeds of the log ...
-    DegPerSec delay_at;  ///< ... and where
-    std::optional<BandResponse> response;     ///< at the log's median speed
-    std::optional<OrderAttenuation> weakest;  ///< the least attenuated of the orders that are present
-    Distortion distortion;                    ///< of the log's torque without ripple
+    /// The longest, at 0 Hz and within the torque's band, at speeds of the log, and where; empty where it is
+    /// not known.
+    std::optional<Seconds> delay;
+    DegPerSec delay_at;
+    std::optional<BandResponse> response;  ///< at the log's median speed
+    double multiplications = 0.0;          ///< and divisions in a sample
+    Distortion distortion;                 ///< of the log's torque without ripple
     double error_nm = 0.0;  ///< of its output: remaining ripple and distortion, root of the sum of squares
     std::vector<std::string> shortfalls;  ///< one clause for each limit that it breaks
     double excess = 0.0;                  ///< by how much, as a share of the limits, added up; 0: none
@@ -88,6 +90,7 @@ struct Comparison {
     bool on_log = false;
     DegPerSec slowest, fastest;         ///< |v| of the log
     std::size_t rows = 0, windows = 0;  ///< rows of the log; windows that RippleMeter measured
+    double raw_ripple_rms_nm = 0.0;     ///< LogLevels::raw_ripple_rms_nm
     double measured_share = 0.0;
     std::string why_none;              ///< LogLevels::why_none
     std::string best_sentence;         ///< on a log: recommendation_verdict() of its methods
@@ -139,6 +142,7 @@ struct ComparedLog {
 /// same windows.
 struct LogLevels {
     std::vector<MethodFigures> methods;  ///< one per contender: attenuation, ripple, residual, switches
+    double raw_ripple_rms_nm = 0.0;      ///< of the log as it is
     std::size_t windows = 0;
     double measured_share = 0.0;
     std::string why_none;  ///< a clause with the reason why no window could be measured

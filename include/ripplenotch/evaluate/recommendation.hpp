@@ -54,7 +54,8 @@ class TorqueReference {
 
 struct RecommendationLimits {
     std::optional<Seconds> max_delay;          ///< at 0 Hz and within the torque's band, at speeds of the log
-    std::optional<double> min_attenuation_db;  ///< attenuation of every order that is present
+    std::optional<double> min_attenuation_db;  ///< attenuation of every order that Recommendation::asks_for
+    bool every_order = false;                  ///< the orders are named: the faint ones are asked for, too
     [[nodiscard]] bool any() const { return max_delay || min_attenuation_db; }
 };
 
@@ -73,15 +74,22 @@ struct Recommendation {
     /// Orders of the whole log; empty where their interpretation is uncertain.
     std::vector<RippleEstimate> orders;
     std::size_t windows = 0;         ///< windows in which the methods were measured
+    double raw_ripple_rms_nm = 0.0;  ///< of the unfiltered torque in them
     std::optional<TorqueBand> band;  ///< of the torque; empty where nothing was judged
     double torque_rate_nm_s = 0.0;  ///< rate of change of the log's torque from motor turn to motor turn, rms
     std::vector<JudgedMethod> methods;  ///< the one to take first; those within the limits before the others
 
     /// The one to take, or the nearest; null without methods.
     [[nodiscard]] const JudgedMethod* taken() const { return methods.empty() ? nullptr : &methods.front(); }
-    /// The first one of another method; null where there is none.
+    /// The first one of another method that has less delay, overshoot or cost than the one to take; null
+    /// where there is none.
     [[nodiscard]] const JudgedMethod* runner_up() const;
+    /// Whether an order is present, and not faint unless it is named.
+    [[nodiscard]] bool asks_for(std::size_t order) const;
 };
+
+/// Of the strongest order's amplitude: less is faint, and not asked to be attenuated unless it is named.
+inline constexpr double faint_share = 0.1;
 
 /// Fewer windows of eight motor turns are insufficient for a recommendation. They overlap by half: four
 /// lengths.
@@ -100,7 +108,8 @@ inline constexpr std::size_t fewest_judged_windows = 7;
                                        std::optional<TorqueBand> band = std::nullopt,
                                        std::optional<LogLevels> measured = std::nullopt);
 
-/// One sentence, or two, with numbers: the recommended method, its performance, and the next best.
+/// A sentence with numbers, of 30 words at most: the recommended method and its performance. Another one
+/// where a second method trades something.
 [[nodiscard]] std::string recommendation_verdict(const Recommendation& found);
 
 /// recommend() among the methods of a comparison, which have been measured on all rows of its log: fills in

@@ -567,6 +567,7 @@ void add_methods(Comparison& comparison, const std::vector<Contender>& contender
         warn(common, fmt::format("the ripple cannot be measured on this log: {}", levels->why_none));
     }
     comparison.windows = levels->windows;
+    comparison.raw_ripple_rms_nm = levels->raw_ripple_rms_nm;
     comparison.why_none = levels->why_none;
     comparison.measured_share = levels->measured_share;
 }
@@ -630,7 +631,7 @@ Comparison compare_on_log(const CompareRequest& request, Field& field, Provenanc
              "give --gear-ratio or --joint-file");
     add_methods(comparison, field.contenders, compared, request.common);
     const Gates& gates = request.costs.gates;
-    judge(comparison, field.contenders, compared, {gates.max_delay, gates.min_attenuation_db});
+    judge(comparison, field.contenders, compared, {gates.max_delay, gates.min_attenuation_db, true});
     return comparison;
 }
 

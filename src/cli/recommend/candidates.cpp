@@ -72,9 +72,8 @@ class Maker {
 
   private:
     void try_settings(const Method& method, const MovingSpeeds& speeds) {
-        const Recording& recording = request_.train.recording;
         const Trials trials =
-            method.trials({request_.gear, recording.clock.nominal_rate, recording.update_rate(),
+            method.trials({request_.gear, request_.sample_rate, request_.train.recording.update_rate(),
                            speeds.slowest, speeds.median, speeds.fastest, map_ ? std::string(map_file) : ""});
         if (!trials.none_because.empty())
             made_.leave_out(fmt::format("{}: {}", method.name, trials.none_because));
@@ -92,8 +91,7 @@ class Maker {
 
     void take(Contender contender) {
         if (contender.method->part != MethodPart::control && request_.target) {
-            const std::string why =
-                request_.target->refusal(contender, request_.train.recording.clock.nominal_rate);
+            const std::string why = request_.target->refusal(contender, request_.sample_rate);
             if (!why.empty()) {
                 made_.leave_out(fmt::format("{} does not fit into {}: {}", contender.method->name,
                                             request_.target->spec.name, why));

@@ -32,6 +32,7 @@ struct TriedMethods {
 
 struct CandidateRequest {
     const Log& train;
+    Hertz sample_rate;        ///< of the whole log, which the filters are designed for
     std::string train_words;  ///< the log's name, with the options that read this part of it
     const GearChoice& choice;
     GearAccount gear;  ///< that choice comes to

@@ -70,7 +70,7 @@ std::string methods_text(const Recommendation& found) {
         rows.push_back({name.size() > widest_name ? name.substr(0, widest_name) + "..." : name});
         for (const OrderAttenuation& entry : method.figures.attenuation)
             rows.back().push_back(entry.db ? rounded(*entry.db, 1) : "-");
-        rows.back().push_back(rounded(1e3 * method.delay.value(), 1));
+        rows.back().push_back(method.delay ? rounded(1e3 * method.delay->value(), 1) : "-");
         const auto& within = method.response;
         rows.back().push_back(within ? fmt::format("{:.2f}-{:.2f}", within->least_gain, within->largest_gain)
                                      : "-");
@@ -328,7 +328,8 @@ RecommendationReport report_of(const RecommendRequest& request, Provenance& prov
     Parts parts = read_parts(request, stated.of(), report.split_s, provenance);
     if (stated.joint()) provenance.inputs.push_back(input_record(stated.joint()->path));
     GearOptions gear_options = request.gear;
-    report.found.limits = {request.limits.max_delay, request.limits.min_attenuation_db};
+    report.found.limits = {request.limits.max_delay, request.limits.min_attenuation_db,
+                           !request.gear.orders.empty()};
     if (!stated.of()) {
         const auto found = found_gear_options(parts, report.found);
         report.conclusive = report.found.finding == RecommendationFinding::no_ripple;
@@ -340,10 +341,13 @@ RecommendationReport report_of(const RecommendRequest& request, Provenance& prov
     if (!stated.of()) report.gear->source = "identify, on the log's first part";
     say(request.common, gear_in_words(*report.gear));
     const std::string split = split_words(report.split_s);
-    TriedMethods candidates =
-        candidates_for({parts.train, shell_quoted(request.log) + request.log_words({}, split), choice,
-                        *report.gear, target});
+    TriedMethods candidates = candidates_for({parts.train, parts.whole.recording.clock.nominal_rate,
+                                              shell_quoted(request.log) + request.log_words({}, split),
+                                              choice, *report.gear, target});
     report.found = judged_methods(candidates, parts, *report.gear, report.found.limits, band);
+    if (report.found.finding == RecommendationFinding::out_of_reach && target &&
+        find_method(parse_spec(report.found.taken()->figures.method).name).part == MethodPart::control)
+        report.found.why = fmt::format("{} can hold none of the methods", target->spec.text());
     name_other_lines(parts, *report.gear, report.found);
     doubt_readings(parts, *report.gear, report.found);
     report.assumed = assumptions(request, parts, *report.gear, stated.of().has_value());

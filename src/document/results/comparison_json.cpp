@@ -99,6 +99,7 @@ void describe(JsonWriter& json, const JudgedMethod& method) {
     json("distortion_nm", method.distortion.in_band_nm);
     json("added_nm", method.distortion.added_nm);
     json("longest_delay_ms", method.delay, in_ms);
+    json("multiplications", method.multiplications);
     json("longest_delay_at_deg_s", method.delay_at);
     json("dc_delay_ms", method.figures.dc_delay_ms);
     json.group_if("within_band", method.response, [](JsonWriter& within, const BandResponse& response) {
