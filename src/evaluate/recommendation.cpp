@@ -20,7 +20,7 @@ namespace ripplenotch {
 namespace {
 
 // Words for a sentence of a page.
-constexpr std::size_t longest_name = 40, most_orders_named = 2;
+constexpr std::size_t longest_name = 60, most_orders_named = 2;
 
 // The method as it is typed with the gear as options.
 std::string settings_text(const MethodFigures& figures) {
