@@ -128,8 +128,8 @@ void start_helpers(Convoy& convoy, std::size_t count, std::vector<std::jthread>&
 bool run_alone(const BlockSteps& steps, std::size_t most_bytes, BlockItem& item) {
     for (std::size_t bytes = 0; bytes < most_bytes; Convoy::renew(item)) {
         if (!steps.fetch(item)) return true;
-        bytes += item.block.bytes.size();
         if (!item.accepted) steps.parse(item);
+        bytes += item.block.bytes.size() + sizeof(double) * item.block.size();
         steps.filter(item);
         steps.prepare(item);
         steps.put(item);

@@ -7,8 +7,7 @@
 #include <cmath>
 #include <utility>
 
-#include "log/npy/npy_reader.hpp"
-#include "log/npy/npy_writer.hpp"
+#include "log/numbers/column_reader.hpp"
 #include "log/text/csv_reader.hpp"
 #include "log/text/text_dialect.hpp"
 #include "ripplenotch/core/error.hpp"
@@ -45,7 +44,7 @@ std::shared_ptr<const RowsOutside> rows_outside(const ByteSource& source) {
 }
 
 RowsInRange::RowsInRange(const ReadOptions& options, const Layout& whole, std::size_t head)
-    : ByteSource(Name{whole.source}), range_(options.range), numbers_(head) {
+    : source_(whole.source), range_(options.range), numbers_(head) {
     counts_from_kept_ = whole.stated_rate || whole.time_is_steps;
     if (whole.stated_rate) {
         rate_hz_ = whole.stated_rate->value();
@@ -54,7 +53,7 @@ RowsInRange::RowsInRange(const ReadOptions& options, const Layout& whole, std::s
         axis_.origin_s = whole.time_origin;
     } else {
         raise<DataError>("{}: {}: no column is the time; use --columns time=NAME, or --sample-rate 1kHz",
-                         name(), asked());
+                         source_, asked());
     }
 }
 
@@ -95,7 +94,7 @@ void RowsInRange::begin(double first_s) {
     first_s_ = first_s;
     const auto bound = [&](const std::optional<TimePoint>& point, std::string_view option, double& bound_s) {
         if (!point) return std::optional<double>();
-        const std::string label = fmt::format("{}: {}", name(), option);
+        const std::string label = fmt::format("{}: {}", source_, option);
         bound_s = on_axis(*point, axis_, label);
         if (bound_s < 0.0 && first_s >= 0.0)
             raise<UsageError>("{} {} is below 0 s, and the log begins at {} s; write a time from there on",
@@ -105,7 +104,7 @@ void RowsInRange::begin(double first_s) {
     outside_->from_s = bound(range_.from, "--from", from_s_);
     outside_->to_s = bound(range_.to, "--to", to_s_);
     if (from_s_ > to_s_)
-        raise<UsageError>("{}: {}: the range ends at {} s, before it begins at {} s; swap the two", name(),
+        raise<UsageError>("{}: {}: the range ends at {} s, before it begins at {} s; swap the two", source_,
                           asked(), shortest(to_s_), shortest(from_s_));
 }
 
@@ -120,9 +119,9 @@ void RowsInRange::require_rows() const {
     if (has_enough()) return;
     const std::string what = kept_ == 0 ? "no row" : "one row only";
     if (!first_s_)
-        raise<DataError>("{}: {} keeps {}: no row has a time; check the time column", name(), asked(), what);
+        raise<DataError>("{}: {} keeps {}: no row has a time; check the time column", source_, asked(), what);
     raise<UsageError>("{}: {} keeps {}: the log covers {} s to {} s in {} rows; ask for two of them or more",
-                      name(), asked(), what, shortest(*first_s_), shortest(last_s_), rows_);
+                      source_, asked(), what, shortest(*first_s_), shortest(last_s_), rows_);
 }
 
 std::string range_in_words(const RowsOutside& outside) {
@@ -143,11 +142,12 @@ ReadOptions options_of_whole(ReadOptions options) {
 
 namespace {
 
-class LinesInRange final : public RowsInRange {
+class LinesInRange final : public ByteSource, public RowsInRange {
   public:
     /// Reads ahead until enough rows are kept.
     LinesInRange(std::unique_ptr<CsvReader> whole, const ReadOptions& options)
-        : RowsInRange(options, whole->layout(), whole->dialect().data_line - 1),
+        : ByteSource(Name{whole->layout().source}),
+          RowsInRange(options, whole->layout(), whole->dialect().data_line - 1),
           whole_(std::move(whole)),
           row_(whole_->dialect(), time_columns(whole_->layout()),
                stamp_rule(whole_->layout(), whole_->dialect().rules.decimal_mark)),
@@ -211,28 +211,62 @@ class LinesInRange final : public RowsInRange {
     bool unended_ = false;   ///< the bytes before ended within a line
 };
 
-class RecordsInRange final : public RowsInRange {
+class ColumnsInRange final : public Columns, public RowsInRange {
   public:
-    RecordsInRange(NpyReader& whole, const ReadOptions& options) : RowsInRange(options, whole.layout(), 0) {
-        const std::size_t size = whole.header().record_size;
-        const bool timed = whole.layout().chosen.time.has_value();
-        RowBlock block;
-        while (whole.fetch(block)) {
-            const std::string_view bytes = block.bytes;
-            for (std::size_t at = 0; at < bytes.size(); at += size) {
-                std::optional<double> time;
-                if (timed) time = whole.time_of(bytes.data() + at);
-                if (keeps(time && std::isfinite(*time) ? time : std::nullopt))
-                    records_.put(bytes.substr(at, size));
-            }
+    /// Reads ahead until enough rows are kept.
+    ColumnsInRange(std::unique_ptr<ColumnReader> whole, const ReadOptions& options)
+        : Columns(whole->columns().name(), whole->columns().info()),
+          RowsInRange(options, whole->layout(), 0),
+          whole_(std::move(whole)) {
+        NumberRows ahead(info().size());
+        std::string ahead_bytes;
+        while (!has_enough() && add_rows(ahead, ahead_bytes)) {
         }
         require_rows();
-        records_.rewind();
+        held_.emplace(name(), info(), std::move(ahead), std::move(ahead_bytes));
     }
-    std::size_t read(char* into, std::size_t size) override { return records_.read(into, size); }
+    std::size_t next(std::size_t rows, NumberRows& into, std::string& bytes) override {
+        if (held_) {
+            if (const std::size_t ahead = held_->next(rows, into, bytes); ahead > 0) return ahead;
+            held_.reset();
+        }
+        const std::size_t before = kept();
+        while (kept() == before && add_rows(into, bytes)) {
+        }
+        return kept() - before;
+    }
+    [[nodiscard]] std::size_t number_in_file(std::size_t row) const override {
+        return RowsInRange::number_in_file(row);
+    }
+    [[nodiscard]] std::shared_ptr<const RowsOutside> outside() const override {
+        return RowsInRange::outside();
+    }
+    [[nodiscard]] const Columns& base() const override { return whole_->columns().base(); }
+    [[nodiscard]] std::size_t row_bytes() const override { return base().row_bytes(); }
 
   private:
-    TemporaryBytes records_;
+    /// The next of the log, as far as they are inside; false when there are none left.
+    bool add_rows(NumberRows& into, std::string& bytes) {
+        const std::size_t count = whole_->take(numbers_, bytes_);
+        if (count == 0) return false;
+        const bool timed = whole_->layout().chosen.time.has_value();
+        const std::size_t size = bytes_.size() / count;
+        std::vector<std::size_t> inside;
+        for (std::size_t row = 0; row < count; ++row) {
+            std::optional<double> time;
+            if (timed) time = whole_->time_at(numbers_, row);
+            if (!keeps(time && std::isfinite(*time) ? time : std::nullopt)) continue;
+            inside.push_back(row);
+            bytes.append(bytes_, row * size, size);
+        }
+        append_rows(numbers_, inside, into);
+        return true;
+    }
+
+    std::unique_ptr<ColumnReader> whole_;
+    NumberRows numbers_;
+    std::string bytes_;
+    std::optional<HeldColumns> held_;  ///< the first rows inside
 };
 
 std::string clock_words(const Layout& layout) {
@@ -272,13 +306,14 @@ std::unique_ptr<LogReader> rows_in_range(std::unique_ptr<CsvReader> whole, const
                          std::make_unique<CsvReader>(std::move(lines), std::string(), options));
 }
 
-std::unique_ptr<LogReader> rows_in_range(std::unique_ptr<NpyReader> whole, const ReadOptions& options) {
+std::unique_ptr<LogReader> rows_in_range(std::unique_ptr<ColumnReader> whole, const ReadOptions& options) {
     if (!options.range.given()) return whole;
-    auto records = std::make_unique<RecordsInRange>(*whole, options);
-    const auto outside = records->outside();
-    const std::size_t rows = records->kept();
-    return with_clock_of(whole->layout(), outside,
-                         std::make_unique<NpyReader>(std::move(records), *whole, rows, options));
+    const Layout layout = whole->layout();
+    ColumnLog log = whole->same_log(nullptr);
+    auto rows = std::make_unique<ColumnsInRange>(std::move(whole), options);
+    const auto outside = rows->RowsInRange::outside();
+    log.columns = std::move(rows);
+    return with_clock_of(layout, outside, std::make_unique<ColumnReader>(std::move(log), options));
 }
 
 }  // namespace ripplenotch

@@ -37,12 +37,12 @@ class KeptNumbers {
     std::size_t seen_, kept_;
 };
 
-/// The bytes of a log without the rows outside a range. Formats say how rows are cut out of theirs.
-class RowsInRange : public ByteSource {
+/// Says which rows of a log are inside a range, for what gives the others no further.
+class RowsInRange {
   public:
+    virtual ~RowsInRange() = default;
     [[nodiscard]] std::size_t number_in_file(std::size_t number) const { return numbers_.in_file(number); }
     [[nodiscard]] const std::shared_ptr<RowsOutside>& outside() const { return outside_; }
-    [[nodiscard]] std::size_t kept() const { return kept_; }
 
   protected:
     /// `whole`: how the times of the log are read. Throws DataError when there are none. `head`: lines before
@@ -58,6 +58,7 @@ class RowsInRange : public ByteSource {
     /// The same of a line that is no row: it goes with the row before.
     bool keeps_line();
     [[nodiscard]] bool inside() const { return place_ == Place::inside; }
+    [[nodiscard]] std::size_t kept() const { return kept_; }
     /// A log of one row has no rate.
     [[nodiscard]] bool has_enough() const { return kept_ >= 2; }
     /// At the end of the log, or as soon as it has_enough(). Throws UsageError where it does not.
@@ -69,6 +70,7 @@ class RowsInRange : public ByteSource {
     [[nodiscard]] Place place_of(double time_s) const;
     [[nodiscard]] std::string asked() const;
 
+    std::string source_;
     TimeRange range_;
     std::optional<double> rate_hz_;
     bool counts_from_kept_ = false;  ///< the times of the rows inside begin at 0
@@ -91,7 +93,7 @@ class RowsInRange : public ByteSource {
 
 class LogReader;
 class CsvReader;
-class NpyReader;
+class ColumnReader;
 
 /// For the reader of the whole log: where a range is given, whatever it lacks but a clock is not its affair.
 [[nodiscard]] ReadOptions options_of_whole(ReadOptions options);
@@ -99,9 +101,7 @@ class NpyReader;
 /// Lines pass as they stand; comments and blank lines go with the row before them.
 [[nodiscard]] std::unique_ptr<LogReader> rows_in_range(std::unique_ptr<CsvReader> whole,
                                                        const ReadOptions& options);
-/// The same of records. An array's head says how many follow, so all of it is read first, and what is kept
-/// waits in a temporary file.
-[[nodiscard]] std::unique_ptr<LogReader> rows_in_range(std::unique_ptr<NpyReader> whole,
+[[nodiscard]] std::unique_ptr<LogReader> rows_in_range(std::unique_ptr<ColumnReader> whole,
                                                        const ReadOptions& options);
 
 /// LogFormat::open of a format whose reader gives its rows by rows_in_range().

@@ -474,7 +474,7 @@ class OtherShapes(Case):
         (self.folder / "log.csv").write_bytes(tidy())
         done = self.run_tool("filter", "log.csv", "--method", "none", "-o", "out.csv", "-q")
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertEqual((self.folder / "out.csv").read_text().split("\n")[0], "time_ms,velocity_deg_s,torque_nm,position_deg")
+        self.assertEqual((self.folder / "out.csv").read_text().split("\n")[0], "time_s,velocity_deg_s,torque_nm,position_deg")
 
     def test_electrical_speed_asks_for_the_pairs_of_poles(self):
         poles = 7

@@ -563,7 +563,7 @@ TEST_CASE("signals with times of their own are joined to the torque's", "[log]")
         const Log log = read_text(text, options);
         CHECK(log.trace.size() == 19);
         CHECK(log.trace.velocity_deg_s.front() == first);
-        CHECK_THAT(log.layout.warnings.front().text, Contains("velocity has times of its own"));
+        CHECK_THAT(log.layout.warnings.front().text, Contains("velocity has a clock of its own"));
     }
 }
 

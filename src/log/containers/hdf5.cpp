@@ -20,7 +20,6 @@
 
 #include "core/files/byte_source.hpp"
 #include "log/containers/mat.hpp"
-#include "log/records/joined_records.hpp"
 
 namespace ripplenotch {
 
@@ -171,26 +170,25 @@ class DatasetCursor final : public ColumnCursor {
           dimensions_(dimensions),
           time_dimension_(time_dimension),
           column_(column) {}
-    void read(std::size_t rows, char* into) override {
+    void read(std::size_t rows, ColumnNumbers& into) override {
         std::vector<hsize_t> start(dimensions_, 0), count(dimensions_, 1);
         start[time_dimension_] = at_;
         count[time_dimension_] = rows;
-        const bool picks = memory_.count > 1;
-        if (!picks && dimensions_ == 2) start[1 - time_dimension_] = column_;
+        if (memory_.count == 1 && dimensions_ == 2) start[1 - time_dimension_] = column_;
         const Hdf5Handle space(::H5Dget_space(dataset_->id()), ::H5Sclose);
         const hsize_t length = rows;
         const Hdf5Handle memory_space(::H5Screate_simple(1, &length, nullptr), ::H5Sclose);
         ::H5Sselect_hyperslab(space.id(), H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr);
-        if (picks) whole_.resize(rows * memory_.count * memory_.field.size);
+        const std::size_t size = memory_.field.size;
+        read_.resize(rows * memory_.count * size);
         if (::H5Dread(dataset_->id(), memory_.type->id(), memory_space.id(), space.id(), H5P_DEFAULT,
-                      picks ? whole_.data() : into) < 0) {
+                      read_.data()) < 0) {
             raise<DataError>(
                 "{}: read row {} of {}, expected {} rows of numbers; the file is cut off or damaged",
                 file_->bytes->name(), at_ + 1, path(), rows);
         }
-        const std::size_t size = memory_.field.size;
-        if (picks)
-            copy_numbers({whole_.data() + column_ * size, memory_.count * size}, {into, size}, size, rows);
+        const std::size_t picked = memory_.count > 1 ? column_ * size : 0;
+        load_column(read_.data() + picked, memory_.count * size, memory_.field, rows, into);
         at_ += rows;
     }
 
@@ -208,7 +206,7 @@ class DatasetCursor final : public ColumnCursor {
     Hdf5Memory memory_;
     std::size_t dimensions_, time_dimension_, column_;
     std::uint64_t at_ = 0;
-    std::string whole_;
+    std::string read_;
 };
 
 constexpr std::size_t rows_of_a_chunk = 16384;  // rows

@@ -315,11 +315,11 @@ class MatWalk {
         array.type.kind = storage->kind;
         array.type.size = storage->size;
         array.type.big_endian = big_endian_;
-        array.open = [bytes, own = *shape, size = storage->size, start = numbers.data](std::size_t column) {
+        array.open = [bytes, own = *shape, type = array.type, start = numbers.data](std::size_t column) {
             // A matrix is stored column by column.
             const bool together = own.vector || own.time_is_first;
-            return strided_cursor(bytes, start + column * size * (together ? own.rows : 1),
-                                  size * (together ? 1 : own.columns), size);
+            return strided_cursor(bytes, start + column * type.size * (together ? own.rows : 1),
+                                  type.size * (together ? 1 : own.columns), type);
         };
         found.arrays.push_back(std::move(array));
     }

@@ -172,21 +172,17 @@ constexpr std::size_t gathered_at_once = std::size_t{1} << 18;
 class StridedCursor final : public ColumnCursor {
   public:
     StridedCursor(std::shared_ptr<StoredBytes> bytes, std::uint64_t start, std::uint64_t stride,
-                  std::size_t size)
-        : bytes_(std::move(bytes)), at_(start), stride_(stride), size_(size) {}
-    void read(std::size_t rows, char* into) override {
-        if (stride_ == size_) {
-            bytes_->read_at(at_, into, rows * size_);
-            at_ += rows * size_;
-            return;
-        }
+                  NpyField type)
+        : bytes_(std::move(bytes)), at_(start), stride_(stride), type_(std::move(type)) {
+        type_.offset = 0;
+    }
+    void read(std::size_t rows, ColumnNumbers& into) override {
         const std::size_t at_once = std::max<std::size_t>(1, gathered_at_once / stride_);
         for (std::size_t done = 0; done < rows;) {
             const std::size_t count = std::min(at_once, rows - done);
-            span_.resize((count - 1) * stride_ + size_);
+            span_.resize((count - 1) * stride_ + type_.size);
             bytes_->read_at(at_, span_.data(), span_.size());
-            copy_numbers({span_.data(), stride_}, {into, size_}, size_, count);
-            into += count * size_;
+            load_column(span_.data(), stride_, type_, count, into);
             at_ += count * stride_;
             done += count;
         }
@@ -195,15 +191,16 @@ class StridedCursor final : public ColumnCursor {
   private:
     std::shared_ptr<StoredBytes> bytes_;
     std::uint64_t at_;
-    std::size_t stride_, size_;
+    std::size_t stride_;
+    NpyField type_;
     std::string span_;
 };
 
 }  // namespace
 
 std::unique_ptr<ColumnCursor> strided_cursor(std::shared_ptr<StoredBytes> bytes, std::uint64_t start,
-                                             std::uint64_t stride, std::size_t size) {
-    return std::make_unique<StridedCursor>(std::move(bytes), start, stride, size);
+                                             std::uint64_t stride, NpyField type) {
+    return std::make_unique<StridedCursor>(std::move(bytes), start, stride, std::move(type));
 }
 
 std::optional<ArrayShape> shape_over_time(const std::vector<std::uint64_t>& dimensions) {

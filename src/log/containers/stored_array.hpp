@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "log/npy/npy_header.hpp"
-#include "log/records/joined_records.hpp"
+#include "log/numbers/columns.hpp"
 #include "log/unpack/unpacked_source.hpp"
 #include "ripplenotch/core/files.hpp"
 
@@ -72,8 +72,8 @@ void require_checksum(StoredBytes& bytes, std::uint64_t offset, std::uint64_t si
 class ColumnCursor {
   public:
     virtual ~ColumnCursor() = default;
-    /// The bytes of the next `rows` numbers, one behind the other. Throws DataError where they are not there.
-    virtual void read(std::size_t rows, char* into) = 0;
+    /// Appends the next `rows` numbers. Throws DataError where they are not there.
+    virtual void read(std::size_t rows, ColumnNumbers& into) = 0;
 };
 
 /// An array of one dimension or two as columns over time. The longer side is time.
@@ -97,7 +97,7 @@ struct StoredArray {
 /// Numbers at equal distances in stored bytes.
 [[nodiscard]] std::unique_ptr<ColumnCursor> strided_cursor(std::shared_ptr<StoredBytes> bytes,
                                                            std::uint64_t start, std::uint64_t stride,
-                                                           std::size_t size);
+                                                           NpyField type);
 
 /// How a column of a matrix is written.
 enum class PathStyle {
@@ -105,13 +105,13 @@ enum class PathStyle {
     numpy    ///< /log/q[:,2], counted from 0
 };
 
-/// The records of a log made of arrays of one clock or one length: of those that --columns names, else of
+/// A log made of arrays of one clock or one length: of those that --columns names, else of
 /// those whose names say most. What --columns names of arrays with other clocks is joined by time. `extra`
 /// goes to the list of contents only. Throws DataError where there is nothing to take, UsageError where
 /// --columns names what does not fit together.
-[[nodiscard]] Records records_of_arrays(const std::shared_ptr<StoredBytes>& file, const std::string& format,
-                                        PathStyle style, const std::vector<StoredArray>& arrays,
-                                        const std::vector<ContentEntry>& extra, const ReadOptions& options);
+[[nodiscard]] ColumnLog columns_of_arrays(const std::shared_ptr<StoredBytes>& file, const std::string& format,
+                                          PathStyle style, const std::vector<StoredArray>& arrays,
+                                          const std::vector<ContentEntry>& extra, const ReadOptions& options);
 
 /// How many of time, velocity, torque and position the names speak of, torque counting thrice; by which the
 /// part of a container is chosen that is read.

@@ -61,16 +61,14 @@ class CsvTableWriter : public TableWriter {
 
 std::unique_ptr<LogReader> open_text(std::unique_ptr<ByteSource> source, std::string first_bytes,
                                      const ReadOptions& options) {
-    if (options.skip_lines == 0 && may_be_long(first_bytes)) {
-        source = widened(std::move(source), std::move(first_bytes), options);
-        first_bytes.clear();
-    }
+    if (options.skip_lines == 0 && may_be_long(first_bytes))
+        return open_long(std::move(source), std::move(first_bytes), options);
     if (may_be_scope_export(first_bytes))
         return open_scope_export(std::move(source), std::move(first_bytes), options);
     return open_with<CsvReader>(std::move(source), std::move(first_bytes), options);
 }
 
-// Channels that were joined by time have no rows in the file that could be written again.
+// Reshaped rows, and channels that were joined by time, are none of the file that could be written again.
 std::unique_ptr<LogWriter> rewrite(std::unique_ptr<ByteSink> sink, const LogReader& reader,
                                    const WriteOptions& options) {
     const bool rows = dynamic_cast<const CsvReader*>(&reader.base()) != nullptr;

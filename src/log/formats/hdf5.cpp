@@ -5,7 +5,6 @@
 
 #include "log/containers/hdf5.hpp"
 #include "log/formats.hpp"
-#include "log/records/joined_records.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -16,11 +15,11 @@ constexpr std::string_view magic = "\x89HDF\r\n\x1a\n", matlab_head = "MATLAB 7.
 // MATLAB puts a head of text in front.
 bool sniff(std::string_view bytes) { return bytes.starts_with(magic) || bytes.starts_with(matlab_head); }
 
-Records make_hdf5(std::unique_ptr<ByteSource> source, std::string first_bytes, const ReadOptions& options) {
+ColumnLog make_hdf5(std::unique_ptr<ByteSource> source, std::string first_bytes, const ReadOptions& options) {
     const bool matlab = first_bytes.starts_with(matlab_head);
     const auto file = store_bytes(std::move(source), std::move(first_bytes));
     const Hdf5Contents found = find_hdf5_arrays(file, matlab);
-    return records_of_arrays(file, "hdf5", matlab ? PathStyle::matlab : PathStyle::numpy, found.arrays,
+    return columns_of_arrays(file, "hdf5", matlab ? PathStyle::matlab : PathStyle::numpy, found.arrays,
                              found.others, options);
 }
 
@@ -46,7 +45,7 @@ const LogFormat formats::hdf5 {
 #else
         "libhdf5",
 #endif
-    .sniff = sniff, .open = open_as_records<make_hdf5>,
+    .sniff = sniff, .open = open_as_columns<make_hdf5>,
 #if defined(RIPPLENOTCH_HAS_HDF5)
     .convert = convert, .write_columns = write_columns,
 #endif

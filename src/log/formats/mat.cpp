@@ -5,7 +5,6 @@
 
 #include "log/containers/mat.hpp"
 #include "log/formats.hpp"
-#include "log/records/joined_records.hpp"
 #include "ripplenotch/core/error.hpp"
 
 namespace ripplenotch {
@@ -22,12 +21,12 @@ bool sniff(std::string_view bytes) {
     return (little || big) && version == 1;
 }
 
-Records make_mat(std::unique_ptr<ByteSource> source, std::string first_bytes, const ReadOptions& options) {
+ColumnLog make_mat(std::unique_ptr<ByteSource> source, std::string first_bytes, const ReadOptions& options) {
     if (!sniff(first_bytes))
         raise<DataError>("{}: read no head of a MAT file, expected one; leave out --format", source->name());
     const auto file = store_bytes(std::move(source), std::move(first_bytes));
     const MatContents found = find_mat_arrays(file);
-    return records_of_arrays(file, "mat", PathStyle::matlab, found.arrays, found.others, options);
+    return columns_of_arrays(file, "mat", PathStyle::matlab, found.arrays, found.others, options);
 }
 
 }  // namespace
@@ -38,7 +37,7 @@ const LogFormat formats::mat{
     .extensions = extensions,
     .binary = true,
     .sniff = sniff,
-    .open = open_as_records<make_mat>,
+    .open = open_as_columns<make_mat>,
     .convert = convert_with<MatTableWriter>,
     .write_columns = write_columns_with<MatTableWriter>,
 };

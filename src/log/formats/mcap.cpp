@@ -4,17 +4,16 @@
 #include <array>
 
 #include "log/formats.hpp"
-#include "log/messages/message_records.hpp"
-#include "log/records/joined_records.hpp"
+#include "log/messages/message_columns.hpp"
 
 namespace ripplenotch {
 namespace {
 
 constexpr std::array<std::string_view, 1> extensions = {".mcap"};
 
-Records make_mcap(std::unique_ptr<ByteSource> source, std::string first_bytes, const ReadOptions& options) {
+ColumnLog make_mcap(std::unique_ptr<ByteSource> source, std::string first_bytes, const ReadOptions& options) {
     const auto file = store_bytes(std::move(source), std::move(first_bytes));
-    return records_of_messages([file] { return open_mcap(file); }, "mcap", options);
+    return columns_of_messages([file] { return open_mcap(file); }, "mcap", options);
 }
 
 }  // namespace
@@ -25,7 +24,7 @@ const LogFormat formats::mcap{
     .extensions = extensions,
     .binary = true,
     .sniff = [](std::string_view bytes) { return bytes.starts_with("\x89MCAP"); },
-    .open = open_as_records<make_mcap>,
+    .open = open_as_columns<make_mcap>,
 };
 
 }  // namespace ripplenotch

@@ -4,9 +4,7 @@
 #include <array>
 
 #include "log/formats.hpp"
-#include "log/npy/npy_reader.hpp"
 #include "log/npy/npy_writer.hpp"
-#include "log/rows_in_range.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -23,8 +21,8 @@ const LogFormat formats::npy{
     .extensions = extensions,
     .binary = true,
     .sniff = sniff,
-    .open = open_with<NpyReader>,
-    .rewrite = rewrite_with<NpyWriter, NpyReader>,
+    .open = open_as_columns<make_npy>,
+    .rewrite = rewrite_with<NpyWriter, ColumnReader>,
     .convert = convert_with<NpyTableWriter>,
     .write_columns = write_columns_with<NpyTableWriter>,
 };

@@ -12,7 +12,6 @@
 #include "log/containers/stored_array.hpp"
 #include "log/formats.hpp"
 #include "log/npy/npy_header.hpp"
-#include "log/records/joined_records.hpp"
 #include "ripplenotch/core/error.hpp"
 
 namespace ripplenotch {
@@ -147,9 +146,9 @@ void add_arrays(const ZipMember& member, const std::string& name, const NpyHeade
             if (field.kind == '\0') continue;
             StoredArray array{name + "." + field.name, {header.rows, 1, true, true}, field, "", {}, ""};
             array.open = [bytes = member.bytes, from = start + field.offset, stride = header.record_size,
-                          size = field.size, check](std::size_t) {
+                          field, check](std::size_t) {
                 check();
-                return strided_cursor(bytes, from, stride, size);
+                return strided_cursor(bytes, from, stride, field);
             };
             arrays.push_back(std::move(array));
         }
@@ -158,12 +157,11 @@ void add_arrays(const ZipMember& member, const std::string& name, const NpyHeade
     const NpyField& type = header.fields.front();
     const std::size_t columns = header.fields.size();
     StoredArray array{name, {header.rows, columns, columns == 1, !header.transposed}, type, "", {}, ""};
-    array.open = [bytes = member.bytes, start, size = type.size, together = header.by_columns,
-                  rows = header.rows, record = header.record_size,
-                  check = checked_once(member)](std::size_t c) {
+    array.open = [bytes = member.bytes, start, type, together = header.by_columns, rows = header.rows,
+                  record = header.record_size, check = checked_once(member)](std::size_t c) {
         check();
-        return strided_cursor(bytes, start + c * size * (together ? rows : 1), together ? size : record,
-                              size);
+        return strided_cursor(bytes, start + c * type.size * (together ? rows : 1),
+                              together ? type.size : record, type);
     };
     arrays.push_back(std::move(array));
 }
@@ -192,7 +190,7 @@ std::optional<NpyHeader> header_of(const ZipMember& member, const std::string& a
     return header;
 }
 
-Records make_npz(std::unique_ptr<ByteSource> source, std::string first_bytes, const ReadOptions& options) {
+ColumnLog make_npz(std::unique_ptr<ByteSource> source, std::string first_bytes, const ReadOptions& options) {
     const auto archive = store_bytes(std::move(source), std::move(first_bytes));
     std::vector<StoredArray> arrays;
     std::vector<ContentEntry> others;
@@ -204,7 +202,7 @@ Records make_npz(std::unique_ptr<ByteSource> source, std::string first_bytes, co
         else
             others.push_back({name, "", "no log", "", {}, false});
     }
-    return records_of_arrays(archive, "npz", PathStyle::numpy, arrays, others, options);
+    return columns_of_arrays(archive, "npz", PathStyle::numpy, arrays, others, options);
 }
 
 }  // namespace
@@ -215,7 +213,7 @@ const LogFormat formats::npz{
     .extensions = extensions,
     .binary = true,
     .sniff = sniff,
-    .open = open_as_records<make_npz>,
+    .open = open_as_columns<make_npz>,
 };
 
 }  // namespace ripplenotch

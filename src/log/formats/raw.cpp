@@ -10,8 +10,7 @@
 #include <vector>
 
 #include "log/formats.hpp"
-#include "log/npy/npy_header.hpp"
-#include "log/records/joined_records.hpp"
+#include "log/npy/npy_columns.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 
@@ -151,24 +150,6 @@ std::vector<std::string> layouts_that_fit(const RawLayout& layout, std::uint64_t
     return texts;
 }
 
-/// A source whose first bytes have been read already.
-class Behind final : public ByteSource {
-  public:
-    Behind(std::unique_ptr<ByteSource> source, std::string first_bytes)
-        : ByteSource(Name{source->name()}), source_(std::move(source)), first_(std::move(first_bytes)) {}
-    std::size_t read(char* into, std::size_t size) override {
-        if (given_ == first_.size()) return source_->read(into, size);
-        const std::size_t taken = first_.copy(into, size, given_);
-        given_ += taken;
-        return taken;
-    }
-
-  private:
-    std::unique_ptr<ByteSource> source_;
-    std::string first_;
-    std::size_t given_ = 0;
-};
-
 void require_whole_records(const RawLayout& layout, const ByteSource& source) {
     const std::uint64_t bytes = source.size(), rest = bytes % layout.record_size;
     if (rest == 0) return;  // of a pipe the size is 0; it says at its end
@@ -185,7 +166,7 @@ void require_whole_records(const RawLayout& layout, const ByteSource& source) {
                      : fmt::format("Layouts near it that fit: {}", fmt::join(fits, " or ")));
 }
 
-Records make_raw(std::unique_ptr<ByteSource> source, std::string first_bytes, const ReadOptions& options) {
+ColumnLog make_raw(std::unique_ptr<ByteSource> source, std::string first_bytes, const ReadOptions& options) {
     if (!options.records) {
         raise<UsageError>(
             "{}: a raw dump does not state what is in it; state what a record holds, as in --format raw "
@@ -194,16 +175,20 @@ Records make_raw(std::unique_ptr<ByteSource> source, std::string first_bytes, co
     }
     const RawLayout layout = parse_raw_layout(*options.records);
     require_whole_records(layout, *source);
-    RecordTable table;
-    table.format = "raw";
-    table.fields = layout.fields;
-    table.named = layout.named;
-    table.record_size = layout.record_size;
-    table.options = fmt::format("--layout '{}'", layout.text);
-    for (std::size_t f = 0; layout.named && f < table.fields.size(); ++f) {
-        if (table.fields[f].name.empty()) table.fields[f].name = fmt::format("column {}", f + 1);
+    NpyHeader header;
+    header.fields = layout.fields;
+    header.structured = layout.named;
+    header.record_size = layout.record_size;
+    header.rows = rows_unknown;
+    for (std::size_t f = 0; layout.named && f < header.fields.size(); ++f) {
+        if (header.fields[f].name.empty()) header.fields[f].name = fmt::format("column {}", f + 1);
     }
-    return {std::make_unique<Behind>(std::move(source), std::move(first_bytes)), std::move(table)};
+    ColumnLog log;
+    log.format = "raw";
+    log.options = fmt::format("--layout '{}'", layout.text);
+    log.columns = std::make_unique<RecordColumns>(std::move(source), std::move(first_bytes),
+                                                  std::move(header), std::string());
+    return log;
 }
 
 }  // namespace
@@ -215,7 +200,7 @@ const LogFormat formats::raw{
     .binary = true,
     .told = true,
     .sniff = [](std::string_view) { return false; },
-    .open = open_as_records<make_raw>,
+    .open = open_as_columns<make_raw>,
 };
 
 }  // namespace ripplenotch

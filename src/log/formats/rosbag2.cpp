@@ -4,18 +4,17 @@
 #include <array>
 
 #include "log/formats.hpp"
-#include "log/messages/message_records.hpp"
-#include "log/records/joined_records.hpp"
+#include "log/messages/message_columns.hpp"
 
 namespace ripplenotch {
 namespace {
 
 constexpr std::array<std::string_view, 1> extensions = {".db3"};
 
-Records make_rosbag2(std::unique_ptr<ByteSource> source, std::string first_bytes,
-                     const ReadOptions& options) {
+ColumnLog make_rosbag2(std::unique_ptr<ByteSource> source, std::string first_bytes,
+                       const ReadOptions& options) {
     const auto file = store_bytes(std::move(source), std::move(first_bytes));
-    return records_of_messages([file] { return open_rosbag2(file); }, "rosbag2", options);
+    return columns_of_messages([file] { return open_rosbag2(file); }, "rosbag2", options);
 }
 
 }  // namespace
@@ -30,7 +29,7 @@ const LogFormat formats::rosbag2 {
         "libsqlite3",
 #endif
     .sniff = [](std::string_view bytes) { return bytes.starts_with("SQLite format 3"); },
-    .open = open_as_records<make_rosbag2>,
+    .open = open_as_columns<make_rosbag2>,
 };
 
 }  // namespace ripplenotch

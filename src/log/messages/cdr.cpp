@@ -5,12 +5,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstdint>
 #include <cstring>
 #include <string_view>
 
-#include "log/messages/message_records.hpp"
+#include "log/messages/message_columns.hpp"
 #include "log/messages/ros_schema.hpp"
 #include "ripplenotch/core/error.hpp"
 
@@ -34,6 +35,7 @@ struct CdrStep {
     };
     Kind kind = Kind::skip;
     std::size_t size = 0, count = 1, leaf = 0;
+    NpyField type = {};  ///< of a number that is kept
     std::string path, expected;
     std::vector<CdrStep> inner;
 };
@@ -151,33 +153,36 @@ bool keeps(const CdrStep& step) {
 
 class CdrReader final : public MessageReader {
   public:
-    CdrReader(std::shared_ptr<const std::vector<CdrStep>> steps, const LeafOffsets& offsets)
-        : steps_(std::move(steps)), count_(steps_->size()), offsets_(offsets) {
+    CdrReader(std::shared_ptr<const std::vector<CdrStep>> steps, const std::vector<bool>& wanted)
+        : steps_(std::move(steps)), count_(steps_->size()), wanted_(wanted) {
         // Behind the last useful step there is nothing to go on for.
         const auto useful = [&](const CdrStep& step) {
-            return keeps(step) ? offsets_[step.leaf] >= 0 : step.kind == CdrStep::Kind::length_is;
+            return keeps(step) ? wanted_[step.leaf] : step.kind == CdrStep::Kind::length_is;
         };
         while (count_ > 0 && !useful((*steps_)[count_ - 1])) --count_;
     }
-    void read(std::string_view message, char* into) override {
+    void read(std::string_view message, std::vector<LeafNumber>& into) override {
         CdrCursor cursor(message);
         for (std::size_t s = 0; s < count_; ++s) {
             const CdrStep& step = (*steps_)[s];
-            if (!keeps(step) || offsets_[step.leaf] < 0) {
+            if (!keeps(step) || !wanted_[step.leaf]) {
                 pass_cdr(cursor, step);
-            } else if (step.kind == CdrStep::Kind::number) {
-                cursor.number(step.size, into + offsets_[step.leaf]);
-            } else {
-                const std::int64_t stamp = cursor.stamp();
-                std::memcpy(into + offsets_[step.leaf], &stamp, sizeof stamp);
+                continue;
             }
+            std::array<char, 8> raw{};
+            if (step.kind == CdrStep::Kind::number)
+                cursor.number(step.size, raw.data());
+            else
+                raw = std::bit_cast<std::array<char, 8>>(cursor.stamp());
+            into[step.leaf].value = load_field(raw.data(), step.type);
+            if (step.type.whole()) into[step.leaf].count = load_count(raw.data(), step.type);
         }
     }
 
   private:
     std::shared_ptr<const std::vector<CdrStep>> steps_;
     std::size_t count_;
-    LeafOffsets offsets_;
+    std::vector<bool> wanted_;  ///< by leaf
 };
 
 constexpr std::size_t most_leaves = 4096, most_steps = 100000;
@@ -209,11 +214,11 @@ class LayOut {
     void take_names(const std::string& path, std::vector<std::string>& names, std::vector<CdrStep>& steps) {
         const std::uint32_t count = cursor_.length();
         if (count > 10000) raise<DataError>("{} names of joints", count);
-        steps.push_back({CdrStep::Kind::length_is, 0, count, 0, path, {}, {}});
+        steps.push_back({CdrStep::Kind::length_is, 0, count, 0, {}, path, {}, {}});
         for (std::uint32_t i = 0; i < count; ++i) {
             names.emplace_back(cursor_.text());
             steps.push_back(
-                {CdrStep::Kind::text_is, 0, 1, 0, fmt::format("{}[{}]", path, i), names.back(), {}});
+                {CdrStep::Kind::text_is, 0, 1, 0, {}, fmt::format("{}[{}]", path, i), names.back(), {}});
         }
     }
     void add_field(const RosField& field, const std::string& path, std::vector<CdrStep>& steps) {
@@ -226,7 +231,7 @@ class LayOut {
         if (!listed) return pass_over(field, steps);
         if (any) {
             cursor_.length();
-            steps.push_back({CdrStep::Kind::length_is, 0, count, 0, path, {}, {}});
+            steps.push_back({CdrStep::Kind::length_is, 0, count, 0, {}, path, {}, {}});
         }
         for (std::size_t i = 0; i < count; ++i) {
             const bool named = names_ != nullptr && names_->size() == count;
@@ -259,6 +264,7 @@ class LayOut {
                 leaf.type.big_endian = std::endian::native == std::endian::big;
                 if (leaves.size() == most_leaves)
                     raise<DataError>("messages of more than {} numbers", most_leaves);
+                step.type = leaf.type;
                 leaves.push_back(leaf);
                 break;
             }
@@ -323,8 +329,9 @@ MessageLayout lay_out_cdr(const RosType& type, std::string_view message) {
     LayOut work(message);
     work.record(type, "", steps);
     const auto shared = std::make_shared<const std::vector<CdrStep>>(std::move(steps));
-    return {std::move(work.leaves), [shared](const LeafOffsets& offsets) -> std::unique_ptr<MessageReader> {
-                return std::make_unique<CdrReader>(shared, offsets);
+    return {std::move(work.leaves),
+            [shared](const std::vector<bool>& wanted) -> std::unique_ptr<MessageReader> {
+                return std::make_unique<CdrReader>(shared, wanted);
             }};
 }
 

@@ -2,7 +2,7 @@
 #pragma once
 #include <string_view>
 
-#include "log/messages/message_records.hpp"
+#include "log/messages/message_columns.hpp"
 
 namespace ripplenotch {
 

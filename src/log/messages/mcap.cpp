@@ -11,7 +11,7 @@
 #include <string_view>
 
 #include "log/containers/stored_array.hpp"
-#include "log/messages/message_records.hpp"
+#include "log/messages/message_columns.hpp"
 #include "log/unpack/unpacked_source.hpp"
 #include "ripplenotch/core/error.hpp"
 

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "log/messages/message_records.hpp"
+#include "log/messages/message_columns.hpp"
 
 namespace ripplenotch {
 

@@ -2,7 +2,7 @@
 // The messages of a rosbag2 recording in SQLite (storage sqlite3: tables topics, messages,
 // message_definitions), by libsqlite3.
 
-#include "log/messages/message_records.hpp"
+#include "log/messages/message_columns.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/visible_text.hpp"
 

@@ -7,12 +7,9 @@
 #include <array>
 #include <bit>
 #include <cctype>
-#include <cmath>
 #include <cstring>
 
-#include "log/clock/stamp.hpp"
 #include "ripplenotch/core/error.hpp"
-#include "ripplenotch/core/trace.hpp"
 
 namespace ripplenotch {
 
@@ -39,16 +36,13 @@ constexpr bool is_native(const NpyField& field) {
 
 /// Words in the processor's own order, which is nearly all there are.
 template <class Word>
-bool load_native(const char* at, std::size_t record_size, std::span<double> into) {
-    bool finite = true;
+void load_native(const char* at, std::size_t record_size, std::span<double> into) {
     for (double& value : into) {
         Word word;
         std::memcpy(&word, at, sizeof(Word));
         at += record_size;
         value = static_cast<double>(word);
-        finite &= is_reading(value);
     }
-    return finite;
 }
 
 double load_unscaled(const char* record, const NpyField& field) {
@@ -93,15 +87,7 @@ double load_field(const char* record, const NpyField& field) {
 }
 
 std::int64_t load_count(const char* record, const NpyField& field) {
-    if ((field.kind == 'i' || field.kind == 'u') && field.size == 8 && !field.scaled())
-        return load_word<std::int64_t>(record + field.offset, field.big_endian);
-    const double value = load_field(record, field);
-    return std::abs(value) < 9e18 ? static_cast<std::int64_t>(value) : 0;
-}
-
-double load_since(const char* record, const NpyField& field, std::int64_t origin) {
-    if (field.kind == 'f' || field.scaled()) return load_field(record, field) - static_cast<double>(origin);
-    return since(load_count(record, field), origin);
+    return load_word<std::int64_t>(record + field.offset, field.big_endian);
 }
 
 void store_float(char* record, const NpyField& field, double value) {
@@ -112,20 +98,21 @@ void store_float(char* record, const NpyField& field, double value) {
     }
 }
 
-bool load_column(const char* records, std::size_t record_size, const NpyField& field,
-                 std::span<double> into) {
+void load_column(const char* records, std::size_t record_size, const NpyField& field, std::size_t rows,
+                 ColumnNumbers& into) {
+    const std::size_t before = into.values.size();
+    into.values.resize(before + rows);
+    const std::span<double> values = std::span(into.values).subspan(before);
     if (field.kind == 'f' && is_native(field) && !field.scaled()) {
         const char* const first = records + field.offset;
-        return field.size == 4 ? load_native<float>(first, record_size, into)
-                               : load_native<double>(first, record_size, into);
+        field.size == 4 ? load_native<float>(first, record_size, values)
+                        : load_native<double>(first, record_size, values);
+        return;
     }
-    bool finite = true;
-    for (double& value : into) {
-        value = load_field(records, field);
-        finite &= is_reading(value);
-        records += record_size;
+    for (std::size_t row = 0; row < rows; ++row, records += record_size) {
+        values[row] = load_field(records, field);
+        if (field.whole()) into.counts.push_back(load_count(records, field));
     }
-    return finite;
 }
 
 void store_column(char* records, std::size_t record_size, const NpyField& field, const StoredColumn& column) {
@@ -394,8 +381,8 @@ NpyHeader parse_npy_header(std::string_view bytes, const std::string& source) {
     return header;
 }
 
-std::string NpyHeader::shape(std::size_t more_columns) const {
-    return structured ? fmt::format("{},", rows) : fmt::format("{}, {}", rows, fields.size() + more_columns);
+std::string NpyHeader::after_rows(std::size_t more_columns) const {
+    return structured ? "," : fmt::format(", {}", fields.size() + more_columns);
 }
 
 std::string make_npy_header(std::string_view descr, std::string_view shape, bool reserve_rows) {

@@ -10,6 +10,8 @@
 #include <string_view>
 #include <vector>
 
+#include "log/numbers/columns.hpp"
+
 namespace ripplenotch {
 
 // One number in the records of a NumPy array.
@@ -23,18 +25,19 @@ struct NpyField {
     std::size_t offset = 0;           ///< in the record
     double scale = 1.0, shift = 0.0;  ///< the number is what stands there times `scale` plus `shift`
     [[nodiscard]] bool scaled() const { return scale != 1.0 || shift != 0.0; }
+    /// An integer that a double may not hold.
+    [[nodiscard]] bool whole() const { return (kind == 'i' || kind == 'u') && size == 8 && !scaled(); }
 };
 
 /// A number of a record, and back; `record` points at its first byte.
 [[nodiscard]] double load_field(const char* record, const NpyField& field);
-/// A whole number less `origin`, exactly; other numbers are rounded first.
-[[nodiscard]] double load_since(const char* record, const NpyField& field, std::int64_t origin);
-/// The whole number of the field, without its decimals; 0 where there is none.
+/// The whole number of a field that is whole().
 [[nodiscard]] std::int64_t load_count(const char* record, const NpyField& field);
 void store_float(char* record, const NpyField& field, double value);
 
-/// load_field of `rows` records that follow each other. False when a number is not finite.
-bool load_column(const char* records, std::size_t record_size, const NpyField& field, std::span<double> into);
+/// Appends the numbers of `rows` records that stand `record_size` bytes from each other.
+void load_column(const char* records, std::size_t record_size, const NpyField& field, std::size_t rows,
+                 ColumnNumbers& into);
 
 /// store_float of `values`, each divided by `factor`, into records that follow each other; records whose
 /// value is that of `as_written` are left as they are. `as_written` is empty, or as long as `values`.
@@ -54,13 +57,13 @@ struct NpyHeader {
     int version = 1;
     bool by_columns = false;  ///< the bytes of a column stand together: Fortran order, or one row a signal
     bool transposed = false;  ///< the file has one row a signal
-    /// As make_npy_header() takes it, of an array that is stored row by row.
-    [[nodiscard]] std::string shape(std::size_t more_columns = 0) const;
+    /// What stands behind the rows in the shape of an array that is stored row by row.
+    [[nodiscard]] std::string after_rows(std::size_t more_columns = 0) const;
 };
 
 inline constexpr std::size_t largest_npy_header = std::size_t{1} << 20;
-/// So many bytes of records are looked at before columns are chosen.
-inline constexpr std::size_t npy_sample_bytes = std::size_t{1} << 16;
+/// Of records without a header: the rows are as many as the file holds.
+inline constexpr std::size_t rows_unknown = static_cast<std::size_t>(-1);
 inline constexpr std::string_view npy_magic = "\x93NUMPY";
 
 /// Bytes that the header occupies, from the first 12 bytes of a file; 0 when they are too few or no header.

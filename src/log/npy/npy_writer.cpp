@@ -62,17 +62,45 @@ std::string python_string(const std::string& text) {
     return quoted;
 }
 
-std::string shape_of_rows(std::size_t rows) { return fmt::format("{},", rows); }
-
 }  // namespace
 
-NpyWriter::NpyWriter(std::unique_ptr<ByteSink> sink, const NpyReader& reader, const WriteOptions& options)
-    : sink_(std::move(sink)),
-      record_in_(reader.header().record_size),
-      record_out_(record_in_),
-      append_(options.append) {
+CountedArray::CountedArray(ByteSink& sink, std::string descr, std::string after_rows)
+    : sink_(sink), descr_(std::move(descr)), after_rows_(std::move(after_rows)) {
+    if (sink_.can_rewrite())
+        sink_.write(head());
+    else
+        spool_.emplace();
+}
+
+std::string CountedArray::head() const {
+    return make_npy_header(descr_, fmt::format("{}{}", rows_, after_rows_), true);
+}
+
+void CountedArray::put(std::string_view bytes, std::size_t rows) {
+    if (spool_)
+        spool_->put(bytes);
+    else
+        sink_.write(bytes);
+    rows_ += rows;
+}
+
+void CountedArray::end() {
+    if (!spool_) {
+        sink_.rewrite(0, head());
+        return;
+    }
+    sink_.write(head());
+    spool_->rewind();
+    std::vector<char> buffer(std::size_t{1} << 20);
+    while (const std::size_t got = spool_->read(buffer.data(), buffer.size()))
+        sink_.write({buffer.data(), got});
+}
+
+NpyWriter::NpyWriter(std::unique_ptr<ByteSink> sink, const ColumnReader& reader, const WriteOptions& options)
+    : sink_(std::move(sink)), append_(options.append) {
     const Layout& layout = reader.layout();
-    const NpyHeader& header = reader.header();
+    const auto& records = dynamic_cast<const RecordColumns&>(reader.columns().base());
+    const NpyHeader& header = records.header();
     for (const JointColumns& joint : layout.all_chosen()) {
         if (!joint.torque) raise<UsageError>("{}: there is no torque column to write", layout.source);
         fields_.push_back(header.fields[*joint.torque]);
@@ -83,32 +111,38 @@ NpyWriter::NpyWriter(std::unique_ptr<ByteSink> sink, const NpyReader& reader, co
             "NAME.csv{}",
             layout.source, header.structured ? ", or add a column with --append" : "");
     }
-    sink_->expect(reader.source_bytes());
-    if (append_)
-        append_head(reader, options);
-    else
-        sink_->write(reader.head());
+    sink_->expect(records.source_bytes());
+    record_in_ = record_out_ = header.record_size;
+    begin(layout, records, options);
 }
 
-void NpyWriter::append_head(const NpyReader& reader, const WriteOptions& options) {
-    const NpyHeader& header = reader.header();
-    const std::vector<std::string> names = appended_names(reader.layout(), options);
-    std::string fields;
-    for (std::size_t j = 0; j < fields_.size(); ++j) {
-        NpyField& field = fields_[j];
-        if (field.kind != 'f') field = {"", 'f', 8, false, 0};
-        field.offset = record_out_;
-        record_out_ += field.size;
-        fields +=
-            fmt::format(", ({}, '{}f{}')", python_string(names[j]), field.big_endian ? '>' : '<', field.size);
+void NpyWriter::begin(const Layout& layout, const RecordColumns& records, const WriteOptions& options) {
+    const NpyHeader& header = records.header();
+    std::string descr = header.descr;
+    if (append_) {
+        const std::vector<std::string> names = appended_names(layout, options);
+        if (header.structured) {
+            descr.resize(descr.rfind(']'));
+            while (descr.back() == ' ' || descr.back() == ',') descr.pop_back();
+        }
+        for (std::size_t j = 0; j < fields_.size(); ++j) {
+            NpyField& field = fields_[j];
+            if (field.kind != 'f') field = {"", 'f', 8, false, 0};
+            field.offset = record_out_;
+            record_out_ += field.size;
+            if (header.structured)
+                descr += fmt::format(", ({}, '{}f{}')", python_string(names[j]), field.big_endian ? '>' : '<',
+                                     field.size);
+        }
+        if (header.structured) descr += ']';
     }
-    if (!header.structured) {
-        sink_->write(make_npy_header(header.descr, header.shape(fields_.size()), false));
-        return;
-    }
-    std::string_view before = std::string_view(header.descr).substr(0, header.descr.rfind(']'));
-    while (before.back() == ' ' || before.back() == ',') before.remove_suffix(1);
-    sink_->write(make_npy_header(fmt::format("{}{}]", before, fields), header.shape(), false));
+    const std::string after_rows = header.after_rows(append_ ? fields_.size() : 0);
+    if (layout.outside)
+        counted_.emplace(*sink_, descr, after_rows);
+    else if (append_)
+        sink_->write(make_npy_header(descr, fmt::format("{}{}", header.rows, after_rows), false));
+    else
+        sink_->write(records.head());
 }
 
 std::string_view NpyWriter::prepare(RowBlock& block, Torques torque_nm, std::string& room) const {
@@ -132,28 +166,22 @@ std::string_view NpyWriter::prepare(RowBlock& block, Torques torque_nm, std::str
     return {records, size};
 }
 
-void NpyWriter::put(const RowBlock& /*block*/, Torques /*torque_nm*/, std::string_view bytes) {
-    sink_->write(bytes);
+void NpyWriter::put(const RowBlock& block, Torques /*torque_nm*/, std::string_view bytes) {
+    if (counted_)
+        counted_->put(bytes, block.size());
+    else
+        sink_->write(bytes);
 }
 
-void NpyWriter::finish() { sink_->finish(); }
+void NpyWriter::finish() {
+    if (counted_) counted_->end();
+    sink_->finish();
+}
 
 void NpyTableWriter::begin(std::span<const std::string> names) {
     std::vector<std::string> fields;
     for (const std::string& name : names) fields.push_back(fmt::format("({}, '<f8')", python_string(name)));
-    descr_ = fmt::format("[{}]", fmt::join(fields, ", "));
-    if (!sink_.can_rewrite()) {
-        spool_.emplace();
-        return;
-    }
-    sink_.write(make_npy_header(descr_, shape_of_rows(0), true));
-}
-
-void NpyTableWriter::put(std::string_view bytes) {
-    if (spool_)
-        spool_->put(bytes);
-    else
-        sink_.write(bytes);
+    array_.emplace(sink_, fmt::format("[{}]", fmt::join(fields, ", ")), ",");
 }
 
 void NpyTableWriter::rows(std::span<const std::span<const double>> columns) {
@@ -164,21 +192,7 @@ void NpyTableWriter::rows(std::span<const std::span<const double>> columns) {
         const NpyField field{"", 'f', 8, false, 8 * c};
         for (std::size_t r = 0; r < count; ++r) store_float(bytes_.data() + r * width, field, columns[c][r]);
     }
-    put(bytes_);
-    rows_ += count;
-}
-
-void NpyTableWriter::end() {
-    const std::string header = make_npy_header(descr_, shape_of_rows(rows_), true);
-    if (!spool_) {
-        sink_.rewrite(0, header);
-        return;
-    }
-    sink_.write(header);
-    spool_->rewind();
-    std::vector<char> buffer(std::size_t{1} << 20);
-    while (const std::size_t got = spool_->read(buffer.data(), buffer.size()))
-        sink_.write({buffer.data(), got});
+    array_->put(bytes_, count);
 }
 
 }  // namespace ripplenotch

@@ -10,7 +10,8 @@
 #include <string_view>
 #include <vector>
 
-#include "log/npy/npy_reader.hpp"
+#include "log/npy/npy_columns.hpp"
+#include "log/numbers/column_reader.hpp"
 #include "log/table_writer.hpp"
 
 namespace ripplenotch {
@@ -37,41 +38,57 @@ class TemporaryBytes {
     bool flushed_ = true;
 };
 
+/// An array whose length is known only at the end: its header is patched in a file, and the rows are spooled
+/// when the target is a pipe.
+class CountedArray {
+  public:
+    /// `after_rows`: of the shape, "," or ", 4".
+    CountedArray(ByteSink& sink, std::string descr, std::string after_rows);
+    void put(std::string_view bytes, std::size_t rows);
+    void end();
+
+  private:
+    [[nodiscard]] std::string head() const;
+
+    ByteSink& sink_;
+    std::optional<TemporaryBytes> spool_;
+    std::string descr_, after_rows_;
+    std::size_t rows_ = 0;
+};
+
 /// Records of a reader with another torque; every other byte passes as it is.
 class NpyWriter : public LogWriter {
   public:
     /// Throws UsageError when the torque is an integer and would be rounded (--append adds a float instead).
-    NpyWriter(std::unique_ptr<ByteSink> sink, const NpyReader& reader, const WriteOptions& options);
+    NpyWriter(std::unique_ptr<ByteSink> sink, const ColumnReader& reader, const WriteOptions& options);
     std::string_view prepare(RowBlock& block, Torques torque_nm, std::string& room) const override;
     void put(const RowBlock& block, Torques torque_nm, std::string_view bytes) override;
     void finish() override;
 
   private:
-    void append_head(const NpyReader& reader, const WriteOptions& options);
+    void begin(const Layout& layout, const RecordColumns& records, const WriteOptions& options);
 
     std::unique_ptr<ByteSink> sink_;
     std::vector<NpyField> fields_;  ///< by joint: where the new torque goes, in a record of the output
     std::vector<double> factors_;   ///< by joint
-    std::size_t record_in_, record_out_;
+    std::size_t record_in_ = 0, record_out_ = 0;
     bool append_;
+    std::optional<CountedArray> counted_;  ///< where a range leaves rows out
 };
 
-/// A structured array of float64 columns whose length is known only at the end: the header is patched in a
-/// file, and the rows are spooled when the target is a pipe.
+/// A structured array of float64 columns.
 class NpyTableWriter : public TableWriter {
   public:
     /// Arrays hold every digit: of the options none concerns them.
     NpyTableWriter(ByteSink& sink, const WriteOptions& /*options*/) : sink_(sink) {}
     void begin(std::span<const std::string> names) override;
     void rows(std::span<const std::span<const double>> columns) override;
-    void end() override;
+    void end() override { array_->end(); }
 
   private:
-    void put(std::string_view bytes);
     ByteSink& sink_;
-    std::optional<TemporaryBytes> spool_;
-    std::string descr_, bytes_;
-    std::size_t rows_ = 0;
+    std::optional<CountedArray> array_;
+    std::string bytes_;
 };
 
 }  // namespace ripplenotch

@@ -9,7 +9,6 @@
 
 #include "log/clock/choose_time.hpp"
 #include "log/read.hpp"
-#include "log/text/long_table.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/trace.hpp"
@@ -50,10 +49,6 @@ CsvReader::CsvReader(std::unique_ptr<ByteSource> source, std::string first_bytes
     dialect_ = sniff_text(first_bytes, source_ended_, *source_, options);
     layout_ = decide_layout(source_->name(), "csv", facts_of(first_bytes), options);
     layout_.outside = rows_outside(*source_);
-    if (const auto* const made = dynamic_cast<const ReshapedText*>(source_.get())) {
-        layout_.inferences.push_back(made->shape());
-        layout_.warnings.insert(layout_.warnings.end(), made->warnings().begin(), made->warnings().end());
-    }
     if (dialect_.head_lines > 0) {
         const bool scope = !dialect_.scales.empty();
         layout_.inferences.push_back(

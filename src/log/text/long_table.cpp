@@ -2,12 +2,13 @@
 #include "log/text/long_table.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <utility>
@@ -16,7 +17,10 @@
 #include "log/clock/stamp.hpp"
 #include "log/columns/column_name.hpp"
 #include "log/columns/units.hpp"
+#include "log/numbers/columns.hpp"
 #include "log/read.hpp"
+#include "log/rows_in_range.hpp"
+#include "log/text/csv_reader.hpp"
 #include "log/text/text_cells.hpp"
 #include "log/text/text_dialect.hpp"
 #include "log/text/text_header.hpp"
@@ -24,12 +28,6 @@
 #include "ripplenotch/core/number.hpp"
 
 namespace ripplenotch {
-
-ReshapedText::ReshapedText(const std::string& name, std::string text, Assumption shape,
-                           std::vector<LogWarning> warnings)
-    : ByteSource(name, std::make_shared<const std::string>(std::move(text))),
-      shape_(std::move(shape)),
-      warnings_(std::move(warnings)) {}
 
 namespace {
 
@@ -44,7 +42,6 @@ constexpr std::array<std::string_view, 7> value_words = {"value", "values", "dat
 constexpr std::array<std::string_view, 5> name_keys = {"variable", "name", "variablename", "symbol",
                                                        "symbolname"};
 constexpr std::size_t most_names = 4096;
-constexpr double longest_gap_periods = 3.0;  // as signals of topics are joined
 
 bool is_one_of(Words words, std::string_view text) {
     const std::string lower = lower_case(text);
@@ -54,8 +51,8 @@ bool is_one_of(Words words, std::string_view text) {
 /// One number over time.
 struct Signal {
     std::string name, unit;
-    std::vector<double> time;
-    std::vector<std::string> cells;  ///< as they are written, with a decimal point
+    ColumnNumbers time;  ///< with counts as long as all times are whole numbers
+    std::vector<double> values;
 };
 
 /// Lines with their numbers, cut into cells.
@@ -219,14 +216,20 @@ class Signals {
                 fmt::format("read '{}' as the value of '{}', expected a number; correct or remove the line",
                             value, all[signal].name));
         Signal& one = all[signal];
-        if (!one.time.empty() && *number < one.time.back())
+        if (!one.values.empty() && *number < one.time.values.back())
             lines_.complain(
                 fmt::format("read the time {} of '{}' after {}, expected time to run forward; sort "
                             "the log",
-                            time, one.name, shortest(one.time.back())));
-        one.time.push_back(*number);
-        one.cells.push_back(parse_number(value) ? value : shortest(*read));
+                            time, one.name, shortest(one.time.values.back())));
+        std::int64_t count = 0;
+        const char* const end = time.data() + time.size();
+        const auto whole = std::from_chars(time.data(), end, count);
+        all_whole_ = all_whole_ && whole.ec == std::errc() && whole.ptr == end;
+        one.time.values.push_back(*number);
+        one.time.counts.push_back(count);
+        one.values.push_back(*read);
     }
+    [[nodiscard]] bool all_whole() const { return all_whole_; }
     [[nodiscard]] std::string time_name() const { return origin_s_ ? "time [s]" : time_name_; }
 
   private:
@@ -234,49 +237,7 @@ class Signals {
     std::string time_name_;
     std::map<std::string, std::size_t> places_;
     std::optional<std::int64_t> origin_s_;
-};
-
-std::string quoted_name(const Signal& signal) {
-    std::string name = signal.name;
-    if (!signal.unit.empty() && split_unit(name).unit.empty()) name += fmt::format(" [{}]", signal.unit);
-    for (std::size_t at = 0; (at = name.find('"', at)) != std::string::npos; at += 2) name.insert(at, 1, '"');
-    return name.find_first_of(",\"") == std::string::npos ? name : fmt::format("\"{}\"", name);
-}
-
-/// The values of `signal` at times that only grow, by `how`; empty before its first and behind its last.
-class AtTimes {
-  public:
-    AtTimes(const std::string& source, const Signal& signal, std::string_view how)
-        : source_(source), signal_(signal), how_(how) {
-        const double span = signal.time.back() - signal.time.front();
-        limit_ = longest_gap_periods * span / std::max(1.0, static_cast<double>(signal.time.size()) - 1.0);
-    }
-    std::optional<std::string> at(double time) {
-        const std::vector<double>& times = signal_.time;
-        while (next_ < times.size() && times[next_] <= time) ++next_;
-        if (next_ == 0) return std::nullopt;
-        const std::size_t before = next_ - 1;
-        if (times[before] == time) return signal_.cells[before];
-        if (next_ == times.size()) return std::nullopt;
-        const double since = time - times[before], until = times[next_] - time;
-        const bool nearest = how_ == "nearest", hold = how_ == "hold";
-        if ((hold ? since : nearest ? std::min(since, until) : std::max(since, until)) > limit_)
-            raise<DataError>(
-                "{}: read no value of '{}' within {} of the time {}, expected one; leave the gap out with "
-                "--from and --to",
-                source_, signal_.name, shortest(limit_), shortest(time));
-        if (hold || (nearest && since <= until)) return signal_.cells[before];
-        if (nearest) return signal_.cells[next_];
-        const double from = *parse_number(signal_.cells[before]), to = *parse_number(signal_.cells[next_]);
-        return shortest(from + since / (since + until) * (to - from));
-    }
-
-  private:
-    const std::string& source_;
-    const Signal& signal_;
-    std::string_view how_;
-    double limit_ = 0.0;
-    std::size_t next_ = 0;
+    bool all_whole_ = true;  ///< the times
 };
 
 /// The signal whose times are those of the rows: the torque, else the one with the most.
@@ -284,50 +245,55 @@ std::size_t base_of(const std::vector<Signal>& signals) {
     std::size_t base = 0;
     const auto rank = [&](std::size_t s) {
         const ColumnName name = read_column_name(signals[s].name);
-        return std::pair(name.role == Role::torque && !name.reference, signals[s].time.size());
+        return std::pair(name.role == Role::torque && !name.reference, signals[s].values.size());
     };
     for (std::size_t s = 1; s < signals.size(); ++s)
         if (rank(s) > rank(base)) base = s;
     return base;
 }
 
-std::unique_ptr<ByteSource> as_table(const std::string& source, const std::vector<Signal>& signals,
-                                     const std::string& time_name, std::string_view shape,
-                                     const ReadOptions& options) {
-    const std::string how = options.join.value_or("linear");
-    const Signal& base = signals[base_of(signals)];
-    std::vector<std::string> joined;
-    std::string text = quoted_name({time_name.empty() ? "time" : time_name, "", {}, {}});
-    std::vector<std::optional<AtTimes>> sides(signals.size());
-    for (std::size_t s = 0; s < signals.size(); ++s) {
-        text += "," + quoted_name(signals[s]);
-        if (signals[s].time == base.time) continue;
-        sides[s].emplace(source, signals[s], how);
-        joined.push_back(signals[s].name);
-    }
-    text += '\n';
-    std::string row;
-    for (std::size_t k = 0; k < base.time.size(); ++k) {
-        row = shortest(base.time[k]);
-        bool whole = true;
-        for (std::size_t s = 0; s < signals.size() && whole; ++s) {
-            const auto cell = sides[s] ? sides[s]->at(base.time[k]) : signals[s].cells[k];
-            whole = cell.has_value();
-            if (whole) row += "," + *cell;
+/// What the clock counts in: as its name says, else so that the longest time fits.
+double ns_per_unit_of(const std::string& time_name, const std::vector<Signal>& signals) {
+    constexpr double most_ns = 9e18, seconds = 1e9;
+    const auto unit = usual_unit(split_unit(time_name).unit, Role::time);
+    if (unit) return seconds * role_factor(Role::time, *unit).value_or(1.0);
+    double longest = 1.0;
+    for (const Signal& signal : signals)
+        longest =
+            std::max({longest, std::abs(signal.time.values.front()), std::abs(signal.time.values.back())});
+    double unit_ns = seconds;
+    while (unit_ns > 1.0 && unit_ns * longest > most_ns) unit_ns /= 10.0;
+    return unit_ns;
+}
+
+ColumnLog as_columns(const std::string& source, Signals signals, const std::string& time_name,
+                     const std::string& shape, const ReadOptions& options) {
+    std::vector<Signal>& all = signals.all;
+    const std::size_t base = base_of(all);
+    const double ns_per_unit = ns_per_unit_of(time_name, all);
+    const ColumnInfo clock{time_name.empty() ? "time" : time_name, "", "", signals.all_whole(), true};
+    ColumnLog log;
+    log.format = "csv";
+    log.inferences.push_back({"shape", fmt::format("{} signals as columns", all.size()), shape, "", {}});
+    std::vector<ColumnInfo> info = {clock};
+    NumberRows numbers = {all[base].time};
+    std::vector<SideColumn> sides;
+    for (Signal& signal : all) {
+        const ColumnInfo own{signal.name, "", signal.unit, false, true};
+        ColumnNumbers values{std::move(signal.values), {}};
+        if (signal.time.values == numbers[0].values) {
+            info.push_back(own);
+            numbers.push_back(std::move(values));
+        } else {
+            sides.push_back(
+                {std::make_unique<HeldColumns>(source, std::vector{clock, own},
+                                               NumberRows{std::move(signal.time), std::move(values)}),
+                 1, ns_per_unit, "value"});
         }
-        if (whole) text += row + '\n';
     }
-    std::vector<LogWarning> warnings;
-    if (!joined.empty())
-        warnings.push_back(
-            {"joined by time", fmt::format("{} {} times of {} own: joined to those of '{}' by --join {}; "
-                                           "nearest, hold and linear are allowed",
-                                           fmt::join(joined, ", "), joined.size() == 1 ? "has" : "have",
-                                           joined.size() == 1 ? "its" : "their", base.name, how)});
-    return std::make_unique<ReshapedText>(
-        source, std::move(text),
-        Assumption{"shape", fmt::format("{} signals as columns", signals.size()), std::string(shape), "", {}},
-        std::move(warnings));
+    log.columns = std::make_unique<HeldColumns>(source, std::move(info), std::move(numbers));
+    if (!sides.empty()) join_columns(log, ns_per_unit, std::move(sides), options);
+    return log;
 }
 
 std::string whole_text(ByteSource& source, std::string bytes) {
@@ -340,8 +306,8 @@ std::string whole_text(ByteSource& source, std::string bytes) {
     return bytes;
 }
 
-std::unique_ptr<ByteSource> widened_tidy(const std::string& source, std::string_view bytes,
-                                         const LongHeader& header, const ReadOptions& options) {
+ColumnLog tidy_columns(const std::string& source, std::string_view bytes, const LongHeader& header,
+                       const ReadOptions& options) {
     Lines lines(bytes, source);
     lines.next();
     Signals signals(lines, header.time_name);
@@ -355,16 +321,17 @@ std::unique_ptr<ByteSource> widened_tidy(const std::string& source, std::string_
         std::string name;
         for (const std::size_t part : header.signal) name += (name.empty() ? "" : ".") + cells[part];
         const std::size_t signal = signals.index_of(name, unit);
-        const std::size_t before = signals.all[signal].time.size();
+        const std::size_t before = signals.all[signal].values.size();
         signals.add(signal, cells[header.time], cells[header.value], header.delimiter);
-        const std::vector<double>& times = signals.all[signal].time;
+        const std::vector<double>& times = signals.all[signal].time.values;
         if (header.others && before > 0 && times[before] == times[before - 1])
             lines.complain(
                 fmt::format("read a second value of '{}' at the time {}, expected one; leave one value of "
                             "each other column, and remove it",
                             name, cells[header.time]));
     }
-    return as_table(source, signals.all, signals.time_name(), "a row holds the value of one signal", options);
+    const std::string time_name = signals.time_name();
+    return as_columns(source, std::move(signals), time_name, "a row holds the value of one signal", options);
 }
 
 bool has_blocks(std::string_view bytes) {
@@ -377,10 +344,7 @@ bool has_blocks(std::string_view bytes) {
     return blocks > 1;
 }
 
-std::unique_ptr<ByteSource> widened_blocks(const std::string& source, std::string bytes,
-                                           const ReadOptions& options) {
-    if (!has_blocks(bytes))
-        return std::make_unique<ByteSource>(source, std::make_shared<const std::string>(std::move(bytes)));
+ColumnLog block_columns(const std::string& source, std::string_view bytes, const ReadOptions& options) {
     Lines lines(bytes, source);
     Signals signals(lines, "time");
     std::vector<std::vector<std::string>> head;
@@ -401,9 +365,8 @@ std::unique_ptr<ByteSource> widened_blocks(const std::string& source, std::strin
         }
         signals.add(*block, (*pair)[0], (*pair)[1], ';');
     }
-    return as_table(source, signals.all,
-                    signals.time_name() == "time" && !time_name.empty() ? time_name : signals.time_name(),
-                    "a block of rows holds one variable", options);
+    if (signals.time_name() != "time" || time_name.empty()) time_name = signals.time_name();
+    return as_columns(source, std::move(signals), time_name, "a block of rows holds one variable", options);
 }
 
 }  // namespace
@@ -429,13 +392,15 @@ bool may_be_long(std::string_view first_bytes) {
            last.size() == 1 && !name_in_head(head, ignored).empty() && lines.next() && pair_in(lines);
 }
 
-std::unique_ptr<ByteSource> widened(std::unique_ptr<ByteSource> source, std::string first_bytes,
-                                    const ReadOptions& options) {
+std::unique_ptr<LogReader> open_long(std::unique_ptr<ByteSource> source, std::string first_bytes,
+                                     const ReadOptions& options) {
     const std::string name = source->name();
     std::string bytes = whole_text(*source, std::move(first_bytes));
     if (const auto header = long_header(first_line_of(bytes)))
-        return widened_tidy(name, bytes, *header, options);
-    return widened_blocks(name, std::move(bytes), options);
+        return read_columns(tidy_columns(name, bytes, *header, options), options);
+    if (has_blocks(bytes)) return read_columns(block_columns(name, bytes, options), options);
+    auto held = std::make_unique<ByteSource>(name, std::make_shared<const std::string>(std::move(bytes)));
+    return open_with<CsvReader>(std::move(held), "", options);
 }
 
 }  // namespace ripplenotch

@@ -4,18 +4,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 #include <charconv>
 #include <cmath>
-#include <cstring>
 #include <optional>
 #include <set>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "log/numbers/columns.hpp"
 #include "log/read.hpp"
-#include "log/records/joined_records.hpp"
 #include "log/rows_in_range.hpp"
 #include "log/text/csv_reader.hpp"
 #include "log/text/text_dialect.hpp"
@@ -27,7 +25,6 @@ namespace {
 
 constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
 constexpr std::size_t opening_size = std::size_t{1} << 16;
-constexpr std::size_t records_at_once = 4096;
 constexpr double ns_per_ms = 1e6;
 constexpr std::int64_t ns_per_tick = 100;
 
@@ -104,46 +101,12 @@ bool has_one_clock(std::string_view text, const TextDialect& dialect) {
     return true;
 }
 
-/// Channels of one column of times: nanoseconds, and a number each.
-class ChannelRecords final : public RecordSource {
-  public:
-    ChannelRecords(const std::string& name, std::vector<std::int64_t> clock,
-                   std::vector<std::vector<double>> values)
-        : RecordSource(Name{name}, std::vector<std::size_t>(1 + values.size(), sizeof(double))),
-          clock_(std::move(clock)),
-          values_(std::move(values)) {}
-
-  private:
-    void refill(std::string& bytes) override {
-        const std::size_t end = std::min(clock_.size(), row_ + records_at_once);
-        for (; row_ < end; ++row_) {
-            for (const std::size_t field : kept()) {
-                const std::uint64_t raw = field == 0 ? std::bit_cast<std::uint64_t>(clock_[row_])
-                                                     : std::bit_cast<std::uint64_t>(values_[field - 1][row_]);
-                char cell[sizeof raw];
-                std::memcpy(cell, &raw, sizeof raw);
-                bytes.append(cell, sizeof raw);
-            }
-        }
-    }
-
-    std::vector<std::int64_t> clock_;
-    std::vector<std::vector<double>> values_;
-    std::size_t row_ = 0;
-};
-
 /// What is taken of one column of times.
 struct Group {
     std::size_t clock = 0;
     std::vector<std::size_t> channels;
     std::vector<std::int64_t> time_ns;
     std::vector<std::vector<double>> values;  ///< by channel
-
-    [[nodiscard]] double period_ns() const {
-        return time_ns.size() < 2 ? 0.0
-                                  : static_cast<double>(time_ns.back() - time_ns.front()) /
-                                        static_cast<double>(time_ns.size() - 1);
-    }
 };
 
 class Channels {
@@ -234,8 +197,25 @@ std::vector<std::pair<Role, std::size_t>> columns_read(const Layout& layout, con
     return read;
 }
 
-Records scope_records(std::unique_ptr<ByteSource> source, std::string first_bytes,
-                      const ReadOptions& options) {
+/// A group's clock in ticks or ms, and its channels.
+std::unique_ptr<Columns> columns_of(const std::string& name, const TextDialect& dialect, Group group) {
+    const bool ticks = dialect.names.front().ends_with("[100ns]");
+    const double unit = ticks ? 1.0 / ns_per_tick : 1.0 / ns_per_ms;
+    // As --columns takes it: by its number where it has no name.
+    std::vector<ColumnInfo> info = {{group.clock == 0 ? dialect.names[0] : std::to_string(group.clock + 1),
+                                     "time", ticks ? "100ns" : "ms", false, true}};
+    NumberRows numbers(1);
+    for (const std::int64_t ns : group.time_ns) numbers[0].values.push_back(static_cast<double>(ns) * unit);
+    for (std::size_t k = 0; k < group.channels.size(); ++k) {
+        const std::size_t column = group.channels[k];
+        info.push_back({dialect.names[column], dialect.names[column], dialect.units[column], false, true});
+        numbers.push_back({std::move(group.values[k]), {}});
+    }
+    return std::make_unique<HeldColumns>(name, std::move(info), std::move(numbers));
+}
+
+ColumnLog scope_columns(std::unique_ptr<ByteSource> source, std::string first_bytes,
+                        const ReadOptions& options) {
     const std::string name = source->name();
     const auto text = std::make_shared<const std::string>(rest_of(*source, std::move(first_bytes)));
     ReadOptions first = options;
@@ -254,49 +234,31 @@ Records scope_records(std::unique_ptr<ByteSource> source, std::string first_byte
     for (const auto& [role, column] : read)
         if (dialect.clock_of[column] == clock) of_base.push_back(column);
     const Channels channels(name, *text, dialect);
-    Group base = channels.read(clock, of_base);
-
-    RecordTable table;
-    table.format = "csv";
-    table.options = dialect_options(dialect);
-    NpyField time;
-    time.kind = 'i';
-    time.big_endian = std::endian::native == std::endian::big;
-    const bool ticks = dialect.names.front().ends_with("[100ns]");
-    time.scale = ticks ? 1.0 / ns_per_tick : 1.0 / ns_per_ms;
-    // As --columns takes it: by its number where it has no name.
-    table.add(time, clock == 0 ? dialect.names[0] : std::to_string(clock + 1), "time",
-              ticks ? "100ns" : "ms");
-    NpyField number;
-    number.big_endian = time.big_endian;
+    ColumnLog log;
+    log.format = "csv";
+    log.options = dialect_options(dialect);
+    log.columns = columns_of(name, dialect, channels.read(clock, of_base));
     std::vector<std::size_t> placed = of_base;
-    for (const std::size_t column : of_base)
-        table.add(number, dialect.names[column], dialect.names[column], dialect.units[column]);
-    std::vector<SideSignal> sides;
+    std::vector<SideColumn> sides;
+    const double ns_per_unit = dialect.names.front().ends_with("[100ns]") ? ns_per_tick : ns_per_ms;
     for (const auto& [role, column] : read) {
         if (dialect.clock_of[column] == clock) continue;
-        Group side = channels.read(dialect.clock_of[column], {column});
-        const std::int64_t limit = join_limit_ns(side.period_ns());
-        sides.push_back(
-            {dialect.names[column], dialect.names[column],
-             std::make_unique<ChannelRecords>(name, std::move(side.time_ns), std::move(side.values)), number,
-             limit, dialect.units[column], "value"});
+        sides.push_back({columns_of(name, dialect, channels.read(dialect.clock_of[column], {column})), 1,
+                         ns_per_unit, "value"});
         placed.push_back(column);
     }
     if (!options.columns.empty() && read.front().first != Role::other) {
-        table.columns.push_back("time=" + table.fields.front().name);
+        log.asked.push_back("time=" + log.columns->info().front().path);
         for (const auto& [role, column] : read) {
             const std::string& called = dialect.names[column];
             const bool repeated = std::count(dialect.names.begin(), dialect.names.end(), called) > 1;
             const auto place = std::find(placed.begin(), placed.end(), column) - placed.begin();
-            table.columns.push_back(
+            log.asked.push_back(
                 fmt::format("{}={}", role_name(role), repeated ? std::to_string(place + 2) : called));
         }
     }
-    auto records = std::make_unique<ChannelRecords>(name, std::move(base.time_ns), std::move(base.values));
-    if (sides.empty()) return {std::move(records), std::move(table)};
-    return {join_records(std::move(records), std::move(sides), options.join.value_or("linear"), table),
-            std::move(table)};
+    if (!sides.empty()) join_columns(log, ns_per_unit, std::move(sides), options);
+    return log;
 }
 
 }  // namespace
@@ -316,7 +278,7 @@ std::unique_ptr<LogReader> open_scope_export(std::unique_ptr<ByteSource> source,
     const auto text = std::make_shared<const std::string>(rest_of(*source, std::move(first_bytes)));
     auto held = std::make_unique<ByteSource>(name, text);
     if (has_one_clock(*text, dialect)) return open_with<CsvReader>(std::move(held), "", options);
-    return read_records(std::move(held), "", options, scope_records);
+    return open_as_columns<scope_columns>(std::move(held), "", options);
 }
 
 }  // namespace ripplenotch

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
-// The messages of one topic as records: a row a message.
+// The messages of one topic as columns: a row a message.
 
-#include "log/messages/message_records.hpp"
+#include "log/messages/message_columns.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 
 #include "log/messages/json_message.hpp"
 #include "log/messages/ros_schema.hpp"
@@ -38,8 +37,6 @@ MessageLayout lay_out_message(const MessageChannel& channel, std::string_view fi
 
 namespace {
 
-// The messages of one topic as the bytes of records: a row a message.
-
 /// The clock, then the leaves but for the one that is it.
 [[nodiscard]] std::vector<std::size_t> leaves_beside_clock(const MessageLayout& layout, bool header_clock) {
     std::vector<std::size_t> leaves;
@@ -48,71 +45,74 @@ namespace {
     return leaves;
 }
 
-/// Field 0 is the clock, in nanoseconds; behind it stand leaves_beside_clock().
-class MessageRecords final : public RecordSource {
+/// Column 0 is the clock, in nanoseconds; behind it stand leaves_beside_clock().
+class MessageColumns final : public Columns {
   public:
     /// `header_clock`: the layout has a leaf that is the clock, and it is taken; else the time of recording.
-    MessageRecords(std::unique_ptr<MessageSource> source, std::size_t channel, MessageLayout layout,
+    MessageColumns(std::unique_ptr<MessageSource> source, std::size_t channel, MessageLayout layout,
                    bool header_clock)
-        : RecordSource(Name{source->name()}, sizes_of(layout, header_clock)),
+        : Columns(source->name(), info_of(source->channels()[channel].topic, layout, header_clock)),
           source_(std::move(source)),
           topic_(source_->channels()[channel].topic),
           layout_(std::move(layout)),
-          header_clock_(header_clock) {
+          row_(layout_.leaves.size() + 1) {
+        leaf_of_ = leaves_beside_clock(layout_, header_clock);
+        std::size_t clock = layout_.leaves.size();  // the time of recording
+        for (std::size_t l = 0; header_clock && l < layout_.leaves.size(); ++l)
+            if (layout_.leaves[l].clock) clock = l;
+        leaf_of_.insert(leaf_of_.begin(), clock);
         source_->restart({channel});
-        settle();
+        chosen();
     }
-
-  private:
-    static constexpr std::size_t buffered_rows = std::size_t{1} << 18;  // bytes
-
-    static std::vector<std::size_t> sizes_of(const MessageLayout& layout, bool header_clock) {
-        std::vector<std::size_t> sizes = {sizeof(std::int64_t)};
-        for (const std::size_t leaf : leaves_beside_clock(layout, header_clock))
-            sizes.push_back(layout.leaves[leaf].type.size);
-        return sizes;
-    }
-    void chosen() override { settle(); }
-    void settle() {
-        const auto beside = leaves_beside_clock(layout_, header_clock_);
-        offsets_.assign(layout_.leaves.size(), -1);
-        clock_offset_ = -1;
-        std::ptrdiff_t at = 0;
-        for (const std::size_t field : kept()) {
-            if (field > 0) {
-                offsets_[beside[field - 1]] = at;
-                at += static_cast<std::ptrdiff_t>(layout_.leaves[beside[field - 1]].type.size);
-                continue;
-            }
-            if (!header_clock_) clock_offset_ = at;
-            for (std::size_t l = 0; header_clock_ && l < layout_.leaves.size(); ++l)
-                if (layout_.leaves[l].clock) offsets_[l] = at;
-            at += sizeof(std::int64_t);
-        }
-        reader_ = layout_.program(offsets_);
-    }
-    void refill(std::string& bytes) override {
+    std::size_t next(std::size_t rows, NumberRows& into, std::string& /*bytes*/) override {
         RecordedMessage message;
-        while (!ended_ && bytes.size() < buffered_rows) {
+        std::size_t count = 0;
+        while (!ended_ && count < rows) {
             ended_ = !source_->next(message);
-            if (ended_) return;
-            const std::size_t at = bytes.size();
-            bytes.resize(at + record_size());
+            if (ended_) break;
             try {
-                reader_->read(message.bytes, bytes.data() + at);
+                reader_->read(message.bytes, row_);
             } catch (const DataError& error) {
                 raise<DataError>("{}: message {}, {}: read {}", name(), message.number, topic_, error.what());
             }
-            if (clock_offset_ >= 0) std::memcpy(bytes.data() + at + clock_offset_, &message.log_time_ns, 8);
+            row_.back() = {static_cast<double>(message.log_time_ns), message.log_time_ns};
+            for (std::size_t c = 0; c < leaf_of_.size(); ++c) {
+                if (!wanted(c)) continue;
+                into[c].values.push_back(row_[leaf_of_[c]].value);
+                if (info()[c].whole) into[c].counts.push_back(row_[leaf_of_[c]].count);
+            }
+            ++count;
         }
+        return count;
+    }
+
+  private:
+    static std::vector<ColumnInfo> info_of(const std::string& topic, const MessageLayout& layout,
+                                           bool header_clock) {
+        std::vector<ColumnInfo> info = {{topic + ".log_time", "time", "ns", true, true}};
+        for (const MessageLeaf& leaf : layout.leaves)
+            if (leaf.clock && header_clock)
+                info[0] = {fmt::format("{}.{}", topic, leaf.path), leaf.read_as, "ns", true, true};
+        // The stamp of something else is no clock of the messages.
+        for (const std::size_t l : leaves_beside_clock(layout, header_clock)) {
+            const MessageLeaf& leaf = layout.leaves[l];
+            info.push_back({fmt::format("{}.{}", topic, leaf.path), leaf.stamp ? "other" : leaf.read_as, "",
+                            leaf.type.whole(), true});
+        }
+        return info;
+    }
+    void chosen() override {
+        std::vector<bool> leaves(row_.size(), false);
+        for (std::size_t c = 0; c < leaf_of_.size(); ++c) leaves[leaf_of_[c]] = wanted(c);
+        leaves.pop_back();
+        reader_ = layout_.program(leaves);
     }
 
     std::unique_ptr<MessageSource> source_;
     std::string topic_;
     MessageLayout layout_;
-    bool header_clock_;
-    LeafOffsets offsets_;
-    std::ptrdiff_t clock_offset_ = -1;
+    std::vector<std::size_t> leaf_of_;  ///< by column; the last number of a row is the time of recording
+    std::vector<LeafNumber> row_;
     std::unique_ptr<MessageReader> reader_;
     bool ended_ = false;  ///< behind it some sources would begin again
 };
@@ -194,34 +194,23 @@ class TopicChoice {
         look();
         for (std::size_t c = 0; c < topics_.size(); ++c) lay_out(c);
     }
-    Records records(const std::string& format) {
+    ColumnLog log(const std::string& format) {
         const std::size_t chosen = choose();
-        const MessageChannel channel = source_->channels()[chosen];
         // One kind of clock for all that is joined.
         bool header_clock = true;
         for (std::size_t c = 0; c < topics_.size(); ++c)
             if (c == chosen || is_asked(c)) header_clock = takes_header(c) && header_clock;
-        RecordTable table;
-        table.format = format;
-        table.contents = topic_contents(*source_, topics_, [&](std::size_t number, const std::string& path) {
+        ColumnLog log;
+        log.format = format;
+        log.contents = topic_contents(*source_, topics_, [&](std::size_t number, const std::string& path) {
             return number == chosen || is_named(path);
         });
-        table.options = fmt::format("--clock {}", header_clock ? "header" : "log");
-        const MessageLayout& layout = topics_[chosen].layout;
-        MessageLeaf clock{"log_time", "time", {}, true, true};
-        for (const MessageLeaf& leaf : layout.leaves)
-            if (leaf.clock && header_clock) clock.path = leaf.path;
-        clock.type.kind = 'i';
-        clock.type.big_endian = std::endian::native == std::endian::big;
-        add_field(channel.topic, clock, table);
-        for (const std::size_t leaf : leaves_beside_clock(layout, header_clock))
-            add_field(channel.topic, layout.leaves[leaf], table);
-        std::vector<SideSignal> sides = sides_of(chosen, header_clock);
-        auto bytes = std::make_unique<MessageRecords>(std::move(source_), chosen, layout, header_clock);
-        if (sides.empty()) return {std::move(bytes), std::move(table)};
-        auto joined =
-            join_records(std::move(bytes), std::move(sides), options_.join.value_or("linear"), table);
-        return {std::move(joined), std::move(table)};
+        log.options = fmt::format("--clock {}", header_clock ? "header" : "log");
+        std::vector<SideColumn> sides = sides_of(chosen, header_clock);
+        log.columns = std::make_unique<MessageColumns>(std::move(source_), chosen, topics_[chosen].layout,
+                                                       header_clock);
+        if (!sides.empty()) join_columns(log, 1.0, std::move(sides), options_);
+        return log;
     }
 
   private:
@@ -233,32 +222,21 @@ class TopicChoice {
         return source;
     }
     // What --columns names of other topics.
-    std::vector<SideSignal> sides_of(std::size_t chosen, bool header_clock) {
-        std::vector<SideSignal> sides;
+    std::vector<SideColumn> sides_of(std::size_t chosen, bool header_clock) {
+        std::vector<SideColumn> sides;
         for (std::size_t c = 0; c < topics_.size(); ++c) {
             if (c == chosen) continue;
-            const Topic& topic = topics_[c];
-            const auto beside = leaves_beside_clock(topic.layout, header_clock);
+            const MessageLayout& layout = topics_[c].layout;
+            const auto beside = leaves_beside_clock(layout, header_clock);
             for (std::size_t f = 0; f < beside.size(); ++f) {
-                const MessageLeaf& leaf = topic.layout.leaves[beside[f]];
-                const std::string path = fmt::format("{}.{}", source_->channels()[c].topic, leaf.path);
-                if (!is_named(path)) continue;
-                const double period_ns = static_cast<double>(topic.to_ns - topic.from_ns) /
-                                         std::max(1.0, static_cast<double>(topic.seen) - 1.0);
-                auto records =
-                    std::make_unique<MessageRecords>(opened_up_to(c), c, topic.layout, header_clock);
-                records->keep({0, f + 1});
-                sides.push_back({path, leaf.read_as, std::move(records), leaf.type, join_limit_ns(period_ns),
-                                 "", "message"});
+                if (!is_named(
+                        fmt::format("{}.{}", source_->channels()[c].topic, layout.leaves[beside[f]].path)))
+                    continue;
+                sides.push_back({std::make_unique<MessageColumns>(opened_up_to(c), c, layout, header_clock),
+                                 f + 1, 1.0, "message"});
             }
         }
         return sides;
-    }
-    static void add_field(const std::string& topic, const MessageLeaf& leaf, RecordTable& table) {
-        const bool clock = table.fields.empty();
-        // The stamp of something else is no clock of the messages.
-        table.add(leaf.type, fmt::format("{}.{}", topic, leaf.path),
-                  leaf.stamp && !clock ? "other" : leaf.read_as, clock ? "ns" : "");
     }
     // Until a part of the recording has been seen, and a message of each topic that was asked for.
     void look() {
@@ -350,11 +328,12 @@ class TopicChoice {
             return true;
         }
         if (!has) return false;
-        std::int64_t first = 0;  // who does not stamp leaves it at 0
-        LeafOffsets offsets(topic.layout.leaves.size(), -1);
-        offsets[static_cast<std::size_t>(stamp - topic.layout.leaves.begin())] = 0;
-        topic.layout.program(offsets)->read(topic.first, reinterpret_cast<char*>(&first));
-        return first != 0;
+        std::vector<bool> wanted(topic.layout.leaves.size(), false);
+        std::vector<LeafNumber> first(wanted.size());
+        const auto clock = static_cast<std::size_t>(stamp - topic.layout.leaves.begin());
+        wanted[clock] = true;
+        topic.layout.program(wanted)->read(topic.first, first);
+        return first[clock].count != 0;  // who does not stamp leaves it at 0
     }
 
     const OpenMessages& open_;
@@ -365,8 +344,9 @@ class TopicChoice {
 
 }  // namespace
 
-Records records_of_messages(const OpenMessages& open, const std::string& format, const ReadOptions& options) {
-    return TopicChoice(open, options).records(format);
+ColumnLog columns_of_messages(const OpenMessages& open, const std::string& format,
+                              const ReadOptions& options) {
+    return TopicChoice(open, options).log(format);
 }
 
 }  // namespace ripplenotch

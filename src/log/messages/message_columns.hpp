@@ -2,7 +2,6 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -12,7 +11,7 @@
 
 #include "log/containers/stored_array.hpp"
 #include "log/npy/npy_header.hpp"
-#include "log/records/joined_records.hpp"
+#include "log/numbers/columns.hpp"
 
 namespace ripplenotch {
 
@@ -55,11 +54,12 @@ class MessageSource {
 /// The same recording from its beginning, as often as it is asked for.
 using OpenMessages = std::function<std::unique_ptr<MessageSource>()>;
 
-/// The records of one topic: of that which --columns names, else of the one whose fields say most. What
+/// The messages of one topic, a row each: of that which --columns names, else of the one whose fields say
+/// most. What
 /// --columns names of other topics stands beside them, joined by time (ReadOptions::join). Throws DataError
 /// where no topic has numbers, UsageError where --columns or --clock ask for what is not there.
-[[nodiscard]] Records records_of_messages(const OpenMessages& open, const std::string& format,
-                                          const ReadOptions& options);
+[[nodiscard]] ColumnLog columns_of_messages(const OpenMessages& open, const std::string& format,
+                                            const ReadOptions& options);
 
 // Which numbers the messages of a topic hold, and how they are read from the next million, whatever the
 // encoding.
@@ -76,20 +76,22 @@ struct MessageLeaf {
     bool clock = false;   ///< the stamp of the message itself
 };
 
-/// Where the numbers of a message go in a record: the offset of each leaf; negative: it is left out.
-using LeafOffsets = std::vector<std::ptrdiff_t>;
+/// The number of a leaf in a message; of types that are whole(), as it is.
+struct LeafNumber {
+    double value = 0.0;
+    std::int64_t count = 0;
+};
 
 class MessageReader {
   public:
     virtual ~MessageReader() = default;
-    /// Each number in the processor's byte order at its offset. Throws DataError, without a source's name,
-    /// where a message is not as the first one was: shorter, a list of another length, a joint of another
-    /// name.
-    virtual void read(std::string_view message, char* into) = 0;
+    /// By leaf; what is not wanted is left as it is. Throws DataError, without a source's name, where a
+    /// message is not as the first one was: shorter, a list of another length, a joint of another name.
+    virtual void read(std::string_view message, std::vector<LeafNumber>& into) = 0;
 };
 
-/// How to read the messages of a topic.
-using MessageProgram = std::function<std::unique_ptr<MessageReader>(const LeafOffsets& offsets)>;
+/// How to read the messages of a topic. `wanted`: by leaf.
+using MessageProgram = std::function<std::unique_ptr<MessageReader>(const std::vector<bool>& wanted)>;
 
 struct MessageLayout {
     std::vector<MessageLeaf> leaves;

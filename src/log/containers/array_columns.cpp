@@ -5,10 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
-#include <cmath>
-#include <cstring>
-#include <deque>
 #include <functional>
 #include <map>
 #include <memory>
@@ -19,7 +15,6 @@
 #include "log/columns/column_name.hpp"
 #include "log/columns/units.hpp"
 #include "log/containers/stored_array.hpp"
-#include "log/records/joined_records.hpp"
 #include "ripplenotch/core/error.hpp"
 
 namespace ripplenotch {
@@ -36,7 +31,7 @@ struct ArrayGroup {
     const StoredArray* clock = nullptr;      ///< one of them
 };
 
-// Columns of arrays side by side: what they are called, and their numbers as records.
+// Columns of arrays side by side: what they are called, and their numbers.
 
 /// One column of an array under its own path.
 struct ArrayColumn {
@@ -82,15 +77,12 @@ bool same_numbers(const StoredArray& one, const StoredArray& other) {
         one.type.big_endian != other.type.big_endian)
         return false;
     const auto left = one.open(0), right = other.open(0);
-    std::string a, b;
-    for (std::size_t done = 0; done < one.shape.rows;) {
+    for (std::size_t done = 0; done < one.shape.rows; done += compared_at_once) {
         const std::size_t rows = std::min(compared_at_once, one.shape.rows - done);
-        a.resize(rows * one.type.size);
-        b.resize(a.size());
-        left->read(rows, a.data());
-        right->read(rows, b.data());
-        if (a != b) return false;
-        done += rows;
+        ColumnNumbers a, b;
+        left->read(rows, a);
+        right->read(rows, b);
+        if (a.values != b.values || a.counts != b.counts) return false;
     }
     return true;
 }
@@ -174,47 +166,34 @@ class FoundClocks {
     std::map<std::size_t, std::size_t> equal_to_;
 };
 
-constexpr std::size_t buffered = std::size_t{1} << 18;
-
-std::vector<std::size_t> sizes_of(const std::vector<ArrayColumn>& columns) {
-    std::vector<std::size_t> sizes;
-    for (const ArrayColumn& column : columns) sizes.push_back(column.array->type.size);
-    return sizes;
+std::vector<ColumnInfo> info_of(const std::vector<ArrayColumn>& columns) {
+    std::vector<ColumnInfo> info;
+    for (const ArrayColumn& column : columns)
+        info.push_back({column.path, column.read_as, column.array->unit, column.array->type.whole(), true});
+    return info;
 }
 
-class ArrayRecords final : public RecordSource {
+class ArrayColumns final : public Columns {
   public:
-    ArrayRecords(std::shared_ptr<StoredBytes> file, const std::vector<ArrayColumn>& columns)
-        : RecordSource(Name{file->name()}, sizes_of(columns)), file_(std::move(file)) {
-        rows_left_ = columns.front().array->shape.rows;
-        for (const ArrayColumn& column : columns)
-            columns_.push_back({column.array->type.size, column.array->open(column.number)});
+    ArrayColumns(std::shared_ptr<StoredBytes> file, const std::vector<ArrayColumn>& columns)
+        : Columns(file->name(), info_of(columns)),
+          file_(std::move(file)),
+          rows_left_(columns.front().array->shape.rows) {
+        for (const ArrayColumn& column : columns) cursors_.push_back(column.array->open(column.number));
+    }
+    std::size_t next(std::size_t rows, NumberRows& into, std::string& /*bytes*/) override {
+        const std::size_t count = std::min(rows, rows_left_);
+        rows_left_ -= count;
+        for (std::size_t c = 0; c < cursors_.size(); ++c)
+            if (wanted(c) && count > 0) cursors_[c]->read(count, into[c]);
+        if (count > 0 && rows_left_ == 0) file_->require_unchanged();
+        return count;
     }
 
   private:
-    struct Open {
-        std::size_t size;
-        std::unique_ptr<ColumnCursor> cursor;
-    };
-    void refill(std::string& bytes) override {
-        const std::size_t rows = std::min(rows_left_, std::max<std::size_t>(64, buffered / record_size()));
-        bytes.resize(rows * record_size());
-        rows_left_ -= rows;
-        std::size_t offset = 0;
-        for (const std::size_t c : kept()) {
-            const std::size_t size = columns_[c].size;
-            column_.resize(rows * size);
-            columns_[c].cursor->read(rows, column_.data());
-            copy_numbers({column_.data(), size}, {bytes.data() + offset, record_size()}, size, rows);
-            offset += size;
-        }
-        if (rows > 0 && rows_left_ == 0) file_->require_unchanged();
-    }
-
     std::shared_ptr<StoredBytes> file_;
-    std::vector<Open> columns_;
-    std::size_t rows_left_ = 0;
-    std::string column_;
+    std::size_t rows_left_;
+    std::vector<std::unique_ptr<ColumnCursor>> cursors_;
 };
 
 std::string column_path(const StoredArray& array, std::size_t number, PathStyle style) {
@@ -279,99 +258,32 @@ std::vector<ArrayColumn> columns_of(const ArrayGroup& group, PathStyle style) {
     return columns;
 }
 
-void add_fields(const std::vector<ArrayColumn>& columns, RecordTable& table) {
-    for (const ArrayColumn& column : columns)
-        table.add(column.array->type, column.path, column.read_as, column.array->unit);
-    const auto& units = table.units;
-    if (std::all_of(units.begin(), units.end(), [](const std::string& unit) { return unit.empty(); }))
-        table.units.clear();
-}
-
-constexpr double ns_per_s = 1e9, largest_ns = 9.2e18;
-constexpr std::size_t rows_looked_at = 4096;  // rows, of which the usual step is told
-
-// A clock's numbers as whole nanoseconds.
-class NanosecondCursor final : public ColumnCursor {
-  public:
-    NanosecondCursor(std::string label, std::unique_ptr<ColumnCursor> own, NpyField type, double ns_per_unit)
-        : label_(std::move(label)), own_(std::move(own)), type_(std::move(type)), ns_per_unit_(ns_per_unit) {}
-    void read(std::size_t rows, char* into) override {
-        raw_.resize(rows * type_.size);
-        own_->read(rows, raw_.data());
-        for (std::size_t row = 0; row < rows; ++row) {
-            const char* const number = raw_.data() + row * type_.size;
-            const double ns = load_field(number, type_) * ns_per_unit_;
-            if (!(std::abs(ns) < largest_ns))  // nan, too
-                raise<DataError>("{}: read a time of {} that is no number of seconds; save it again", label_,
-                                 load_field(number, type_));
-            const bool whole = type_.kind != 'f' && ns_per_unit_ == 1.0;
-            const std::int64_t clock = whole ? load_count(number, type_) : std::llround(ns);
-            std::memcpy(into + row * sizeof(clock), &clock, sizeof(clock));
-        }
-    }
-
-  private:
-    std::string label_;
-    std::unique_ptr<ColumnCursor> own_;
-    NpyField type_;
-    double ns_per_unit_;
-    std::string raw_;
-};
-
 double ns_per_unit(const std::string& source, const StoredArray& clock) {
+    constexpr double nanoseconds = 1e9;  // in a second
     const std::string written = clock.unit.empty() ? split_unit(last_word(clock.path)).unit : clock.unit;
     const auto unit = written.empty() ? std::nullopt : usual_unit(written, Role::time);
-    if (unit) return ns_per_s * role_factor(Role::time, *unit).value_or(1.0);
+    if (unit) return nanoseconds * role_factor(Role::time, *unit).value_or(1.0);
     if (clock.type.kind != 'f')
         raise<DataError>(
             "{}: read whole numbers without a unit in {}, expected seconds, or a name or attribute with the "
             "unit; read arrays of one clock, or save them with it",
             source, clock.path);
-    return ns_per_s;
+    return nanoseconds;
 }
 
-StoredArray in_nanoseconds(const std::string& source, const StoredArray& clock) {
-    StoredArray ns = clock;
-    ns.type = {};
-    ns.type.kind = 'i';
-    ns.type.big_endian = std::endian::native == std::endian::big;
-    ns.unit = "ns";
-    ns.open = [label = fmt::format("{}: {}", source, clock.path), own = clock.open, type = clock.type,
-               unit = ns_per_unit(source, clock)](std::size_t) {
-        return std::make_unique<NanosecondCursor>(label, own(0), type, unit);
-    };
-    return ns;
-}
-
-double period_ns(const StoredArray& clock_ns) {
-    const std::size_t rows = std::min(rows_looked_at, clock_ns.shape.rows);
-    std::vector<std::int64_t> times(rows);
-    clock_ns.open(0)->read(rows, reinterpret_cast<char*>(times.data()));
-    return (static_cast<double>(times.back()) - static_cast<double>(times.front())) /
-           static_cast<double>(rows - 1);
-}
-
-// The rows of `base` with its clock in nanoseconds, and behind them what `asked` takes of the columns of
-// `others`, by `how` ("linear"). All groups have a clock. Fills the fields of the table.
-std::unique_ptr<RecordSource> joined_arrays(const std::shared_ptr<StoredBytes>& file, const ArrayGroup& base,
-                                            const std::vector<const ArrayGroup*>& others, PathStyle style,
-                                            const std::function<bool(const std::string& path)>& asked,
-                                            const std::string& how, RecordTable& table) {
-    std::deque<StoredArray> clocks;  // columns point into it
-    const auto add_clock = [&](const ArrayGroup& group) {
-        return &clocks.emplace_back(in_nanoseconds(file->name(), *group.clock));
-    };
+// The columns of `base`, its clock first, and beside them what `asked` takes of those of `others`. All groups
+// have a clock.
+void join_arrays(const std::shared_ptr<StoredBytes>& file, const ArrayGroup& base,
+                 const std::vector<const ArrayGroup*>& others, PathStyle style,
+                 const std::function<bool(const std::string& path)>& asked, const ReadOptions& options,
+                 ColumnLog& log) {
     std::vector<ArrayColumn> columns = columns_of(base, style);
     const auto clock_column = std::find_if(columns.begin(), columns.end(), [&](const ArrayColumn& column) {
         return column.array == base.clock;
     });
-    clock_column->array = add_clock(base);
     std::rotate(columns.begin(), clock_column, clock_column + 1);
-    add_fields(columns, table);
-    table.units.resize(table.fields.size());
-    std::vector<SideSignal> sides;
+    std::vector<SideColumn> sides;
     for (const ArrayGroup* other : others) {
-        const StoredArray* const clock = add_clock(*other);
         for (const ArrayColumn& column : columns_of(*other, style)) {
             if (!asked(column.path)) continue;
             if (column.array == other->clock)
@@ -379,13 +291,13 @@ std::unique_ptr<RecordSource> joined_arrays(const std::shared_ptr<StoredBytes>& 
                     "--columns: {} is not the clock of the torque, whose rows are taken; leave it out: each "
                     "array is joined by its own",
                     column.path);
-            const std::vector<ArrayColumn> pair = {{clock->path, "", clock, 0}, column};
-            sides.push_back({column.path, column.read_as, std::make_unique<ArrayRecords>(file, pair),
-                             column.array->type, join_limit_ns(period_ns(*clock)), column.array->unit,
-                             "value"});
+            const std::vector<ArrayColumn> pair = {{other->clock->path, "", other->clock, 0}, column};
+            sides.push_back({std::make_unique<ArrayColumns>(file, pair), 1,
+                             ns_per_unit(file->name(), *other->clock), "value"});
         }
     }
-    return join_records(std::make_unique<ArrayRecords>(file, columns), std::move(sides), how, table);
+    log.columns = std::make_unique<ArrayColumns>(file, columns);
+    join_columns(log, ns_per_unit(file->name(), *base.clock), std::move(sides), options);
 }
 
 int column_names_tell(const std::vector<ArrayColumn>& columns) {
@@ -500,11 +412,11 @@ std::vector<ContentEntry> contents_of(const std::vector<StoredArray>& arrays,
 
 }  // namespace
 
-Records records_of_arrays(const std::shared_ptr<StoredBytes>& file, const std::string& format,
-                          PathStyle style, const std::vector<StoredArray>& arrays,
-                          const std::vector<ContentEntry>& extra, const ReadOptions& options) {
-    RecordTable table;
-    table.format = format;
+ColumnLog columns_of_arrays(const std::shared_ptr<StoredBytes>& file, const std::string& format,
+                            PathStyle style, const std::vector<StoredArray>& arrays,
+                            const std::vector<ContentEntry>& extra, const ReadOptions& options) {
+    ColumnLog log;
+    log.format = format;
     const std::vector<ArrayGroup> groups = FoundClocks(arrays).groups();
     const AskedPaths asked(options);
     std::vector<const ArrayGroup*> chosen = asked_groups(file->name(), groups, style, asked);
@@ -521,25 +433,23 @@ Records records_of_arrays(const std::shared_ptr<StoredBytes>& file, const std::s
             });
         });
     };
-    table.contents = contents_of(arrays, reads);
-    table.contents.insert(table.contents.end(), extra.begin(), extra.end());
+    log.contents = contents_of(arrays, reads);
+    log.contents.insert(log.contents.end(), extra.begin(), extra.end());
     if (chosen.empty()) {
         raise<DataError>(
             "{}: read {}, expected arrays of numbers, two rows or more, of time, velocity and torque; save "
             "them as vectors of one length",
-            file->name(), listed(table.contents));
+            file->name(), listed(log.contents));
     }
     if (chosen.size() > 1) {
         const std::vector<const ArrayGroup*> others(chosen.begin() + 1, chosen.end());
-        auto joined = joined_arrays(
+        join_arrays(
             file, *chosen.front(), others, style, [&](const std::string& path) { return asked.has(path); },
-            options.join.value_or("linear"), table);
-        return {std::move(joined), std::move(table)};
+            options, log);
+    } else {
+        log.columns = std::make_unique<ArrayColumns>(file, columns_of(*chosen.front(), style));
     }
-    const std::vector<ArrayColumn> columns = columns_of(*chosen.front(), style);
-    add_fields(columns, table);
-    table.rows = chosen.front()->rows;
-    return {std::make_unique<ArrayRecords>(file, columns), std::move(table)};
+    return log;
 }
 
 }  // namespace ripplenotch
