@@ -6,6 +6,7 @@
 
 #include "ripplenotch/chart/comparison_figure.hpp"
 #include "ripplenotch/chart/table_figure.hpp"
+#include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/figure/min_max.hpp"
 
@@ -158,7 +159,7 @@ ResponsePanels empty_panels(const Comparison& comparison) {
     for (const Order order : comparison.lines->orders) {
         const double hz = ripple_frequency(order, comparison.lines->ratio, comparison.speed).value();
         panels.magnitude.lines.push_back(
-            {fmt::format("order {}", shortest(order.value())), NamedLine::Run::at_x, hz, Ink::black});
+            {order_in_words(order, comparison.lines->ratio), NamedLine::Run::at_x, hz, Ink::black});
     }
     return panels;
 }

@@ -8,6 +8,7 @@
 
 #include "core/matrices/least_squares.hpp"
 #include "ripplenotch/chart/spectrum_figure.hpp"
+#include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/figure/min_max.hpp"
 
@@ -84,7 +85,7 @@ Figure speed_map_figure(const std::string& source, const SpeedMap& map, const Ma
     if (lines.gear) {
         for (const Order order : lines.gear->orders) {
             const double per_output_turn = order.value() * lines.gear->ratio.value();
-            NamedLine line{fmt::format("order {}", shortest(order.value())), NamedLine::Run::ray,
+            NamedLine line{order_in_words(order, lines.gear->ratio), NamedLine::Run::ray,
                            per_output_turn / 360.0};
             if (!campbell) {
                 line.run = NamedLine::Run::at_y;
@@ -93,15 +94,15 @@ Figure speed_map_figure(const std::string& source, const SpeedMap& map, const Ma
             panel.lines.push_back(std::move(line));
         }
     }
-    Figure figure{
-        campbell ? "campbell" : "order-map",
-        fmt::format("{} of the torque: {}", campbell ? "Campbell diagram" : "Order map", source),
-        fmt::format("{} speeds, resolution {:.3g} {}{}.", map.speed_deg_s.size(), map.resolution,
-                    campbell ? "Hz" : "orders",
-                    panel.lines.empty() ? std::string()
-                                        : fmt::format("; lines are orders of a gear ratio of {:.6g}",
-                                                      lines.gear->ratio.value())),
-        {}};
+    Figure figure{campbell ? "campbell" : "order-map",
+                  fmt::format("{} of the torque: {}", campbell ? "Campbell diagram" : "Order map", source),
+                  fmt::format("{} speeds, resolution {:.3g} {}{}.", map.speed_deg_s.size(), map.resolution,
+                              campbell ? "Hz" : "orders",
+                              panel.lines.empty() || !lines.gear->has_ratio()
+                                  ? std::string()
+                                  : fmt::format("; lines are orders of a gear ratio of {:.6g}",
+                                                lines.gear->ratio.value())),
+                  {}};
     figure.panels.push_back(std::move(panel));
     return figure;
 }

@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "ripplenotch/chart/table_figure.hpp"
+#include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
@@ -127,12 +128,13 @@ Panel centre_panel(const CandidateTable& table) {
     panel.shades = shades_of(table);
     for (std::size_t i = 0; i < spec.orders.size(); ++i) {
         const double order = spec.orders[i].value();
+        const std::string name = order_in_words(spec.orders[i], spec.gear_ratio);
         panel.curves.push_back(stairs(
-            table, fmt::format("notch for order {}", shortest(order)), order_ink(order),
+            table, "notch for " + name, order_ink(order),
             [i](const Band& band) { return band.notches[i].notch.center.value(); },
             order_style(order, CurveStyle::line)));
-        panel.lines.push_back({fmt::format("order {}", shortest(order)), NamedLine::Run::ray,
-                               order * spec.gear_ratio.value() / 360.0, order_ink(order)});
+        panel.lines.push_back(
+            {name, NamedLine::Run::ray, order * spec.gear_ratio.value() / 360.0, order_ink(order)});
     }
     const double highest_hz = spec.orders.back().value() * spec.gear_ratio.value() * *panel.x.to / 360.0;
     panel.y.to = std::min(1.1 * highest_hz, 0.5 * spec.sample_rate.value());
@@ -151,7 +153,7 @@ Figure table_figure(const CandidateTable& table) {
     for (std::size_t i = 0; i < spec.orders.size(); ++i) {
         const double order = spec.orders[i].value();
         worst.curves.push_back(stairs(
-            table, fmt::format("order {}", shortest(order)), order_ink(order),
+            table, order_in_words(spec.orders[i], spec.gear_ratio), order_ink(order),
             [i](const Band& band) { return band.worst_attenuation_db[i]; },
             order_style(order, CurveStyle::line)));
     }
@@ -164,13 +166,16 @@ Figure table_figure(const CandidateTable& table) {
         stairs(table, fmt::format("settles to {} %", shortest(table.bands().front().settle_band_percent)),
                Ink::vermilion, [](const Band& band) { return 1e3 * band.settle.value(); }));
     leave_room(delay);
-    return {"candidate-table",
-            fmt::format("Candidate notches for gear ratio {:.6g} at {:.6g} Hz", spec.gear_ratio.value(),
-                        spec.sample_rate.value()),
-            fmt::format("{} from {:.6g} to {:.6g} deg/s, Q {}; numbers are bands.",
-                        how_many(table.bands().size(), "band"), table.bands().front().from.value(),
-                        table.bands().back().to.value(), shortest(spec.q)),
-            {centre_panel(table), std::move(worst), std::move(delay)}};
+    return {
+        "candidate-table",
+        fmt::format(
+            "Candidate notches{} at {:.6g} Hz",
+            spec.gear_ratio == no_ratio ? "" : fmt::format(" for gear ratio {:.6g}", spec.gear_ratio.value()),
+            spec.sample_rate.value()),
+        fmt::format("{} from {:.6g} to {:.6g} deg/s, Q {}; numbers are bands.",
+                    how_many(table.bands().size(), "band"), table.bands().front().from.value(),
+                    table.bands().back().to.value(), shortest(spec.q)),
+        {centre_panel(table), std::move(worst), std::move(delay)}};
 }
 
 }  // namespace ripplenotch

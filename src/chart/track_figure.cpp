@@ -7,6 +7,7 @@
 #include "core/matrices/least_squares.hpp"
 #include "ripplenotch/analysis/track_report.hpp"
 #include "ripplenotch/chart/track_figure.hpp"
+#include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/figure/min_max.hpp"
@@ -88,7 +89,7 @@ Figure map_figure(const std::string& source, const MapFit& fit) {
                 .height = 0.7};
     amplitude.y.from = 0.0;
     for (std::size_t i = 0; i < fit.map.orders.size(); ++i) {
-        const std::string order = "order " + shortest(fit.map.orders[i].value());
+        const std::string order = order_in_words(fit.map.orders[i], fit.map.gear_ratio);
         if (fit.map.form.directions == 1) {
             add_curves(fit, i, 1.0, order, fit.map.orders[i].value(), amplitude, phase);
         } else {

@@ -7,6 +7,7 @@
 
 #include "design/band_fit.hpp"
 #include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
@@ -51,9 +52,9 @@ void check_speeds(const TableSpec& spec, const DesignGoal& goal) {
         ripple_frequency(spec.orders.back(), spec.gear_ratio, DegPerSec(to * (1.0 + spec.ratio_error)));
     if (!(highest < 0.5 * spec.sample_rate)) {
         raise<UsageError>(
-            "order {} reaches half the sample rate, {} Hz, at {} deg/s; end the speeds below, or leave the "
+            "{} reaches half the sample rate, {} Hz, at {} deg/s; end the speeds below, or leave the "
             "order out",
-            shortest(spec.orders.back().value()), plain(0.5 * spec.sample_rate.value()),
+            order_in_words(spec.orders.back(), spec.gear_ratio), plain(0.5 * spec.sample_rate.value()),
             plain(to * 0.5 * spec.sample_rate.value() / highest.value()));
     }
 }

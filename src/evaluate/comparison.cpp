@@ -7,6 +7,7 @@
 
 #include "ripplenotch/analysis/ripple_estimate.hpp"
 #include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/evaluate/comparison.hpp"
@@ -231,6 +232,7 @@ std::optional<FrozenFilter> Contender::frozen(Hertz sample_rate, DegPerSec speed
 
 std::optional<GearRatio> Contender::made_for() const {
     if (settings.has("gear-ratio")) return GearRatio(settings.number("gear-ratio"));
+    if (settings.has("orders")) return no_ratio;
     if (table != nullptr) return table->spec().gear_ratio;
     return std::nullopt;
 }

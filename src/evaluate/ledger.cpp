@@ -113,7 +113,7 @@ double delay_s(const Contender& contender, Hertz sample_rate, double speed_deg_s
     return frozen ? group_delay(frozen->cascade, Hertz(0.0), SampledAt(sample_rate)).value() : 0.0;
 }
 
-bool follows_gear(const Contender& contender) { return contender.settings.has("gear-ratio"); }
+bool follows_gear(const Contender& contender) { return contender.settings.has("orders"); }
 
 }  // namespace
 

@@ -340,7 +340,8 @@ Recommendation recommend(std::span<const Contender> contenders, const ComparedLo
                               levels.windows, levels.windows == 1 ? "" : "s", fewest_judged_windows);
         return found;
     }
-    found.torque_rate_nm_s = torque_rate_nm_s(log.trace, lines.ratio);
+    found.torque_rate_nm_s =
+        torque_rate_nm_s(log.trace, GearRatio(lines.ratio.value() * lines.orders.front().value()));
     const TorqueReference reference(log, lines, found.orders, band);
     found.band = reference.band();
     const std::vector<double> speeds = speeds_of(log.trace);

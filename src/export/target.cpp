@@ -32,7 +32,8 @@ FilterSet filter_set(const CandidateTable& table, const SwitchingDesign& switchi
     for (const Band& band : table.bands()) {
         ExportBand out{band.number, band.from, band.to, {}};
         for (const CandidateNotch& notch : band.notches) {
-            out.sections.push_back({notch.order, notch.notch, notch.notch.center, notch.section});
+            out.sections.push_back(
+                {notch.order, notch.notch, notch.notch.center, notch.section, spec.gear_ratio});
         }
         set.bands.push_back(std::move(out));
     }

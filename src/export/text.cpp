@@ -15,6 +15,7 @@
 
 #include "export/target.hpp"
 #include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/core/visible_text.hpp"
@@ -159,7 +160,7 @@ std::string hexadecimal_float(double value) { return hexadecimal(as_float(value)
 
 std::string describe(const ExportSection& section) {
     if (!section.notch) return fmt::format("low-pass section at {:.6g} Hz", section.center.value());
-    std::string text = section.order ? fmt::format("order {}, ", shortest(section.order->value())) : "";
+    std::string text = section.order ? order_in_words(*section.order, section.gear_ratio) + ", " : "";
     text += fmt::format("{} Hz, Q {}", shortest(section.center.value()), shortest(section.notch->q));
     if (section.notch->width == WidthRule::digital) text += " (digital)";
     if (section.notch->depth_db < infinite_depth_db)
@@ -178,6 +179,8 @@ CodeSpeed code_speed(const Settings& settings, double gear_ratio) {
     if (speed.unit == "rad/s") speed.per_deg_s = std::numbers::pi / 180.0;
     if (speed.unit == "rpm") speed.per_deg_s = 1.0 / 6.0;
     const bool motor = speed.side == "motor";
+    if (motor && gear_ratio == no_ratio.value())
+        raise<UsageError>("target c-header: speed-side=motor takes a gear ratio, and none is known");
     if (motor) speed.per_deg_s *= gear_ratio;
     speed.name = std::string(motor ? "motor_speed_" : "speed_") + (speed.unit == "deg/s"   ? "deg_s"
                                                                    : speed.unit == "rad/s" ? "rad_s"

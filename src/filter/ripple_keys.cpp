@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "filter/ripple_keys.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/core/number.hpp"
 
 namespace ripplenotch {
@@ -87,17 +91,33 @@ MotorAngle::Source angle_source(const Settings& settings) {
     return settings.text("angle") == "velocity" ? MotorAngle::Source::velocity : MotorAngle::Source::best;
 }
 
-double RippleOrders::hz(std::size_t line, double speed_deg_s) const noexcept {
-    return orders[line] * gear_ratio * std::abs(speed_deg_s) / 360.0;
+RippleOrders RippleOrders::by_lowest() const {
+    if (lowest() == 1.0) return *this;
+    const double first = lowest() * gear_ratio;
+    RippleOrders counted{first, orders};
+    for (double& order : counted.orders) order = order * gear_ratio / first;
+    return counted;
+}
+
+RippleOrders RippleOrders::by_joint() const {
+    RippleOrders counted{no_ratio.value(), orders};
+    for (double& order : counted.orders) order = to_digits(order * gear_ratio, 12);
+    return counted;
 }
 
 RippleOrders ripple_orders(std::string_view method, const Settings& settings) {
-    RippleOrders ripple{settings.number("gear-ratio"), settings.list("orders")};
+    const std::string what = fmt::format("method {}, orders", method);
+    std::optional<GearRatio> ratio;
+    if (settings.has("gear-ratio")) ratio = GearRatio(settings.number("gear-ratio"));
+    RippleOrders ripple{ratio.value_or(no_ratio).value(), {}};
+    for (const Order order : orders_under(parse_orders(settings.text("orders"), what), ratio, what))
+        ripple.orders.push_back(order.value());
     std::vector<double> sorted = ripple.orders;
     std::sort(sorted.begin(), sorted.end());
     const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
     if (twice != sorted.end())
-        raise<UsageError>("method {}, orders: {} is given twice", method, shortest(*twice));
+        raise<UsageError>("{}: {} is given twice", what,
+                          order_text(Order(*twice), GearRatio(ripple.gear_ratio)));
     return ripple;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 // Keys that every method has that follows the gear: where the ripple is.
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <string_view>
@@ -12,7 +13,7 @@
 
 namespace ripplenotch {
 
-// The motor's angle from the columns of a log: position, else the integrated velocity.
+// The angle by which ripple is followed, from the columns of a log: position, else the integrated velocity.
 
 /// Receives samples in order. From the position where there is one, which is the joint's then (unwrapped at
 /// half turns of the joint); else from the velocity by trapezoids. While the motor turns slowly, a position
@@ -53,18 +54,18 @@ class MotorAngle {
     bool started_ = false, from_velocity_ = false;
 };
 
-inline constexpr Key gear_ratio_key{.name = "gear-ratio",
-                                    .required = true,
-                                    .above = 0.0,
-                                    .at_most = 1e5,
-                                    .help = "motor turns per joint turn; or joint=joint.json"};
+inline constexpr Key gear_ratio_key{
+    .name = "gear-ratio",
+    .above = 0.0,
+    .at_most = 1e5,
+    .help = "motor turns per joint turn, for orders by the motor; or joint=joint.json"};
 inline constexpr Key orders_key{
     .name = "orders",
-    .kind = KeyKind::list,
+    .kind = KeyKind::text,
     .required = true,
-    .above = 0.0,
-    .at_most = 1e4,
-    .help = "ripple lines in cycles per motor turn, e.g. 1:2; or joint=joint.json"};
+    .help =
+        "ripple lines in cycles per motor turn, 1:2, or per turn of the joint, 100/turn:200/turn; or "
+        "joint=joint.json"};
 /// Never reaches a method: the code that loads files replaces it by the keys that it abbreviates.
 inline constexpr Key joint_key{.name = "joint",
                                .kind = KeyKind::text,
@@ -82,14 +83,20 @@ inline constexpr Key angle_key{
 [[nodiscard]] MotorAngle::Source angle_source(const Settings& settings);
 
 struct RippleOrders {
-    double gear_ratio = 0.0;
-    std::vector<double> orders;  ///< as given, each once
+    double gear_ratio = 0.0;     ///< turns per turn of the joint of the shaft by which they count
+    std::vector<double> orders;  ///< in the sequence as given, each once
 
-    /// Frequency of a line in Hz at a joint speed in deg/s.
-    [[nodiscard]] double hz(std::size_t line, double speed_deg_s) const noexcept;
+    /// The lowest, which is a multiple of 1 by the motor.
+    [[nodiscard]] double lowest() const { return *std::min_element(orders.begin(), orders.end()); }
+    /// The same lines as multiples of the lowest, under as many turns per turn of the joint. What counts by
+    /// turns of that is the same whatever ratio names the lines.
+    [[nodiscard]] RippleOrders by_lowest() const;
+    /// The same lines by turns of the joint.
+    [[nodiscard]] RippleOrders by_joint() const;
 };
 
-/// Throws UsageError when an order is given twice.
+/// By the motor under its ratio, by the joint without one. Throws UsageError when an order is given twice,
+/// and what orders_under throws.
 [[nodiscard]] RippleOrders ripple_orders(std::string_view method, const Settings& settings);
 
 /// A list with one value per order, `otherwise` for each when the key is not given. Throws UsageError when it

@@ -51,7 +51,7 @@ enum class OutsideRule { pass, hold, fade };
 [[nodiscard]] std::string_view outside_rule_name(OutsideRule rule);
 
 struct TableSpec {
-    GearRatio gear_ratio;
+    GearRatio gear_ratio;  ///< no_ratio (gear_account.hpp): the orders count by turns of the joint
     std::vector<Order> orders;
     Hertz sample_rate;
     std::vector<std::pair<DegPerSec, DegPerSec>> bands;  ///< from, to; sorted, not overlapping

@@ -48,8 +48,8 @@ struct MapState {
 /// theta being gear ratio times (position - zero), and z the sum of the form's columns times `values`, those
 /// of a second comb s turned by exp(-i s n (position - zero)).
 struct RippleMap {
-    std::string joint;  ///< empty for a joint without a name
-    GearRatio gear_ratio;
+    std::string joint;          ///< empty for a joint without a name
+    GearRatio gear_ratio;       ///< no_ratio (gear_account.hpp): the orders count by turns of the joint
     std::vector<Order> orders;  ///< lowest first; empty: nothing turns with the motor
     MapForm form;
     double zero_deg = 0.0;                 ///< joint position at which the motor's angle is 0

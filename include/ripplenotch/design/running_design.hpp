@@ -3,6 +3,8 @@
 // Methods whose coefficients change while they run, as the numbers that they run on: what an export has to
 // write down.
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -50,12 +52,13 @@ struct OscillatorDesign {
     struct Prior {
         double cosine = 0.0, sine = 0.0, deviation = 0.0;
     };
+    double gear_ratio = 0.0;  ///< turns of the angle that is handed over, in a turn of the joint
     std::vector<double> orders;
     std::vector<Prior> priors;
     double step_s = 0.0, noise_nm = 0.0;
     double torque_noise = 0.0, cross_noise = 0.0, rate_noise = 0.0;  ///< increments of variance in a sample
     double first_rate_variance = 0.0;
-    double memory_turns = 0.0;
+    double memory_turns = 0.0;  ///< of that angle, as return_turns
     double return_turns = 0.0;  ///< turns over which amplitudes decay towards 0; 0: never
     double jump = 0.0;          ///< 0: never
     double largest_slip = 0.0;
@@ -64,6 +67,11 @@ struct OscillatorDesign {
     /// ripple.
     std::optional<RippleMap> map = std::nullopt;
 };
+
+/// Every order is whole: the angle within a turn does.
+[[nodiscard]] inline bool repeats_each_turn(const std::vector<double>& orders) {
+    return std::all_of(orders.begin(), orders.end(), [](double order) { return order == std::floor(order); });
+}
 
 using RunningDesign = std::variant<TrackingDesign, OscillatorDesign>;
 

@@ -40,7 +40,8 @@ struct Contender {
     [[nodiscard]] std::unique_ptr<CausalFilter> start_on_bench(Hertz sample_rate) const;
     /// The active linear filter at a constant speed; empty for methods that have none.
     [[nodiscard]] std::optional<FrozenFilter> frozen(Hertz sample_rate, DegPerSec speed) const;
-    /// The gear ratio that its filter is made for: its key's or its table's; empty where it has neither.
+    /// The gear ratio that its filter is made for: its key's or its table's, no_ratio where its lines count
+    /// by turns of the joint; empty where it follows no line.
     [[nodiscard]] std::optional<GearRatio> made_for() const;
 };
 

@@ -21,6 +21,7 @@ struct ExportSection {
     std::optional<NotchSpec> notch;  ///< empty for a section of a low-pass
     Hertz center;                    ///< the notch's centre, else the natural frequency of the poles
     Biquad section;
+    GearRatio gear_ratio{};  ///< under which the order counts; no_ratio: by turns of the joint
 };
 
 struct ExportBand {

@@ -22,6 +22,7 @@ struct SectionCheck {
     DegPerSec from, to;
     int section = 1;  ///< from 1
     std::optional<Order> order;
+    GearRatio gear_ratio;                 ///< under which it counts
     Hertz center;                         ///< as designed
     bool is_notch = true;                 ///< false: a section of a low-pass, which has no depth
     std::optional<double> shift_percent;  ///< shift of the centre, from the values read; empty: it has none

@@ -63,10 +63,10 @@ struct MapFit {
 /// Probability that a log without ripple has a map.
 inline constexpr double map_false_alarm = 0.01;
 
-/// Windows of fewer motor turns, or fewer windows, are not enough to leave some out.
+/// Fewer windows are not enough to leave some out.
 inline constexpr std::size_t fewest_map_windows = 12;
 
-/// Fits each order in windows of 2.5 motor turns along with a cubic trend, then
+/// Fits each order in windows of 2.5 periods of the lowest one along with a cubic trend, then
 /// the windows' amplitudes by ridge regression on the columns of a form. An order is included in the map
 /// where a rotation test finds it, at 1 % for all orders together; the form is the smallest one that
 /// cross-validation does not distinguish from the best.
@@ -111,8 +111,9 @@ struct OtherMotor {
 /// One sentence with numbers.
 [[nodiscard]] std::string map_verdict(const MapFit& fit);
 
-/// The keys of a method that map=map.json abbreviates: gear-ratio, orders, cosines, sines and the others that
-/// the form needs, in the order of the page; angles count from position 0 then. The map has an order.
+/// The keys of a method that map=map.json abbreviates: gear-ratio (where it is known), orders, cosines, sines
+/// and the others that the form needs, in the order of the page; angles count from position 0 then. The map
+/// has an order.
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> map_as_keys(const RippleMap& map);
 
 }  // namespace ripplenotch

@@ -22,7 +22,7 @@ namespace ripplenotch {
 struct GearStatement {
     std::string source;  ///< for messages
     std::optional<GearRatio> ratio;
-    std::vector<Order> orders;         ///< lowest first, each once
+    std::vector<StatedOrder> orders;   ///< each once
     std::vector<double> amplitude_nm;  ///< one per order, or empty
     std::vector<double> phase_deg;     ///< one per order, or empty where one of them is not known
     // Of a joint.json:
@@ -39,7 +39,8 @@ struct JointFile {
 
     /// A line that was seen at one speed only counts when identify gave it an order: then the gear ratio
     /// rests on it. With a ratio from elsewhere the orders are those of the measured lines under that ratio,
-    /// whole or half where they are within 0.5 % of it. Of two lines of one order the stronger one counts.
+    /// whole or half where they are within 0.5 % of it; where no ratio is known they count by turns of the
+    /// joint. Of two lines of one order the stronger one counts.
     [[nodiscard]] GearStatement facts(std::optional<GearRatio> given = std::nullopt) const;
 };
 
@@ -50,14 +51,11 @@ struct JointFile {
 /// --gear-ratio, --orders and --joint-file as they were typed.
 struct GearOptions {
     std::optional<double> ratio;
-    std::vector<double> orders;
+    std::vector<StatedOrder> orders;
     std::optional<std::string> joint_file;
 
     [[nodiscard]] bool any() const { return ratio || !orders.empty() || joint_file; }
 };
-
-/// Orders as they are typed, lowest first.
-[[nodiscard]] std::vector<Order> sorted_orders(const std::vector<double>& values);
 
 /// Throws UsageError on a ratio or an order that is none, and on an order that is given twice.
 void check_gear(const GearOptions& gear);
@@ -69,14 +67,14 @@ class GearChoice {
     explicit GearChoice(GearOptions options);
 
     /// The gear of a command, or of a method with what its keys, its own joint file (null: that of the
-    /// options) and its table state. Orders that no source states are default_orders(). Empty when no source
-    /// states a ratio. Throws DataError when a joint file that is asked has no ratio or no line that follows
-    /// the motor.
+    /// options) and its table state. Orders that no source states are default_orders() of a known ratio.
+    /// Empty when no source states a ratio or lines. Throws DataError when a joint file that is asked has no
+    /// line that turns with the joint, UsageError for orders by the motor where no source states a ratio.
     [[nodiscard]] std::optional<GearAccount> of(const GearStatement& method = {},
                                                 const JointFile* joint = nullptr,
                                                 const GearStatement& table = {}) const;
     /// Of --orders; empty where it is not given.
-    [[nodiscard]] const std::vector<double>& asked_orders() const { return options_.orders; }
+    [[nodiscard]] const std::vector<StatedOrder>& asked_orders() const { return options_.orders; }
     [[nodiscard]] const std::optional<JointFile>& joint() const { return joint_; }
     /// What the joint file says under --gear-ratio, where that is given.
     [[nodiscard]] std::optional<GearStatement> facts() const;
@@ -86,10 +84,10 @@ class GearChoice {
     std::optional<JointFile> joint_;
 };
 
-/// Throws the one UsageError for whoever needs the gear and is not told it: "--orders", "method tracking".
+/// Throws the one UsageError for whoever needs the lines and is not told them: "--truth", "method tracking".
 [[noreturn]] void raise_no_gear(std::string_view who);
 
-/// "gear ratio 100, orders 1, 2 (joint.json)", for -v.
+/// "gear ratio 100, orders 1, 2 (joint.json)", "orders 200/turn of the joint (--orders)", for -v.
 [[nodiscard]] std::string gear_in_words(const GearAccount& gear);
 
 // A filter method as the user wrote it, checked, with its table loaded and its gear chosen.

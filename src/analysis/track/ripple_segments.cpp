@@ -21,9 +21,9 @@ namespace ripplenotch {
 namespace {
 
 constexpr double fewest_periods = 4.0;  // per segment: fewer are not distinguished from the trend
-// Turns of the motor: a resolution at which the families of both splines, Kg and Kg + 1 times per output
-// turn, are one line.
-constexpr double window_turns = 8.0;
+// Of the lowest line, so that it does not depend on the ratio that names it: a resolution at which the
+// families of both splines, Kg and Kg + 1 times per output turn, are one line.
+constexpr double window_periods = 8.0;
 // Chosen, not derived: bounds cost and memory. Where there are more, every second segment is dropped, and as
 // many of those that follow.
 constexpr std::size_t most_ripple_samples = 300'000;
@@ -79,8 +79,9 @@ RippleSegments::RippleSegments(GearRatio ratio, std::span<const Order> orders, O
     orders_ = asked_;
     std::sort(orders_.begin(), orders_.end());
     orders_.erase(std::unique(orders_.begin(), orders_.end()), orders_.end());
-    longest_turns_ =
-        orders_.empty() ? window_turns : std::max(window_turns, separating_window_turns(orders_));
+    longest_turns_ = orders_.empty()
+                         ? window_periods
+                         : std::max(window_periods / orders_.front(), separating_window_turns(orders_));
     gathered_.resize(orders_.size());
 }
 

@@ -24,6 +24,7 @@
 #include "cli/talk.hpp"
 #include "ripplenotch/chart/comparison_figure.hpp"
 #include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/progress.hpp"
 #include "ripplenotch/core/visible_text.hpp"
@@ -191,7 +192,7 @@ std::vector<ViewColumn> cost_columns(const Comparison& comparison) {
 std::vector<ViewColumn> result_columns(const Comparison& comparison) {
     std::vector<ViewColumn> columns;
     for (std::size_t i = 0; comparison.lines && i < comparison.lines->orders.size(); ++i) {
-        columns.push_back({fmt::format("order {}", shortest(comparison.lines->orders[i].value())), "dB",
+        columns.push_back({order_in_words(comparison.lines->orders[i], comparison.lines->ratio), "dB",
                            [i](const MethodFigures& f) { return attenuation(f, i); }});
     }
     columns.push_back(
@@ -405,7 +406,6 @@ Field load_contenders(const std::vector<std::string>& methods, const GearOptions
     if (std::none_of(methods.begin(), methods.end(), is_control)) add(std::string(control_method().name));
     for (const std::string& text : methods) add(text);
     field.gear = common_gear(field.contenders);
-    if (!field.gear && !gear.orders.empty()) raise_no_gear("--orders");
     return field;
 }
 
@@ -627,8 +627,9 @@ Comparison compare_on_log(const CompareRequest& request, Field& field, Provenanc
     comparison.lines = field.gear;
     if (!comparison.lines)
         warn(request.common,
-             "no gear ratio is known, so no ripple was measured; "
-             "give --gear-ratio or --joint-file");
+             "no line is known, so no ripple was measured; give --gear-ratio, --orders 200/turn (lines per "
+             "turn of "
+             "the joint) or --joint-file");
     add_methods(comparison, field.contenders, compared, request.common);
     const Gates& gates = request.costs.gates;
     judge(comparison, field.contenders, compared, {gates.max_delay, gates.min_attenuation_db, true});

@@ -19,6 +19,7 @@
 #include "cli/talk.hpp"
 #include "ripplenotch/chart/table_figure.hpp"
 #include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/visible_text.hpp"
 #include "ripplenotch/design/guarantee.hpp"
@@ -83,16 +84,16 @@ std::vector<std::pair<DegPerSec, DegPerSec>> bands_seen(const DesignRequest& req
     while (count > 0.0 && from + (count - 0.5) * width >= limit_deg_s) count -= 1.0;
     if (count < 1.0) {
         raise<UsageError>(
-            "{}: order {} is not below half the sample rate, {} Hz, at {:.6g} deg/s, the slowest speed "
+            "{}: {} is not below half the sample rate, {} Hz, at {:.6g} deg/s, the slowest speed "
             "seen; choose lower --orders or --speed",
-            joint.source, shortest(spec.orders.back().value()), shortest(0.5 * spec.sample_rate.value()),
-            from + 0.5 * width);
+            joint.source, order_in_words(spec.orders.back(), spec.gear_ratio),
+            shortest(0.5 * spec.sample_rate.value()), from + 0.5 * width);
     }
     if (count < wanted) {
         warn(request.common,
-             fmt::format("{}: lines were seen up to {:.6g} deg/s, but from {:.6g} deg/s on order {} "
+             fmt::format("{}: lines were seen up to {:.6g} deg/s, but from {:.6g} deg/s on {} "
                          "is not below half the sample rate; the bands end at {:.6g} deg/s",
-                         joint.source, to, limit_deg_s, shortest(spec.orders.back().value()),
+                         joint.source, to, limit_deg_s, order_in_words(spec.orders.back(), spec.gear_ratio),
                          from + count * width));
     }
     to = from + count * width;
@@ -213,9 +214,10 @@ std::string as_if_options(const TableSpec& spec) {
     const std::string bands = joined(spec.bands, ",", [](const auto& band) {
         return shortest(band.first.value()) + ":" + shortest(band.second.value());
     });
-    std::string line = fmt::format("--gear-ratio {} --orders {} --sample-rate {}Hz --bands {}",
-                                   shortest(spec.gear_ratio.value()), joined(spec.orders, ","),
-                                   shortest(spec.sample_rate.value()), bands);
+    std::string line = fmt::format(
+        "{}--orders {} --sample-rate {}Hz --bands {}",
+        spec.gear_ratio == no_ratio ? "" : fmt::format("--gear-ratio {} ", shortest(spec.gear_ratio.value())),
+        orders_text(spec.orders, spec.gear_ratio, ","), shortest(spec.sample_rate.value()), bands);
     if (spec.hysteresis.value() > 0.0)
         line += fmt::format(" --hysteresis {}deg/s", shortest(spec.hysteresis.value()));
     if (!spec.amplitude_nm.empty()) line += " --amplitudes " + joined(spec.amplitude_nm, ",");
@@ -238,9 +240,9 @@ std::vector<std::string> violations_of(const DesignRequest& request, const Candi
             const double worst_db = band.worst_attenuation_db[i];
             if (worst_db >= *request.min_attenuation_db) continue;
             sentences.push_back(
-                fmt::format("{} attenuates order {} by as little as {:.1f} dB, less than "
+                fmt::format("{} attenuates {} by as little as {:.1f} dB, less than "
                             "--min-attenuation {}dB",
-                            label, shortest(band.notches[i].order.value()), worst_db,
+                            label, order_in_words(band.notches[i].order, table.spec().gear_ratio), worst_db,
                             shortest(*request.min_attenuation_db)));
         }
     }

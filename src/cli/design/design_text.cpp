@@ -10,6 +10,7 @@
 
 #include "cli/talk.hpp"
 #include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/quantity.hpp"
 #include "ripplenotch/core/spec.hpp"
@@ -84,13 +85,17 @@ std::vector<std::pair<DegPerSec, DegPerSec>> parse_speed_bands(std::string_view 
 
 namespace {
 
-std::string listed(const std::vector<Order>& orders) {
-    std::string text = orders.size() == 1 ? "order " : "orders ";
+// "gear ratio 100, orders 1 and 2", "orders 200/turn and 400/turn of the joint".
+std::string listed(const TableSpec& spec) {
+    const std::vector<Order>& orders = spec.orders;
+    std::string text =
+        spec.gear_ratio == no_ratio ? "" : fmt::format("gear ratio {:.6g}, ", spec.gear_ratio.value());
+    text += orders.size() == 1 ? "order " : "orders ";
     for (std::size_t i = 0; i < orders.size(); ++i) {
         if (i > 0) text += i + 1 == orders.size() ? " and " : ", ";
-        text += shortest(orders[i].value());
+        text += order_text(orders[i], spec.gear_ratio);
     }
-    return text;
+    return text + (spec.gear_ratio == no_ratio ? " of the joint" : "");
 }
 
 std::string plain(double value) { return fmt::format("{:.6g}", value); }
@@ -166,11 +171,11 @@ Extra extra_of(const CandidateTable& table) {
 std::vector<std::vector<std::string>> title_rows(const TableSpec& spec, const Extra& extra) {
     std::vector<std::string> titles = {"band", "speed"}, units = {"", "deg/s"};
     for (const Order order : spec.orders) {
-        titles.push_back(fmt::format("order {}", shortest(order.value())));
+        titles.push_back(order_in_words(order, spec.gear_ratio));
         units.push_back("Hz");
     }
     for (std::size_t i = 0; i < extra.qs; ++i) {
-        titles.push_back(extra.qs == 1 ? "Q" : fmt::format("Q {}", shortest(spec.orders[i].value())));
+        titles.push_back(extra.qs == 1 ? "Q" : "Q " + order_text(spec.orders[i], spec.gear_ratio));
         units.push_back("");
     }
     titles.insert(titles.end(), {"DC delay", "settles", "overshoot"});
@@ -223,10 +228,9 @@ std::string table_to_text(const CandidateTable& table, const DesignNote& note) {
     const TableSpec& spec = table.spec();
     const Extra extra = extra_of(table);
     std::string text = fmt::format(
-        "Candidate notches for gear ratio {}, {}, at {} Hz: {} band{}, Q {} ({}), {}.\n\n",
-        plain(spec.gear_ratio.value()), listed(spec.orders), plain(spec.sample_rate.value()),
-        table.bands().size(), table.bands().size() == 1 ? "" : "s", q_text(table),
-        width_rule_name(spec.width),
+        "Candidate notches for {}, at {} Hz: {} band{}, Q {} ({}), {}.\n\n", listed(spec),
+        plain(spec.sample_rate.value()), table.bands().size(), table.bands().size() == 1 ? "" : "s",
+        q_text(table), width_rule_name(spec.width),
         spec.depth_db >= infinite_depth_db ? "full null" : fmt::format("{} dB deep", plain(spec.depth_db)));
     auto rows = title_rows(spec, extra);
     for (const Band& band : table.bands()) rows.push_back(band_row(band, extra));
@@ -254,10 +258,10 @@ std::vector<std::string> alias_warnings(const CandidateTable& table) {
         if (ripple_frequency(highest, spec.gear_ratio, band.to) < 0.5 * spec.sample_rate) continue;
         const double limit = 180.0 * spec.sample_rate.value() / (highest.value() * spec.gear_ratio.value());
         warnings.push_back(
-            fmt::format("band {} ({}-{} deg/s): order {} passes half the sample rate at {} deg/s and is "
+            fmt::format("band {} ({}-{} deg/s): {} passes half the sample rate at {} deg/s and is "
                         "seen at a lower frequency above that",
                         band.number, plain(band.from.value()), plain(band.to.value()),
-                        shortest(highest.value()), plain(limit)));
+                        order_in_words(highest, spec.gear_ratio), plain(limit)));
     }
     return warnings;
 }

@@ -180,8 +180,8 @@ ModelOfLog identified_model(const DiagnoseRequest& request, ReadOptions reading)
     Model model{facts.ratio.value_or(GearRatio()), {}};
     if (speed_changes(logs.front().trace)) model.terms.push_back(parse_term("inertia"));
     if (facts.ratio) {
-        for (const Order order : facts.orders)
-            model.terms.push_back(parse_term(fmt::format("ripple,order={}", shortest(order.value()))));
+        for (const StatedOrder& order : facts.orders)
+            model.terms.push_back(parse_term(fmt::format("ripple,order={}", shortest(order.value))));
         return {std::move(model), "identify"};
     }
     // Below it a line is of no gear, and may be the joint's own: gravity has order 1.

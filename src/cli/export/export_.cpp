@@ -23,6 +23,7 @@
 #include "cli/talk.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/files.hpp"
+#include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/core/progress.hpp"
@@ -102,7 +103,7 @@ class Swing {
     }
 
     struct Sample {
-        double torque_nm, velocity_deg_s, position_deg, motor_turns;
+        double torque_nm, velocity_deg_s, position_deg;
     };
     Sample at(std::size_t k) {
         const double phase = 2.0 * std::numbers::pi * static_cast<double>(k) / rate_hz_ / swing_s;
@@ -114,7 +115,7 @@ class Swing {
         double torque = 6.0 * portable::sin(0.3 * phase) + 0.05 * noise();
         for (const Order order : gear_.orders)
             torque += 0.5 * portable::cos(2.0 * std::numbers::pi * order.value() * turns + order.value());
-        return {torque, velocity, position_, turns};
+        return {torque, velocity, position_};
     }
 
   private:
@@ -138,8 +139,11 @@ struct CodeCheck {
     double largest_error_nm = 0.0, largest_nm = 0.0;
 };
 
-CodeCheck run_beside(const CodeExport& request, const LoadedCode& code) {
+CodeCheck run_beside(const CodeExport& request, const RunningDesign& design, const LoadedCode& code) {
     CodeCheck check;
+    const auto* const oscillator = std::get_if<OscillatorDesign>(&design);
+    const double ratio = oscillator != nullptr ? oscillator->gear_ratio : 0.0;
+    const bool within_turn = oscillator != nullptr && repeats_each_turn(oscillator->orders);
     Swing swing(request);
     const auto filter = request.method.start(request.sample_rate);
     std::vector<double> torque(block), velocity(block), position(block), out(block), coded(block);
@@ -149,8 +153,9 @@ CodeCheck run_beside(const CodeExport& request, const LoadedCode& code) {
             torque[k] = now.torque_nm;
             velocity[k] = now.velocity_deg_s;
             position[k] = now.position_deg;
-            const double angle = now.motor_turns - std::floor(now.motor_turns);
-            coded[k] = code.step({now.torque_nm, now.velocity_deg_s, angle, now.position_deg});
+            double turns = ratio * now.position_deg / 360.0;
+            if (within_turn) turns -= std::floor(turns);
+            coded[k] = code.step({now.torque_nm, now.velocity_deg_s, turns, now.position_deg});
         }
         filter->process({velocity, torque, position}, out);
         for (std::size_t k = 0; k < block; ++k) {
@@ -177,7 +182,7 @@ ExitCode export_code(const CodeExport& request, const std::string& command_line)
     write_export(written, request.common);
     const ReadBack again = read_back(written, request.common);
     const LoadedCode code = read_method_code(again.bytes, again.source, design, settings);
-    const CodeCheck check = run_beside(request, code);
+    const CodeCheck check = run_beside(request, design, code);
     tell_check(fmt::format("{}: {}, read back and compared with the method over {} samples in {}.\nlargest "
                            "output          {:.4g} Nm\nlargest difference      {:.1e} Nm\n",
                            again.source, spec.text(), samples, code.arithmetic, check.largest_nm,
@@ -263,7 +268,7 @@ std::string depth_text(const SectionCheck& check) {
 std::vector<std::string> row(const SectionCheck& check, bool bands) {
     std::vector<std::string> cells;
     if (bands) cells.push_back(std::to_string(check.band));
-    cells.push_back(check.order ? shortest(check.order->value()) : std::to_string(check.section));
+    cells.push_back(check.order ? order_text(*check.order, check.gear_ratio) : std::to_string(check.section));
     cells.push_back(fmt::format("{:.6g}", check.center.value()));
     cells.push_back(check.shift_percent ? fixed(check.shift_percent, 4) : "none");
     cells.push_back(fmt::format("{:.4g}", check.q));

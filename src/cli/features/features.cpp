@@ -97,7 +97,7 @@ FeatureLine line_of(const Log& log, const std::string& path, const FeatureWork& 
     line.rows = log.recording.rows();
     if (!log.trace.time_s.empty()) line.duration_s = log.trace.time_s.back() - log.trace.time_s.front();
     IdentifyOptions identify;
-    if (work.gear) identify.hint = work.gear->ratio;
+    if (work.gear && work.gear->has_ratio()) identify.hint = work.gear->ratio;
     const Identification found = identify_readings({&log, 1}, identify);
     Features features = features_of(log.trace.view(), found, work.gear);
     line.mix = features.mix;
@@ -146,7 +146,6 @@ FeatureWork work_of(const FeatureRequest& request) {
     FeatureWork work;
     work.common = request.common;
     work.gear = GearChoice(request.gear).of();
-    if (!work.gear && !request.gear.orders.empty()) raise_no_gear("--orders");
     work.read = read_options(request.log, work.gear);
     work.read.takes_motor_units = true;
     if (request.date_from_name) work.pattern.emplace(*request.date_from_name);

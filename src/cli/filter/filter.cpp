@@ -55,7 +55,7 @@ ReadOptions FilterRequest::read_options(const JointMethods& methods) const {
     ReadOptions options = ripplenotch::read_options(log, methods.common_gear());
     options.gear_ratio_of = [&methods](const std::string& joint) -> std::optional<double> {
         const std::optional<GearAccount> own = methods.of(joint)->gear;
-        return own ? std::optional(own->ratio.value()) : std::nullopt;
+        return own && own->has_ratio() ? std::optional(own->ratio.value()) : std::nullopt;
     };
     if (!options.gear_ratio) options.gear_ratio = how.gear.ratio;
     options.needs_velocity = methods.follows_motion();
@@ -172,7 +172,9 @@ bool tell(const FilterRequest& request, JointWork& work, const std::string& comm
     for (std::string& warning : beyond_map(work)) warnings.push_back(std::move(warning));
     if (must_measure(request) && !metrics.gear) {
         warnings.emplace_back(
-            "no gear ratio is known, so no ripple was measured; give --gear-ratio or --joint-file");
+            "no line is known, so no ripple was measured; give --gear-ratio, --orders 200/turn (lines per "
+            "turn of "
+            "the joint) or --joint-file");
     }
     const auto broken = filter_violations(request.gates, *work.method, metrics);
     const std::string& unit = metrics.stream.recording.torque_unit;

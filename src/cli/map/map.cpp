@@ -18,6 +18,7 @@
 #include "cli/talk.hpp"
 #include "core/matrices/least_squares.hpp"
 #include "ripplenotch/chart/track_figure.hpp"
+#include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/core/progress.hpp"
@@ -43,10 +44,14 @@ std::string decibels(double from_nm, double to_nm) {
     return fmt::format("{:.1f}", 20.0 * portable::log10(from_nm / to_nm) + 0.0);
 }
 
+std::string order_cell(double order, const MapFit& fit) {
+    return order_text(Order(order), fit.map.gear_ratio);
+}
+
 MapRows scores_of(const MapFit& fit) {
     MapRows rows = {{"order", "ripple Nm", "remaining Nm", "dB", "noise limit dB", "predicted %", ""}};
     for (const MapOrderScore& score : fit.scores) {
-        rows.push_back({shortest(score.order), fmt::format("{:.3f}", score.ripple_nm),
+        rows.push_back({order_cell(score.order, fit), fmt::format("{:.3f}", score.ripple_nm),
                         fmt::format("{:.3f}", score.left_nm), decibels(score.ripple_nm, score.left_nm),
                         decibels(score.ripple_nm, score.noise_nm),
                         without_decimals(100.0 * score.predicted_share),
@@ -60,7 +65,7 @@ MapRows map_values(const MapFit& fit) {
     for (std::size_t i = 0; i < fit.map.orders.size(); ++i) {
         for (std::size_t c = 0; c < fit.map.values[i].size(); ++c) {
             const std::complex<double> z = fit.map.values[i][c], error = normal_95_errors * fit.errors[i][c];
-            rows.push_back({shortest(fit.map.orders[i].value()), map_column_words(fit.map.form, c),
+            rows.push_back({order_cell(fit.map.orders[i].value(), fit), map_column_words(fit.map.form, c),
                             rounded(z.real(), 3), fmt::format("{:.3f}", error.real()), rounded(z.imag(), 3),
                             fmt::format("{:.3f}", error.imag()),
                             fmt::format("{:.3f}", portable::hypot(z.real(), z.imag())),
@@ -78,7 +83,7 @@ MapRows others_of(const MapFit& fit) {
         for (const MapOrderScore& score : other.scores) {
             const bool bound = std::isfinite(score.detectable_nm) && score.detectable_nm > 0.0;
             rows.push_back({other.map.joint, fmt::format("{:.6g}", other.map.gear_ratio.value()),
-                            shortest(score.order), fmt::format("{:.3f}", score.ripple_nm),
+                            order_cell(score.order, other), fmt::format("{:.3f}", score.ripple_nm),
                             score.in_map ? fmt::format("{:.3f}", score.left_nm) : "-",
                             score.in_map ? decibels(score.ripple_nm, score.left_nm) : "-",
                             score.in_map ? without_decimals(100.0 * score.predicted_share) : "-",
@@ -93,7 +98,7 @@ MapRows others_of(const MapFit& fit) {
 MapRows agreement_of(const MapFit& fit, const std::vector<std::string>& logs) {
     MapRows rows = {{"order", "times as large", "+/-", "deg ahead", "+/-", "", "log"}};
     for (const MapAgreement& one : fit.agreement) {
-        rows.push_back({shortest(one.order), fmt::format("{:.2f}", one.amplitude_ratio),
+        rows.push_back({order_cell(one.order, fit), fmt::format("{:.2f}", one.amplitude_ratio),
                         fmt::format("{:.2f}", normal_95_errors * one.amplitude_error),
                         without_decimals(one.phase_deg),
                         without_decimals(std::min(normal_95_errors * one.phase_error_deg, 180.0)),
@@ -108,12 +113,14 @@ MapRows agreement_of(const MapFit& fit, const std::vector<std::string>& logs) {
 std::string map_report(const MapFit& fit, const std::vector<std::string>& logs) {
     std::string text = map_verdict(fit) + "\n";
     if (fit.finding != MapFinding::too_little) {
-        text += fmt::format("\non {} of 2.5 motor turns, cross-validated with {} blocks\n",
+        text += fmt::format("\non {} of 2.5 periods of the lowest order, cross-validated with {} blocks\n",
                             how_many(fit.windows, "window"), fit.blocks);
         text += text_table(scores_of(fit), "rrrrrrl");
     }
     if (fit.finding == MapFinding::mapped) {
-        text += "\nripple = cosine cos(order motor angle) + sine sin(order motor angle), 95 % intervals\n";
+        const std::string_view shaft = fit.map.gear_ratio == no_ratio ? "joint" : "motor";
+        text += fmt::format(
+            "\nripple = cosine cos(order {0} angle) + sine sin(order {0} angle), 95 % intervals\n", shaft);
         text += text_table(map_values(fit), "rlrrrrrr");
         text += fmt::format(
             "\nseen: {:.3g} to {:.3g} deg/s, joint at {:.4g} to {:.4g} deg; beyond, the edge "
@@ -176,7 +183,10 @@ std::optional<GearAccount> gear_of_other(const MapRequest& request, const JointL
             }
         }
     }
-    StatedMotors stated{std::nullopt, sorted_orders(request.gear.orders)};
+    StatedMotors stated;
+    for (const StatedOrder& order : request.gear.orders)
+        if (!order.per_turn) stated.orders.emplace_back(order.value);
+    std::sort(stated.orders.begin(), stated.orders.end());
     if (request.gear.ratio) stated.ratio = GearRatio(*request.gear.ratio);
     return gear_of_motor(identify_readings(joint.logs, {}), stated);
 }
@@ -228,7 +238,7 @@ void check_each(const MapRequest& request) {
     };
     if (request.common.output != "-" || request.common.json) require_joint("-o", request.common.output);
     if (request.plot.path) require_joint("--plot", *request.plot.path);
-    if (!request.gear.joint_file && !request.gear.ratio) raise_no_gear("map");
+    if (!request.gear.any()) raise_no_gear("map");
 }
 
 // A joint that has no map is no reason to keep those of the others back.

@@ -14,6 +14,7 @@
 #include "cli/talk.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/files.hpp"
+#include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/progress.hpp"
 #include "ripplenotch/core/visible_text.hpp"
@@ -164,6 +165,18 @@ void Options::duration(std::string_view names, std::optional<Seconds>& target, s
             raise<UsageError>("{0} {1}: ms or s? write {0} {1}ms or {0} {1}s", label, value);
     };
     parsed(names, read, "TIME", help);
+}
+
+void Options::orders(std::string_view names, std::vector<StatedOrder>& target, std::string_view help) {
+    const std::string label = owned(names);
+    const auto read = [&target, label, &words = implementation_.words](const std::string& value) {
+        refuse_split_list(words, label, Dimension::none);
+        if (value.find_first_of(" :;") != std::string::npos)
+            refuse_other_marks(label, value, Dimension::none);
+        target.clear();
+        for (const std::string& piece : split_commas(value)) target.push_back(parse_order(piece, label));
+    };
+    parsed(names, read, unit_type_name(Dimension::none) + ",...", help);
 }
 
 void Options::numbers(std::string_view names, std::vector<double>& target, Dimension dimension,

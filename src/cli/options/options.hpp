@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "ripplenotch/core/files.hpp"
+#include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/core/quantity.hpp"
 #include "ripplenotch/document/provenance.hpp"
 #include "ripplenotch/evaluate/comparison.hpp"
@@ -73,6 +74,9 @@ class Options {
     /// "1,2,4" or "25Hz,50Hz". Refuses "--orders 1 2", which would be a list of one and a log named 2.
     void numbers(std::string_view names, std::vector<double>& target, Dimension dimension,
                  std::string_view help);
+
+    /// "1,2" or "200/turn,400/turn".
+    void orders(std::string_view names, std::vector<StatedOrder>& target, std::string_view help);
 
     /// Positional arguments; `required` ones raise a usage error when missing.
     void argument(std::string_view name, std::string& target, bool required, std::string_view help);

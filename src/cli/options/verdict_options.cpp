@@ -21,12 +21,12 @@ constexpr std::string_view arm_option_help =
 
 void attach_gear(Options& options, GearOptions& gear, const GearHelp& help) {
     options.number("--gear-ratio", gear.ratio, Dimension::none, help.ratio);
-    if (!help.orders.empty()) options.numbers("--orders", gear.orders, Dimension::none, help.orders);
+    if (!help.orders.empty()) options.orders("--orders", gear.orders, help.orders);
     if (!help.joint_file.empty()) options.text("--joint-file", gear.joint_file, "FILE", help.joint_file);
 }
 
 ReadOptions read_options(ReadOptions log, const std::optional<GearAccount>& gear) {
-    if (gear && gear->ratio.value() > 0.0) log.gear_ratio = gear->ratio.value();
+    if (gear && gear->has_ratio()) log.gear_ratio = gear->ratio.value();
     return log;
 }
 

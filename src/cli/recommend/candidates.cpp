@@ -25,9 +25,10 @@ namespace {
 
 constexpr std::string_view map_file = "map.json";
 
-// " --gear-ratio 100 --orders 1,2"
+// " --gear-ratio 100 --orders 1,2", " --orders 200/turn"
 std::string gear_words(const GearAccount& gear) {
-    return " --gear-ratio " + shortest(gear.ratio.value()) + " --orders " + joined(gear.orders, ",");
+    const std::string ratio = gear.has_ratio() ? " --gear-ratio " + shortest(gear.ratio.value()) : "";
+    return ratio + " --orders " + orders_text(gear.orders, gear.ratio, ",");
 }
 
 // A name for the filtered log beside this one: "filtered.csv".

@@ -19,6 +19,7 @@
 #include "cli/recommend/candidates.hpp"
 #include "cli/talk.hpp"
 #include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/core/quantity.hpp"
@@ -211,11 +212,11 @@ std::optional<GearOptions> found_gear_options(const Parts& parts, Recommendation
     }
     Identification identified = identify_readings({&parts.train, 1}, {});
     const bool nothing = identified.conclusive && identified.finding == RippleFinding::nothing;
-    const auto gear = found_gear(identified);
-    if (gear && !gear->orders.empty()) {
+    const GearStatement lines = JointFile{"", "", identified}.facts();
+    if (!lines.orders.empty()) {
         GearOptions options;
-        options.ratio = *parse_number(fmt::format("{:.6g}", gear->ratio.value()));
-        for (const Order order : gear->orders) options.orders.push_back(order.value());
+        if (lines.ratio) options.ratio = *parse_number(fmt::format("{:.6g}", lines.ratio->value()));
+        options.orders = lines.orders;
         return options;
     }
     if (nothing) identified = identify_readings({&parts.whole, 1}, {});
@@ -225,9 +226,9 @@ std::optional<GearOptions> found_gear_options(const Parts& parts, Recommendation
         found.finding = RecommendationFinding::no_ripple;
         found.why = verdict;
     } else {
-        found.why =
-            fmt::format("no gear is stated, and identify reports for {}: {}; give --gear-ratio and --orders",
-                        nothing ? "the log, whose first part shows none" : "the log's first part", verdict);
+        found.why = fmt::format(
+            "no line is stated, and identify reports for {}: {}; give --orders, for example 200/turn",
+            nothing ? "the log, whose first part shows none" : "the log's first part", verdict);
     }
     return std::nullopt;
 }
@@ -258,7 +259,7 @@ void doubt_readings(const Parts& parts, const GearAccount& gear, Recommendation&
 void name_other_lines(const Parts& parts, const GearAccount& gear, Recommendation& found) {
     if (found.finding != RecommendationFinding::no_ripple) return;
     IdentifyOptions options;
-    options.hint = gear.ratio;
+    if (gear.has_ratio()) options.hint = gear.ratio;
     std::vector<std::string> others;
     for (const Line& line : identify_readings({&parts.whole, 1}, options).lines) {
         if (line.kind != LineKind::order || !line.order_output) continue;
@@ -267,7 +268,8 @@ void name_other_lines(const Parts& parts, const GearAccount& gear, Recommendatio
             return std::abs(one.value() - order) < ripple_resolution_orders;
         });
         if (!asked && others.size() < most_other_lines)
-            others.push_back(fmt::format("{:.3g} Nm at order {:.3g}", line.amplitude_nm, order));
+            others.push_back(fmt::format("{:.3g} Nm at {}", line.amplitude_nm,
+                                         order_in_words(Order(to_digits(order, 4)), gear.ratio)));
     }
     if (others.empty()) return;
     found.finding = RecommendationFinding::cannot_tell;
@@ -280,10 +282,13 @@ std::vector<std::string> assumptions(const RecommendRequest& request, const Part
     std::vector<std::string> all;
     for (const Assumption& one : parts.whole.layout.assumptions)
         all.push_back(fmt::format("{}: {} ({})", one.about, one.assumed, one.settle_with));
-    all.push_back(fmt::format("gear ratio {:.6g}, {}", gear.ratio.value(),
-                              stated
-                                  ? "as stated: " + gear.source
-                                  : "as identify finds it in the log's first part; --gear-ratio settles it"));
+    all.push_back(fmt::format(
+        "{}, {}",
+        gear.has_ratio() ? fmt::format("gear ratio {:.6g}", gear.ratio.value())
+                         : orders_text(gear.orders, gear.ratio, ", ") + " of the joint",
+        stated             ? "as stated: " + gear.source
+        : gear.has_ratio() ? "as identify finds it in the log's first part; --gear-ratio settles it"
+                           : "as identify finds them in the log's first part; no filter needs the ratio"));
     if (request.gear.joint_file)
         all.push_back(
             fmt::format("{} was not made from the part of the log that is judged", *request.gear.joint_file));

@@ -16,6 +16,7 @@
 #include "document/json/json.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/files.hpp"
+#include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/core/number.hpp"
 
 namespace ripplenotch {
@@ -120,12 +121,13 @@ class Run {
         if (!advice.contains("take")) return;  // several joints: a section each has been added
         // As recommend found it, in the first part of the log.
         const Json& found = advice["gear"];
-        if (report_.gear.empty() && found.is_object() && found["ratio"].is_number()) {
-            std::string orders;
-            for (const Json& order : found["orders"])
-                orders += (orders.empty() ? "" : ",") + shortest(order.get<double>());
-            gear_ = {"--gear-ratio", shortest(found["ratio"].get<double>())};
-            if (!orders.empty()) gear_ = gear_ + Words{"--orders", orders};
+        if (report_.gear.empty() && found.is_object()) {
+            const bool known = found["ratio"].is_number();
+            const GearRatio ratio = known ? GearRatio(found["ratio"].get<double>()) : no_ratio;
+            std::vector<Order> orders;
+            for (const Json& order : found["orders"]) orders.emplace_back(order.get<double>());
+            gear_ = known ? Words{"--gear-ratio", shortest(ratio.value())} : Words{};
+            if (!orders.empty()) gear_ = gear_ + Words{"--orders", orders_text(orders, ratio, ",")};
         }
         if (!advice["take"].is_string()) return;
         const auto method = with_files(advice["take"].get<std::string>(), advice);

@@ -228,8 +228,7 @@ MapLines map_lines(const SpeedMapRequest& request, const GearOptions& gear, Prov
     const GearChoice choice(gear);
     if (choice.joint()) provenance.inputs.push_back(input_record(choice.joint()->path));
     MapLines lines{choice.of(), false};
-    if (!lines.gear && !gear.orders.empty()) raise_no_gear("--orders");
-    lines.axis_per_motor_turn = lines.gear && *request.map == "order";
+    lines.axis_per_motor_turn = lines.gear && !lines.gear->per_turn && *request.map == "order";
     return lines;
 }
 
@@ -245,7 +244,9 @@ SpeedMapResult speed_map_result(const SpeedMapRequest& request, const MapLines& 
                               .resolution = request.resolution,
                               .highest = request.highest,
                               .speed_step = request.speed_step.value_or(DegPerSec(0.0))});
-    const std::string_view axis = campbell ? "frequency_hz" : lines.gear ? "order" : "order_output";
+    const std::string_view axis = campbell                    ? "frequency_hz"
+                                  : lines.axis_per_motor_turn ? "order"
+                                                              : "order_output";
     const std::string words = in_words(map, campbell ? "Hz" : "orders", request.resolution);
     if (request.resolution && map.resolution > 1.001 * *request.resolution) {
         warn(common, words);

@@ -72,11 +72,11 @@ std::optional<GearAccount> read_gear(const TrackRequest& request, Provenance& pr
     // Whoever lists other lines and no orders asks for those lines alone.
     if (gear && other_lines && !orders_stated) gear = GearAccount{gear->ratio, {}, {}, {}, "--gear-ratio"};
     if (gear) say(request.common, gear_in_words(*gear));
-    if (!gear && !request.gear_options.orders.empty()) raise_no_gear("--orders");
     if (!gear && !other_lines) {
         raise<UsageError>(
-            "nothing to track; give --gear-ratio, for example 100, --joint-file joint.json, --output-orders, "
-            "or --tones");
+            "nothing to track; give --gear-ratio, for example 100, --orders 200/turn, --joint-file "
+            "joint.json, "
+            "--output-orders, or --tones");
     }
     return gear;
 }
@@ -106,7 +106,8 @@ std::unique_ptr<Prepared> prepare(const TrackRequest& request, const Gear& gear,
         p->signal.lines.push_back({value, turns});
     };
     for (const Order order : gear ? gear->orders : std::vector<Order>{}) {
-        add(TrackLabel::Kind::order, order.value(), p->motor_turns);
+        add(gear->per_turn ? TrackLabel::Kind::order_output : TrackLabel::Kind::order, order.value(),
+            p->motor_turns);
         p->reference_orders.push_back(order.value());
     }
     for (const double order : request.output_orders) {

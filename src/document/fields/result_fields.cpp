@@ -6,7 +6,7 @@
 namespace ripplenotch {
 
 void describe(JsonWriter& json, const GearAccount& gear) {
-    json.known("ratio", gear.ratio.value() > 0.0, gear.ratio);
+    json.known("ratio", gear.has_ratio(), gear.ratio);
     json("orders", gear.orders);
     json("source", gear.source);
 }

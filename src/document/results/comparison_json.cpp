@@ -33,7 +33,8 @@ void write_order(JsonWriter& json, const FilterMetrics& metrics, std::size_t ord
 void write_levels(JsonWriter& json, const FilterMetrics& metrics) {
     const RippleLevels* const levels = metrics.levels ? &*metrics.levels : nullptr;
     const bool measured = levels != nullptr && levels->windows > 0;
-    json.known("gear_ratio", metrics.gear.has_value(), metrics.gear ? metrics.gear->ratio : GearRatio());
+    json.known("gear_ratio", metrics.gear && metrics.gear->has_ratio(),
+               metrics.gear ? metrics.gear->ratio : GearRatio());
     json("gear", metrics.gear);
     Json orders = Json::array();
     for (std::size_t i = 0; measured && i < levels->orders.size(); ++i)
@@ -187,7 +188,7 @@ void describe(JsonWriter& json, const Comparison& comparison) {
     json("ramp_nm_s", comparison.ramp_nm_s);
     json("crossover_hz", comparison.crossover);
     json("no_notch_below_deg_s", comparison.no_notch_below);
-    json.known("gear_ratio", comparison.lines.has_value(), gear.ratio);
+    json.known("gear_ratio", gear.has_ratio(), gear.ratio);
     json("gear", comparison.lines);
     json("orders", gear.orders);
     if (comparison.on_log) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "ripplenotch/document/map_json.hpp"
+#include "ripplenotch/core/gear_account.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -137,7 +138,9 @@ void describe_map(Archive& archive, auto& fit) {
     archive("doubt", fit.doubt);
     archive("conclusive", fit.conclusive);
     archive("joint", map.joint);
-    archive("gear_ratio", map.gear_ratio, above_zero);
+    if (!archive.known("gear_ratio", map.gear_ratio != no_ratio, map.gear_ratio, above_zero)) {
+        if constexpr (Archive::reading) map.gear_ratio = no_ratio;
+    }
     archive("zero_deg", map.zero_deg);
     std::string angle(angle_name(fit.anchored));
     archive("angle", angle);

@@ -54,7 +54,8 @@ void describe(JsonWriter& json, const TrackReport& report) {
     json("verdict", report.doubt + track_verdict(report));
     json("joint", report.joint);
     json("against", report.by_speed ? "speed" : "time");
-    json.known("gear_ratio", report.gear.has_value(), report.gear ? report.gear->ratio : GearRatio());
+    json.known("gear_ratio", report.gear && report.gear->has_ratio(),
+               report.gear ? report.gear->ratio : GearRatio());
     json("gear", report.gear);
     json("angle", report.angle_from_position ? "position" : "integrated velocity");
     json("window_turns", report.window_turns);

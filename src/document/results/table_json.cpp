@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "ripplenotch/document/table_json.hpp"
+#include "ripplenotch/core/gear_account.hpp"
 
 #include <array>
 #include <cmath>
@@ -114,7 +115,9 @@ void describe_band(Archive& archive, auto& band, auto& spec, TableWork& work) {
 template <class Archive>
 void describe_table(Archive& archive, auto& spec, auto&& bands, const DesignNote& note) {
     archive("sample_rate_hz", spec.sample_rate);
-    archive("gear_ratio", spec.gear_ratio);
+    if (!archive.known("gear_ratio", spec.gear_ratio != no_ratio, spec.gear_ratio)) {
+        if constexpr (Archive::reading) spec.gear_ratio = no_ratio;
+    }
     archive("orders", spec.orders, AtMost{most_orders});
     archive.derived(
         "gear", [&] { return note.gear; }, if_any);

@@ -8,6 +8,8 @@
 #include <complex>
 
 #include "export/run/map_run.hpp"
+#include "ripplenotch/core/gear_account.hpp"
+#include "ripplenotch/design/running_design.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -175,6 +177,16 @@ std::string MapCode::definitions() const {
                 side(1, "        ", "z[{0}] = @name@_fma(share, {1} - z[{0}], z[{0}]);") + "    }\n";
     }
     return text + code + combined() + "}\n";
+}
+
+std::string by_shaft(std::string code, const std::vector<double>& orders, GearRatio ratio) {
+    const bool joint = ratio == no_ratio;
+    const std::string_view fraction = repeats_each_turn(orders)
+                                          ? "the fraction of the turn is enough"
+                                          : "whole turns count, for not every order is whole";
+    return filled(std::move(code), {{"@shaft@", joint ? "joint" : "motor"},
+                                    {"@fraction@", std::string(fraction)},
+                                    {"motor_turns", joint ? "joint_turns" : "motor_turns"}});
 }
 
 std::string order_angles_code(const std::vector<double>& orders, std::string_view turns) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "export/code/method_code.hpp"
+#include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/design/ripple_map.hpp"
 
 namespace ripplenotch {
@@ -66,5 +67,9 @@ class MapCode {
 /// How the orders show at an angle, as lines that set c0, s0, c1, ...; an order twice an earlier one is its
 /// double angle. `turns` is the angle's expression.
 [[nodiscard]] std::string order_angles_code(const std::vector<double>& orders, std::string_view turns);
+
+/// Code whose argument motor_turns is the angle by which these orders count: joint_turns under no_ratio.
+/// Fills in @shaft@ and @fraction@.
+[[nodiscard]] std::string by_shaft(std::string code, const std::vector<double>& orders, GearRatio ratio);
 
 }  // namespace ripplenotch

@@ -64,8 +64,8 @@ static inline void @name@_fade(@real@ rate, @real@* cosine, @real@* sine, @real@
 )c";
 
 constexpr std::string_view step_code = R"c(
-/* Every sample, @NAME@_SAMPLE_RATE_HZ times a second: the torque without ripple. motor_turns is the motor's angle in
-   turns, 0 where the joint is at position 0; the fraction of the turn is enough.@more@ */
+/* Every sample, @NAME@_SAMPLE_RATE_HZ times a second: the torque without ripple. motor_turns is the @shaft@'s angle in
+   turns, 0 where the joint is at position 0; @fraction@.@more@ */
 static inline @real@ @name@_step(@name@_state* s, @real@ torque_nm, @real@ motor_turns@parameters@) {
     const @name@_constants* const c = &@name@_values;
     @real@ moved, squares = @NAME@_ORDERS;
@@ -138,7 +138,7 @@ std::string oscillator_header(const OscillatorDesign& d, const CodeStyle& style)
     text +=
         "/* noise_nm is the unit of the state; seen_noise: variance of the sensor and of what a sample adds "
         "to "
-        "the torque;\n   amplitude_noise: deviation that a motor turn adds; quarter_memory: 0.25 / memory in "
+        "the torque;\n   amplitude_noise: deviation that a turn adds; quarter_memory: 0.25 / memory in "
         "turns; "
         "in_noise: 1 / noise */\n";
     text += style.constants(oscillator_names, code_values(d));
@@ -146,7 +146,7 @@ std::string oscillator_header(const OscillatorDesign& d, const CodeStyle& style)
     if (d.map) text += "\n/* the map that is subtracted first */\n" + MapCode(*d.map, style).definitions();
     text += state_code;
     if (d.return_turns > 0.0) text += back_code;
-    return text + step_of(d, style);
+    return by_shaft(text + step_of(d, style), d.orders, GearRatio(d.gear_ratio));
 }
 
 LoadedCode oscillator_loaded(TextReader& reader, const OscillatorDesign& d, const CodeStyle& style) {
@@ -302,7 +302,9 @@ std::string tracking_header(const TrackingDesign& d, const CodeStyle& style) {
     text +=
         style.array("orders", d.orders) + style.array("weights", d.weights) + style.array("spread", d.spread);
     text +=
-        "/* motor turns per turn of the speed's shaft, in the speed's unit; depth_gain: gain at the centre; "
+        "/* gear_ratio: turns of the shaft by which the orders count per turn of the speed's, in the speed's "
+        "unit; "
+        "depth_gain: gain at the centre; "
         "min_hz: "
         "lowest centre */\n";
     std::vector<double> values;

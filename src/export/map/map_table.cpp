@@ -7,6 +7,8 @@
 #include <numbers>
 #include <utility>
 
+#include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
@@ -30,12 +32,19 @@ RippleMap flat_map(const RippleMap& map, const Settings& settings) {
             map_weights(still, {sign * speed, map.positions_deg.middle()}, weights);
             sum += map_amplitude(still, i, weights, map.positions_deg.middle());
         }
+        if (map.orders[i].value() != std::floor(map.orders[i].value())) sum = 0.0;
         flat.values[i] = {direction == "both" ? 0.5 * sum : sum};
     }
     return flat;
 }
 
 std::vector<std::string> flattened(const RippleMap& map, std::string_view target) {
+    if (map.gear_ratio == no_ratio)
+        raise<UsageError>(
+            "target {} counts by turns of the motor, and the map states no gear ratio: make it with "
+            "--gear-ratio, "
+            "or use fourier or c-header",
+            target);
     std::vector<std::string> warnings;
     const auto lost = [&](bool is, std::string_view what) {
         if (is) warnings.push_back(fmt::format("{} holds one amplitude an order: {} left out", target, what));
@@ -43,6 +52,8 @@ std::vector<std::string> flattened(const RippleMap& map, std::string_view target
     lost(map.form.speeds_deg_s.size() > 1, "the dependence on speed is");
     lost(map.form.directions > 1, "the dependence on direction is");
     lost(map.form.second_comb != 0, "the second comb is");
+    for (const Order order : map.orders)
+        lost(order.value() != std::floor(order.value()), order_in_words(order, map.gear_ratio) + " is");
     return warnings;
 }
 

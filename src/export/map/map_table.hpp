@@ -27,10 +27,12 @@ inline constexpr Key flat_direction_key{.name = "direction",
                                         .choices = flat_directions,
                                         .help = "both: the mean of the two"};
 
-/// The map at one speed and direction, alike at all of them, and without the second comb.
+/// The map at one speed and direction, alike at all of them, without the second comb and orders that are not
+/// whole.
 [[nodiscard]] RippleMap flat_map(const RippleMap& map, const Settings& settings);
 
-/// The parts of the map that its flat form omits, one sentence each.
+/// The parts of the map that its flat form omits, one sentence each. Throws UsageError for a map without a
+/// gear ratio.
 [[nodiscard]] std::vector<std::string> flattened(const RippleMap& map, std::string_view target);
 
 /// Amplitude and phase of r cos(n theta + phase), degrees from 0 to 360.

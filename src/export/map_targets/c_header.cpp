@@ -2,6 +2,7 @@
 // The whole map as C99: constants and one function, without allocation, in bounded time.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <memory>
@@ -11,6 +12,10 @@
 #include "export/map/map_target.hpp"
 #include "export/run/map_run.hpp"
 #include "export/text.hpp"
+#include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/gear_account.hpp"
+#include "ripplenotch/core/number.hpp"
+#include "ripplenotch/design/running_design.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -18,11 +23,27 @@ namespace {
 constexpr std::array keys = {name_key("ripple_map"), precision_key("of numbers and arithmetic")};
 
 constexpr std::string_view torque_code = R"c(
-/* Ripple of the joint's torque in Nm: subtract it from the sensor. motor_turns: the motor's angle in turns, 0 where the
-   joint is at the map's zero; the fraction of the turn is enough. joint_deg: the joint's position; only for the second
+/* Ripple of the joint's torque in Nm: subtract it from the sensor. motor_turns: the @shaft@'s angle in turns, 0 where the
+   joint is at the map's zero; @fraction@. joint_deg: the joint's position; only for the second
    comb. */
 static inline @real@ @name@_torque(@real@ speed_deg_s, @real@ motor_turns, @real@ joint_deg) {
 )c";
+
+// The same map by turns of the joint where the angle within a turn of the motor does not do.
+RippleMap as_coded(const RippleMap& map) {
+    RippleMap coded = map;
+    const bool whole = std::all_of(map.orders.begin(), map.orders.end(),
+                                   [](Order order) { return order.value() == std::floor(order.value()); });
+    if (whole || map.gear_ratio == no_ratio) return coded;
+    if (map.form.second_comb != 0)
+        raise<UsageError>(
+            "target c-header: the map's second comb counts by turns of the motor, and not all orders are "
+            "whole "
+            "there");
+    for (Order& order : coded.orders) order = Order(to_digits(order.value() * map.gear_ratio.value(), 12));
+    coded.gear_ratio = no_ratio;
+    return coded;
+}
 
 std::vector<double> orders_of(const RippleMap& map) {
     std::vector<double> orders;
@@ -30,7 +51,8 @@ std::vector<double> orders_of(const RippleMap& map) {
     return orders;
 }
 
-Written write(const RippleMap& map, const Settings& settings, std::span<const std::string> heading) {
+Written write(const RippleMap& whole, const Settings& settings, std::span<const std::string> heading) {
+    const RippleMap map = as_coded(whole);
     const CodeStyle style = style_of(settings);
     const MapCode code(map, style);
     const std::vector<double> orders = orders_of(map);
@@ -40,7 +62,7 @@ Written write(const RippleMap& map, const Settings& settings, std::span<const st
     for (std::size_t i = 1; i < 2 * orders.size(); ++i)
         products.emplace_back(fmt::format("z[{}]", i), fmt::format("{}{}", i % 2 == 0 ? 'c' : 's', i / 2));
     body += order_angles_code(orders, "motor_turns") + "    return " + sum_code("z[0] * c0", products);
-    return {style.header(heading, body + ";\n}\n"), {}};
+    return {style.header(heading, by_shaft(body, orders, map.gear_ratio) + ";\n}\n"), {}};
 }
 
 // The header's function, operation by operation.
@@ -52,11 +74,12 @@ class TorqueRun {
           shows_(2 * orders.size()),
           map_(map, tables),
           ratio_(map.gear_ratio.value()),
-          zero_deg_(map.zero_deg) {}
+          zero_deg_(map.zero_deg),
+          within_turn_(repeats_each_turn(orders)) {}
 
     double operator()(const MapState& state) {
         const double turns = ratio_ * (state.position_deg - zero_deg_) / 360.0;
-        order_angles(orders_, static_cast<Real>(turns - std::floor(turns)), shows_);
+        order_angles(orders_, static_cast<Real>(within_turn_ ? turns - std::floor(turns) : turns), shows_);
         const auto& z = map_.at({0.0, state.speed_deg_s, turns, state.position_deg});
         Real ripple = 0;
         for (std::size_t i = 0; i < shows_.size(); ++i) ripple += z[i] * shows_[i];
@@ -67,10 +90,12 @@ class TorqueRun {
     std::vector<Real> orders_, shows_;
     MapRun<Real> map_;
     double ratio_, zero_deg_;
+    bool within_turn_;
 };
 
-LoadedMap read(std::string_view bytes, const std::string& source, const RippleMap& map,
+LoadedMap read(std::string_view bytes, const std::string& source, const RippleMap& whole,
                const Settings& settings) {
+    const RippleMap map = as_coded(whole);
     const CodeStyle style = style_of(settings);
     TextReader reader(bytes, source, Comments::c, style.precision());
     const std::vector<double> orders = style.read(reader, "orders", map.orders.size());

@@ -7,15 +7,15 @@
 #include "export/map/map_target.hpp"
 #include "export/text.hpp"
 #include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/core/number.hpp"
 
 namespace ripplenotch {
 namespace {
 
 constexpr std::string_view explained =
-    "ripple in Nm = sum over the rows of weight (a cos(n theta) + b sin(n theta)), theta = gear_ratio "
-    "(position - "
-    "zero)";
+    "ripple in Nm = sum over the rows of weight (a cos(n theta) + b sin(n theta)), theta = ";
+constexpr std::string_view by_motor = "gear_ratio (position - zero)", by_joint = "position - zero";
 constexpr std::string_view weights =
     "weight: of a speed, linear between the speeds of its direction and held beyond";
 constexpr std::string_view of_second_comb =
@@ -57,10 +57,12 @@ std::string rows_of(const RippleMap& map) {
 
 Written write(const RippleMap& map, const Settings&, std::span<const std::string> heading) {
     std::string text = comment_lines(heading, "# ");
-    text +=
-        fmt::format("# {}\n# {}{}\n", explained, weights, map.form.second_comb != 0 ? of_second_comb : "");
+    const bool has_ratio = map.gear_ratio != no_ratio;
+    text += fmt::format("# {}{}\n# {}{}\n", explained, has_ratio ? by_motor : by_joint, weights,
+                        map.form.second_comb != 0 ? of_second_comb : "");
     if (map.form.second_comb != 0) text += fact("second_comb", map.form.second_comb);
-    text += fact("gear_ratio", map.gear_ratio.value()) + fact("zero_deg", map.zero_deg);
+    if (has_ratio) text += fact("gear_ratio", map.gear_ratio.value());
+    text += fact("zero_deg", map.zero_deg);
     text += fact("slowest_deg_s", map.speeds_deg_s.from) + fact("fastest_deg_s", map.speeds_deg_s.to);
     text += fact("position_from_deg", map.positions_deg.from) + fact("position_to_deg", map.positions_deg.to);
     return {text + rows_of(map), {}};
@@ -105,7 +107,7 @@ RippleMap read_rows(std::string_view bytes, const std::string& source, RippleMap
 
 LoadedMap read(std::string_view bytes, const std::string& source, const RippleMap& map, const Settings&) {
     RippleMap found = read_rows(bytes, source, map);
-    found.gear_ratio = GearRatio(fact_in(bytes, "gear_ratio", source));
+    if (map.gear_ratio != no_ratio) found.gear_ratio = GearRatio(fact_in(bytes, "gear_ratio", source));
     found.zero_deg = fact_in(bytes, "zero_deg", source);
     found.speeds_deg_s = {fact_in(bytes, "slowest_deg_s", source), fact_in(bytes, "fastest_deg_s", source)};
     found.positions_deg = {fact_in(bytes, "position_from_deg", source),

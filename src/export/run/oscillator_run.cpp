@@ -10,6 +10,7 @@
 
 #include "export/code/map_code.hpp"
 #include "export/text.hpp"
+#include "ripplenotch/core/number.hpp"
 #include "ripplenotch/design/candidate_table.hpp"
 
 namespace ripplenotch {
@@ -153,7 +154,9 @@ class StepCode {
     }
     // Corrects the angle's rate from the ripple's phase.
     void correct() {
-        line("        if (size > (@real@)1e-5) {{\n            @real@ ahead = 0, weights = 0;");
+        const double lowest = *std::min_element(d_.orders.begin(), d_.orders.end());
+        line("        if (size > (@real@){}) {{\n            @real@ ahead = 0, weights = 0;",
+             shortest(slowest_corrected_periods / lowest));
         for (std::size_t i = 2; i < m_; i += 2) {
             const double n = d_.orders[i / 2 - 1];
             line("            {{\n                const @real@ a = s->x[{}], b = s->x[{}];", i, i + 1);

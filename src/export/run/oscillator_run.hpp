@@ -41,6 +41,9 @@ struct OscillatorValue {
     };
 };
 
+/// Periods of the lowest order in a sample above which the angle's rate is corrected.
+inline constexpr double slowest_corrected_periods = 1e-5;
+
 template <class Real>
 class OscillatorRun {
     using Value = OscillatorValue;
@@ -60,8 +63,9 @@ class OscillatorRun {
           before_(m_ - 2),
           v_(m_),
           p_(m_ * m_),
-          slowest_fade_(
-              static_cast<Real>(full_below_rate / *std::max_element(orders.begin(), orders.end()))) {}
+          slowest_fade_(static_cast<Real>(full_below_rate / *std::max_element(orders.begin(), orders.end()))),
+          slowest_corrected_(static_cast<Real>(slowest_corrected_periods /
+                                               *std::min_element(orders.begin(), orders.end()))) {}
 
     double step(const CodeInput& in) {
         const Real turns = static_cast<Real>(in.motor_turns);
@@ -185,7 +189,7 @@ class OscillatorRun {
     // Corrects the angle's rate from the ripple's phase.
     void correct(Real step) {
         const Real most = c_[Value::largest_slip], size = std::abs(step);
-        if (!(most > 0) || !(size > static_cast<Real>(1e-5))) return;
+        if (!(most > 0) || !(size > slowest_corrected_)) return;
         Real ahead = 0, weights = 0;
         for (std::size_t i = 2; i < m_; i += 2) {
             const Real a = x_[i], b = x_[i + 1], n = orders_[i / 2 - 1], square = a * a + b * b;
@@ -205,6 +209,7 @@ class OscillatorRun {
     std::size_t m_;
     std::vector<Real> x_, h_, before_, v_, p_;  ///< p_: above the diagonal; v_: its first row before a sample
     Real slowest_fade_;                         ///< turns a sample at which the first order begins to fade
+    Real slowest_corrected_;                    ///< turns a sample above which the angle's rate is corrected
     Real left_ = 1;  ///< remaining share of the amplitudes, since they were last rescaled
     Real origin_ = 0, turns_ = 0, slip_ = 0, slipped_ = 0, lost_ = 0, surprise_ = 0, squares_ = 0,
          variance_ = 0;

@@ -87,6 +87,7 @@ std::string label(const SectionCheck& check) {
 SectionCheck check_response(const Biquad& f, const ExportSection& designed, Hertz sample_rate) {
     SectionCheck check;
     check.order = designed.order;
+    check.gear_ratio = designed.gear_ratio;
     check.center = designed.center;
     check.is_notch = designed.notch.has_value();
     if (check.is_notch && designed.notch->depth_db < infinite_depth_db)

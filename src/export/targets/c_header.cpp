@@ -74,7 +74,8 @@ Arithmetic arithmetic_of(const FilterSet& filters, const Settings& settings) {
 }
 
 CodeSpeed speed_of(const FilterSet& filters, const Settings& settings) {
-    return code_speed(settings, filters.gear_ratio ? filters.gear_ratio->value() : 1.0);
+    constexpr GearRatio any_ratio{2.0};  // no band is chosen by a speed
+    return code_speed(settings, filters.gear_ratio.value_or(any_ratio).value());
 }
 
 /// The same filters with all speeds in the code's unit.

@@ -10,6 +10,7 @@
 #include "export/target.hpp"
 #include "export/text.hpp"
 #include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/progress.hpp"
 #include "ripplenotch/core/visible_text.hpp"
@@ -78,10 +79,10 @@ Written json_write(const FilterSet& filters, const Settings&, std::span<const st
             "  \"gear_ratio\": {},\n  \"below_first_band\": \"{}\",\n  \"above_last_band\": \"{}\",\n"
             "  \"transition\": \"{}\",\n  \"hysteresis_deg_s\": {},\n  \"dwell_samples\": {},\n  "
             "\"crossfade_samples\": {},\n",
-            decimal(filters.gear_ratio->value()), outside_rule_name(filters.switching.below),
-            outside_rule_name(filters.switching.above), filters.switching.transition,
-            decimal(filters.switching.hysteresis.value()), filters.switching.dwell_samples,
-            filters.switching.crossfade_samples);
+            *filters.gear_ratio == no_ratio ? "null" : decimal(filters.gear_ratio->value()),
+            outside_rule_name(filters.switching.below), outside_rule_name(filters.switching.above),
+            filters.switching.transition, decimal(filters.switching.hysteresis.value()),
+            filters.switching.dwell_samples, filters.switching.crossfade_samples);
     }
     text +=
         "  \"sos_layout\": \"b0 b1 b2 1 a1 a2: y = b0 x + b1 x1 + b2 x2 - a1 y1 - a2 y2\",\n"

@@ -13,6 +13,7 @@
 #include "core/process/two_cores.hpp"
 #include "filter/map/map_fit.hpp"
 #include "filter/map/map_regression.hpp"
+#include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/filter/map_fit.hpp"
@@ -61,7 +62,8 @@ std::vector<MapForm> candidate_forms(const MapData& data, bool tied) {
     for (const std::vector<double>& at : knots) {
         for (const std::size_t directions : {1U, 2U}) {
             for (const int comb : {0, 1, -1}) {
-                if (comb == 0 || tied) forms.push_back({at, directions, comb});
+                if (comb == 0 || (tied && data.frame.gear_ratio != no_ratio))
+                    forms.push_back({at, directions, comb});
             }
         }
     }
@@ -107,8 +109,8 @@ double least_reduction(double level) { return -2.0 * portable::log(level); }
 // cancel.
 bool stands_above_neighbours(const MapData& data, const MapForm& form, std::size_t order) {
     const auto reduction = [&](const MapData& of) { return MapRegression(of, form, order).own_reduction(); };
-    const double ratio = data.frame.gear_ratio.value(), own = reduction(data);
-    const double start = std::min(nearest_order + data.frame.orders[order].value() / ratio, farthest_start);
+    const double ratio = data.counted.gear_ratio, own = reduction(data);
+    const double start = std::min(nearest_order + data.counted.orders[order] / ratio, farthest_start);
     for (int k = 0; k < 2 * compared_orders; ++k) {
         const double aside = (k % 2 == 0 ? 1.0 : -1.0) * (start + order_span * (k / 2) / compared_orders);
         MapData turned = data;
@@ -372,7 +374,8 @@ void choose_map(const MapData& data, double level, MapFit& fit) {
         if (std::norm(alike.values()(0)) > score.detectable_nm * score.detectable_nm)
             score.detectable_nm = std::numeric_limits<double>::infinity();
         // Amplitudes beyond the noise that follow no form tried may be a ripple of another form.
-        const double over = score.order < one_sided_below ? certain_over_noise_above : certain_over_noise;
+        const double over =
+            data.counted.orders[i] < one_sided_below ? certain_over_noise_above : certain_over_noise;
         const bool certain = score.ripple_nm * score.ripple_nm >= over * score.noise_nm * score.noise_nm;
         unclear = unclear || certain || !std::isfinite(score.detectable_nm);
     }

@@ -16,6 +16,7 @@
 #include "filter/map/map_regression.hpp"
 #include "filter/map/ripple_windows.hpp"
 #include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/core/visible_text.hpp"
@@ -30,11 +31,15 @@ namespace {
 constexpr std::size_t most_blocks = 32;
 constexpr std::size_t least_block = 3;  ///< windows, of which the middle one shares none of its samples
 
-std::vector<RippleWindow> windows_of(const TraceView& log, const GearAccount& gear) {
-    std::vector<double> orders;
-    for (const Order order : gear.orders) orders.push_back(order.value());
-    MotorPath path(MotorAngle(gear.ratio.value(), log.sample_rate.value(), MotorAngle::Source::best, 0.0));
-    RippleWindows windows(orders, log.sample_rate.value(), {});
+RippleOrders counted_orders(const GearAccount& gear) {
+    RippleOrders stated{gear.ratio.value(), {}};
+    for (const Order order : gear.orders) stated.orders.push_back(order.value());
+    return gear.orders.empty() ? stated : stated.by_lowest();
+}
+
+std::vector<RippleWindow> windows_of(const TraceView& log, const RippleOrders& counted) {
+    MotorPath path(MotorAngle(counted.gear_ratio, log.sample_rate.value(), MotorAngle::Source::best, 0.0));
+    RippleWindows windows(counted.orders, log.sample_rate.value(), {});
     for (std::size_t k = 0; k < log.size(); ++k) {
         if (k > 0 && log.starts_run(k)) {
             windows.split();
@@ -46,15 +51,16 @@ std::vector<RippleWindow> windows_of(const TraceView& log, const GearAccount& ge
     return windows.finish();
 }
 
-MapWindow window_of(const RippleWindow& window, const GearAccount& gear, double zero_deg, std::size_t log) {
-    const double ratio = gear.ratio.value();
+MapWindow window_of(const RippleWindow& window, const RippleOrders& counted, double zero_deg,
+                    std::size_t log) {
+    const double ratio = counted.gear_ratio;
     MapWindow one;
     one.log = log;
     one.middle = window.middle;
     one.length = window.length;
     one.state = {360.0 * window.speed_turns_s / ratio, 360.0 * window.middle_turns / ratio};
-    for (std::size_t i = 0; i < gear.orders.size(); ++i) {
-        const double cycles = gear.orders[i].value() * ratio * zero_deg / 360.0;
+    for (std::size_t i = 0; i < counted.orders.size(); ++i) {
+        const double cycles = counted.orders[i] * ratio * zero_deg / 360.0;
         const double turned = 2.0 * std::numbers::pi * (cycles - std::floor(cycles));
         one.value.push_back(window.amplitudes[i] * std::conj(portable::phasor(turned)));
         one.noise.push_back(std::max(window.background[i], 2.0 * window.variance));
@@ -95,9 +101,10 @@ void number_blocks(MapData& data) {
 
 MapData map_data(std::span<const TraceView> logs, const GearAccount& gear, double zero_deg) {
     MapData data;
+    data.counted = counted_orders(gear);
     for (std::size_t l = 0; l < logs.size(); ++l)
-        for (const RippleWindow& window : windows_of(logs[l], gear))
-            data.windows.push_back(window_of(window, gear, zero_deg, l));
+        for (const RippleWindow& window : windows_of(logs[l], data.counted))
+            data.windows.push_back(window_of(window, data.counted, zero_deg, l));
     data.frame.gear_ratio = gear.ratio;
     data.frame.orders = gear.orders;
     data.frame.zero_deg = zero_deg;
@@ -184,29 +191,41 @@ double decibels_down(double from_nm, double to_nm) {
     return to_nm > 0.0 && from_nm > 0.0 ? 20.0 * portable::log10(from_nm / to_nm) : 0.0;
 }
 
-std::string orders_of(const std::vector<MapOrderScore>& scores) {
-    return (scores.size() == 1 ? "order " : "orders ") +
-           joined(scores, ", ", [](const MapOrderScore& score) { return shortest(score.order); });
+std::string scored_orders(const MapFit& fit) {
+    std::vector<Order> orders;
+    for (const MapOrderScore& score : fit.scores) orders.emplace_back(score.order);
+    const GearRatio ratio = fit.map.gear_ratio;
+    return (orders.size() == 1 ? "order " : "orders ") + orders_text(orders, ratio, ", ") +
+           (ratio == no_ratio ? " of the joint" : fmt::format(" at gear ratio {:.6g}", ratio.value()));
 }
 
-std::string disagreement(const MapAgreement& one) {
-    if (one.agrees) return "";
-    return fmt::format("in log {} order {} is {:.2f} times as large and {:.0f} deg ahead", one.log + 1,
-                       shortest(one.order), one.amplitude_ratio, std::round(one.phase_deg) + 0.0);
-}
+// The sentences about the orders of a map of this ratio.
+struct OrderWords {
+    GearRatio ratio;
 
-std::string mapped_order(const MapOrderScore& score) {
-    if (!score.in_map) return "";
-    return fmt::format("order {} falls from {:.3g} to {:.3g} Nm ({:.1f} dB; noise limit {:.1f} dB)",
-                       shortest(score.order), score.ripple_nm, score.left_nm,
-                       decibels_down(score.ripple_nm, score.left_nm),
-                       decibels_down(score.ripple_nm, score.noise_nm));
-}
-
-std::string bound_of(const MapOrderScore& score) {
-    if (score.in_map || !std::isfinite(score.detectable_nm) || !(score.detectable_nm > 0.0)) return "";
-    return fmt::format("{:.2g} Nm of order {}", score.detectable_nm, shortest(score.order));
-}
+    [[nodiscard]] std::string name(double order) const { return order_in_words(Order(order), ratio); }
+    [[nodiscard]] std::string disagreement(const MapAgreement& one) const {
+        if (one.agrees) return "";
+        return fmt::format("in log {} {} is {:.2f} times as large and {:.0f} deg ahead", one.log + 1,
+                           name(one.order), one.amplitude_ratio, std::round(one.phase_deg) + 0.0);
+    }
+    [[nodiscard]] std::string mapped(const MapOrderScore& score) const {
+        if (!score.in_map) return "";
+        return fmt::format("{} falls from {:.3g} to {:.3g} Nm ({:.1f} dB; noise limit {:.1f} dB)",
+                           name(score.order), score.ripple_nm, score.left_nm,
+                           decibels_down(score.ripple_nm, score.left_nm),
+                           decibels_down(score.ripple_nm, score.noise_nm));
+    }
+    [[nodiscard]] std::string bound(const MapOrderScore& score) const {
+        if (score.in_map || !std::isfinite(score.detectable_nm) || !(score.detectable_nm > 0.0)) return "";
+        return fmt::format("{:.2g} Nm of {}", score.detectable_nm, name(score.order));
+    }
+    /// One of the sentences of all orders, with commas between them.
+    template <class Entries, class Sentence>
+    [[nodiscard]] std::string of_all(const Entries& entries, Sentence sentence) const {
+        return joined(entries, ", ", [&](const auto& one) { return (this->*sentence)(one); });
+    }
+};
 
 }  // namespace
 
@@ -272,41 +291,40 @@ std::string other_in_words(const MapFit& other) {
     std::vector<MapOrderScore> found = other.scores;
     std::erase_if(found, [](const MapOrderScore& score) { return !score.in_map; });
     return fmt::format("The torque also holds ripple of the motor of {}: {}.", other.map.joint,
-                       joined(found, ", ", mapped_order));
+                       OrderWords{other.map.gear_ratio}.of_all(found, &OrderWords::mapped));
 }
 
 }  // namespace
 
 std::string map_verdict(const MapFit& fit) {
     std::vector<std::string> sentences = {fit.doubt};
-    const std::string ratio = fmt::format("{} at gear ratio {:.6g} in {} windows", orders_of(fit.scores),
-                                          fit.map.gear_ratio.value(), fit.windows);
+    const OrderWords words{fit.map.gear_ratio};
+    const std::string searched = fmt::format("{} in {} windows", scored_orders(fit), fit.windows);
     if (fit.finding == MapFinding::too_little) {
-        sentences.push_back(
-            fmt::format("Cannot tell: the motor turns 2.5 times in one direction in {} windows, and {} are "
-                        "needed to leave "
-                        "some out; the map is empty.",
-                        fit.windows, fewest_map_windows));
+        sentences.push_back(fmt::format(
+            "Cannot tell: the motion holds 2.5 periods of the lowest order in one direction in {} "
+            "windows, and {} are needed to leave some out; the map is empty.",
+            fit.windows, fewest_map_windows));
     } else if (fit.finding == MapFinding::nothing) {
-        sentences.push_back(fmt::format("No ripple found of {}: the map is empty.", ratio));
+        sentences.push_back(fmt::format("No ripple found of {}: the map is empty.", searched));
     } else if (fit.finding == MapFinding::unclear) {
         sentences.push_back(
             fmt::format("Cannot tell: no regular ripple found of {}, but amplitudes above the noise, or no "
                         "bound; the map is "
                         "empty.",
-                        ratio));
+                        searched));
     } else {
         sentences.push_back(fmt::format("Cross-validated: {}; amplitudes {}.",
-                                        joined(fit.scores, ", ", mapped_order),
+                                        words.of_all(fit.scores, &OrderWords::mapped),
                                         map_form_words(fit.map.form)));
     }
-    if (const std::string bounds = joined(fit.scores, ", ", bound_of); !bounds.empty())
+    if (const std::string bounds = words.of_all(fit.scores, &OrderWords::bound); !bounds.empty())
         sentences.push_back(fmt::format("An amplitude of {} would have been found.", bounds));
     for (const MapFit& other : fit.others)
-        if (const std::string words = other_in_words(other); !words.empty()) sentences.push_back(words);
+        if (const std::string found = other_in_words(other); !found.empty()) sentences.push_back(found);
     if (!fit.anchored && fit.finding == MapFinding::mapped)
         sentences.emplace_back("The log has no position: phases count from its first row.");
-    if (const std::string apart = joined(fit.agreement, ", ", disagreement); !apart.empty())
+    if (const std::string apart = words.of_all(fit.agreement, &OrderWords::disagreement); !apart.empty())
         sentences.push_back(fmt::format("The logs disagree: {}.", apart));
     if (fit.doubt.empty()) sentences.erase(sentences.begin());
     return fmt::format("{}", fmt::join(sentences, " "));

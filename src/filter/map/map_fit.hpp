@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "filter/ripple_keys.hpp"
 #include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/core/trace.hpp"
 #include "ripplenotch/design/ripple_map.hpp"
@@ -12,7 +13,7 @@
 
 namespace ripplenotch {
 
-// What a map is fitted to: the amplitudes of every few motor turns of all logs, in blocks.
+// What a map is fitted to: the amplitudes of every few periods of the lowest order of all logs, in blocks.
 
 /// Amplitudes of all orders in a window, in the form of RippleMap.
 struct MapWindow {
@@ -20,14 +21,15 @@ struct MapWindow {
     std::vector<std::complex<double>> value;
     std::vector<double> noise;  ///< by order: mean square of the noise in `value`
     std::size_t block = 0, log = 0;
-    double middle = 0.0, length = 0.0;  ///< in motor turns along the log, back and forth added up
+    double middle = 0.0, length = 0.0;  ///< in turns along the log, back and forth added up
     bool scored = true;                 ///< it shares no sample with another block
 };
 
 /// Blocks are windows in a row, of one log each.
 struct MapData {
     std::vector<MapWindow> windows;
-    RippleMap frame;  ///< gear ratio, orders, zero and the ranges of the windows, without values
+    RippleMap frame;       ///< gear ratio, orders, zero and the ranges of the windows, without values
+    RippleOrders counted;  ///< the orders by which windows are cut and their turns count
     std::size_t blocks = 0;
 };
 

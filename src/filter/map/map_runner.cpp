@@ -13,7 +13,7 @@
 namespace ripplenotch {
 namespace {
 
-constexpr double sought_turns = 1.0;  ///< turns of the motor
+constexpr double sought_turns = 1.0;  ///< periods of the lowest order
 constexpr int places_tried = 720;     ///< tried in a turn, before the best is refined
 // The speeds of a map are means over its windows, where the joint moved evenly: peaks of the same motion are
 // a quarter above them on a robot.
@@ -119,10 +119,11 @@ void MapMean::seek(RippleKalman& filter, const MotorAngle& angle) noexcept {
     seeks_ = false;
 }
 
-MapReach::MapReach(std::string_view method, const Settings& settings, double sample_rate_hz)
+MapReach::MapReach(std::string_view method, const Settings& settings, double gear_ratio,
+                   double sample_rate_hz)
     : method_(method),
       slowest_deg_s_(settings.number("slowest")),
-      deg_s_a_turn_a_sample_(360.0 / settings.number("gear-ratio") * sample_rate_hz) {
+      deg_s_a_turn_a_sample_(360.0 / gear_ratio * sample_rate_hz) {
     if (settings.has("fastest") && settings.text("beyond") == "refuse")
         fastest_deg_s_ = settings.number("fastest");
 }

@@ -76,7 +76,7 @@ class MapMean {
 class MapReach {
   public:
     /// Watches nothing where `settings` has no `fastest`, or beyond=hold.
-    MapReach(std::string_view method, const Settings& settings, double sample_rate_hz);
+    MapReach(std::string_view method, const Settings& settings, double gear_ratio, double sample_rate_hz);
 
     void restart() noexcept { turned_ = samples_ = 0.0; }
     /// Throws DataError, with both speeds, where the joint turns half as fast again as the map's logs did.

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/visible_text.hpp"
 #include "ripplenotch/filter/map_fit.hpp"
@@ -26,6 +27,11 @@ std::string ends_text(const MapRange& range) { return list_text({range.from, ran
 
 }  // namespace
 
+RippleOrders counted_orders(std::string_view method, const Settings& settings) {
+    const RippleOrders stated = ripple_orders(method, settings);
+    return settings.number("second-comb") == 0.0 ? stated.by_lowest() : stated;
+}
+
 std::optional<RippleMap> map_of(std::string_view method, const Settings& settings,
                                 const RippleOrders& ripple) {
     if (!settings.has("cosines") && !settings.has("sines")) return std::nullopt;
@@ -38,6 +44,8 @@ std::optional<RippleMap> map_of(std::string_view method, const Settings& setting
         raise<UsageError>("method {}, speeds: each has to be above the one before", method);
     form.directions = static_cast<std::size_t>(settings.number("directions"));
     form.second_comb = static_cast<int>(settings.number("second-comb"));
+    if (form.second_comb != 0 && !settings.has("gear-ratio"))
+        raise<UsageError>("method {}, second-comb: it takes a gear-ratio", method);
     map.speeds_deg_s = {settings.number("slowest"), form.speeds_deg_s.back()};
     map.positions_deg = range_of(settings, "positions");
     const std::size_t columns = form.columns(), wanted = columns * ripple.orders.size();
@@ -60,7 +68,7 @@ std::optional<RippleMap> map_of(std::string_view method, const Settings& setting
 // MapRunner: the amplitudes of each order here, and its phase; that of the joint, too, for a second comb.
 double map_multiplications(const Settings& settings) {
     if (!settings.has("cosines")) return 0.0;
-    const auto orders = static_cast<double>(settings.list("orders").size());
+    const auto orders = static_cast<double>(settings.list("spread").size());
     const auto values = static_cast<double>(settings.list("cosines").size());
     constexpr double of_order = 6.0 + circle_multiplications, of_comb = 8.0 + circle_multiplications;
     constexpr double of_sample = 8.0;
@@ -70,18 +78,15 @@ double map_multiplications(const Settings& settings) {
 
 std::vector<std::pair<std::string, std::string>> map_as_keys(const RippleMap& fitted) {
     const RippleMap map = with_zero(fitted, 0.0);
-    std::vector<double> orders, cosines, sines;
-    for (const Order order : map.orders) orders.push_back(order.value());
+    std::vector<double> cosines, sines;
     for (const auto& values : map.values) {
         for (const std::complex<double>& z : values) {
             cosines.push_back(z.real());
             sines.push_back(z.imag());
         }
     }
-    const std::string ratio = shortest(map.gear_ratio.value());
     std::vector<std::pair<std::string, std::string>> keys = {
-        {"gear-ratio", ratio},
-        {"orders", list_text(orders)},
+        {"orders", orders_text(map.orders, map.gear_ratio, ":")},
         {"cosines", list_text(cosines)},
         {"sines", list_text(sines)},
         {"speeds", list_text(map.form.speeds_deg_s)},
@@ -89,6 +94,8 @@ std::vector<std::pair<std::string, std::string>> map_as_keys(const RippleMap& fi
         {"slowest", shortest(map.speeds_deg_s.from)},
         {"positions", ends_text(map.positions_deg)},
         {"spread", list_text(map.spread_nm)}};
+    if (map.gear_ratio != no_ratio)
+        keys.insert(keys.begin(), {"gear-ratio", shortest(map.gear_ratio.value())});
     if (map.form.second_comb != 0) keys.emplace_back("second-comb", std::to_string(map.form.second_comb));
     if (map.speeds_deg_s.to > 0.0) keys.emplace_back("fastest", shortest(map.speeds_deg_s.to));
     return keys;

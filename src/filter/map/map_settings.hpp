@@ -87,6 +87,10 @@ constexpr auto required_map_keys() {
     return keys;
 }
 
+/// The orders as a method runs on them: by the lowest, but by the motor with a second comb, which is a
+/// multiple of its turns.
+[[nodiscard]] RippleOrders counted_orders(std::string_view method, const Settings& settings);
+
 /// The map that the keys hold, counted from position 0; empty without cosines. Throws UsageError when there
 /// are more or fewer values than orders and form require.
 [[nodiscard]] std::optional<RippleMap> map_of(std::string_view method, const Settings& settings,
@@ -113,7 +117,9 @@ inline constexpr std::array oscillator_own_keys = {
     Key{.name = "memory",
         .above = 0.0,
         .at_most = 1e6,
-        .help = "motor turns over which the ripple's amplitude may change; 0.5, and with a map 0.15"},
+        .help =
+            "periods of the lowest order (turns of the motor, of order 1) over which the ripple's amplitude "
+            "may change; 0.5, and with a map 0.15"},
     Key{.name = "amplitudes",
         .kind = KeyKind::list,
         .dimension = Dimension::torque,
@@ -188,7 +194,9 @@ inline constexpr std::array oscillator_map_keys = {
         .default_text = "5",
         .above = 0.0,
         .at_most = 1e6,
-        .help = "with a map: motor turns over which what was followed is forgotten towards the map"},
+        .help =
+            "with a map: periods of the lowest order over which what was followed is forgotten towards the "
+            "map"},
 };
 
 inline constexpr auto oscillator_keys =

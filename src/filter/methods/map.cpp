@@ -47,15 +47,17 @@ class MapFilter final : public CausalFilter {
 };
 
 RippleMap map_in(const Settings& settings) {
-    return *map_of("map", settings, ripple_orders("map", settings));  // its cosines are required
+    return *map_of("map", settings, counted_orders("map", settings));  // its cosines are required
 }
 
 std::unique_ptr<CausalFilter> start(const Settings& settings, Hertz sample_rate, const CandidateTable*) {
     RippleMap map = map_in(settings);
-    const MotorAngle angle(map.gear_ratio.value(), sample_rate.value(), angle_source(settings),
+    const double ratio = map.gear_ratio.value();
+    const MotorAngle angle(ratio, sample_rate.value(), angle_source(settings),
                            settings.has("start") ? settings.number("start") : 0.0);
     return std::make_unique<MapFilter>(MapRunner(std::move(map)), angle,
-                                       MapReach("map", settings, sample_rate.value()), settings.has("start"));
+                                       MapReach("map", settings, ratio, sample_rate.value()),
+                                       settings.has("start"));
 }
 
 FrozenFilter frozen(const Settings& settings, Hertz, const CandidateTable*, DegPerSec) {

@@ -23,7 +23,7 @@
 namespace ripplenotch {
 namespace {
 
-constexpr double slowest_corrected_turns = 1e-5;  ///< turns of the motor in a sample
+constexpr double slowest_corrected_turns = 1e-5;  ///< periods of the lowest line in a sample
 // Chosen by measurement: docs/methods/oscillator.md.
 constexpr double usual_memory_turns = 0.5, memory_turns_beside_map = 0.15;
 constexpr double standing_deg_s = 1.0;  ///< a log that begins slower than this begins at standstill
@@ -76,7 +76,7 @@ void plan_map(Plan& p, const Settings& settings) {
     if (!p.map) return;
     const RippleMap& map = *p.map;
     p.zero_unknown = settings.text("zero") == "unknown";
-    p.reach.emplace("oscillator", settings, p.sample_rate_hz);
+    p.reach.emplace("oscillator", settings, p.ripple.gear_ratio, p.sample_rate_hz);
     p.model.return_turns = settings.number("return");
     if (!settings.has("memory")) p.model.memory_turns = memory_turns_beside_map;
     p.largest_offset_deg_s = p.largest_slip = 0.0;
@@ -88,9 +88,9 @@ void plan_map(Plan& p, const Settings& settings) {
     }
 }
 
-Plan plan(const Settings& settings, Hertz sample_rate) {
+Plan plan(const Settings& settings, Hertz sample_rate, RippleOrders ripple) {
     Plan p;
-    p.ripple = ripple_orders("oscillator", settings);
+    p.ripple = std::move(ripple);
     p.sample_rate_hz = sample_rate.value();
     p.noise_nm = settings.number("noise");
     const double bandwidth_hz = settings.number("bandwidth");
@@ -115,6 +115,8 @@ Plan plan(const Settings& settings, Hertz sample_rate) {
     p.largest_slip = settings.number("slip");
     plan_priors(p, settings);
     plan_map(p, settings);
+    p.model.memory_turns /= p.ripple.lowest();
+    p.model.return_turns /= p.ripple.lowest();
     return p;
 }
 
@@ -199,11 +201,12 @@ class OscillatorFilter final : public CausalFilter {
 };
 
 std::unique_ptr<CausalFilter> start(const Settings& settings, Hertz sample_rate, const CandidateTable*) {
-    return std::make_unique<OscillatorFilter>(plan(settings, sample_rate));
+    return std::make_unique<OscillatorFilter>(
+        plan(settings, sample_rate, counted_orders("oscillator", settings)));
 }
 
 FrozenFilter frozen(const Settings& settings, Hertz sample_rate, const CandidateTable*, DegPerSec speed) {
-    const Plan p = plan(settings, sample_rate);
+    const Plan p = plan(settings, sample_rate, counted_orders("oscillator", settings));
     const double step_turns = p.ripple.gear_ratio * speed.value() / 360.0 / p.sample_rate_hz;
     std::vector<double> gain;
     if (p.scheduled) {
@@ -219,23 +222,24 @@ FrozenFilter frozen(const Settings& settings, Hertz sample_rate, const Candidate
 }
 
 RunningDesign running(const Settings& settings, Hertz sample_rate) {
-    const Plan p = plan(settings, sample_rate);
+    RippleOrders stated = ripple_orders("oscillator", settings);
+    if (!repeats_each_turn(stated.orders)) {
+        if (settings.number("second-comb") != 0.0)
+            raise<UsageError>(
+                "method oscillator as code: a second comb counts by turns of the motor, and not all orders "
+                "are whole there");
+        stated = stated.by_joint();
+    }
+    const Plan p = plan(settings, sample_rate, stated);
     const auto refuse = [](bool is, std::string_view what) {
         if (is) raise<UsageError>("method oscillator as code: {} is not written; leave it out", what);
     };
     refuse(p.zero_unknown, "zero=unknown");
-    refuse(p.model.return_turns > 0.0 && p.model.return_turns < 1.0, "a return below one turn");
+    refuse(p.map && settings.number("return") < 1.0, "a return below 1");
     refuse(p.scheduled, "gain=scheduled");
     refuse(p.source == MotorAngle::Source::velocity, "angle=velocity");
     refuse(p.rest_nm.has_value(), "rest");
-    for (const double order : p.ripple.orders) {
-        if (order == std::floor(order)) continue;
-        raise<UsageError>(
-            "method oscillator as code: order {} is not whole, and the motor's angle is known within a turn "
-            "only",
-            shortest(order));
-    }
-    OscillatorDesign design{p.ripple.orders, {}, p.model.step_s, p.noise_nm};
+    OscillatorDesign design{p.ripple.gear_ratio, p.ripple.orders, {}, p.model.step_s, p.noise_nm};
     for (const AmplitudePrior& prior : p.warm)
         design.priors.push_back({prior.cosine, prior.sine, prior.deviation});
     const RippleModel::TorqueNoise noise = p.model.torque_noise();
@@ -263,7 +267,8 @@ Trials trials(const TrialConditions& log) {
 
 // RippleKalman, with m states: update, gain and prediction; of an order its angle and its phase.
 double multiplications(const Settings& settings, const CandidateTable*) {
-    const auto orders = static_cast<double>(settings.list("orders").size()), m = 2.0 + 2.0 * orders;
+    const auto orders = static_cast<double>(ripple_orders("oscillator", settings).orders.size()),
+               m = 2.0 + 2.0 * orders;
     const double of_states = settings.text("gain") == "scheduled" ? 6.0 * m : 1.5 * m * m + 5.5 * m;
     constexpr double of_order = 14.0 + circle_multiplications, of_sample = 22.0;
     return of_states + orders * of_order + of_sample + map_multiplications(settings);

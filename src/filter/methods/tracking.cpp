@@ -167,7 +167,7 @@ double multiplications(const Settings& settings, const CandidateTable*) {
     const std::string composite = settings.text("composite");
     const double notches = composite == "triple" ? 3.0 : composite == "double" ? 2.0 : 1.0;
     constexpr double of_notch = 6.0, of_retuned_notch = 9.0 + circle_multiplications, of_order = 13.0;
-    return 1.0 + static_cast<double>(settings.list("orders").size()) *
+    return 1.0 + static_cast<double>(ripple_orders("tracking", settings).orders.size()) *
                      (of_order + notches * (of_notch + of_retuned_notch));
 }
 

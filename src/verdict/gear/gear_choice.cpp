@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -25,6 +26,8 @@ namespace ripplenotch {
 namespace {
 
 constexpr double whole_order_share = 0.005;  // by hand
+/// Gravity turns once per turn of the joint and what it carries twice: slower lines are no ripple of a drive.
+constexpr double fewest_per_turn = 3.0;
 
 // Order per motor turn of a line that turns with the joint; empty for others. Under another ratio than the
 // file's a line keeps its frequency, so its order follows from what was measured per output turn.
@@ -37,6 +40,16 @@ std::optional<double> order_of(const Line& line, const Identification& found,
     const double order = *line.order_output / given->value();
     const double whole = std::round(2.0 * order) / 2.0;
     return std::abs(order - whole) <= whole_order_share * order ? whole : order;
+}
+
+// Of a line that turns with the joint, under no ratio. At one speed a line may be a fixed tone; it counts as
+// one that turns.
+std::optional<double> per_turn_of(const Line& line) {
+    std::optional<double> order = line.order_output;
+    if (!order && line.kind == LineKind::unknown && line.by_speed.size() == 1)
+        order = 360.0 * line.by_speed.front().hz / std::abs(line.by_speed.front().speed_deg_s);
+    if (line.kind == LineKind::tone || !order || !(*order >= fewest_per_turn)) return std::nullopt;
+    return parse_number(fmt::format("{:.6g}", *order));
 }
 
 // Six digits in per cent, as table.json holds it.
@@ -60,8 +73,8 @@ GearStatement JointFile::facts(std::optional<GearRatio> given) const {
     }
     std::map<double, const Line*> strongest;
     for (const Line& line : found.lines) {
-        const auto order = order_of(line, found, given);
-        if (!order) continue;
+        const auto order = facts.ratio ? order_of(line, found, given) : per_turn_of(line);
+        if (!order || !found.doubts.empty()) continue;
         const double a = std::abs(line.speed_from_deg_s), b = std::abs(line.speed_to_deg_s);
         const DegPerSec low(std::min(a, b)), high(std::max(a, b));
         facts.slowest = strongest.empty() ? low : std::min(facts.slowest, low);
@@ -71,7 +84,7 @@ GearStatement JointFile::facts(std::optional<GearRatio> given) const {
     }
     bool phases_known = true;
     for (const auto& [order, line] : strongest) {
-        facts.orders.emplace_back(order);
+        facts.orders.emplace_back(order, !facts.ratio);
         facts.amplitude_nm.push_back(line->amplitude_nm);
         facts.phase_deg.push_back(line->phase_deg);
         phases_known = phases_known && line->phase_known;
@@ -83,13 +96,6 @@ GearStatement JointFile::facts(std::optional<GearRatio> given) const {
 JointFile load_joint(const std::string& path) {
     if (path.empty()) raise<UsageError>("--joint-file: the name is empty");
     return {path, path == "-" ? "standard input" : path, load_identification(path)};
-}
-
-std::vector<Order> sorted_orders(const std::vector<double>& values) {
-    std::vector<Order> orders;
-    for (const double value : values) orders.emplace_back(value);
-    std::sort(orders.begin(), orders.end());
-    return orders;
 }
 
 namespace {
@@ -111,25 +117,31 @@ std::string reason_for_none(const Identification& found) {
 // refused: it was measured, and nothing was found.
 GearStatement statement_of(const JointFile& file, const GearStatement& options, const GearStatement& method) {
     GearStatement facts = file.facts(options.ratio ? options.ratio : method.ratio);
-    if (!facts.ratio)
-        raise<DataError>("{}: its gear ratio is null, because identify {}; give --gear-ratio", file.source,
-                         reason_for_none(file.found));
-    if (facts.orders.empty() && options.orders.empty() && method.orders.empty())
+    const std::vector<StatedOrder>& stated = options.orders.empty() ? method.orders : options.orders;
+    const bool by_motor = std::any_of(stated.begin(), stated.end(), std::not_fn(&StatedOrder::per_turn));
+    if (!facts.ratio && (by_motor || (stated.empty() && facts.orders.empty())))
+        raise<DataError>(
+            "{}: its gear ratio is null, because identify {}; give --gear-ratio, or lines per turn of the "
+            "joint, for example --orders 200/turn",
+            file.source, reason_for_none(file.found));
+    if (facts.orders.empty() && stated.empty())
         raise<DataError>("{}: it has no line that follows the motor; give --orders", file.source);
     return facts;
 }
 
 // Of each order what the first source says that knows it; nothing unless all are known.
-std::vector<double> known_values(const std::vector<GearStatement>& all, const std::vector<Order>& orders,
-                                 std::vector<double> GearStatement::*member) {
+std::vector<double> known_values(const std::vector<GearStatement>& all, const GearAccount& gear,
+                                 std::optional<GearRatio> ratio, std::vector<double> GearStatement::*member) {
     std::map<Order, double> known;
     for (const GearStatement& one : all) {
         const std::vector<double>& values = one.*member;
-        for (std::size_t i = 0; i < std::min(values.size(), one.orders.size()); ++i)
-            known.try_emplace(one.orders[i], values[i]);
+        if (values.empty()) continue;
+        const std::vector<Order> orders = orders_under(one.orders, ratio, one.source);
+        for (std::size_t i = 0; i < std::min(values.size(), orders.size()); ++i)
+            known.try_emplace(orders[i], values[i]);
     }
     std::vector<double> found;
-    for (const Order order : orders) {
+    for (const Order order : gear.orders) {
         const auto entry = known.find(order);
         if (entry == known.end()) return {};
         found.push_back(entry->second);
@@ -144,11 +156,12 @@ void check_gear(const GearOptions& gear) {
         raise<UsageError>("--gear-ratio {} is not above 0 and at most {}", shortest(*gear.ratio),
                           shortest(largest_ratio));
     }
-    const std::vector<Order> orders = sorted_orders(gear.orders);
-    if (!orders.empty() && !(orders.front() > Order(0.0)))
-        raise<UsageError>("--orders: {} is not above 0", shortest(orders.front().value()));
+    std::vector<StatedOrder> orders = gear.orders;
+    std::sort(orders.begin(), orders.end());
+    if (!orders.empty() && !(orders.front().value > 0.0))
+        raise<UsageError>("--orders: {} is not above 0", shortest(orders.front().value));
     const auto twice = std::adjacent_find(orders.begin(), orders.end());
-    if (twice != orders.end()) raise<UsageError>("--orders: {} is listed twice", shortest(twice->value()));
+    if (twice != orders.end()) raise<UsageError>("--orders: {} is listed twice", shortest(twice->value));
 }
 
 GearChoice::GearChoice(GearOptions options) : options_(std::move(options)) {
@@ -158,28 +171,35 @@ GearChoice::GearChoice(GearOptions options) : options_(std::move(options)) {
 
 std::optional<GearAccount> GearChoice::of(const GearStatement& method, const JointFile* joint,
                                           const GearStatement& table) const {
-    std::vector<GearStatement> all = {
-        {"--gear-ratio", ratio_of(options_), sorted_orders(options_.orders), {}, {}}, method};
+    std::vector<GearStatement> all = {{"--gear-ratio", ratio_of(options_), options_.orders, {}, {}}, method};
     if (joint == nullptr && joint_) joint = &*joint_;
     if (joint != nullptr) all.push_back(statement_of(*joint, all[0], all[1]));
     all.push_back(table);
     const auto with_ratio =
         std::find_if(all.begin(), all.end(), [](const GearStatement& one) { return one.ratio.has_value(); });
-    if (with_ratio == all.end()) return std::nullopt;
     const auto with_orders =
         std::find_if(all.begin(), all.end(), [](const GearStatement& one) { return !one.orders.empty(); });
-    GearAccount gear{*with_ratio->ratio, default_orders(), {}, {}, with_ratio->source};
+    if (with_ratio == all.end() && with_orders == all.end()) return std::nullopt;
+    const auto ratio = with_ratio == all.end() ? std::nullopt : with_ratio->ratio;
+    const auto source_of_orders = [&] {
+        return with_orders == all.begin() ? "--orders" : with_orders->source;
+    };
+    GearAccount gear{ratio.value_or(no_ratio), default_orders(), {}, {}, {}, !ratio};
     if (with_orders == all.end()) {
-        gear.source += ", orders by default";
+        gear.source = with_ratio->source + ", orders by default";
         return gear;
     }
-    gear.orders = with_orders->orders;
-    gear.amplitude_nm = known_values(all, gear.orders, &GearStatement::amplitude_nm);
-    gear.phase_deg = known_values(all, gear.orders, &GearStatement::phase_deg);
-    if (with_orders == all.begin() && with_ratio == all.begin()) {
+    gear.orders = orders_under(with_orders->orders, ratio, source_of_orders());
+    std::sort(gear.orders.begin(), gear.orders.end());
+    gear.amplitude_nm = known_values(all, gear, ratio, &GearStatement::amplitude_nm);
+    gear.phase_deg = known_values(all, gear, ratio, &GearStatement::phase_deg);
+    if (!ratio) {
+        gear.source = source_of_orders();
+    } else if (with_orders == all.begin() && with_ratio == all.begin()) {
         gear.source = "--gear-ratio, --orders";
-    } else if (with_orders != with_ratio) {
-        gear.source += ", orders from " + (with_orders == all.begin() ? "--orders" : with_orders->source);
+    } else {
+        gear.source = with_ratio->source;
+        if (with_orders != with_ratio) gear.source += ", orders from " + source_of_orders();
     }
     return gear;
 }
@@ -191,13 +211,17 @@ std::optional<GearStatement> GearChoice::facts() const {
 
 void raise_no_gear(std::string_view who) {
     raise<UsageError>(
-        "{} needs to know the gear: give --gear-ratio, for example 100, or --joint-file joint.json", who);
+        "{} needs to know where the ripple is: give --gear-ratio, for example 100, lines per turn of the "
+        "joint, for example --orders 200/turn, or --joint-file joint.json",
+        who);
 }
 
 std::string gear_in_words(const GearAccount& gear) {
-    if (!(gear.ratio.value() > 0.0)) return fmt::format("gear ratio not known ({})", gear.source);
-    return fmt::format("gear ratio {:.6g}{}{} ({})", gear.ratio.value(),
-                       gear.orders.empty() ? "" : ", orders ", joined(gear.orders, ", "), gear.source);
+    const std::string orders = orders_text(gear.orders, gear.ratio, ", ");
+    if (gear.per_turn) return fmt::format("orders {} of the joint ({})", orders, gear.source);
+    if (!gear.has_ratio()) return fmt::format("gear ratio not known ({})", gear.source);
+    return fmt::format("gear ratio {:.6g}{}{} ({})", gear.ratio.value(), orders.empty() ? "" : ", orders ",
+                       orders, gear.source);
 }
 
 }  // namespace ripplenotch

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/verdict/gear_choice.hpp"
 
 #include <fmt/format.h>
@@ -38,19 +39,17 @@ auto entry_of(Spec& spec, std::string_view key) {
 
 bool given(Spec& spec, std::string_view key) { return entry_of(spec, key) != spec.values.end(); }
 
-void fill_in(Spec& spec, const Method& method, std::string_view key, const std::vector<double>& values) {
-    if (values.empty() || !has_key(method, key) || given(spec, key)) return;
-    spec.values.emplace_back(key, joined(values, ":"));
+void fill_in(Spec& spec, const Method& method, std::string_view key, std::string value) {
+    if (value.empty() || !has_key(method, key) || given(spec, key)) return;
+    spec.values.emplace_back(key, std::move(value));
 }
 
 void fill_gear(Spec& spec, const Method& method, const GearAccount& gear) {
-    fill_in(spec, method, "gear-ratio", {gear.ratio.value()});
+    if (gear.has_ratio()) fill_in(spec, method, "gear-ratio", shortest(gear.ratio.value()));
     if (given(spec, "orders")) return;  // amplitudes and phases would be those of other orders
-    std::vector<double> orders;
-    for (const Order order : gear.orders) orders.push_back(order.value());
-    fill_in(spec, method, "orders", orders);
-    fill_in(spec, method, "amplitudes", gear.amplitude_nm);
-    fill_in(spec, method, "phases", gear.phase_deg);
+    fill_in(spec, method, "orders", orders_text(gear.orders, gear.ratio, ":"));
+    fill_in(spec, method, "amplitudes", joined(gear.amplitude_nm, ":"));
+    fill_in(spec, method, "phases", joined(gear.phase_deg, ":"));
 }
 
 void refuse_other_map(const std::string& method, const std::string& path, const std::string& of_map,
@@ -63,7 +62,8 @@ void refuse_other_map(const std::string& method, const std::string& path, const 
 
 // map=FILE goes, and the keys that it stands for come; those that are given must be those of the map.
 std::shared_ptr<const RippleMap> use_map(Spec& spec, const Method& method, const MapSource& maps,
-                                         const std::vector<double>& asked, std::vector<std::string>& files) {
+                                         const std::vector<StatedOrder>& asked,
+                                         std::vector<std::string>& files) {
     if (!has_key(method, "map") || !given(spec, "map")) return nullptr;
     const auto entry = entry_of(spec, "map");
     const std::string path = entry->second;
@@ -71,9 +71,12 @@ std::shared_ptr<const RippleMap> use_map(Spec& spec, const Method& method, const
     auto map = std::make_shared<const RippleMap>(maps ? maps(path) : load_map(path).map);
     if (map->orders.empty())
         raise<DataError>("{}: the map is empty: method {} has no order to filter by it", path, spec.name);
-    const auto is_mapped = [&map](double order) {
-        return std::any_of(map->orders.begin(), map->orders.end(),
-                           [order](Order one) { return one.value() == order; });
+    const auto is_mapped = [&map](const StatedOrder& order) {
+        return std::any_of(map->orders.begin(), map->orders.end(), [&](Order one) {
+            const double per_turn = one.value() * map->gear_ratio.value();
+            if (!order.per_turn && map->gear_ratio != no_ratio) return one.value() == order.value;
+            return !order.per_turn || std::abs(order.value / per_turn - 1.0) <= same_ratio_share;
+        });
     };
     if (!asked.empty() && std::none_of(asked.begin(), asked.end(), is_mapped))
         raise<DataError>(
@@ -119,7 +122,8 @@ GearStatement stated_gear(Spec& spec, const Method& method) {
     }
     const Settings settings(stated.source, part, keys);
     if (settings.has("gear-ratio")) stated.ratio = GearRatio(settings.number("gear-ratio"));
-    if (settings.has("orders")) stated.orders = sorted_orders(settings.list("orders"));
+    if (settings.has("orders"))
+        stated.orders = parse_orders(settings.text("orders"), stated.source + ", orders");
     return stated;
 }
 
@@ -134,7 +138,10 @@ std::optional<JointFile> take_joint(Spec& spec, const Method& method, const Gear
 
 GearStatement statement_of(const CandidateTable& table, const std::string& path) {
     const TableSpec& spec = table.spec();
-    return {path, spec.gear_ratio, spec.orders, spec.amplitude_nm, {}};
+    GearStatement stated{path, std::nullopt, {}, spec.amplitude_nm, {}};
+    if (spec.gear_ratio != no_ratio) stated.ratio = spec.gear_ratio;
+    for (const Order order : spec.orders) stated.orders.emplace_back(order.value(), !stated.ratio);
+    return stated;
 }
 
 }  // namespace
@@ -157,11 +164,11 @@ Contender choose_method(const std::string& spec_text, const std::optional<std::s
         of_table = statement_of(*loaded, path);
     }
     std::optional<GearAccount> gear = choice.of(stated, joint ? &*joint : nullptr, of_table);
-    if (gear && !maps.empty())
+    if (gear && gear->has_ratio() && given(spec, "gear-ratio") && !maps.empty())
         refuse_other_map(spec.name, maps.front(), entry_of(spec, "gear-ratio")->second,
                          shortest(gear->ratio.value()));
     if (gear) fill_gear(spec, method, *gear);
-    if (!gear && has_key(method, "gear-ratio")) raise_no_gear(stated.source);
+    if (!gear && has_key(method, "orders")) raise_no_gear(stated.source);
     Contender chosen = make_contender(spec, std::move(loaded));
     chosen.gear = std::move(gear);
     chosen.files = maps;
@@ -188,7 +195,7 @@ void refuse_other_joint(const Contender& method, const std::string& joint) {
 
 void refuse_other_gear(const Contender& method, const GearAccount& measured) {
     const auto made_for = method.made_for();
-    if (!made_for) return;
+    if (!made_for || *made_for == no_ratio || !measured.has_ratio()) return;
     const double doubt = method.table ? method.table->spec().ratio_error : 0.0;
     if (std::abs(measured.ratio / *made_for - 1.0) <= std::max(same_ratio_share, doubt)) return;
     raise<UsageError>(
@@ -240,7 +247,6 @@ std::shared_ptr<const Contender> JointMethods::choose(const std::string& joint) 
         method.files.push_back(*path);
     }
     if (!method.gear && request_.needs_gear) raise_no_gear("--min-attenuation");
-    if (!method.gear && !gear.orders.empty()) raise_no_gear("--orders");
     return std::make_shared<const Contender>(std::move(method));
 }
 

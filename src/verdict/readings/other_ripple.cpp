@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "ripplenotch/verdict/other_ripple.hpp"
+#include "ripplenotch/core/gear_account.hpp"
 
 #include <stdio.h>
 
@@ -46,7 +47,7 @@ ReadOptions reading_of(std::span<const RippleMap> maps, const ReadOptions& optio
     read.check_joint = {};
     read.gear_ratio_of = [maps](const std::string& joint) -> std::optional<double> {
         for (const RippleMap& map : maps)
-            if (map.joint == joint) return map.gear_ratio.value();
+            if (map.joint == joint && map.gear_ratio != no_ratio) return map.gear_ratio.value();
         return std::nullopt;
     };
     return read;
