@@ -146,6 +146,19 @@ double rms_from(const std::vector<double>& a, const std::vector<double>& b, std:
 
 }  // namespace
 
+TEST_CASE("a map of lines per turn of the joint is that of a gear ratio that names them, and states none") {
+    RippleMap truth = plain_map();
+    truth.orders = {Order(2.0), Order(4.0)};
+    const Trace log = mapped_log(truth, 20.0, 0.05, 3);
+    const MapFit named = fit_of(log, mapped_gear(truth.orders));
+    const MapFit fit = fit_of(log, {no_ratio, {Order(200.0), Order(400.0)}, {}, {}, "test", true});
+    REQUIRE(named.finding == MapFinding::mapped);
+    REQUIRE(named.map.form.second_comb == 0);
+    CHECK(fit.map.values == named.map.values);
+    CHECK(map_as_keys(fit.map).front() == std::pair<std::string, std::string>("orders", "200/turn:400/turn"));
+    CHECK_THAT(map_verdict(fit), Catch::Contains("200/turn falls from"));
+}
+
 TEST_CASE("a map of a ripple that is the same everywhere has the simplest form and its amplitudes") {
     std::size_t within = 0, values = 0;
     for (unsigned seed = 1; seed <= 8; ++seed) {

@@ -3,6 +3,7 @@
 // keys, so that a new entry of methods.def is tested the day it is listed; the vectors of SciPy are
 // made by scripts/make-filter-reference.
 
+#include <array>
 #include <fstream>
 #include <map>
 #include <set>
@@ -10,6 +11,7 @@
 
 #include "filter/tables.hpp"
 #include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "support/catch.hpp"
 #include "support/places.hpp"
@@ -52,6 +54,14 @@ std::string some_number(const Key& key, std::mt19937& engine) {
     }
 }
 
+// Two orders: by the motor where a gear ratio is given beside them, else by the joint.
+std::string some_orders(bool by_motor, std::mt19937& engine) {
+    std::uniform_real_distribution<double> order(1.0, 4.0);
+    const double first = order(engine), second = order(engine);
+    return by_motor ? fmt::format("{:.3f}:{:.3f}", first, second)
+                    : fmt::format("{:.1f}/turn:{:.1f}/turn", 100.0 * first, 100.0 * second);
+}
+
 std::string some_pair(const Key& key, std::mt19937& engine) {
     // A map has a value for each speed and order; the other lists have one for each order.
     if (key.name == "speeds") return some_number(key, engine);
@@ -69,6 +79,8 @@ std::set<std::string> specifications(const Method& method, unsigned seed) {
             const std::string name(key.name);
             if (varied == &key)
                 spec.values.emplace_back(name, value);
+            else if (name == "orders")
+                spec.values.emplace_back(name, some_orders(all_numbers, engine));
             else if (key.kind == KeyKind::text)
                 spec.values.emplace_back(name, "table.json");
             else if (key.kind == KeyKind::list && (key.required || lists))
@@ -187,6 +199,35 @@ TEST_CASE("the settings that a method holds worth trying start, and each states 
     CHECK(multiplications["oscillator"] == 1.5 * 36.0 + 5.5 * 6.0 + 2.0 * 36.0 + 22.0);
     CHECK(tried(find_method("fixed"), 90.0).none_because != "");
     CHECK(tried(find_method("map"), 60.0).all.empty());
+}
+
+TEST_CASE("the same lines give the same filter, whatever gear ratio names them, or none") {
+    const Signals signals = wandering(20000, 5);
+    const std::array<std::string, 3> lines = {"orders=200/turn:400/turn", "gear-ratio=100,orders=2:4",
+                                              "gear-ratio=200,orders=1:2"};
+    const std::array<std::string, 5> methods = {"tracking", "tracking,max-delay=2ms,composite=double",
+                                                "oscillator", "oscillator,gain=scheduled",
+                                                "oscillator,amplitudes=0.8:0.4,phases=10:20"};
+    const std::string map = ",cosines=0.3Nm:0.2Nm,sines=0.1Nm:-0.1Nm,spread=0.05Nm:0.05Nm";
+    const auto agree = [&](const std::string& method, const std::string& more) {
+        INFO(method);
+        const auto first = filtered(*start(method + "," + lines[0] + more), signals.samples());
+        for (const std::string& other : {lines[1], lines[2], lines[0] + ",gear-ratio=100"})
+            CHECK(first == filtered(*start(method + "," + other + more), signals.samples()));
+    };
+    for (const std::string& method : methods) agree(method, "");
+    agree("map", map);
+    agree("oscillator", map);
+    agree("oscillator,zero=unknown", map);
+    const auto by_table = [&](GearRatio ratio, std::vector<Order> orders) {
+        TableSpec spec = table_spec(std::move(orders));
+        spec.gear_ratio = ratio;
+        spec.bands = bands_by_spacing({DegPerSec(18.0), DegPerSec(180.0)}, DegPerSec(18.0));
+        const CandidateTable table = CandidateTable::design(spec);
+        return filtered(*start("switching,table=table.json", &table), signals.samples());
+    };
+    CHECK(by_table(no_ratio, {Order(200.0), Order(400.0)}) ==
+          by_table(GearRatio(100.0), {Order(2.0), Order(4.0)}));
 }
 
 TEST_CASE("methods have a name, a summary, and keys with help, each name once") {

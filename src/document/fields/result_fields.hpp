@@ -65,6 +65,13 @@ void describe_term(Archive& archive, Is<Term> auto& term, const Model& model) {
 }
 
 /// What stands for the ratio of a model that has none, and no effect that needs one.
+/// The gear ratio of a table or a map: null where its orders count by turns of the joint.
+template <class Archive>
+void describe_ratio(Archive& archive, auto& ratio) {
+    if (archive.known("gear_ratio", ratio != no_ratio, ratio, above_zero)) return;
+    if constexpr (Archive::reading) ratio = no_ratio;
+}
+
 inline constexpr const char* unknown_gear_ratio = "unknown";
 
 /// "gear_ratio" and "effects"; the caller knows whether the model has a simulation.

@@ -9,6 +9,7 @@
 #include "core/matrices/least_squares.hpp"
 #include "document/fields/arm_fields.hpp"
 #include "document/fields/fields.hpp"
+#include "document/fields/result_fields.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/files.hpp"
 
@@ -138,9 +139,7 @@ void describe_map(Archive& archive, auto& fit) {
     archive("doubt", fit.doubt);
     archive("conclusive", fit.conclusive);
     archive("joint", map.joint);
-    if (!archive.known("gear_ratio", map.gear_ratio != no_ratio, map.gear_ratio, above_zero)) {
-        if constexpr (Archive::reading) map.gear_ratio = no_ratio;
-    }
+    describe_ratio(archive, map.gear_ratio);
     archive("zero_deg", map.zero_deg);
     std::string angle(angle_name(fit.anchored));
     archive("angle", angle);

@@ -115,9 +115,7 @@ void describe_band(Archive& archive, auto& band, auto& spec, TableWork& work) {
 template <class Archive>
 void describe_table(Archive& archive, auto& spec, auto&& bands, const DesignNote& note) {
     archive("sample_rate_hz", spec.sample_rate);
-    if (!archive.known("gear_ratio", spec.gear_ratio != no_ratio, spec.gear_ratio)) {
-        if constexpr (Archive::reading) spec.gear_ratio = no_ratio;
-    }
+    describe_ratio(archive, spec.gear_ratio);
     archive("orders", spec.orders, AtMost{most_orders});
     archive.derived(
         "gear", [&] { return note.gear; }, if_any);

@@ -56,12 +56,11 @@ std::vector<std::size_t> fitting(const RippleMap& flat, std::vector<std::string>
     std::vector<std::size_t> found;
     for (std::size_t i = 0; i < flat.orders.size(); ++i) {
         const double n = flat.orders[i].value();
-        if (n == std::floor(n) && n <= highest_order) {
+        if (n != std::floor(n)) continue;  // flattened() has said so
+        if (n <= highest_order)
             found.push_back(i);
-        } else {
-            warnings.push_back(
-                fmt::format("order {} is left out: n is a whole number up to 200", shortest(n)));
-        }
+        else
+            warnings.push_back(fmt::format("order {} is left out: n is at most 200", shortest(n)));
     }
     const auto size = [&](std::size_t i) { return std::norm(flat.values[i][0]); };
     std::stable_sort(found.begin(), found.end(),

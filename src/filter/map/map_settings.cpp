@@ -68,7 +68,7 @@ std::optional<RippleMap> map_of(std::string_view method, const Settings& setting
 // MapRunner: the amplitudes of each order here, and its phase; that of the joint, too, for a second comb.
 double map_multiplications(const Settings& settings) {
     if (!settings.has("cosines")) return 0.0;
-    const auto orders = static_cast<double>(settings.list("spread").size());
+    const auto orders = static_cast<double>(parse_orders(settings.text("orders"), "orders").size());
     const auto values = static_cast<double>(settings.list("cosines").size());
     constexpr double of_order = 6.0 + circle_multiplications, of_comb = 8.0 + circle_multiplications;
     constexpr double of_sample = 8.0;
