@@ -227,7 +227,7 @@ class SaidOnce(Case):
         text = wide_log(rows=1500).split("\n")
         (self.folder / "wide.csv").write_text("\n".join(text))
         done = self.good("compare", "wide.csv", "--method", "lowpass,cutoff=5Hz,order=1")
-        self.assertEqual(done.stderr.count("no gear ratio is known"), 1, done.stderr)
+        self.assertEqual(done.stderr.count("no line is known"), 1, done.stderr)
         self.assertNotIn("joint j", done.stderr)
 
     def test_of_some_joints_with_their_names(self):

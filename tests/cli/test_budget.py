@@ -179,7 +179,7 @@ class Gates(Budget):
         done = run("filter", "steady.csv", "--method", "lowpass,cutoff=13Hz", "-o", "gate.csv", "--force",
                    "--min-attenuation", "25dB", cwd=self.folder)
         self.assertEqual(done.returncode, 2)
-        self.assertIn("--min-attenuation needs to know the gear", done.stderr)
+        self.assertIn("--min-attenuation needs to know where the ripple is", done.stderr)
 
 
 class NoisySpeed(Budget):

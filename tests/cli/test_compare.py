@@ -163,7 +163,7 @@ class Logs(Comparison):
     def test_without_gear_ratio_the_delays_still_come_with_a_warning(self):
         done = run("compare", LOG, *methods(NOTCHES), "--json")
         self.assertEqual(done.returncode, 0)
-        self.assertIn("no gear ratio is known, so no ripple was measured", done.stderr)
+        self.assertIn("no line is known, so no ripple was measured", done.stderr)
         row = json.loads(done.stdout)["methods"][1]
         self.assertIsNone(row["residual_rms_nm"])
         self.assertAlmostEqual(row["ramp_delay_ms"], 38.0, delta=0.1)

@@ -166,7 +166,11 @@ class FromJoint(Case):
         self.assertEqual(json.loads(design(*said, "--json").stdout)["bands"], json.loads(done.stdout)["bands"])
 
     def test_a_joint_without_a_ratio_asks_for_gear_ratio_and_is_exit_code_3(self):
-        done = design("-", stdin=joint(ratio=None))
+        found = self.table(joint(ratio=None))  # nor is one needed: its lines turn with the joint
+        self.assertIsNone(found["gear_ratio"])
+        self.assertEqual(found["orders"], [100, 200])
+        self.assertEqual(found["gear"]["ratio"], None)
+        done = design("-", stdin=joint(ratio=None, orders=()))
         self.assertEqual(done.returncode, 3)
         self.assertIn("gear ratio is null", done.stderr)
         self.assertIn("--gear-ratio", done.stderr)

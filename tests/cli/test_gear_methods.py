@@ -59,10 +59,14 @@ class WhereTheGearComesFrom(Case):
     def test_without_a_gear_it_says_what_to_give(self):
         done = self.run_tool("filter", MOVE, "--method", "tracking")
         self.assertEqual(done.returncode, 2)
-        self.assertIn("method tracking needs to know the gear: give --gear-ratio, for example 100, or --joint-file", done.stderr)
+        self.assertIn("method tracking needs to know where the ripple is: give --gear-ratio, for example 100", done.stderr)
 
     def test_a_joint_file_that_found_nothing_is_refused_with_the_way_out(self):
-        (self.folder / "nothing.json").write_text(joint(ratio=None))
+        (self.folder / "lines.json").write_text(joint(ratio=None))
+        _, metrics = self.filtered("--method", "tracking,joint=lines.json")
+        self.assertEqual(metrics["method"], "tracking,orders=100/turn:200/turn")
+        self.assertIsNone(metrics["gear_ratio"])
+        (self.folder / "nothing.json").write_text(joint(ratio=None, orders=()))
         done = self.run_tool("filter", MOVE, "--method", "tracking,joint=nothing.json")
         self.assertEqual(done.returncode, 3)
         self.assertIn("give --gear-ratio", done.stderr)

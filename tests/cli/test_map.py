@@ -123,7 +123,7 @@ class Maps(Case):
         write_log(self.log, 1)
         done = run("map", self.log)
         self.assertEqual(done.returncode, 2)
-        self.assertIn("map needs to know the gear", done.stderr)
+        self.assertIn("map needs to know where the ripple is", done.stderr)
 
     def wide_log(self, shares):
         """A log of one joint for each share, j1 first, which has that share of ripple of 0.8 and 0.3 Nm (orders 1 and 2)."""
@@ -146,7 +146,8 @@ class Maps(Case):
         done = run("map", wide, "--joint", "all", *files, "-o", self.folder / "{joint}_map.json")
         self.assertEqual(done.returncode, 3, done.stderr)
         self.assertEqual([line for line in done.stderr.split("\n") if "joint j" in line],
-                         [f"ripplenotch map: joint j2: {self.folder}/j2.json: its gear ratio is null, because identify found none; give --gear-ratio"])
+                         [f"ripplenotch map: joint j2: {self.folder}/j2.json: its gear ratio is null, because identify found none; give --gear-ratio, "
+                          "or lines per turn of the joint, for example --orders 200/turn"])
         for joint, amplitude in (("j1", 0.8), ("j3", 0.4)):
             found = json.loads((self.folder / f"{joint}_map.json").read_text())
             self.assertAlmostEqual(found["left_out"][0]["ripple_nm"], amplitude, delta=0.02)
@@ -161,7 +162,7 @@ class Maps(Case):
         # Without any gear there is one complaint, not one for each joint.
         none = run("map", wide, "--joint", "all", "-o", self.folder / "{joint}_map.json", "--force")
         self.assertEqual(none.returncode, 2)
-        self.assertEqual(none.stderr.count("map needs to know the gear"), 1)
+        self.assertEqual(none.stderr.count("map needs to know where the ripple is"), 1)
 
     def test_every_joint_has_a_map_of_its_own(self):
         """Two joints of one log, the second with half of the ripple: the maps are those of each joint by its name."""

@@ -96,7 +96,7 @@ class SameSources(Commands):
 
 class SameRefusals(Commands):
     def test_every_command_refuses_in_the_same_words(self):
-        (self.folder / "nothing.json").write_text(joint(ratio=None))
+        (self.folder / "nothing.json").write_text(joint(ratio=None, orders=()))
         (self.folder / "no_lines.json").write_text(joint(orders=()))
         cases = [
             (["--gear-ratio", 0], 2, "--gear-ratio 0 is not above 0 and at most 100000"),
@@ -104,7 +104,8 @@ class SameRefusals(Commands):
             (["--gear-ratio", 100, "--orders", "0"], 2, "--orders: 0 is not above 0"),
             (["--gear-ratio", 100, "--orders", "1,1"], 2, "--orders: 1 is listed twice"),
             (["--joint-file", "nothing.json"], 3,
-             "nothing.json: its gear ratio is null, because identify found none; give --gear-ratio"),
+             "nothing.json: its gear ratio is null, because identify found none; give --gear-ratio, "
+             "or lines per turn of the joint, for example --orders 200/turn"),
             (["--joint-file", "no_lines.json"], 3,
              "no_lines.json: it has no line that follows the motor; give --orders"),
             (["--joint-file", ""], 2, "--joint-file: the name is empty"),
@@ -119,8 +120,9 @@ class SameRefusals(Commands):
         for name, done, _ in self.every(["--orders", "1,2"]):
             with self.subTest(command=name):
                 self.assertEqual(done.returncode, 2, done.stderr)
-                self.assertRegex(done.stderr, r"^ripplenotch \w+: (--orders|a table|method \w+) needs to know the gear: give "
-                                              r"--gear-ratio, for example 100, or --joint-file joint.json\n$")
+                self.assertRegex(done.stderr, r"^ripplenotch \w+: --orders: 1 counts by turns of the motor, which takes a "
+                                              r"gear ratio; give gear-ratio, for example 100, or count by turns of the "
+                                              r"joint: 100/turn\n$")
 
 
 class OtherGears(Commands):

@@ -30,6 +30,12 @@ namespace ripplenotch {
 /// before a gear of unknown ratio gives orders of the motor and no ratio.
 [[nodiscard]] Identification identify_readings(std::span<const Log> logs, const IdentifyOptions& options);
 
+/// Why the lines of logs speak against a gear ratio that is stated, a sentence for a warning; empty where they
+/// do not. `found`: identified with that ratio, or without any.
+[[nodiscard]] std::string against_ratio(const Identification& found, GearRatio stated);
+/// The same of logs of one joint that are about to be filtered by this gear.
+[[nodiscard]] std::string against_gear(std::span<const Log> logs, const GearAccount& gear);
+
 /// The same where the motors of other joints may be in the torque. What is found of them (fit_joint_map) is
 /// subtracted before the lines are searched again; `alone` is what identify_readings() gave.
 [[nodiscard]] Identification identify_among(std::span<const Log> logs, Identification alone,

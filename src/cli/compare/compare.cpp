@@ -37,6 +37,7 @@
 #include "ripplenotch/filter/engine.hpp"
 #include "ripplenotch/log/log.hpp"
 #include "ripplenotch/verdict/gear_choice.hpp"
+#include "ripplenotch/verdict/readings.hpp"
 
 namespace ripplenotch {
 
@@ -600,6 +601,9 @@ Comparison compare_on_log(const CompareRequest& request, Field& field, Provenanc
     const Log log = read_log_in_part(request.log, read);
     take_log(request.common, request.log, log, provenance);
     for (const Contender& contender : field.contenders) refuse_other_joint(contender, log.trace.joint);
+    if (field.gear)
+        if (const std::string against = against_gear({&log, 1}, *field.gear); !against.empty())
+            warn(request.common, against);
     ComparedLog compared{log.trace.view()};
     if (!request.truth.empty() && !field.gear) raise_no_gear("--truth");
     const std::vector<double> truth = true_torque(request, read, log.trace.size(), provenance);

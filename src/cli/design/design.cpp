@@ -25,6 +25,7 @@
 #include "ripplenotch/design/guarantee.hpp"
 #include "ripplenotch/document/table_json.hpp"
 #include "ripplenotch/verdict/gear_choice.hpp"
+#include "ripplenotch/verdict/readings.hpp"
 
 namespace ripplenotch {
 
@@ -277,6 +278,10 @@ ExitCode run_design(const DesignRequest& request, const std::string& command_lin
     }
     const GearChoice gear(options);
     if (gear.joint()) provenance.inputs.push_back(input_record(gear.joint()->path));
+    if (gear.joint() && options.ratio) {
+        const std::string against = against_ratio(gear.joint()->found, GearRatio(*options.ratio));
+        if (!against.empty()) warn(request.common, against);
+    }
     const TableSpec spec = design_spec(request, gear);
     const Drawn drawn = draw(request, spec, gear);
     say(request.common, fmt::format("designed as if with {}", as_if_options(drawn.table.spec())));

@@ -28,6 +28,7 @@
 #include "ripplenotch/log/log.hpp"
 #include "ripplenotch/verdict/gear_choice.hpp"
 #include "ripplenotch/verdict/other_ripple.hpp"
+#include "ripplenotch/verdict/readings.hpp"
 
 namespace ripplenotch {
 
@@ -138,6 +139,17 @@ JointWork start_work(const FilterRequest& request, const LogStream& stream, cons
     if (request.metrics) work.metrics_path = with_joint(*request.metrics, joint);
     if (request.common.json) work.metrics_path.emplace(1, '-');
     return work;
+}
+
+// Looks at the first rows of a log that is a file.
+std::string against_gear_of(const FilterRequest& request, const JointWork& work, const ReadOptions& read) {
+    if (!tells(request) || request.path == "-" || !work.method->gear || !work.method->gear->has_ratio())
+        return "";
+    ReadOptions one = read;
+    if (!work.metrics.joint.empty()) one.joint = work.metrics.joint;
+    one.every_joint = false;
+    const Log log = read_log_in_part(request.path, one);
+    return against_gear({&log, 1}, *work.method->gear);
 }
 
 // A map says nothing of speeds that it never saw.
@@ -319,6 +331,8 @@ ExitCode run_filter(FilterRequest& request, const std::string& command_line) {
     bool within = true;
     for (std::size_t j = 0; j < works.size(); ++j) {
         works[j].metrics.stream = std::move(reports[j]);
+        if (const std::string against = against_gear_of(request, works[j], read); !against.empty())
+            warn(works[j].common, against);
         if (!tell(request, works[j], command_line)) within = false;
     }
     if (const auto& messages = works.front().common.messages) messages->say_all(works.size());

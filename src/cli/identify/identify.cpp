@@ -327,13 +327,9 @@ Identification identified_joint(const Joint& joint, const IdentifyRequest& reque
 // What was believed and turned out otherwise is told, and not left to the notes.
 void say_other_ratio(const IdentifyRequest& request, const CommonOptions& common,
                      const Identification& found) {
-    constexpr double rounding = 0.001;
-    const GearRatioFit& fit = found.gear_ratio;
-    if (!request.gear.ratio || !fit.value) return;
-    const double doubt = std::max(fit.ci95_high - *fit.value, rounding * *request.gear.ratio);
-    if (std::abs(*fit.value - *request.gear.ratio) <= doubt) return;
-    warn(common, fmt::format("--gear-ratio {}: the lines give {:.6g} (95 %: {:.6g} to {:.6g})",
-                             shortest(*request.gear.ratio), *fit.value, fit.ci95_low, fit.ci95_high));
+    if (!request.gear.ratio || found.gear_ratio.contradicted) return;  // the verdict says the latter
+    const std::string against = against_ratio(found, GearRatio(*request.gear.ratio));
+    if (!against.empty()) warn(common, against);
 }
 
 void check_identify(IdentifyRequest& request) {

@@ -214,6 +214,10 @@ ExitCode run_map_once(const MapRequest& request, const std::string& command_line
         say(request.common, fmt::format("joint {}: {}", other.joint, gear_in_words(other.gear)));
     MapFit fit = map_readings(logs, *gear, request.zero, others);
     fit.map.joint = logs.front().trace.joint;
+    if (const std::string against = against_gear(logs, *gear); !against.empty()) {
+        warn(request.common, against);
+        fit.conclusive = false;
+    }
     for (const std::string& note : fit.notes) say(request.common, note);
     const std::string heading = request.heads ? fit.map.joint + ": " : "";
     const std::string& unit = logs.front().recording.torque_unit;

@@ -324,26 +324,36 @@ Recommendation judged_methods(TriedMethods& candidates, const Parts& parts, cons
     }
 }
 
+// Empty where the log has to show the lines: orders by the motor name none without a ratio.
+std::optional<GearAccount> stated_gear(const GearOptions& options, const GearChoice& choice) {
+    const bool by_motor =
+        std::any_of(options.orders.begin(), options.orders.end(), std::not_fn(&StatedOrder::per_turn));
+    if (by_motor && !options.ratio && !options.joint_file) return std::nullopt;
+    return choice.of();
+}
+
 RecommendationReport report_of(const RecommendRequest& request, Provenance& provenance) {
     RecommendationReport report;
     report.target = request.target.value_or("");
     const auto target = request.target ? std::optional(find_any_target(*request.target)) : std::nullopt;
     const auto band = stated_band(request.torque_band);
     const GearChoice stated(request.gear);
-    Parts parts = read_parts(request, stated.of(), report.split_s, provenance);
+    Parts parts = read_parts(request, stated_gear(request.gear, stated), report.split_s, provenance);
     if (stated.joint()) provenance.inputs.push_back(input_record(stated.joint()->path));
     GearOptions gear_options = request.gear;
     report.found.limits = {request.limits.max_delay, request.limits.min_attenuation_db,
                            !request.gear.orders.empty()};
-    if (!stated.of()) {
+    if (!stated_gear(request.gear, stated)) {
         const auto found = found_gear_options(parts, report.found);
         report.conclusive = report.found.finding == RecommendationFinding::no_ripple;
         if (!found) return report;
         gear_options = *found;
+        if (!request.gear.orders.empty()) gear_options.orders = request.gear.orders;
     }
     const GearChoice choice(gear_options);
     report.gear = choice.of();
-    if (!stated.of()) report.gear->source = "identify, on the log's first part";
+    const bool is_stated = stated_gear(request.gear, stated).has_value();
+    if (!is_stated) report.gear->source = "identify, on the log's first part";
     say(request.common, gear_in_words(*report.gear));
     const std::string split = split_words(report.split_s);
     TriedMethods candidates = candidates_for({parts.train, parts.whole.recording.clock.nominal_rate,
@@ -355,10 +365,16 @@ RecommendationReport report_of(const RecommendRequest& request, Provenance& prov
         report.found.why = fmt::format("{} can hold none of the methods", target->spec.text());
     name_other_lines(parts, *report.gear, report.found);
     doubt_readings(parts, *report.gear, report.found);
-    report.assumed = assumptions(request, parts, *report.gear, stated.of().has_value());
+    report.assumed = assumptions(request, parts, *report.gear, is_stated);
     report.conclusive = report.found.finding != RecommendationFinding::cannot_tell;
     // Where nothing can be told, nothing was tried: no list of what was not.
     if (report.conclusive) report.left_out = candidates.left_out;
+    if (const std::string against = is_stated ? against_gear({&parts.whole, 1}, *report.gear) : "";
+        !against.empty()) {
+        warn(request.common, against);
+        report.assumed.insert(report.assumed.begin(), against);
+        report.conclusive = false;
+    }
     if (report.found.methods.empty()) return report;
     const CommandLines commands({request.log, request.log_words({}, {}), request.log_words(split, {}),
                                  parts.judge.recording.clock.nominal_rate, candidates, target, *report.gear});

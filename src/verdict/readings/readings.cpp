@@ -15,6 +15,7 @@
 
 #include "ripplenotch/analysis/identification.hpp"
 #include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/visible_text.hpp"
 #include "ripplenotch/diagnose/diagnosis.hpp"
 #include "ripplenotch/log/log.hpp"
@@ -358,6 +359,32 @@ void refuse_open_readings(const Log& log) {
         raise<DataError>(
             "{}: the motion is measured before the gear; --gear-ratio states how to convert it to the joint",
             log.layout.source);
+}
+
+std::string against_ratio(const Identification& found, GearRatio stated) {
+    constexpr double rounding = 0.001;
+    const GearRatioFit& fit = found.gear_ratio;
+    if (fit.contradicted) {
+        const std::string probable = joined(fit.candidates, " or ", [](const RatioCandidate& one) {
+            return fmt::format("{:.5g}", one.value);
+        });
+        return fmt::format("the lines of this log contradict the stated gear ratio {:.6g}{}", stated.value(),
+                           probable.empty() ? "" : "; probable is " + probable);
+    }
+    if (!fit.value) return "";
+    const double doubt = std::max(fit.ci95_high - *fit.value, rounding * stated.value());
+    if (std::abs(*fit.value - stated.value()) <= doubt) return "";
+    return fmt::format("--gear-ratio {}: the lines give {:.6g} (95 %: {:.6g} to {:.6g})",
+                       shortest(stated.value()), *fit.value, fit.ci95_low, fit.ci95_high);
+}
+
+std::string against_gear(std::span<const Log> logs, const GearAccount& gear) {
+    const bool enough = std::all_of(
+        logs.begin(), logs.end(), [](const Log& log) { return log.trace.size() >= fewest_identify_samples; });
+    if (!gear.has_ratio() || !enough) return "";
+    IdentifyOptions options;
+    options.hint = gear.ratio;
+    return against_ratio(identify_readings(logs, options), gear.ratio);
 }
 
 }  // namespace ripplenotch
