@@ -61,11 +61,13 @@ class WhereTheGearComesFrom(Case):
         self.assertEqual(done.returncode, 2)
         self.assertIn("method tracking needs to know where the ripple is: give --gear-ratio, for example 100", done.stderr)
 
-    def test_a_joint_file_that_found_nothing_is_refused_with_the_way_out(self):
+    def test_a_joint_file_without_a_ratio_gives_its_lines_by_turns_of_the_joint(self):
         (self.folder / "lines.json").write_text(joint(ratio=None))
         _, metrics = self.filtered("--method", "tracking,joint=lines.json")
         self.assertEqual(metrics["method"], "tracking,orders=100/turn:200/turn")
         self.assertIsNone(metrics["gear_ratio"])
+
+    def test_a_joint_file_that_found_nothing_is_refused_with_the_way_out(self):
         (self.folder / "nothing.json").write_text(joint(ratio=None, orders=()))
         done = self.run_tool("filter", MOVE, "--method", "tracking,joint=nothing.json")
         self.assertEqual(done.returncode, 3)

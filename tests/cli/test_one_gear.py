@@ -121,7 +121,7 @@ class SameRefusals(Commands):
             with self.subTest(command=name):
                 self.assertEqual(done.returncode, 2, done.stderr)
                 self.assertRegex(done.stderr, r"^ripplenotch \w+: --orders: 1 counts by turns of the motor, which takes a "
-                                              r"gear ratio; give gear-ratio, for example 100, or count by turns of the "
+                                              r"gear ratio; give --gear-ratio, for example 100, or count by turns of the "
                                               r"joint: 100/turn\n$")
 
 
