@@ -27,11 +27,11 @@ inline Log read_text(const std::string& bytes, const ReadOptions& options = {}, 
     return read_log(in_memory(bytes, piece), options);
 }
 
-/// The message of the DataError that reading throws; empty when it reads.
+/// The message of the error that reading throws; empty when it reads.
 inline std::string complaint(const std::string& bytes, const ReadOptions& options = {}) {
     try {
         read_text(bytes, options);
-    } catch (const DataError& error) {
+    } catch (const Error& error) {
         return error.what();
     }
     return "";

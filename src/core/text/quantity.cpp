@@ -21,6 +21,7 @@ struct Unit {
 };
 
 constexpr double pi = std::numbers::pi;
+constexpr double kgf = 9.80665, lbf = 0.45359237 * kgf, inch = 0.0254;  // by definition, in N and m
 
 // The first unit of a dimension is its base unit. A turn of the joint is 360 deg; a frequency in rad/s is
 // angular.
@@ -32,6 +33,8 @@ constexpr std::array units = {
     Unit{Dimension::time, "ns", 1e-9},
     Unit{Dimension::time, "100ns", 1e-7},
     Unit{Dimension::time, "min", 60.0},
+    Unit{Dimension::time, "h", 3600.0},
+    Unit{Dimension::time, "d", 86400.0},
     Unit{Dimension::frequency, "Hz", 1.0},
     Unit{Dimension::frequency, "kHz", 1e3},
     Unit{Dimension::frequency, "MHz", 1e6},
@@ -48,15 +51,25 @@ constexpr std::array units = {
     Unit{Dimension::speed, "mrad/s", degrees_per_radian * 1e-3},
     Unit{Dimension::speed, "rpm", 6.0},
     Unit{Dimension::speed, "rev/s", 360.0},
+    Unit{Dimension::speed, "deg/min", 1.0 / 60.0},
+    Unit{Dimension::speed, "rad/min", degrees_per_radian / 60.0},
     Unit{Dimension::speed, "Hz", 360.0},
     Unit{Dimension::torque, "Nm", 1.0},
     Unit{Dimension::torque, "N*m", 1.0},
     Unit{Dimension::torque, "N.m", 1.0},
     Unit{Dimension::torque, "N m", 1.0},
     Unit{Dimension::torque, "mNm", 1e-3},
+    Unit{Dimension::torque, "uNm", 1e-6},
+    Unit{Dimension::torque, "cNm", 1e-2},
     Unit{Dimension::torque, "kNm", 1e3},
     Unit{Dimension::torque, "Nmm", 1e-3},
     Unit{Dimension::torque, "Ncm", 1e-2},
+    Unit{Dimension::torque, "kgf.m", kgf},
+    Unit{Dimension::torque, "kgf.cm", 1e-2 * kgf},
+    Unit{Dimension::torque, "gf.cm", 1e-5 * kgf},
+    Unit{Dimension::torque, "lbf.ft", lbf * 12.0 * inch},
+    Unit{Dimension::torque, "lbf.in", lbf * inch},
+    Unit{Dimension::torque, "ozf.in", lbf / 16.0 * inch},
     Unit{Dimension::torque_rate, "Nm/s", 1.0},
     Unit{Dimension::torque_rate, "mNm/s", 1e-3},
     Unit{Dimension::inertia, "kgm2", 1.0},

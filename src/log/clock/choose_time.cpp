@@ -44,7 +44,10 @@ constexpr std::array clock_units = {
     ClockUnit{"us", 1e-6, 6.3e14, 3.8e15, "microseconds since 1970"},
     ClockUnit{"ns", 1e-9, 6.3e17, 3.8e18, "nanoseconds since 1970"},
     ClockUnit{"100ns", 1e-7, 1.22e17, 1.55e17, "ticks of 100 ns since 1601 (FILETIME)"},
+    ClockUnit{"d", 86400.0, 3.29e4, 6.95e4, "days since 1900, as of a spreadsheet"},
+    ClockUnit{"d", 86400.0, 7.26e5, 7.64e5, "days since the year 0, as of MATLAB"},
 };
+constexpr std::size_t counted_units = 5;  // those that a rate alone decides between
 
 struct ClockOpening {
     double first = 0.0;
@@ -82,21 +85,48 @@ const ClockUnit* unit_of(const ClockOpening& opening, std::string& reason) {
         reason = fmt::format("{:.4g} is a count of {}", opening.first, unit.since);
         return &unit;
     }
-    for (const ClockUnit& unit : clock_units) {
+    for (const ClockUnit& unit : std::span(clock_units).first(counted_units)) {
         const double rate = rate_in(opening, unit);
         if (rate < lowest_rate_hz * 0.999 || rate > highest_rate_hz * 1.001) continue;
         reason = fmt::format("a step of {:.4g} is then {:.4g} Hz", opening.step, rate);
         return &unit;
     }
-    const bool seconds = rate_in(opening, clock_units[0]) >= least_assumed_hz;
+    const double seconds_hz = rate_in(opening, clock_units[0]);
+    const bool seconds = seconds_hz >= least_assumed_hz && seconds_hz <= highest_rate_hz;
     return seconds ? &clock_units[0] : nullptr;
 }
 
 void set_origin(const ColumnFacts& facts, const ClockOpening& opening, Layout& layout) {
-    if (std::abs(opening.first) < long_ago || std::abs(opening.first) > 9.2e18) return;
     const std::size_t column = *layout.chosen.time;
+    const bool days = layout.columns[column].unit == "d";
+    if (std::abs(opening.first) < (days ? 1.0 : long_ago) || std::abs(opening.first) > 9.2e18) return;
     const std::int64_t exact = column < facts.first_counts.size() ? facts.first_counts[column] : 0;
     layout.time_origin = exact != 0 ? exact : static_cast<std::int64_t>(opening.first);
+}
+
+void find_unit(const ColumnFacts& facts, const ClockOpening& opening, Layout& layout) {
+    Column& column = layout.columns[*layout.chosen.time];
+    const std::string label = column_label(facts.names, *layout.chosen.time);
+    std::string reason;
+    const ClockUnit* const unit = unit_of(opening, reason);
+    if (unit == nullptr) {
+        ask("{}: {} advances by {} a row and no unit is stated: in seconds that is {:.3g} rows a second, and "
+            "no "
+            "unit from s to ns gives {:g} Hz to {:g} kHz; use --unit time=d (or s, ms, us, ns, min, h), or "
+            "--sample-rate 1kHz",
+            layout.source, label, shortest(opening.step), 1.0 / opening.step, lowest_rate_hz,
+            1e-3 * highest_rate_hz);
+    }
+    column.unit = unit->name;
+    column.factor = unit->seconds;
+    column.unit_assumed = reason.empty();
+    if (reason.empty()) reason = "no unit gives a usual rate; seconds are the commonest";
+    Assumption read{fmt::format("unit of {}", label),
+                    std::string(unit->name),
+                    reason,
+                    fmt::format("--unit time={}", unit->name),
+                    {}};
+    (column.unit_assumed ? layout.assumptions : layout.inferences).push_back(std::move(read));
 }
 
 }  // namespace
@@ -107,6 +137,8 @@ void settle_clock(const ColumnFacts& facts, bool unit_is_stated, Layout& layout)
     const ClockOpening opening = opening_of(facts, *layout.chosen.time, layout.time_is_steps);
     layout.time_as_text = !facts.clock_texts.empty() && facts.clock_texts[*layout.chosen.time];
     if (layout.time_as_text) layout.stamp_form = facts.stamp_forms[*layout.chosen.time];
+    if (!unit_is_stated && !layout.time_as_text && !layout.time_fraction && opening.step > 0.0)
+        find_unit(facts, opening, layout);
     set_origin(facts, opening, layout);
     const std::string label = column_label(facts.names, *layout.chosen.time);
     if (layout.time_as_text && layout.stamp_form.either_order && layout.stamp_form.other_s != 0)
@@ -127,26 +159,6 @@ void settle_clock(const ColumnFacts& facts, bool unit_is_stated, Layout& layout)
         column.unit_assumed = false;
         return;
     }
-    if (unit_is_stated || opening.step <= 0.0) return;
-    std::string reason;
-    const ClockUnit* const unit = unit_of(opening, reason);
-    if (unit == nullptr) {
-        raise<DataError>(
-            "{}: {} advances by {} a row and no unit is stated: in seconds that is {:.3g} rows a second, and "
-            "no other unit gives {:g} Hz to {:g} kHz; use --unit time=UNIT (s, ms, us, ns), or --sample-rate",
-            layout.source, label, shortest(opening.step), 1.0 / opening.step, lowest_rate_hz,
-            1e-3 * highest_rate_hz);
-    }
-    column.unit = unit->name;
-    column.factor = unit->seconds;
-    column.unit_assumed = reason.empty();
-    if (reason.empty()) reason = "no unit gives a usual rate; seconds are the commonest";
-    Assumption read{fmt::format("unit of {}", label),
-                    std::string(unit->name),
-                    reason,
-                    fmt::format("--unit time={}", unit->name),
-                    {}};
-    (column.unit_assumed ? layout.assumptions : layout.inferences).push_back(std::move(read));
 }
 
 namespace {
@@ -291,13 +303,13 @@ void take_steps(const ColumnFacts& facts, std::size_t column, Layout& layout) {
 struct Clocks {
     std::vector<std::size_t> forward, texts, counters, broken;
 };
-Clocks find_clocks(const ColumnFacts& facts, const Forced& forced, const ReadOptions& options) {
+Clocks find_clocks(const ColumnFacts& facts, const std::vector<ColumnName>& names, const Forced& forced,
+                   const ReadOptions& options) {
     Clocks found;
     int best_rank = 1000;
-    const std::vector<ColumnName> names = read_column_names(facts.meanings(), facts.units);
     for (std::size_t c = 0; !forced.by_place && c < facts.names.size(); ++c) {
         const ColumnName& name = names[c];
-        const Convention* const known = convention_of(facts.meanings()[c], Role::time, facts.meanings());
+        const Convention* const known = name.convention(Role::time);
         if ((name.role != Role::time && known == nullptr) || name.reference || forced.roles[c]) continue;
         const auto values = finite_values(facts, c);
         if (!facts.clock_texts.empty() && facts.clock_texts[c]) {
@@ -372,7 +384,8 @@ bool varies(const std::vector<double>& values) {
     return false;
 }
 
-void choose_time(const ColumnFacts& facts, const Forced& forced, const ReadOptions& options, Layout& layout) {
+void choose_time(const ColumnFacts& facts, const std::vector<ColumnName>& names, const Forced& forced,
+                 const ReadOptions& options, Layout& layout) {
     if (options.sample_rate) return;
     layout.chosen.time = forced.column_of(Role::time);
     const auto pair = forced.by_place ? std::nullopt : find_stamp_pair(facts, forced);
@@ -384,7 +397,7 @@ void choose_time(const ColumnFacts& facts, const Forced& forced, const ReadOptio
         take_steps(facts, *layout.chosen.time, layout);
     if (layout.chosen.time) return;
     std::vector<LogWarning>& warnings = layout.warnings;
-    const Clocks found = find_clocks(facts, forced, options);
+    const Clocks found = find_clocks(facts, names, forced, options);
     const auto& [clocks, texts, counters, broken] = found;
     if (clocks.size() > 1) {
         raise<DataError>("{}: {} could each be the time; state which, with --columns time={}", layout.source,

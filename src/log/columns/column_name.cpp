@@ -5,10 +5,14 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
+#include <charconv>
+#include <map>
+#include <set>
+#include <tuple>
 
 #include "core/text/lower_case.hpp"
-#include "log/columns/drive_objects.hpp"
 #include "log/columns/units.hpp"
 #include "ripplenotch/core/error.hpp"
 
@@ -16,91 +20,121 @@ namespace ripplenotch {
 
 namespace {
 
-struct RoleWord {
-    std::string_view word;
-    Role role;
+// The table of names, by word.
+
+enum class Meaning {
+    time,
+    velocity,
+    torque,
+    position,
+    current,
+    reference,
+    foreign,
+    force,
+    part,
+    general,
+    motor,
+    filtered,
+    sensor,
+    joint,
+    clock,
+};
+
+struct NameLine {
+    std::string_view family, beside, names;
+    Meaning meaning;
     int rank;
+    std::string_view unit;
+    Shaft side;
+    std::string_view source;
+};
+struct Symbol {
+    std::string_view text;
+    Role role;
+    std::string_view rivals;
+};
+struct DriveObject {
+    unsigned index = 0;  ///< of the first axis
+    Role role = Role::other;
+    Meaning meaning;
+    std::string_view unit, words;
 };
 
-constexpr std::array role_words = {
-    RoleWord{"torque", Role::torque, 0},
-    RoleWord{"torques", Role::torque, 0},
-    RoleWord{"tau", Role::torque, 0},
-    RoleWord{"effort", Role::torque, 0},
-    RoleWord{"efforts", Role::torque, 0},
-    RoleWord{"moment", Role::torque, 0},
-    RoleWord{"moments", Role::torque, 0},
-    RoleWord{"trq", Role::torque, 0},
-    RoleWord{"torq", Role::torque, 0},
-    RoleWord{"drehmoment", Role::torque, 0},
-    RoleWord{"velocity", Role::velocity, 0},
-    RoleWord{"velocities", Role::velocity, 0},
-    RoleWord{"vel", Role::velocity, 0},
-    RoleWord{"velo", Role::velocity, 0},
-    RoleWord{"speed", Role::velocity, 0},
-    RoleWord{"dq", Role::velocity, 0},
-    RoleWord{"qd", Role::velocity, 0},
-    RoleWord{"qdot", Role::velocity, 0},
-    RoleWord{"qvel", Role::velocity, 0},
-    RoleWord{"omega", Role::velocity, 0},
-    RoleWord{"drehzahl", Role::velocity, 0},
-    RoleWord{"geschwindigkeit", Role::velocity, 0},
-    RoleWord{"dtheta", Role::velocity, 1},
-    RoleWord{"erpm", Role::velocity, 1},
-    RoleWord{"position", Role::position, 0},
-    RoleWord{"positions", Role::position, 0},
-    RoleWord{"pos", Role::position, 0},
-    RoleWord{"q", Role::position, 0},
-    RoleWord{"angle", Role::position, 0},
-    RoleWord{"angles", Role::position, 0},
-    RoleWord{"qpos", Role::position, 0},
-    RoleWord{"winkel", Role::position, 0},
-    RoleWord{"theta", Role::position, 1},
-    RoleWord{"time", Role::time, 0},
-    RoleWord{"t", Role::time, 0},
-    RoleWord{"timestamp", Role::time, 0},
-    RoleWord{"stamp", Role::time, 0},
-    RoleWord{"timestamps", Role::time, 0},
-    RoleWord{"zeit", Role::time, 0},
-    RoleWord{"elapsed", Role::time, 0},
-    RoleWord{"duration", Role::time, 1},
-    RoleWord{"datetime", Role::time, 1},
-    RoleWord{"asctime", Role::time, 1},
-    RoleWord{"date", Role::time, 2},
+#define SYMBOL(...)
+#define OBJECT(...)
+#define UNIT(...)
+#define NAME(family, beside, names, meaning, rank, unit, side, source) \
+    NameLine{family, beside, names, Meaning::meaning, rank, unit, Shaft::side, source},
+#define WORDS(language, meaning, rank, words) NAME(language, "", words, meaning, rank, "", joint, "")
+constexpr std::array name_lines = {
+#include "log/columns/names.def"
+};
+#undef NAME
+#undef WORDS
+#undef SYMBOL
+#undef OBJECT
+#define NAME(...)
+#define WORDS(...)
+#define OBJECT(...)
+#define SYMBOL(text, role, rivals) Symbol{text, Role::role, rivals},
+constexpr std::array symbols = {
+#include "log/columns/names.def"
+};
+#undef SYMBOL
+#undef OBJECT
+#define SYMBOL(...)
+#define OBJECT(index, role, meaning, unit, words) \
+    DriveObject{index, Role::role, Meaning::meaning, unit, words},
+constexpr std::array drive_objects = {
+#include "log/columns/names.def"
+};
+#undef NAME
+#undef WORDS
+#undef SYMBOL
+#undef OBJECT
+#undef UNIT
+
+Role role_of(Meaning meaning) {
+    constexpr std::array roles = {Role::time, Role::velocity, Role::torque, Role::position};
+    const auto at = static_cast<std::size_t>(meaning);
+    return at < roles.size() ? roles[at] : Role::other;
+}
+
+/// What a word may mean.
+struct Sense {
+    unsigned meanings = 0;
+    int rank = 0;
+    [[nodiscard]] bool is(Meaning meaning) const {
+        return (meanings >> static_cast<unsigned>(meaning) & 1U) != 0;
+    }
+    [[nodiscard]] Role role() const {
+        for (const Meaning m : {Meaning::time, Meaning::velocity, Meaning::torque, Meaning::position})
+            if (is(m)) return role_of(m);
+        return Role::other;
+    }
 };
 
-constexpr std::array<std::string_view, 7> current_words = {"current", "currents", "iq",  "amps",
-                                                           "strom",   "amperage", "curr"};
-constexpr std::array<std::string_view, 22> reference_words = {
-    "target",    "targets",  "ref",     "reference", "desired", "des",    "cmd",       "command",
-    "commanded", "commands", "goal",    "setpoint",  "model",   "sim",    "simulated", "feedforward",
-    "ff",        "soll",     "planned", "set",       "ctrl",    "control"};
-// Quantities of something else: of the tool, of the mains, or derived from the one that is wanted.
-// Of a linear axis; of an arm it is that of its tool.
-constexpr RoleWord force_word{"force", Role::torque, 0};
-constexpr std::array<std::string_view, 35> foreign_words = {
-    "tcp",     "tool",      "pose",     "twist", "cartesian",   "wrench",        "force",
-    "linear",  "scaling",   "fraction", "error", "err",         "ext",           "external",
-    "hat",     "limit",     "limits",   "max",   "min",         "robot",         "main",
-    "voltage", "execution", "cycle",    "delay", "temperature", "accelerations", "acceleration",
-    "acc",     "ddq",       "ddot",     "qdd",   "override",    "deviation",     "derivative"};
-// Parts of a torque, as models and simulators write them next to the whole.
-constexpr std::array<std::string_view, 12> part_words = {
-    "friction", "passive",  "gravity", "grav", "coriolis",   "centrifugal",
-    "inertia",  "inertial", "damping", "bias", "constraint", "disturbance"};
-// Words that say how or where, not which joint.
-constexpr std::array<std::string_view, 25> general_words = {
-    "state",  "states", "actual",   "act",   "measured", "meas", "msr",    "measurement", "value",
-    "values", "raw",    "joints",   "motor", "rotor",    "load", "link",   "output",      "shaft",
-    "sensor", "signal", "filtered", "log",   "data",     "ist",  "encoder"};
-
-bool contains(std::span<const std::string_view> words, std::string_view word) {
-    return std::find(words.begin(), words.end(), word) != words.end();
+Sense sense_of(std::string_view word) {
+    static const auto table = [] {
+        std::map<std::string_view, Sense> senses;
+        for (const NameLine& line : name_lines) {
+            if (!line.unit.empty()) continue;
+            for_each_word(line.names, [&](std::string_view name) {
+                Sense& sense = senses[name];
+                sense.meanings |= 1U << static_cast<unsigned>(line.meaning);
+                sense.rank = std::max(sense.rank, line.rank);
+            });
+        }
+        return senses;
+    }();
+    const auto found = table.find(word);
+    return found == table.end() ? Sense{} : found->second;
 }
 
 struct Word {
     std::string text;    // lower case
     bool glued = false;  // follows the word before without anything between: "j" "4" of "j4"
+    Sense sense = {};
 };
 
 bool is_digits(std::string_view text) {
@@ -118,9 +152,39 @@ void join_dots(std::vector<Word>& words) {
     }
 }
 
+// "abtriebsdrehzahl" is abtrieb and drehzahl, "motorspeed" motor and speed: words of the table, the longest
+// first, which German joins by s, n or en. Short ones are in words by chance.
+bool cut_compound(std::string_view text, std::vector<std::string_view>& parts) {
+    constexpr std::size_t shortest = 3;
+    for (std::size_t size = text.size(); size >= shortest; --size) {
+        const std::string_view part = text.substr(0, size);
+        if (sense_of(part).meanings == 0) continue;
+        parts.push_back(part);
+        if (size == text.size()) return true;
+        for (const std::string_view link : {"", "s", "n", "en"}) {
+            if (text.substr(size).starts_with(link) && cut_compound(text.substr(size + link.size()), parts))
+                return true;
+        }
+        parts.pop_back();
+    }
+    return false;
+}
+
+void push_word(std::vector<Word>& words, const Word& word) {
+    std::vector<std::string_view> parts;
+    const bool known = sense_of(word.text).meanings != 0;
+    if (known || !cut_compound(word.text, parts) ||
+        std::none_of(parts.begin(), parts.end(), [](std::string_view part) {
+            return sense_of(part).role() != Role::other || sense_of(part).is(Meaning::current);
+        }))
+        parts = {word.text};
+    for (const std::string_view part : parts)
+        words.push_back({std::string(part), word.glued || part.data() != parts.front().data()});
+}
+
 // "actualVelocity_3" -> actual, Velocity (glued), 3
 std::vector<Word> split_words(std::string_view name) {
-    std::vector<Word> words;
+    std::vector<Word> pieces;
     const auto kind = [](unsigned char c) {
         return std::isdigit(c) != 0 ? 'd' : std::isupper(c) != 0 ? 'U' : 'l';
     };
@@ -133,11 +197,14 @@ std::vector<Word> split_words(std::string_view name) {
         }
         const char now = kind(byte);
         const bool digit_edge = before != 0 && (now == 'd') != (before == 'd');
-        if (before == 0 || digit_edge || (before == 'l' && now == 'U')) words.push_back({"", before != 0});
-        words.back().text += static_cast<char>(std::tolower(byte));
+        if (before == 0 || digit_edge || (before == 'l' && now == 'U')) pieces.push_back({"", before != 0});
+        pieces.back().text += static_cast<char>(std::tolower(byte));
         before = now;
     }
+    std::vector<Word> words;
+    for (const Word& piece : pieces) push_word(words, piece);
     join_dots(words);
+    for (Word& word : words) word.sense = sense_of(word.text);
     return words;
 }
 
@@ -146,7 +213,7 @@ void take_ampere(std::vector<Word>& words, std::string& unit) {
     if (!unit.empty() || words.size() < 2 || words.back().glued) return;
     const std::string& last = words.back().text;
     if ((last != "a" && last != "ma") || !std::any_of(words.begin(), words.end() - 1, [](const Word& word) {
-            return contains(current_words, word.text);
+            return word.sense.is(Meaning::current);
         }))
         return;
     unit = last == "a" ? "A" : "mA";
@@ -154,16 +221,10 @@ void take_ampere(std::vector<Word>& words, std::string& unit) {
 }
 
 // What is left of a name once quantity and unit are gone: "j4", "3", "wrist_1_joint", or nothing.
-std::string joint_in_name(const std::vector<Word>& left) {
-    std::vector<Word> words;
-    for (const Word& word : left) {
-        if (!contains(general_words, word.text)) words.push_back(word);
-    }
-    const auto prefix = [](std::string_view text) {
-        return text == "j" || text == "joint" || text == "axis" || text == "a" || text == "ax";
-    };
-    if (words.size() == 1 && prefix(words[0].text)) return "";
-    if (words.size() == 2 && prefix(words[0].text) && is_digits(words[1].text)) {
+std::string joint_in_name(const std::vector<Word>& words) {
+    const auto prefix = [](const Word& word) { return word.sense.is(Meaning::joint); };
+    if (words.size() == 1 && prefix(words[0])) return "";
+    if (words.size() == 2 && prefix(words[0]) && is_digits(words[1].text)) {
         return words[1].glued ? words[0].text + words[1].text : words[1].text;
     }
     std::string joint;
@@ -174,17 +235,108 @@ std::string joint_in_name(const std::vector<Word>& left) {
     return joint;
 }
 
+/// The object whose index a name holds ("velocity_actual_value_0x606C", "6064h", "16#6077:00"), and the name
+/// without it, with "axis2" for a drive's second axis, whose objects stand 0x800 further, and so on.
+struct NamedObject {
+    const DriveObject* object = nullptr;
+    std::string name;
+};
+
+NamedObject drive_object(std::string_view name) {
+    constexpr unsigned first_index = 0x6000, next_axis = 0x800, last_index = 0x9FFF;
+    const auto is_hex = [](char c) { return std::isxdigit(static_cast<unsigned char>(c)) != 0; };
+    const auto is_alnum = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0; };
+    for (std::size_t at = 0; at + 4 <= name.size(); ++at) {
+        if (!std::all_of(name.begin() + static_cast<std::ptrdiff_t>(at),
+                         name.begin() + static_cast<std::ptrdiff_t>(at) + 4, is_hex))
+            continue;
+        std::size_t begin = at, end = at + 4;
+        const std::string_view before = name.substr(0, at);
+        if (before.ends_with("0x") || before.ends_with("0X"))
+            begin -= 2;
+        else if (before.ends_with("16#"))
+            begin -= 3;
+        const bool marked = begin < at || (end < name.size() && (name[end] == 'h' || name[end] == 'H'));
+        if (begin == at && marked) ++end;
+        // A number of four digits that nothing marks is an index only where it is a word of its own.
+        if ((begin > 0 && is_alnum(name[begin - 1])) || (end < name.size() && is_alnum(name[end]))) continue;
+        unsigned index = 0;
+        std::from_chars(name.data() + at, name.data() + at + 4, index, 16);
+        if (index < first_index || index > last_index) continue;
+        const auto* const object =
+            std::find_if(drive_objects.begin(), drive_objects.end(), [index](const DriveObject& known) {
+                return known.index == first_index + (index - first_index) % next_axis;
+            });
+        if (object == drive_objects.end()) continue;
+        // The sub-index: ":00", "_00", ".0".
+        if (end < name.size() && std::string_view(":_.").find(name[end]) != std::string_view::npos) {
+            const std::size_t zeros = name.find_first_not_of('0', end + 1);
+            const std::size_t after = zeros == std::string_view::npos ? name.size() : zeros;
+            if (after > end + 1 && (after == name.size() || !is_alnum(name[after]))) end = after;
+        }
+        const unsigned axis = (index - first_index) / next_axis;
+        std::string rest(name.substr(0, begin));
+        rest += axis > 0 ? fmt::format("_axis{}_", axis + 1) : "_";
+        rest += name.substr(end);
+        while (rest.ends_with('_')) rest.pop_back();
+        return {object, rest};
+    }
+    return {nullptr, std::string(name)};
+}
+
+const DriveObject* drive_object_named(const std::vector<Word>& words) {
+    std::string spoken;
+    for (const Word& word : words) spoken += (spoken.empty() ? "" : " ") + word.text;
+    for (const DriveObject& known : drive_objects)
+        if (!known.words.empty() && spoken.find(known.words) != std::string::npos) return &known;
+    return nullptr;
+}
+
+/// The quantity that a name's words name, and which word does. A force is one of a linear axis only.
+struct Named {
+    Role role = Role::other;
+    bool current = false;  ///< a motor current in place of a torque
+    std::size_t word = 0;
+    int rank = 0;
+};
+Named quantity_of(const std::vector<Word>& words, bool linear_axis) {
+    Named found;
+    bool current = false;
+    const bool of_current = std::any_of(words.begin(), words.end(),
+                                        [](const Word& word) { return word.sense.is(Meaning::current); });
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        const Sense& sense = words[i].sense;
+        if (linear_axis && sense.is(Meaning::force)) return {Role::torque, false, i, 0};
+        if (sense.is(Meaning::reference)) continue;
+        current = current || sense.is(Meaning::current);
+        if (words[i].text == "q" && of_current) continue;  // the axis of a motor's field, no coordinate
+        if (sense.role() != Role::other && (found.role == Role::other || found.role == Role::time))
+            found = {sense.role(), false, i, sense.rank};
+    }
+    return found.role == Role::other && current ? Named{Role::torque, true, words.size(), 1} : found;
+}
+
 // A time column is called so and little else: "actual_execution_time" is not the clock of the log.
 bool is_clock_name(const std::vector<Word>& left) {
     return std::all_of(left.begin(), left.end(), [](const Word& word) {
-        return contains(general_words, word.text) || word.text == "stamp" || word.text == "time" ||
-               word.text == "elapsed" || word.text == "ros" || word.text == "header" ||
-               word.text == "sample" || word.text == "since" || word.text == "start" || word.text == "unix" ||
-               word.text == "epoch" || word.text == "boot" || word.text == "log" || word.text == "system";
+        return word.sense.is(Meaning::general) || word.sense.is(Meaning::clock);
     });
 }
 
 }  // namespace
+
+bool is_known_word(std::string_view text) {
+    const std::vector<Word> words = split_words(text);
+    return !words.empty() &&
+           std::all_of(words.begin(), words.end(), [](const Word& word) { return word.sense.meanings != 0; });
+}
+
+const Convention* ColumnName::convention(Role as) const {
+    const auto found = std::find_if(conventions.begin(), conventions.end(), [as](const Convention* known) {
+        return as == Role::other || known->role == as;
+    });
+    return found == conventions.end() ? nullptr : *found;
+}
 
 ColumnName read_column_name(std::string_view name, bool linear_axis) {
     ColumnName column;
@@ -195,78 +347,64 @@ ColumnName read_column_name(std::string_view name, bool linear_axis) {
     const bool element =
         bracket != std::string_view::npos && is_digits(name.substr(bracket + 1, name.size() - bracket - 2));
     const NamedObject named = drive_object(element ? name.substr(0, bracket) : name);
-    NameAndUnit parts = split_unit(named.name, linear_axis);
+    std::vector<Word> words = split_words(named.name);
+    const DriveObject* const object = named.object != nullptr ? named.object : drive_object_named(words);
+    // What is measured decides which last words are a unit: "velocity_min" is no time.
+    Named quantity = quantity_of(words, linear_axis);
+    if (quantity.role == Role::other && object != nullptr)
+        quantity = {object->role, object->meaning == Meaning::current, words.size(),
+                    object->meaning == Meaning::current ? 1 : 0};
+    NameAndUnit parts = split_unit(named.name, quantity.role, linear_axis);
     if (element) parts.name += name.substr(bracket);
     column.unit = parts.unit;
     column.unit_is_sure = parts.bracketed;
-    std::vector<Word> left;
-    const RoleWord* found = nullptr;
-    bool foreign = false, filtered = false, part = false;
-    std::vector<Word> words = split_words(parts.name);
-    std::string spoken;
-    for (Word& word : words) {
-        spoken += (spoken.empty() ? "" : " ") + word.text;
-        if (const auto german = german_quantity(word.text)) {
-            word.text = german->quantity;
-            column.reference = column.reference || german->reference;
-        }
-    }
+    words = split_words(parts.name);
     take_ampere(words, column.unit);
+    // "motor_rpm" is a velocity by its unit alone.
+    if (const Named rest = quantity_of(words, linear_axis); rest.role != Role::other)
+        quantity = rest;
+    else
+        quantity.word = words.size();
+    column.role = quantity.role;
+    column.rank = quantity.rank;
+    column.current = quantity.current || (object != nullptr && object->meaning == Meaning::current);
+    column.reference = object != nullptr && object->meaning == Meaning::reference;
     const bool of_current = std::any_of(words.begin(), words.end(),
-                                        [](const Word& word) { return contains(current_words, word.text); });
-    const DriveObject* const object = named.object != nullptr ? named.object : drive_object_named(spoken);
+                                        [](const Word& word) { return word.sense.is(Meaning::current); });
+    bool foreign = false, filtered = false;
+    std::vector<Word> left;
     for (std::size_t i = 0; i < words.size(); ++i) {
         const Word& word = words[i];
-        // tau_J: the J is of the symbol; in tau_J1 it is of the joint.
+        const Sense& sense = word.sense;
+        // tau_J, the sensor's: the J is of the symbol; in tau_J1 it is of the joint.
         const bool numbered = i + 1 < words.size() && words[i + 1].glued;
-        if (word.text == "j" && i > 0 && words[i - 1].text == "tau" && !numbered) continue;
-        const auto role = std::find_if(role_words.begin(), role_words.end(),
-                                       [&](const RoleWord& known) { return known.word == word.text; });
-        const bool force = linear_axis && (word.text == "force" || word.text == "kraft");
-        if (force) {
-            found = &force_word;
+        if (word.text == "j" && i > 0 && words[i - 1].text == "tau" && !numbered) {
+            column.sensor = true;
             continue;
         }
-        if (contains(foreign_words, word.text) || (word.text == "d" && of_current)) foreign = true;
-        if (contains(part_words, word.text)) part = true;
-        if (word.text == "motor" || word.text == "rotor") column.motor_side = true;
-        if (word.text == "filtered" || word.text == "smoothed") filtered = true;
-        if (contains(reference_words, word.text) || (word.text == "d" && found != nullptr)) {
+        foreign = foreign || sense.is(Meaning::foreign) || (sense.is(Meaning::force) && !linear_axis) ||
+                  (sense.is(Meaning::part) && column.role == Role::torque) ||
+                  (word.text == "d" && of_current);
+        column.motor_side = column.motor_side || sense.is(Meaning::motor);
+        column.sensor = column.sensor || sense.is(Meaning::sensor);
+        filtered = filtered || sense.is(Meaning::filtered);
+        if (sense.is(Meaning::reference) || (word.text == "d" && quantity.word < i)) {
             column.reference = true;
-        } else if (contains(current_words, word.text)) {
-            column.current = true;
-        } else if (word.text == "q" && of_current) {
-            continue;  // the axis of a motor's field, no coordinate
-        } else if (role != role_words.end() && (found == nullptr || found->role == Role::time)) {
-            found = role;
-        } else {
+        } else if (i != quantity.word && !sense.is(Meaning::current) && !sense.is(Meaning::general) &&
+                   !(word.text == "q" && of_current) &&
+                   !(sense.role() == Role::time && column.role != Role::time)) {
             left.push_back(word);
         }
     }
-    if (found == nullptr && column.current) {
-        column.role = Role::torque;
-        column.rank = 1;
-    } else if (found != nullptr) {
-        column.role = found->role;
-        column.rank = found->rank;
-        column.current = false;
-    }
-    if (object != nullptr) {
-        if (found == nullptr && !column.current) {
-            column.role = object->role;
-            column.rank = object->current ? 1 : 0;
-        }
-        column.reference = column.reference || object->reference;
-        column.current = column.current || object->current;
-        if (column.unit.empty()) {
-            column.unit = object->unit;
-            column.unit_is_sure = false;
-        }
-    }
+    if (object != nullptr && column.unit.empty()) column.unit = object->unit;
     const bool clock = column.role == Role::time;
     if (!clock) column.joint = joint_in_name(left);
-    foreign = foreign || (part && column.role == Role::torque);
+    const bool last = !left.empty() && !words.empty() && left.back().text == words.back().text;
+    if (last && left.back().text.size() > 1 && !is_digits(left.back().text) &&
+        !left.back().sense.is(Meaning::joint))
+        column.suffix = left.back().text;
     if (foreign || (clock && !is_clock_name(left))) column.role = Role::other;
+    if (column.sensor) column.rank -= 1;
     if (column.motor_side && !column.current) column.rank += 2;
     if (filtered) column.rank += 4;
     // A torque in Nm comes before one in per cent, which is read only to be refused.
@@ -277,26 +415,6 @@ ColumnName read_column_name(std::string_view name, bool linear_axis) {
 
 namespace {
 
-/// Letters that are a quantity where no other column is, and the names of other columns with which they may
-/// be another one.
-struct Symbol {
-    std::string_view text;
-    Role role;
-    std::array<std::string_view, 4> rivals;
-};
-constexpr std::array symbols = {
-    Symbol{"v", Role::velocity, {"i", "I", "u", "U"}},   // a voltage next to a current
-    Symbol{"w", Role::velocity, {"x", "y", "z", "qx"}},  // of a quaternion
-    Symbol{"\xcf\x89", Role::velocity, {}},
-    Symbol{"T", Role::torque, {"i", "I", "iq", "current"}},  // a temperature next to a motor current
-    Symbol{"M", Role::torque, {}},
-    Symbol{"\xcf\x84", Role::torque, {}},
-    Symbol{"th", Role::position, {}},
-    Symbol{"phi", Role::position, {}},
-    Symbol{"\xce\xb8", Role::position, {}},
-    Symbol{"\xcf\x86", Role::position, {}},
-};
-
 /// "v" of "v", "v_3", "v3", "v[3]".
 std::string_view without_number(std::string_view name) {
     if (name.ends_with(']')) name.remove_suffix(1);
@@ -305,10 +423,6 @@ std::string_view without_number(std::string_view name) {
         name.remove_suffix(1);
     return name;
 }
-
-}  // namespace
-
-namespace {
 
 // A speed in m/s, or a unit in brackets, is that of a linear axis; then so are "pos_m" and "force_N".
 void read_linear_axis(const std::vector<std::string>& names, std::vector<ColumnName>& columns) {
@@ -325,7 +439,74 @@ void read_linear_axis(const std::vector<std::string>& names, std::vector<ColumnN
     }
 }
 
+// ".joint.states.j1.velocity." of "/joint_states/j1/velocity"
+std::string in_words(std::string_view name) {
+    std::string words = ".";
+    for (const char c : lower_case(name)) {
+        if (std::isalnum(static_cast<unsigned char>(c)) != 0)
+            words += c;
+        else if (words.back() != '.')
+            words += '.';
+    }
+    if (words.back() != '.') words += '.';
+    return words;
+}
+
+// Whether `word` is the next one at `at`, perhaps with a number glued to it.
+bool word_at(std::string_view words, std::size_t at, std::string_view word) {
+    if (words.substr(at, word.size()) != word) return false;
+    const std::size_t end = words.find_first_not_of("0123456789", at + word.size());
+    return end != std::string_view::npos && words[end] == '.';
+}
+
+// All words of the pattern, in this order, others between them allowed: a joint's name stands there.
+bool follows(std::string_view words, std::string_view pattern) {
+    if (pattern.starts_with('=')) return words.substr(1, words.size() - 2) == pattern.substr(1);
+    std::size_t at = 0;
+    while (!pattern.empty()) {
+        const std::string_view word = pattern.substr(0, pattern.find('.'));
+        pattern.remove_prefix(std::min(pattern.size(), word.size() + 1));
+        while (at != std::string_view::npos && !word_at(words, at + 1, word)) at = words.find('.', at + 1);
+        if (at == std::string_view::npos) return false;
+        at = words.find('.', at + 1);
+    }
+    return true;
+}
+
+const std::vector<Convention>& all_conventions() {
+    static const std::vector<Convention> table = conventions();
+    return table;
+}
+
+void follow_conventions(const std::vector<std::string>& names, std::vector<ColumnName>& columns) {
+    std::vector<std::string> words;
+    for (const std::string& name : names) words.push_back(in_words(name));
+    for (const Convention& known : all_conventions()) {
+        const auto fits = [&](const std::string& of_column) {
+            bool any = false;
+            for_each_word(known.names,
+                          [&](std::string_view pattern) { any = any || follows(of_column, pattern); });
+            return any;
+        };
+        if (!known.beside.empty() && std::none_of(words.begin(), words.end(), [&](const std::string& other) {
+                return follows(other, known.beside);
+            }))
+            continue;
+        for (std::size_t c = 0; c < columns.size(); ++c)
+            if (fits(words[c])) columns[c].conventions.push_back(&known);
+    }
+}
+
 }  // namespace
+
+std::vector<Convention> conventions() {
+    std::vector<Convention> found;
+    for (const NameLine& line : name_lines)
+        if (!line.unit.empty())
+            found.push_back({line.family, line.beside, line.names, role_of(line.meaning), line.unit,
+                             line.side, line.source});
+    return found;
+}
 
 std::vector<ColumnName> read_column_names(const std::vector<std::string>& names,
                                           const std::vector<std::string>& units) {
@@ -340,28 +521,35 @@ std::vector<ColumnName> read_column_names(const std::vector<std::string>& names,
         columns[c].unit_is_sure = true;
     }
     read_linear_axis(names, columns);
-    const auto has = [&columns](Role role, std::size_t but) {
-        for (std::size_t c = 0; c < columns.size(); ++c)
-            if (c != but && columns[c].role == role && columns[c].symbol == Role::other &&
-                !columns[c].reference)
-                return true;
-        return false;
-    };
+    follow_conventions(names, columns);
+    std::set<std::string> bare_names;
+    std::map<Role, std::size_t> measured;
+    for (std::size_t c = 0; c < names.size(); ++c) {
+        bare_names.insert(split_unit(names[c]).name);
+        if (!columns[c].reference) ++measured[columns[c].role];
+    }
     for (std::size_t c = 0; c < names.size(); ++c) {
         ColumnName& column = columns[c];
         const std::string bare = split_unit(names[c]).name;
-        const auto symbol = std::find_if(symbols.begin(), symbols.end(), [&](const Symbol& known) {
+        const auto* const symbol = std::find_if(symbols.begin(), symbols.end(), [&](const Symbol& known) {
             return known.text == without_number(bare);
         });
-        if (symbol == symbols.end() || has(symbol->role, c)) continue;
+        // Columns that were taken as symbols are no longer what they were, and no rivals of each other.
+        const auto has = [&](Role role) {
+            return measured[role] > (!column.reference && column.role == role ? 1U : 0U);
+        };
+        if (symbol == symbols.end() || has(symbol->role)) continue;
         const bool by_unit = !column.unit.empty() && usual_unit(column.unit, symbol->role);
         if (!column.unit.empty() && !by_unit) continue;
-        if (column.role == Role::time && !by_unit && !has(Role::time, c)) continue;
-        const bool rivalled = std::any_of(names.begin(), names.end(), [&](const std::string& name) {
-            return !name.empty() && contains(symbol->rivals, split_unit(name).name);
+        if (column.role == Role::time && !by_unit && !has(Role::time)) continue;
+        bool rivalled = false;
+        for_each_word(symbol->rivals, [&](std::string_view rival) {
+            rivalled = rivalled || bare_names.count(std::string(rival)) > 0;
         });
+        if (!column.reference) --measured[column.role];
         column.symbol = symbol->role;
         column.role = rivalled && !by_unit ? Role::other : symbol->role;
+        column.suffix.clear();
         column.joint = bare.substr(without_number(bare).size());
         std::erase_if(column.joint,
                       [](char sign) { return sign == '_' || sign == '[' || sign == ']' || sign == ' '; });
@@ -417,20 +605,19 @@ void drop_unasked(const KnownColumns& known, bool joint_asked, std::vector<Joint
 
 std::vector<JointGroup> collect_groups(const KnownColumns& known, bool merge) {
     std::vector<JointGroup> groups;
+    std::map<std::string, std::size_t> places;
     for (const bool reference : {false, true}) {
         for (std::size_t c = 0; c < known.facts.columns; ++c) {
             const ColumnName& name = known.names[c];
             if (known.forced.roles[c] || name.reference != reference) continue;
             if (name.role == Role::other || name.role == Role::time) continue;
             const std::string key = merge ? "" : joint_key(name.joint);
-            auto group =
-                std::find_if(groups.begin(), groups.end(), [&](const JointGroup& g) { return g.key == key; });
-            if (group == groups.end()) {
+            if (places.count(key) == 0) {
                 if (reference && !groups.empty()) continue;  // a wish alone does not make a joint
+                places[key] = groups.size();
                 groups.push_back({key, merge ? "" : name.joint, {}});
-                group = groups.end() - 1;
             }
-            group->candidates[name.role].push_back(c);
+            groups[places[key]].candidates[name.role].push_back(c);
         }
     }
     return groups;
@@ -476,6 +663,37 @@ bool differ(const Numbering& a, const Numbering& b) {
         return from_0.lowest == 0 && from_1.lowest == 1 && from_1.highest > from_0.highest;
     };
     return shifted(a, b) || shifted(b, a);
+}
+
+/// "sm_2", of which there is a torque alone, is another torque of joint 2; "sensor" of the one joint that
+/// moves.
+void share_torques(std::vector<JointGroup>& groups) {
+    const auto moves = [](const JointGroup& group) {
+        return group.has(Role::velocity) || group.has(Role::position);
+    };
+    std::map<std::string, std::size_t> moving;
+    for (std::size_t g = 0; g < groups.size(); ++g)
+        if (moves(groups[g])) moving[groups[g].key] = g;
+    if (moving.empty()) return;
+    std::vector<JointGroup> kept;
+    std::vector<bool> taken(groups.size());
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+        if (moves(groups[g])) continue;
+        auto owner = moving.find("");
+        for (std::size_t cut = groups[g].key.find('_'); cut != std::string::npos;
+             cut = groups[g].key.find('_', cut + 1)) {
+            const auto named = moving.find(joint_key(groups[g].key.substr(cut + 1)));
+            if (named != moving.end()) owner = named;
+        }
+        if (owner == moving.end() || moving.size() > (owner->first.empty() ? 1U : moving.size())) continue;
+        std::vector<std::size_t>& torques = groups[owner->second].candidates[Role::torque];
+        const auto& more = groups[g].candidates[Role::torque];
+        torques.insert(torques.end(), more.begin(), more.end());
+        taken[g] = true;
+    }
+    for (std::size_t g = 0; g < groups.size(); ++g)
+        if (!taken[g]) kept.push_back(std::move(groups[g]));
+    groups = std::move(kept);
 }
 
 }  // namespace
@@ -546,6 +764,7 @@ std::vector<JointGroup> group_joints(const KnownColumns& known, bool joint_asked
         if (counts[0] <= 1 && counts[2] <= 1 && (counts[1] <= 1 || !numbered))
             groups = collect_groups(known, true);
     }
+    share_torques(groups);
     const bool any_complete = std::any_of(groups.begin(), groups.end(), complete);
     if (any_complete) {
         const auto rest = std::stable_partition(groups.begin(), groups.end(), complete);
@@ -572,6 +791,10 @@ std::optional<std::size_t> choose_column(const KnownColumns& known, const JointG
         (moves ? best : still).push_back(c);
     }
     if (best.empty()) best.swap(still);
+    // A current is a torque only by a constant that the log does not hold.
+    if (best.size() == 1 && known.names[best.front()].current)
+        for (const std::size_t c : found->second)
+            if (!known.names[c].current && !known.names[c].reference) best.push_back(c);
     if (best.size() > 1) refuse_tie(known, role, best);
     if (!still.empty()) {
         warnings.push_back(
@@ -589,72 +812,6 @@ std::optional<std::size_t> choose_column(const KnownColumns& known, const JointG
                             true});
     }
     return best.front();
-}
-
-namespace {
-
-constexpr std::array all_conventions = {
-#define CONVENTION(family, beside, name, role, unit, side, source) \
-    Convention{family, beside, name, Role::role, unit, Shaft::side, source},
-#include "log/columns/conventions.def"
-#undef CONVENTION
-};
-
-bool is_decimal_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
-
-// ".joint.states.j1.velocity." of "/joint_states/j1/velocity"
-std::string in_words(std::string_view name) {
-    std::string words = ".";
-    for (const char c : lower_case(name)) {
-        if (std::isalnum(static_cast<unsigned char>(c)) != 0)
-            words += c;
-        else if (words.back() != '.')
-            words += '.';
-    }
-    if (words.back() != '.') words += '.';
-    return words;
-}
-
-// Whether `word` is the next one at `at`, perhaps with a number glued to it.
-bool word_at(std::string_view words, std::size_t at, std::string_view word) {
-    if (words.substr(at, word.size()) != word) return false;
-    std::size_t end = at + word.size();
-    while (end < words.size() && is_decimal_digit(words[end])) ++end;
-    return end < words.size() && words[end] == '.';
-}
-
-// All words of the pattern, in this order, others between them allowed: a joint's name stands there.
-bool follows(std::string_view words, std::string_view pattern) {
-    if (!pattern.empty() && pattern.front() == '=')
-        return words.substr(1, words.size() - 2) == pattern.substr(1);
-    std::size_t at = 0;
-    while (!pattern.empty()) {
-        const std::string_view word = pattern.substr(0, pattern.find('.'));
-        pattern.remove_prefix(std::min(pattern.size(), word.size() + 1));
-        while (at != std::string_view::npos && !word_at(words, at + 1, word)) at = words.find('.', at + 1);
-        if (at == std::string_view::npos) return false;
-        at = words.find('.', at + 1);
-    }
-    return true;
-}
-
-bool stands_beside(std::string_view pattern, const std::vector<std::string>& names) {
-    return std::any_of(names.begin(), names.end(),
-                       [&](const std::string& name) { return follows(in_words(name), pattern); });
-}
-
-}  // namespace
-
-std::span<const Convention> conventions() { return all_conventions; }
-
-const Convention* convention_of(std::string_view name, Role role, const std::vector<std::string>& names) {
-    const std::string words = in_words(name);
-    for (const Convention& known : all_conventions) {
-        if (role != Role::other && known.role != role) continue;
-        if (follows(words, known.name) && (known.beside.empty() || stands_beside(known.beside, names)))
-            return &known;
-    }
-    return nullptr;
 }
 
 }  // namespace ripplenotch

@@ -15,6 +15,8 @@
 
 namespace ripplenotch {
 
+struct Convention;
+
 /// The reading of one name. Among candidates for a role the lowest rank is taken; equals are an ambiguity.
 struct ColumnName {
     Role role = Role::other;
@@ -29,9 +31,18 @@ struct ColumnName {
     /// What a letter such as v, w or T stands for as a whole name, where the other names allow it: then
     /// `role` is that one, too, unless another reading is as good.
     Role symbol = Role::other;
+    bool sensor = false;  ///< named as measured by a sensor
+    std::string
+        suffix;  ///< a last word that is none of the table: a joint's name, or a unit that is not known
+    std::vector<const Convention*> conventions;  ///< that the name follows, in the order of the table
+    /// The first convention that the name follows as a column of this role; null when there is none.
+    [[nodiscard]] const Convention* convention(Role as) const;
 };
 
 [[nodiscard]] ColumnName read_column_name(std::string_view name, bool linear_axis = false);
+
+/// Whether all words of a text are of the table of names.
+[[nodiscard]] bool is_known_word(std::string_view text);
 
 /// All names of a log, with what only the other names decide: whether T is a time or a torque.
 /// `units` by column, from a row of them; may be empty.
@@ -88,23 +99,17 @@ struct KnownColumns {
 [[nodiscard]] std::optional<std::size_t> choose_column(const KnownColumns& known, const JointGroup& group,
                                                        Role role, std::vector<LogWarning>& warnings);
 
-// Units and sides that the names of known loggers imply, from one list (conventions.def).
-
+/// A line of names.def whose names settle the unit.
 struct Convention {
     std::string_view family;  ///< who writes such names: "libfranka"
     std::string_view beside;  ///< a name that another column of the log has to have; may be empty
-    std::string_view name;    ///< as conventions.def explains
+    std::string_view names;   ///< as names.def explains
     Role role = Role::other;
     std::string_view unit;
     Shaft side = Shaft::joint;
     std::string_view source;  ///< where it is written down
 };
 
-[[nodiscard]] std::span<const Convention> conventions();
-
-/// The first convention that `name` follows as a column of this role, in a log with all these `names`; null
-/// when there is none. With Role::other: in whatever role.
-[[nodiscard]] const Convention* convention_of(std::string_view name, Role role,
-                                              const std::vector<std::string>& names);
+[[nodiscard]] std::vector<Convention> conventions();
 
 }  // namespace ripplenotch

@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
 
@@ -112,7 +113,7 @@ class Decision {
         layout_.format = format;
         layout_.stated_rate = options_.sample_rate;
         name_columns();
-        choose_time(facts_, forced_, options_, layout_);
+        choose_time(facts_, names_, forced_, options_, layout_);
         if (layout_.chosen.time) give_role(*layout_.chosen.time, Role::time, "");
         if (layout_.time_fraction) give_role(*layout_.time_fraction, Role::time, "");
         settle_clock(facts_, layout_.chosen.time && stated_[*layout_.chosen.time], layout_);
@@ -378,8 +379,7 @@ class Decision {
         column.role = role;
         column.joint = joint;
         std::string written = names_[c].unit;
-        const Convention* const known =
-            facts_.names.empty() ? nullptr : convention_of(facts_.meanings()[c], role, facts_.meanings());
+        const Convention* const known = names_[c].convention(role);
         const bool device = known != nullptr && is_device_unit(known->unit);
         if (written.empty() && device) written = known->unit;
         stated_[c] = !written.empty();
@@ -412,7 +412,13 @@ class Decision {
         if (const auto unit = usual_unit(written, role);
             unit && is_linear_unit(role, *unit) && is_chosen(c) && !options_.lead_m)
             linear_.push_back(fmt::format("{} in {}", column_label(facts_.names, c), *unit));
-        if (is_device_unit(written)) written.clear(), stated_[c] = false;
+        const bool unknown = !written.empty() && !usual_unit(written, role);
+        if (unknown && !is_device_unit(written) && !is_chosen(c)) {
+            column.role = Role::other;
+            column.joint.clear();
+            return;
+        }
+        if (unknown) written.clear(), stated_[c] = false;
         if (written.empty()) {
             const bool by_convention = known != nullptr && !device;
             column.unit_assumed = !by_convention;
@@ -422,26 +428,25 @@ class Decision {
                           : std::string(base_unit(dimension_of(role)));
             stated_[c] = by_convention && role == Role::time;
         }
-        const auto usual = usual_unit(written, role);
-        const auto factor =
-            usual ? role_factor(role, *usual,
-                                {options_.nm_per_ampere.value_or(1.0), options_.lead_m.value_or(1.0)})
-                  : std::nullopt;
-        if (factor) {
-            column.unit = *usual;
-            column.factor = *factor * (scale != nullptr ? scale->factor : 1.0);
-            column.shift = *factor * (scale != nullptr ? scale->offset : 0.0);
-            column.current = role == Role::torque && is_current_unit(*usual) && !options_.nm_per_ampere;
-            column.unit_assumed = column.unit_assumed && !stated_[c];
-        } else if (is_chosen(c)) {
-            raise<DataError>(
-                "{}: read {} in '{}', expected a {} in {}; if the header is wrong, use --unit {}={}", source_,
-                column_label(facts_.names, c), written, role_name(role), unit_list(role), role_name(role),
-                base_unit(dimension_of(role)));
-        } else {
-            column.role = Role::other;
-            column.joint.clear();
+        column.unit = *usual_unit(written, role);
+        const double factor = *role_factor(
+            role, column.unit, {options_.nm_per_ampere.value_or(1.0), options_.lead_m.value_or(1.0)});
+        column.factor = factor * (scale != nullptr ? scale->factor : 1.0);
+        column.shift = factor * (scale != nullptr ? scale->offset : 0.0);
+        column.current = role == Role::torque && is_current_unit(column.unit) && !options_.nm_per_ampere;
+        column.unit_assumed = column.unit_assumed && !stated_[c];
+    }
+
+    /// Whether another column of the joint has the same words left in its name, which are the joint's then.
+    bool shares_joint(std::size_t c) const {
+        for (const JointColumns& joint : layout_.all_chosen()) {
+            const std::array columns = {joint.velocity, joint.torque, joint.position};
+            if (std::find(columns.begin(), columns.end(), c) == columns.end()) continue;
+            return std::any_of(columns.begin(), columns.end(), [&](const auto& other) {
+                return other && *other != c && joint_key(names_[*other].joint) == joint_key(names_[c].joint);
+            });
         }
+        return false;
     }
 
     // Notes what a column lacks to be a quantity.
@@ -459,13 +464,27 @@ class Decision {
                              role_name(role), unit)});
         } else if (is_device_unit(written)) {
             unscaled_.push_back({fmt::format("{} in {}", label, written), scale_example(role, written)});
+        } else if (role != Role::time && written.empty() && !names_[c].suffix.empty() && !shares_joint(c)) {
+            unscaled_.push_back(
+                {fmt::format("{}, where '{}' is neither a unit that is known nor in the name of "
+                             "another column, as a joint is",
+                             label, names_[c].suffix),
+                 unit_or_scale(role)});
+        } else if (!written.empty() && !usual_unit(written, role)) {
+            unscaled_.push_back(
+                {fmt::format("{} in '{}', which is no unit of a {}", label, written, role_name(role)),
+                 unit_or_scale(role)});
         } else if (written.empty() && role != Role::time && c < facts_.sample.size() &&
                    counts_only(facts_.sample[c]) && known == nullptr) {
             unscaled_.push_back(
                 {fmt::format("{} in whole numbers throughout, as counts are, and no unit", label),
-                 fmt::format("{} (or --unit {}={})", scale_example(role), role_name(role),
-                             base_unit(dimension_of(role)))});
+                 unit_or_scale(role)});
         }
+    }
+
+    static std::string unit_or_scale(Role role) {
+        return fmt::format("{} (or --unit {}={})", scale_example(role), role_name(role),
+                           base_unit(dimension_of(role)));
     }
 
     // All at once: each is one option more.
@@ -488,18 +507,17 @@ class Decision {
         const std::string what = fmt::format("{}", fmt::join(read, "; ")),
                           say = fmt::format("{}", fmt::join(options, " "));
         if (options_.needs_torque)
-            raise<DataError>("{}: read {}, expected quantities; state what 1 is, as in {}", source_, what,
-                             say);
+            ask("{}: read {}, expected quantities; state what 1 is, as in {}", source_, what, say);
         layout_.warnings.push_back(
             {"unscaled", fmt::format("read {}; commands that use it ask what 1 is, as in {}", what, say),
              true});
     }
 
     bool is_chosen(std::size_t c) const {
-        const auto all = layout_.all_chosen();
-        return std::any_of(all.begin(), all.end(), [c](const JointColumns& chosen) {
+        const auto holds = [c](const JointColumns& chosen) {
             return chosen.time == c || chosen.velocity == c || chosen.torque == c || chosen.position == c;
-        });
+        };
+        return holds(layout_.chosen) || std::any_of(layout_.others.begin(), layout_.others.end(), holds);
     }
 
     void report_repeated_names() {

@@ -14,16 +14,21 @@
 
 namespace ripplenotch {
 
-/// The rows of one joint's motion: equal lengths, or empty where there is no such column. Time in the file's
-/// unit, less its origin.
-struct MotionSample {
-    std::vector<double> time, velocity, position;
+struct ColumnName;
+
+/// The columns of one joint's motion.
+struct MotionPlace {
+    std::optional<std::size_t> velocity, position;
 };
 
-/// Where they stand, and how time is written.
-struct MotionPlaces {
-    const Layout& layout;
-    std::optional<std::size_t> velocity, position;
+/// The rows of the motion of some joints: equal lengths, or empty where there is no such column. Time in the
+/// file's unit, less its origin.
+struct MotionSample {
+    struct Joint {
+        std::vector<double> velocity, position;
+    };
+    std::vector<double> time;
+    std::vector<Joint> joints;
 };
 
 /// A scale that the head of a file states for a column, and not whether the values have it.
@@ -52,9 +57,11 @@ struct ColumnFacts {
     std::optional<double> row_step_s;    ///< where the head of the file says how long a row is
     std::string row_step_key;            ///< the word in the head that says it
     std::string dialect_options;         ///< "--delimiter ',' --decimal ." and the like, for Layout::options
-    /// Rows of a velocity and a position, as they stand in the file: those of the first `bytes`, and at least
-    /// those at hand.
-    std::function<MotionSample(const MotionPlaces& places, std::size_t bytes)> motion_sample;
+    /// Rows of velocities and positions, as they stand in the file, not-a-number where a cell is no number:
+    /// those of the first `bytes`, and at least those at hand. Of all joints in one pass.
+    std::function<MotionSample(const Layout& layout, const std::vector<MotionPlace>& places,
+                               std::size_t bytes)>
+        motion_sample;
 };
 
 /// Throws DataError (two possible columns, no time, several joints, a unit that does not fit) and UsageError
@@ -76,7 +83,8 @@ struct Forced {
 
 /// The time column, decided by the values as well as the name, into layout.chosen; seconds and nanoseconds in
 /// two columns into layout.time_fraction too. None where there is none or a rate was stated.
-void choose_time(const ColumnFacts& facts, const Forced& forced, const ReadOptions& options, Layout& layout);
+void choose_time(const ColumnFacts& facts, const std::vector<ColumnName>& names, const Forced& forced,
+                 const ReadOptions& options, Layout& layout);
 
 /// The unit of the chosen time column where nothing states it, and what is taken off long stamps. Throws
 /// DataError where no unit gives a rate that a log has.

@@ -164,14 +164,32 @@ class Inference {
 
     /// True when nothing is left to be asked of a longer sample.
     bool measure(std::size_t bytes) {
+        std::vector<MotionPlace> places;
+        const auto place = [](const std::optional<MotionColumn>& column) {
+            return column ? std::optional<std::size_t>(column->column) : std::nullopt;
+        };
+        for (const MotionColumns& joint : joints_)
+            places.push_back({place(joint.velocity), place(joint.position)});
+        MotionSample rows = facts_.motion_sample(layout_, places, bytes);
+        if (std::exchange(rows_seen_, rows.time.size()) == rows.time.size() && bytes > 0) return true;
+        const double factor = layout_.chosen.time   ? layout_.columns[*layout_.chosen.time].factor
+                              : layout_.stated_rate ? 1.0 / layout_.stated_rate->value()
+                                                    : 1.0;
+        for (double& time : rows.time) time *= factor;
         bool scale = false;
         all_stated_ = true;
         evidence_ = {};
-        for (const MotionColumns& joint : joints_) {
+        for (std::size_t j = 0; j < joints_.size(); ++j) {
+            const MotionColumns& joint = joints_[j];
             for (const auto* column : {&joint.velocity, &joint.position})
                 all_stated_ =
                     all_stated_ && (!*column || ((*column)->unit_is_stated && !(*column)->named_motor));
-            const MotionEvidence one = evidence_of(joint, bytes);
+            if (joint.velocity) {
+                const Column& column = layout_.columns[joint.velocity->column];
+                for (double& value : rows.joints[j].velocity) value += column.shift / column.factor;
+            }
+            const MotionEvidence one =
+                motion_evidence(rows.time, rows.joints[j].velocity, rows.joints[j].position);
             evidence_.fastest = std::max(evidence_.fastest, one.fastest);
             evidence_.farthest = std::max(evidence_.farthest, one.farthest);
             evidence_.velocity_counts = evidence_.velocity_counts || one.velocity_counts;
@@ -185,23 +203,6 @@ class Inference {
         }
         const bool comparable = subject_->velocity && subject_->position;
         return all_stated_ && (scale || !comparable);
-    }
-
-    MotionEvidence evidence_of(const MotionColumns& joint, std::size_t bytes) const {
-        const auto place = [](const std::optional<MotionColumn>& column) {
-            return column ? std::optional<std::size_t>(column->column) : std::nullopt;
-        };
-        MotionSample rows =
-            facts_.motion_sample({layout_, place(joint.velocity), place(joint.position)}, bytes);
-        const double factor = layout_.chosen.time   ? layout_.columns[*layout_.chosen.time].factor
-                              : layout_.stated_rate ? 1.0 / layout_.stated_rate->value()
-                                                    : 1.0;
-        for (double& time : rows.time) time *= factor;
-        if (joint.velocity) {
-            const Column& column = layout_.columns[joint.velocity->column];
-            for (double& value : rows.velocity) value += column.shift / column.factor;
-        }
-        return motion_evidence(rows.time, rows.velocity, rows.position);
     }
 
     /// Told by the user, for this joint or for all.
@@ -244,8 +245,7 @@ class Inference {
               std::tuple(&subject_->position, evidence_.position_counts, Role::position)}) {
             if (!*column || !counts || (*column)->unit_is_stated || (*column)->convention != nullptr)
                 continue;
-            raise<DataError>(
-                "{}: read {} in whole numbers throughout, as counts are, and no unit, expected quantities; "
+            ask("{}: read {} in whole numbers throughout, as counts are, and no unit, expected quantities; "
                 "state what 1 is, as in {} (or --unit {}={})",
                 layout_.source, label(**column), scale_example(role), role_name(role),
                 base_unit(dimension_of(role)));
@@ -262,8 +262,7 @@ class Inference {
             deg_s <= (motor ? no_motor_deg_s : no_joint_deg_s))
             return;
         const bool both = subject_->velocity && subject_->position && !subject_->position->unit_is_stated;
-        raise<DataError>(
-            "{}: read {:.4g} in {}, of which no unit is stated: in {} the {} would turn at {:.3g} deg/s, "
+        ask("{}: read {:.4g} in {}, of which no unit is stated: in {} the {} would turn at {:.3g} deg/s, "
             "expected at most {:g}; state what 1 is, as in {}{}, or --unit if that is the speed",
             layout_.source, evidence_.fastest, label(*column), read.unit, motor ? "motor" : "joint", deg_s,
             motor ? no_motor_deg_s : no_joint_deg_s,
@@ -441,6 +440,7 @@ class Inference {
     MotionEvidence evidence_;
     const MotionColumns* subject_ = nullptr;
     bool all_stated_ = true;
+    std::size_t rows_seen_ = 0;
     MotionReading best_;
 };
 
@@ -482,9 +482,8 @@ std::vector<MotionColumns> motions_of(const KnownColumns& known, const std::vect
             stated_side = side->second;
         else if (is_linear_unit(role, layout.columns[*c].unit))
             stated_side = Shaft::joint;  // the screw's, however fast it turns
-        const auto& names = known.facts.meanings();
         return MotionColumn{*c, unit_is_stated[*c], known.names[*c].motor_side,
-                            names.empty() ? nullptr : convention_of(names[*c], role, names), stated_side};
+                            known.names[*c].convention(role), stated_side};
     };
     std::vector<MotionColumns> motions;
     const auto add = [&](const std::string& joint, std::optional<std::size_t> velocity,

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "core/text/lower_case.hpp"
+#include "log/columns/column_name.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 
@@ -20,121 +21,116 @@ namespace ripplenotch {
 
 namespace {
 
-struct Spelling {
-    std::string_view written;  // lower case, without blanks
-    std::string_view usual;
+struct UnitLine {
+    Dimension dimension;
+    std::string_view usual, spellings;
 };
-
-// Only spellings that do not depend on case; "Nm" and "mNm" are looked up as they stand before this table is
-// asked.
-constexpr std::array spellings = {
-    Spelling{"sec", "s"},
-    Spelling{"secs", "s"},
-    Spelling{"second", "s"},
-    Spelling{"seconds", "s"},
-    Spelling{"msec", "ms"},
-    Spelling{"millisecond", "ms"},
-    Spelling{"milliseconds", "ms"},
-    Spelling{"usec", "us"},
-    Spelling{"\xc2\xb5s", "us"},
-    Spelling{"\xce\xbcs", "us"},
-    Spelling{"microseconds", "us"},
-    Spelling{"nsec", "ns"},
-    Spelling{"nanoseconds", "ns"},
-    Spelling{"deg/sec", "deg/s"},
-    Spelling{"degs", "deg/s"},
-    Spelling{"degps", "deg/s"},
-    Spelling{"deg_per_s", "deg/s"},
-    Spelling{"deg_per_sec", "deg/s"},
-    Spelling{"degpersec", "deg/s"},
-    Spelling{"degree/s", "deg/s"},
-    Spelling{"degrees/s", "deg/s"},
-    Spelling{"deg*s^-1", "deg/s"},
-    Spelling{"degs^-1", "deg/s"},
-    Spelling{"degs-1", "deg/s"},
-    Spelling{"\xc2\xb0/s", "deg/s"},
-    Spelling{"\xc2\xb0/sec", "deg/s"},
-    Spelling{"grad/s", "deg/s"},
-    Spelling{"deg_s", "deg/s"},
-    Spelling{"dps", "deg/s"},
-    Spelling{"rad/sec", "rad/s"},
-    Spelling{"rads", "rad/s"},
-    Spelling{"radps", "rad/s"},
-    Spelling{"rad_s", "rad/s"},
-    Spelling{"rad_per_s", "rad/s"},
-    Spelling{"rad_per_sec", "rad/s"},
-    Spelling{"radpersec", "rad/s"},
-    Spelling{"radian/s", "rad/s"},
-    Spelling{"radians/s", "rad/s"},
-    Spelling{"rad*s^-1", "rad/s"},
-    Spelling{"rads^-1", "rad/s"},
-    Spelling{"rads-1", "rad/s"},
-    Spelling{"rad.s-1", "rad/s"},
-    Spelling{"rad/s", "rad/s"},
-    Spelling{"deg/s", "deg/s"},
-    Spelling{"rpm", "rpm"},
-    Spelling{"u/min", "rpm"},
-    Spelling{"1/min", "rpm"},
-    Spelling{"rev/min", "rpm"},
-    Spelling{"min-1", "rpm"},
-    Spelling{"min^-1", "rpm"},
-    Spelling{"r/min", "rpm"},
-    Spelling{"rps", "rev/s"},
-    Spelling{"deg", "deg"},
-    Spelling{"degree", "deg"},
-    Spelling{"degrees", "deg"},
-    Spelling{"\xc2\xb0", "deg"},
-    Spelling{"rad", "rad"},
-    Spelling{"radian", "rad"},
-    Spelling{"radians", "rad"},
-    Spelling{"revs", "rev"},
-    Spelling{"turns", "turn"},
-    Spelling{"n*m", "Nm"},
-    Spelling{"n.m", "Nm"},
-    Spelling{"n-m", "Nm"},
-    Spelling{"n\xc2\xb7m", "Nm"},
-    Spelling{"newtonmeter", "Nm"},
-    Spelling{"newton_meter", "Nm"},
-    Spelling{"newton_meters", "Nm"},
-    Spelling{"newtonmeters", "Nm"},
-    Spelling{"amp", "A"},
-    Spelling{"amps", "A"},
-    Spelling{"ampere", "A"},
-    Spelling{"amperes", "A"},
-    Spelling{"mamp", "mA"},
+#define NAME(...)
+#define WORDS(...)
+#define SYMBOL(...)
+#define OBJECT(...)
+#define UNIT(dimension, usual, spellings) UnitLine{Dimension::dimension, usual, spellings},
+constexpr std::array unit_lines = {
+#include "log/columns/names.def"
 };
+#undef NAME
+#undef WORDS
+#undef SYMBOL
+#undef OBJECT
+#undef UNIT
 
-// Units of torque that this tool does not read, at the end of a name without brackets; a column of them is
-// not in Nm.
-constexpr std::array<std::string_view, 14> unread_units = {"lbf_in", "in_lbf", "lb_in", "in_lb",  "lbf_ft",
-                                                           "ft_lbf", "lb_ft",  "ft_lb", "ozf_in", "in_ozf",
-                                                           "oz_in",  "in_oz",  "volts", "kgf_cm"};
-
-// Numbers as a drive or a converter has them. What they are in a physical unit is set in the device.
 constexpr std::string_view electrical_rpm = "erpm";
-constexpr std::array<std::string_view, 26> device_units = {
-    electrical_rpm, "count", "counts",    "cnt",        "cnts",        "cts",     "inc",
-    "incr",         "incs",  "increment", "increments", "inkremente",  "inkr",    "pulse",
-    "pulses",       "ticks", "lsb",       "permille",   "per_mille",   "permill", "promille",
-    "percent",      "pct",   "percents",  "%",          "\xe2\x80\xb0"};
 
-std::string lower_without_blanks(std::string_view text) {
-    std::string lower = lower_case(text);
-    std::erase(lower, ' ');
-    return lower;
+/// The usual name of a unit of this dimension, by its spelling alone; for Dimension::none, whether there is
+/// one.
+std::optional<std::string_view> spelled(Dimension dimension, std::string_view text) {
+    for (const UnitLine& line : unit_lines) {
+        bool found = false;
+        if (line.dimension == dimension)
+            for_each_word(line.spellings, [&](std::string_view known) { found = found || known == text; });
+        if (found) return line.usual;
+    }
+    return std::nullopt;
+}
+
+std::string without_signs(std::string_view text, std::string_view signs) {
+    std::string rest(text);
+    std::erase_if(rest, [signs](char c) { return signs.find(c) != std::string_view::npos; });
+    return rest;
+}
+
+void replace_all(std::string& text, std::string_view what, std::string_view by) {
+    for (std::size_t at = 0; (at = text.find(what, at)) != std::string::npos; at += by.size())
+        text.replace(at, what.size(), by);
+}
+
+// In lower case without blanks, with one sign for each meaning: u for micro, . for a product.
+std::string normal_spelling(std::string_view text) {
+    std::string spelling = without_signs(lower_case(text), " ");
+    for (const std::string_view micro : {"\xc2\xb5", "\xce\xbc"}) replace_all(spelling, micro, "u");
+    for (const std::string_view times : {"\xc2\xb7", "\xe2\x8b\x85", "\xe2\x88\x99", "*", "\xc3\x97"})
+        replace_all(spelling, times, ".");
+    return spelling;
+}
+
+// A force by a length, in either order and however joined: "N-m", "lbf_ft", "in.lb", "mNm".
+std::optional<std::string> torque_unit(std::string_view written) {
+    const std::string text = without_signs(normal_spelling(written), "._-");
+    for (const auto& [spelling, usual] :
+         {std::pair("nm", "Nm"), std::pair("mnm", "mNm"), std::pair("unm", "uNm"), std::pair("cnm", "cNm"),
+          std::pair("knm", "kNm")}) {
+        // A capital M is mega.
+        if (text == spelling && !(written.starts_with('M') && written != "MNM")) return usual;
+    }
+    for (std::size_t cut = 1; cut < text.size(); ++cut) {
+        const std::string_view front = std::string_view(text).substr(0, cut),
+                               back = std::string_view(text).substr(cut);
+        auto force = spelled(Dimension::force, front), length = spelled(Dimension::length, back);
+        if (!force || !length)
+            force = spelled(Dimension::force, back), length = spelled(Dimension::length, front);
+        if (!force || !length) continue;
+        const std::string joined =
+            *force == "N" ? fmt::format("N{}", *length) : fmt::format("{}.{}", *force, *length);
+        if (unit_factor(Dimension::torque, joined)) return joined;
+    }
+    return std::nullopt;
+}
+
+// An angle by a time, however joined: "deg/s", "rad_per_sec", "rad s^-1", "degps", "U/min".
+std::optional<std::string> speed_unit(std::string_view written) {
+    std::string text = normal_spelling(written);
+    if (text == "rpm" || text == "upm") return "rpm";
+    if (text == "rps" || text == "dps") return text == "rps" ? "rev/s" : "deg/s";
+    replace_all(text, "_per_", "/");
+    replace_all(text, "per", "/");
+    std::string angle, time;
+    const auto cut_time = [&](std::string_view end, std::string_view unit) {
+        if (!time.empty() || !text.ends_with(end)) return;
+        time = unit;
+        angle = without_signs(text.substr(0, text.size() - end.size()), "._/");
+    };
+    for (const auto& [end, unit] : {std::pair("s^-1", "s"), std::pair("s-1", "s"), std::pair("min^-1", "min"),
+                                    std::pair("min-1", "min"), std::pair("ps", "s")})
+        cut_time(end, unit);
+    if (const std::size_t bar = text.find_last_of("/_"); time.empty() && bar != std::string::npos) {
+        time = spelled(Dimension::time, text.substr(bar + 1)).value_or("");
+        angle = without_signs(text.substr(0, bar), ".");
+    }
+    if (text == "degs" || text == "rads") cut_time("s", "s");
+    auto usual = spelled(Dimension::angle, angle);
+    const bool turns = angle.empty() || angle == "1" || angle == "u" || angle == "r";
+    if (!usual && turns && time == "min") usual = "rev";
+    if (!usual || time.empty()) return std::nullopt;
+    if (*usual == "rev" && time == "min") return "rpm";
+    const std::string joined = fmt::format("{}/{}", *usual, time);
+    return unit_factor(Dimension::speed, joined) ? std::optional(joined) : std::nullopt;
 }
 
 std::string_view without_padding(std::string_view text) {
-    while (!text.empty() && (text.front() == ' ' || text.front() == '_')) text.remove_prefix(1);
-    while (!text.empty() && (text.back() == ' ' || text.back() == '_')) text.remove_suffix(1);
+    constexpr std::string_view padding = " _,:/-.";
+    while (!text.empty() && padding.find(text.front()) != std::string_view::npos) text.remove_prefix(1);
+    while (!text.empty() && padding.find(text.back()) != std::string_view::npos) text.remove_suffix(1);
     return text;
-}
-
-constexpr std::array measured_roles = {Role::time, Role::velocity, Role::torque, Role::position};
-
-bool any_role_knows(std::string_view unit) {
-    return std::any_of(measured_roles.begin(), measured_roles.end(),
-                       [&](Role role) { return role_factor(role, unit).has_value(); });
 }
 
 }  // namespace
@@ -189,50 +185,70 @@ std::optional<double> role_factor(Role role, std::string_view unit, const Conver
 std::optional<std::string> usual_unit(std::string_view written, Role role) {
     const std::string_view text = without_padding(written);
     if (text.empty()) return std::nullopt;
-    const std::string lower = lower_without_blanks(text);
-    if (role == Role::torque && lower == "nm") return "Nm";
-    if (role == Role::torque && lower == "mnm") return "mNm";
-    for (const Spelling& spelling : spellings) {
-        if (lower == spelling.written) return std::string(spelling.usual);
+    if (role == Role::other) {
+        for (const Role one : {Role::time, Role::velocity, Role::position, Role::torque}) {
+            // Without a quantity, letters that stand alone or for two things are meant as they are written.
+            const std::string lower = lower_case(text);
+            const bool by_case = text.size() == 1 || lower == "nm" || lower == "mnm";
+            if (by_case ? role_factor(one, text).has_value() : usual_unit(text, one).has_value())
+                return usual_unit(text, one);
+        }
+        return std::nullopt;
     }
-    // What is left depends on case: mNm, Nm, ms, A.
-    if (role == Role::other ? any_role_knows(text) : role_factor(role, text).has_value())
-        return std::string(text);
-    return std::nullopt;
+    const std::string spelling = normal_spelling(text);
+    std::optional<std::string> found;
+    if (role == Role::torque) found = torque_unit(text);
+    if (role == Role::velocity) found = speed_unit(text);
+    if (!found) {
+        const Dimension dimension = role == Role::torque ? Dimension::current : dimension_of(role);
+        const auto usual = spelled(dimension, text.size() == 1 ? text : std::string_view(spelling));
+        if (usual) found = *usual;
+    }
+    // What depends on case, and units of a linear axis.
+    if (!found && role_factor(role, text)) found = text;
+    return found;
 }
 
-NameAndUnit split_unit(std::string_view column_name, bool linear_axis) {
-    const std::string_view whole = without_padding(column_name);
+NameAndUnit split_unit(std::string_view column_name, Role role, bool linear_axis) {
+    const auto padded = [](std::string_view text) {
+        while (!text.empty() && (text.front() == ' ' || text.front() == '_')) text.remove_prefix(1);
+        while (!text.empty() && (text.back() == ' ' || text.back() == '_')) text.remove_suffix(1);
+        return text;
+    };
+    const std::string_view whole = padded(column_name);
     for (const auto& [open, close] : {std::pair{'[', ']'}, std::pair{'(', ')'}}) {
         const std::size_t from = whole.rfind(open);
         if (from == std::string_view::npos || from == 0 || whole.empty() || whole.back() != close) continue;
-        const std::string_view inside = without_padding(whole.substr(from + 1, whole.size() - from - 2));
+        const std::string_view inside = padded(whole.substr(from + 1, whole.size() - from - 2));
         const bool index = !inside.empty() && std::all_of(inside.begin(), inside.end(), [](unsigned char c) {
             return std::isdigit(c) != 0;
         });
         // An address, as "(P:00A305h)", is no unit.
         if (inside.find(':') != std::string_view::npos)
-            return {std::string(without_padding(whole.substr(0, from))), "", false};
-        if (!index) return {std::string(without_padding(whole.substr(0, from))), std::string(inside), true};
+            return {std::string(padded(whole.substr(0, from))), "", false};
+        // Nor are words, as in "torque (measured)".
+        if (!index && (usual_unit(inside, role) || is_device_unit(inside) || !is_known_word(inside)))
+            return {std::string(padded(whole.substr(0, from))), std::string(inside), true};
     }
-    // The longest unit that follows an underscore or a blank: "_deg_s" before "_s".
+    // The longest unit that ends the name: "_deg_s" before "_s", "velDeg", "tau / Nm".
+    const auto is_letter = [&](std::size_t at) {
+        return std::isalnum(static_cast<unsigned char>(whole[at])) != 0;
+    };
     for (std::size_t at = 1; at < whole.size(); ++at) {
-        if (whole[at] != '_' && whole[at] != ' ') continue;
-        const std::string_view rest = whole.substr(at + 1);
+        const unsigned char before = static_cast<unsigned char>(whole[at - 1]),
+                            here = static_cast<unsigned char>(whole[at]);
+        const bool edge = !is_letter(at - 1) && before < 0x80 && before != '^';
+        const bool capital = std::islower(before) != 0 && (std::isupper(here) != 0 || here >= 0x80);
+        if ((!edge && !capital) || (!is_letter(at) && here < 0x80 && here != '%')) continue;
+        const std::string_view rest = whole.substr(at);
+        const std::string_view name = without_padding(whole.substr(0, at));
+        if (name.empty()) continue;
         if (is_device_unit(rest))  // "_counts_s" before "_s"
-            return {std::string(without_padding(whole.substr(0, at))), std::string(rest), true};
-        const bool another =
-            !linear_axis && (unit_factor(Dimension::length, rest) || unit_factor(Dimension::force, rest));
-        if (rest == "nm" || rest == "mnm" || (!another && usual_unit(rest, Role::other))) {
-            return {std::string(without_padding(whole.substr(0, at))), std::string(rest), false};
-        }
-    }
-    for (std::size_t at = 1; at < whole.size(); ++at) {
-        if (whole[at] != '_' && whole[at] != ' ') continue;
-        const std::string_view rest = whole.substr(at + 1);
-        const std::string lower = lower_without_blanks(rest);
-        if (std::find(unread_units.begin(), unread_units.end(), lower) != unread_units.end())
-            return {std::string(without_padding(whole.substr(0, at))), std::string(rest), true};
+            return {std::string(name), std::string(rest), true};
+        const bool linear = is_linear_unit(Role::position, rest) || is_linear_unit(Role::torque, rest);
+        if ((linear && !linear_axis) || (capital && rest.size() == 1)) continue;
+        if (usual_unit(rest, role) || (role == Role::other && (rest == "nm" || rest == "mnm")))
+            return {std::string(name), std::string(rest), false};
     }
     return {std::string(whole), "", false};
 }
@@ -383,10 +399,14 @@ ColumnScale parse_scale(std::string_view text, std::string_view label) {
 }
 
 bool is_device_unit(std::string_view written) {
-    std::string unit = lower_without_blanks(without_padding(written));
+    const std::string_view text = without_padding(written);
+    // "% of rated", "0.1 %".
+    if (text.find('%') != std::string_view::npos || text.find("\xe2\x80\xb0") != std::string_view::npos)
+        return text.size() < 20;
+    std::string unit = text.size() < 3 ? std::string(text) : without_signs(lower_case(text), " ");
     for (const std::string_view rate : {"/s", "_s", "/sec", "_per_s"})
         if (unit.ends_with(rate)) unit.resize(unit.size() - rate.size());
-    return std::find(device_units.begin(), device_units.end(), unit) != device_units.end();
+    return spelled(Dimension::none, unit).has_value();
 }
 
 bool counts_only(const std::vector<double>& values) {

@@ -3,16 +3,34 @@
 // Units as log headers spell them: "[rad/s]", "(deg/sec)", "_Nm", "1/min". The result is a name that
 // core/quantity knows.
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "log/columns/decide_layout.hpp"
+#include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/quantity.hpp"
 #include "ripplenotch/log/layout.hpp"
 
 namespace ripplenotch {
+
+/// Calls `take` for each word of a list with blanks between them, as names.def has them.
+template <class Take>
+void for_each_word(std::string_view list, const Take& take) {
+    while (!list.empty()) {
+        const std::size_t blank = std::min(list.find(' '), list.size());
+        if (blank > 0) take(list.substr(0, blank));
+        list.remove_prefix(std::min(list.size(), blank + 1));
+    }
+}
+
+/// Throws what an option answers, a unit or a scale that the log does not state: exit code 5.
+template <class... Args>
+[[noreturn]] void ask(fmt::format_string<Args...> format, Args&&... args) {
+    throw Error(ExitCode::inconclusive, fmt::format(format, std::forward<Args>(args)...));
+}
 
 /// The unit's usual name ("rad/s" for "rad s^-1"), or empty when no time, angle, speed, torque or current
 /// unit is meant. With a role, spellings that depend on it are understood: "nm" is Nm in a torque, "s"
@@ -45,8 +63,10 @@ struct NameAndUnit {
     std::string unit;        ///< "rad/s", as written; empty when none is there
     bool bracketed = false;  ///< in brackets: surely meant as a unit
 };
-/// "_m", "_mm" and "_N" are units in names of a linear axis alone: elsewhere an m is the motor's.
-[[nodiscard]] NameAndUnit split_unit(std::string_view column_name, bool linear_axis = false);
+/// A unit of what the name measures, where that is known. "_m", "_mm" and "_N" are units in names of a linear
+/// axis alone: elsewhere an m is the motor's.
+[[nodiscard]] NameAndUnit split_unit(std::string_view column_name, Role role = Role::other,
+                                     bool linear_axis = false);
 
 // A part of decide_layout: units that --unit states, and what is said of units that nobody stated.
 

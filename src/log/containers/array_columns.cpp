@@ -260,7 +260,8 @@ std::vector<ArrayColumn> columns_of(const ArrayGroup& group, PathStyle style) {
 
 double ns_per_unit(const std::string& source, const StoredArray& clock) {
     constexpr double nanoseconds = 1e9;  // in a second
-    const std::string written = clock.unit.empty() ? split_unit(last_word(clock.path)).unit : clock.unit;
+    const std::string written =
+        clock.unit.empty() ? split_unit(last_word(clock.path), Role::time).unit : clock.unit;
     const auto unit = written.empty() ? std::nullopt : usual_unit(written, Role::time);
     if (unit) return nanoseconds * role_factor(Role::time, *unit).value_or(1.0);
     if (clock.type.kind != 'f')

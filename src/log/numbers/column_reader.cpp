@@ -91,9 +91,10 @@ ColumnFacts ColumnReader::column_facts() {
     }
     facts.left_out = left_out_of(log_.contents);
     facts.dialect_options = log_.options;
-    facts.motion_sample = [this](const MotionPlaces& places, std::size_t bytes) {
+    facts.motion_sample = [this](const Layout& layout, const std::vector<MotionPlace>& places,
+                                 std::size_t bytes) {
         read_ahead(bytes / columns().row_bytes());
-        return motion_sample(places);
+        return motion_sample(layout, places);
     };
     return facts;
 }
@@ -151,13 +152,15 @@ double ColumnReader::time_at(const NumberRows& numbers, std::size_t row, const L
     return time;
 }
 
-MotionSample ColumnReader::motion_sample(const MotionPlaces& places) const {
+MotionSample ColumnReader::motion_sample(const Layout& layout, const std::vector<MotionPlace>& places) const {
     MotionSample sample;
     for (std::size_t row = 0; row < ahead_rows_; ++row)
-        sample.time.push_back(places.layout.chosen.time ? time_at(ahead_, row, places.layout)
-                                                        : static_cast<double>(row));
-    if (places.velocity) sample.velocity = ahead_[*places.velocity].values;
-    if (places.position) sample.position = ahead_[*places.position].values;
+        sample.time.push_back(layout.chosen.time ? time_at(ahead_, row, layout) : static_cast<double>(row));
+    for (const MotionPlace& place : places) {
+        auto& [velocity, position] = sample.joints.emplace_back();
+        if (place.velocity) velocity = ahead_[*place.velocity].values;
+        if (place.position) position = ahead_[*place.position].values;
+    }
     return sample;
 }
 

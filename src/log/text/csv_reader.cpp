@@ -83,9 +83,11 @@ ColumnFacts CsvReader::facts_of(std::string& opening) {
     facts.row_step_s = dialect_.row_step_s;
     facts.row_step_key = dialect_.row_step_key;
     facts.dialect_options = dialect_options(dialect_);
-    facts.motion_sample = [this, &opening](const MotionPlaces& places, std::size_t bytes) {
+    facts.motion_sample = [this, &opening](const Layout& layout, const std::vector<MotionPlace>& places,
+                                           std::size_t bytes) {
         if (!source_ended_ && opening.size() < bytes) source_ended_ = read_up_to(*source_, opening, bytes);
-        return text_motion_sample(std::string_view(opening).substr(dialect_.data_offset), dialect_, places);
+        return text_motion_sample(std::string_view(opening).substr(dialect_.data_offset), dialect_, layout,
+                                  places);
     };
     return facts;
 }

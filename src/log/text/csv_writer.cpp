@@ -139,7 +139,7 @@ class RowRewriter {
 // "torque_filtered [Nm]" beside "tau [Nm]", "torque_filtered_Nm" beside "torque_Nm": a new column's name in
 // the style of the torque column's.
 std::string appended_name(const std::string& wanted, const std::string& torque_name) {
-    const NameAndUnit parts = split_unit(torque_name);
+    const NameAndUnit parts = split_unit(torque_name, Role::torque);
     if (parts.unit.empty()) return wanted;
     // Whatever stands between the name and the unit stays: "_Nm", " [Nm]", "(Nm)".
     const std::size_t at = torque_name.rfind(parts.unit);

@@ -390,12 +390,15 @@ std::vector<WantedColumn> by_column(std::vector<WantedColumn> wanted) {
 
 }  // namespace
 
-TextRow::TextRow(const TextDialect& dialect, std::vector<WantedColumn> wanted, StampRule stamp)
+TextRow::TextRow(const TextDialect& dialect, std::vector<WantedColumn> wanted, StampRule stamp,
+                 std::size_t joints, bool lenient)
     : rules_(dialect.rules),
       columns_(dialect.columns),
       wanted_(by_column(std::move(wanted))),
       stamp_(stamp),
-      parser_(rules_, columns_, wanted_, stamp_) {}
+      parser_(rules_, columns_, wanted_, stamp_),
+      lenient_(lenient),
+      row_(joints) {}
 
 bool TextRow::parse(std::string_view line) {
     return parser_.parse(line.data(), line.data() + line.size(), row_) || parse_carefully(line);
@@ -415,8 +418,10 @@ bool TextRow::parse_carefully(std::string_view line) {
         const std::string_view text = split_.cells[wanted.column].of(line);
         const bool stamp = stamp_.careful && wanted.slot == time_slot && !wanted.fraction;
         const auto number = stamp ? read_stamp(text, stamp_) : parse_number(text, rules_.decimal_mark);
-        if (!number || !is_reading(*number)) return false;
-        if (wanted.fraction)
+        if (!number || !is_reading(*number)) {
+            if (!lenient_) return false;
+            row_.values[wanted.slot] = std::numeric_limits<double>::quiet_NaN();
+        } else if (wanted.fraction)
             row_.values[time_slot] += seconds_per_nanosecond * *number;
         else if (wanted.slot == time_slot)
             row_.values[time_slot] += *number;
@@ -426,24 +431,18 @@ bool TextRow::parse_carefully(std::string_view line) {
     return true;
 }
 
-namespace {
-
-std::vector<WantedColumn> motion_columns(const MotionPlaces& places) {
-    std::vector<WantedColumn> wanted = time_columns(places.layout);
-    if (places.velocity) wanted.push_back({*places.velocity, velocity_slot});
-    if (places.position) wanted.push_back({*places.position, position_slot});
-    return wanted;
-}
-
-}  // namespace
-
-MotionSample text_motion_sample(std::string_view bytes, const TextDialect& dialect,
-                                const MotionPlaces& places) {
-    TextRow row(dialect, motion_columns(places), stamp_rule(places.layout, dialect.rules.decimal_mark));
-    const bool timed = places.layout.chosen.time.has_value();
+MotionSample text_motion_sample(std::string_view bytes, const TextDialect& dialect, const Layout& layout,
+                                const std::vector<MotionPlace>& places) {
+    std::vector<WantedColumn> wanted = time_columns(layout);
+    for (std::size_t j = 0; j < places.size(); ++j) {
+        if (places[j].velocity) wanted.push_back({*places[j].velocity, slot_of(velocity_slot, j)});
+        if (places[j].position) wanted.push_back({*places[j].position, slot_of(position_slot, j)});
+    }
+    TextRow row(dialect, wanted, stamp_rule(layout, dialect.rules.decimal_mark), places.size(), true);
+    const bool timed = layout.chosen.time.has_value();
     std::size_t lines = 0;
     double sum = 0.0;
-    MotionSample sample;
+    MotionSample sample{{}, std::vector<MotionSample::Joint>(places.size())};
     for (std::size_t begin = 0; begin < bytes.size();) {
         const std::size_t found = bytes.find('\n', begin);
         if (found == std::string_view::npos) break;
@@ -451,12 +450,15 @@ MotionSample text_motion_sample(std::string_view bytes, const TextDialect& diale
         begin = found + 1;
         ++lines;
         if (!row.parse(line)) continue;
-        if (places.layout.time_is_steps && !sample.time.empty()) sum += row.value(time_slot);
-        sample.time.push_back(places.layout.time_is_steps ? sum
-                              : timed                     ? row.value(time_slot)
-                                                          : static_cast<double>(lines));
-        if (places.velocity) sample.velocity.push_back(row.value(velocity_slot));
-        if (places.position) sample.position.push_back(row.value(position_slot));
+        if (layout.time_is_steps && !sample.time.empty()) sum += row.value(time_slot);
+        sample.time.push_back(layout.time_is_steps ? sum
+                              : timed              ? row.value(time_slot)
+                                                   : static_cast<double>(lines));
+        for (std::size_t j = 0; j < places.size(); ++j) {
+            auto& [velocity, position] = sample.joints[j];
+            if (places[j].velocity) velocity.push_back(row.value(slot_of(velocity_slot, j)));
+            if (places[j].position) position.push_back(row.value(slot_of(position_slot, j)));
+        }
     }
     return sample;
 }

@@ -87,8 +87,9 @@ struct TextLines {
 
 class TextRow {
   public:
-    /// `wanted` in any order.
-    TextRow(const TextDialect& dialect, std::vector<WantedColumn> wanted, StampRule stamp);
+    /// `wanted` in any order, of so many joints. `lenient`: where a cell is no number, it is not-a-number.
+    TextRow(const TextDialect& dialect, std::vector<WantedColumn> wanted, StampRule stamp,
+            std::size_t joints = 1, bool lenient = false);
 
     /// The wanted numbers of a line without its line end, by slot; false where one of them cannot be read or
     /// the line has not as many cells as a row.
@@ -105,6 +106,7 @@ class TextRow {
     std::vector<WantedColumn> wanted_;
     StampRule stamp_;
     RowParser parser_;
+    bool lenient_;
     ParsedRow row_;
     CellSplit split_;
 };
@@ -117,9 +119,9 @@ class TextRow {
 
 // Rows of the opening of a text log, for what they say about units.
 
-/// All whole lines of `bytes`, which begin with the first row. Rows that are no numbers are left out. Without
-/// a time column, time counts the rows.
+/// All whole lines of `bytes`, which begin with the first row. Rows that are none are left out. Without a
+/// time column, time counts the rows.
 [[nodiscard]] MotionSample text_motion_sample(std::string_view bytes, const TextDialect& dialect,
-                                              const MotionPlaces& places);
+                                              const Layout& layout, const std::vector<MotionPlace>& places);
 
 }  // namespace ripplenotch
