@@ -68,7 +68,7 @@ constexpr std::array units = {
     Unit{Dimension::torque, "kgf.cm", 1e-2 * kgf},
     Unit{Dimension::torque, "gf.cm", 1e-5 * kgf},
     Unit{Dimension::torque, "lbf.ft", lbf * 12.0 * inch},
-    Unit{Dimension::torque, "lbf.in", lbf * inch},
+    Unit{Dimension::torque, "lbf.in", lbf* inch},
     Unit{Dimension::torque, "ozf.in", lbf / 16.0 * inch},
     Unit{Dimension::torque_rate, "Nm/s", 1.0},
     Unit{Dimension::torque_rate, "mNm/s", 1e-3},
