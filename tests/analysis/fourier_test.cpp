@@ -60,12 +60,22 @@ TEST_CASE("the spreading kernel's polynomials are the kernel, and nothing lies b
         for (std::size_t i = 0; i < row.size(); ++i) {
             const double x = (static_cast<double>(i) + offset) * 2.0 / SpreadingKernel::width - 1.0;
             const bool inside = i < SpreadingKernel::width;
-            const double kernel =
-                inside ? std::exp(SpreadingKernel::beta * (std::sqrt(1.0 - std::min(1.0, x * x)) - 1.0))
-                       : 0.0;
+            const double kernel = inside ? SpreadingKernel::value(std::clamp(x, -1.0, 1.0)) : 0.0;
             const bool end = i == 0 || i + 1 == SpreadingKernel::width;
             CHECK_THAT(row[i], WithinAbs(kernel, end ? 1e-10 : 1e-14));
         }
+    }
+}
+
+TEST_CASE("the spreading kernel's transform is its integral") {
+    for (const double phase : {0.0, 1.0, 7.85}) {
+        double sum = 0.0;
+        constexpr int steps = 20000;
+        for (int k = 0; k < steps; ++k) {
+            const double x = (2.0 * k + 1.0) / steps - 1.0;
+            sum += SpreadingKernel::value(x) * std::cos(phase * x) * 2.0 / steps;
+        }
+        CHECK_THAT(SpreadingKernel::transform(phase), WithinAbs(sum, 1e-8));
     }
 }
 

@@ -40,9 +40,9 @@ class RealTransform {
 
 /// S[k] = sum over j of value[j] exp(-2 pi i k spacing where[j]) for k = 0 .. count - 1, at any places
 /// `where` (unit: 1/unit of spacing). Equal to the direct sum within 1e-9 of sum |value|. O(n + count log
-/// count). Method: spreading with the kernel exp(beta (sqrt(1 - x^2) - 1)), transform, division by the
-/// kernel's own transform (Barnett, Magland, af Klinteberg, SIAM J. Sci. Comput. 41, 2019). No interpolation
-/// takes place on the samples.
+/// count). Method: spreading with the kernel of Kaiser and Bessel, transform, division by the kernel's own
+/// transform (Jackson et al., IEEE Trans. Medical Imaging 10, 1991). No interpolation takes place on the
+/// samples.
 [[nodiscard]] std::vector<std::complex<double>> nonuniform_fourier(std::span<const double> where,
                                                                    std::span<const double> value,
                                                                    double spacing, std::size_t count);

@@ -14,9 +14,17 @@ namespace {
 using Row = SpreadingKernel::Row;
 constexpr std::size_t terms = SpreadingKernel::terms;
 
-double kernel(double x) {
-    return portable::exp(SpreadingKernel::beta * (std::sqrt(std::max(0.0, 1.0 - x * x)) - 1.0));
+/// Modified Bessel function of the first kind and order 0 of sqrt(square), by its power series.
+double bessel_i0(double square) {
+    double sum = 1.0, term = 1.0;
+    for (double k = 1.0; term > 1e-17 * sum; k += 1.0) {
+        term *= 0.25 * square / (k * k);
+        sum += term;
+    }
+    return sum;
 }
+
+const double peak_of_kernel = bessel_i0(SpreadingKernel::beta * SpreadingKernel::beta);
 
 constexpr std::size_t lanes = lane_count, groups = SpreadingKernel::padded / lanes;
 
@@ -89,6 +97,15 @@ struct Spread {
 
 }  // namespace
 
+double SpreadingKernel::value(double x) {
+    return bessel_i0(beta * beta * std::max(0.0, 1.0 - x * x)) / peak_of_kernel;
+}
+
+double SpreadingKernel::transform(double phase) {
+    const double root = std::sqrt(beta * beta - phase * phase);
+    return (portable::exp(root) - portable::exp(-root)) / (root * peak_of_kernel);
+}
+
 SpreadingKernel::SpreadingKernel() {
     // Chebyshev's interpolation: c_m = 2/n sum f(z_j) T_m(z_j), and T_m by powers from T_m+1 = 2 z T_m -
     // T_m-1.
@@ -101,7 +118,7 @@ SpreadingKernel::SpreadingKernel() {
                 const double angle = std::numbers::pi * (static_cast<double>(j) + 0.5) / terms;
                 const double offset = 0.5 * (portable::cos(angle) + 1.0);
                 const double x = (static_cast<double>(i) + offset) * 2.0 / width - 1.0;
-                sum += kernel(x) * portable::cos(static_cast<double>(m) * angle);
+                sum += value(x) * portable::cos(static_cast<double>(m) * angle);
             }
             const double share = (m == 0 ? 1.0 : 2.0) / terms * sum;
             for (std::size_t d = 0; d <= m; ++d) coefficients_[d][i] += share * now[d];

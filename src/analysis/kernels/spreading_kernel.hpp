@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// The kernel by which nonuniform_fourier puts samples on a grid: exp(beta (sqrt(1 - x^2) - 1)) over |x| <= 1,
-// `width` points wide on a grid twice as fine as needed.
+// The kernel by which nonuniform_fourier puts samples on a grid: that of Kaiser and Bessel, I0(beta sqrt(1 -
+// x^2)) / I0(beta) over |x| <= 1, `width` points wide on a grid twice as fine as needed.
 
 #include <array>
 #include <cstddef>
@@ -18,6 +18,11 @@ struct SpreadingKernel {
 
     /// Works the polynomials out; once a program.
     SpreadingKernel();
+
+    /// The kernel at -1 to 1.
+    [[nodiscard]] static double value(double x);
+    /// Its integral times exp(i phase x), for |phase| < beta.
+    [[nodiscard]] static double transform(double phase);
 
     /// The kernel at all its points, the first of which lies `offset` grid steps, 0 to 1, inside of its left
     /// end. Each point has a polynomial in the offset, within 1e-12 of the kernel's peak.

@@ -8,7 +8,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -377,21 +376,19 @@ Hertz mean_sample_rate(std::span<const TraceView> logs) {
     return Hertz(seconds > 0.0 ? samples / seconds : 0.0);
 }
 
-/// The amplitudes of lines that turn with the joint are those of estimate_ripple, in windows of eight turns
-/// of the motor, or of eight periods of the lowest line where the gear is not known. A line that such windows
-/// hardly show, or do not separate from the next, keeps what the sums over whole sweeps give.
+/// Where the gear is known, the amplitudes of lines that turn with the joint are those of estimate_ripple. A
+/// line that its windows hardly show, or do not separate from the next, keeps what the sums over whole sweeps
+/// give.
 void estimate_amplitudes(std::span<const TraceView> logs, Identification& result) {
+    if (!result.gear_ratio.value) return;
+    const double ratio = *result.gear_ratio.value;
     std::vector<Line*> turning;
-    double lowest = std::numeric_limits<double>::infinity();
+    std::vector<Order> orders;
     for (Line& line : result.lines) {
         if (line.kind == LineKind::tone || !line.order_output) continue;
         turning.push_back(&line);
-        lowest = std::min(lowest, *line.order_output);
+        orders.emplace_back(*line.order_output / ratio);
     }
-    if (turning.empty()) return;
-    const double ratio = result.gear_ratio.value.value_or(lowest);
-    std::vector<Order> orders;
-    for (const Line* line : turning) orders.emplace_back(*line->order_output / ratio);
     const std::vector<RippleEstimate> found = estimate_ripple(logs, GearRatio(ratio), orders);
     for (std::size_t i = 0; i < found.size(); ++i)
         if (found[i].amplitude_nm > normal_95_errors * found[i].standard_error_nm)

@@ -12,7 +12,6 @@
 #include <memory>
 #include <mutex>
 #include <new>
-#include <numbers>
 #include <vector>
 
 #include "analysis/kernels/spreading_kernel.hpp"
@@ -27,61 +26,20 @@ namespace {
 constexpr double kernel_half =
     0.5 * static_cast<double>(SpreadingKernel::width);  // half of its width, in grid steps
 
-/// Transform of the kernel at 0, 1, 2, ... steps of phase (radians per half width), by the trapezoid rule in
-/// x = sin t, where the integrand and all its derivatives are negligible at both ends.
-class KernelTransform {
-  public:
-    explicit KernelTransform(double step) : step_(step) {
-        for (std::size_t i = 0; i < nodes; ++i) {
-            const double t = std::numbers::pi / 2.0 * (static_cast<double>(i) + 0.5) / nodes;
-            place_[i] = portable::sin(t);
-            weight_[i] = portable::exp(SpreadingKernel::beta * (portable::cos(t) - 1.0)) * portable::cos(t) *
-                         std::numbers::pi / nodes;
-            turn_real_[i] = portable::cos(step * place_[i]);
-            turn_imaginary_[i] = portable::sin(step * place_[i]);
-        }
-    }
-
-    double next() {
-        // Cosines of evenly spaced phases turn by a constant; they are set anew before rounding adds up.
-        if (count_ % 256 == 0) {
-            for (std::size_t i = 0; i < nodes; ++i) {
-                const double phase = step_ * static_cast<double>(count_) * place_[i];
-                real_[i] = weight_[i] * portable::cos(phase);
-                imaginary_[i] = weight_[i] * portable::sin(phase);
-            }
-        }
-        ++count_;
-        double sum = 0.0;
-        for (std::size_t i = 0; i < nodes; ++i) {
-            sum += real_[i];
-            const double real = real_[i] * turn_real_[i] - imaginary_[i] * turn_imaginary_[i];
-            imaginary_[i] = real_[i] * turn_imaginary_[i] + imaginary_[i] * turn_real_[i];
-            real_[i] = real;
-        }
-        return sum;
-    }
-
-  private:
-    static constexpr std::size_t nodes = 40;  // chosen, not derived
-    using Row = std::array<double, nodes>;
-    double step_;
-    std::size_t count_ = 0;
-    Row place_{}, weight_{}, turn_real_{}, turn_imaginary_{}, real_{}, imaginary_{};
-};
-
 /// A transform of samples that were spread, and that of the kernel, which every sum is divided by.
 class Grid {
   public:
-    explicit Grid(std::size_t size)
-        : transform_(size), divisor_(2.0 * std::numbers::pi * kernel_half / static_cast<double>(size)) {}
+    explicit Grid(std::size_t size) : transform_(size) {}
 
     std::vector<std::complex<double>> sums(std::span<const double> where, std::span<const double> value,
                                            double spacing, std::size_t count) {
         std::fill(transform_.in().begin(), transform_.in().end(), 0.0);
         static const SpreadingKernel kernel;
         kernel.spread(where, value, spacing, transform_.in());
-        while (divisors_.size() < count) divisors_.push_back(kernel_half * divisor_.next());
+        const double step = full_turn * kernel_half / static_cast<double>(transform_.in().size());
+        while (divisors_.size() < count)
+            divisors_.push_back(kernel_half *
+                                SpreadingKernel::transform(step * static_cast<double>(divisors_.size())));
         const auto all = transform_.run();
         std::vector<std::complex<double>> sums(count);
         for (std::size_t k = 0; k < count; ++k)
@@ -91,7 +49,6 @@ class Grid {
 
   private:
     RealTransform transform_;
-    KernelTransform divisor_;
     std::vector<double> divisors_;
 };
 
