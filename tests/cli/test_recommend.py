@@ -151,11 +151,11 @@ class Honest(Recommended):
     def test_where_the_stated_orders_are_not_there_and_others_are_it_names_those(self):
         told = self.recommended(gear=["--gear-ratio", "100", "--orders", "3"])
         self.assertEqual((told["finding"], told["take"], told["conclusive"]), ("cannot-tell", None, False))
-        self.assertRegex(told["verdict"], r"order 3: no ripple above .*; but identify finds 0\.[78][0-9]* Nm at order 1, 0\.[45][0-9]* Nm at order 2\b.*: --orders")
+        self.assertRegex(told["verdict"], r"order 3: no ripple above .*\. But identify finds 0\.[78][0-9]* Nm at order 1, 0\.[45][0-9]* Nm at order 2: --orders")
 
     def test_a_short_log_is_no_ground(self):
         """Fewer windows than it takes are no ground to judge methods by; the ripple of the log is there all the same."""
-        for seconds, windows in (1.2, 2), (2.4, 3):
+        for seconds, windows in ((1.2, 6),):
             write_log(self.folder / "short.csv", seconds=seconds)
             told = self.recommended(log="short.csv")
             self.assertEqual((told["finding"], told["windows"]), ("cannot-tell", windows))

@@ -71,6 +71,7 @@ struct Recommendation {
     RecommendationFinding finding = RecommendationFinding::cannot_tell;
     std::string why;  ///< reason of no_ripple and cannot_tell: a sentence
     RecommendationLimits limits;
+    GearRatio ratio;  ///< by which the orders count
     /// Orders of the whole log; empty where their interpretation is uncertain.
     std::vector<RippleEstimate> orders;
     std::size_t windows = 0;         ///< windows in which the methods were measured

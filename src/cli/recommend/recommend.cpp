@@ -203,33 +203,55 @@ Parts read_parts(const RecommendRequest& request, const std::optional<GearAccoun
     return parts;
 }
 
-// The gear that the first part of the log shows; empty, with the reason, where it shows none. That there is
-// no ripple is claimed of the whole log alone.
+// Why a log without a line that turns with the joint has none, and what to record.
+std::string reason_without_lines(const Identification& found) {
+    if (!found.doubts.empty())
+        return found.doubts.front().reason == DoubtReason::clock
+                   ? "position, velocity and time contradict each other"
+                   : "the unit of the motion is not stated, and each reading has other lines; --unit settles "
+                     "it";
+    switch (found.finding) {
+        case RippleFinding::nothing:
+            return fmt::format("no line above {:.2g} Nm from {:.4g} to {:.4g} per turn of the joint",
+                               found.searched->detectable_nm, found.searched->lowest_order,
+                               found.searched->highest_order);
+        case RippleFinding::too_noisy:
+            return fmt::format(
+                "a line of {:.2g} Nm would be missed in this noise; record more turns of the joint",
+                found.searched->detectable_nm);
+        case RippleFinding::too_little:
+            return "the joint is at rest or moves too little; record motion in one direction at several "
+                   "speeds";
+        default:
+            return "no line of a drive turns with the joint; --orders states one, for example 200/turn";
+    }
+}
+
+std::optional<GearOptions> lines_of(const Identification& identified) {
+    const GearStatement lines = JointFile{"", "", identified}.facts();
+    if (lines.orders.empty()) return std::nullopt;
+    GearOptions options;
+    if (lines.ratio) options.ratio = *parse_number(fmt::format("{:.6g}", lines.ratio->value()));
+    options.orders = lines.orders;
+    return options;
+}
+
+// The lines of the whole log, as identify reports them, or else of its first part; empty, with the reason,
+// where there are none.
 std::optional<GearOptions> found_gear_options(const Parts& parts, Recommendation& found) {
-    if (parts.train.trace.size() < fewest_identify_samples) {
-        found.why = fmt::format("{} rows are too few to look for ripple in", parts.train.trace.size());
+    const Log& log = parts.whole;
+    if (log.trace.size() < fewest_identify_samples) {
+        found.why = fmt::format("{} rows are too few to look for ripple in, and {} are needed",
+                                log.trace.size(), fewest_identify_samples);
         return std::nullopt;
     }
-    Identification identified = identify_readings({&parts.train, 1}, {});
-    const bool nothing = identified.conclusive && identified.finding == RippleFinding::nothing;
-    const GearStatement lines = JointFile{"", "", identified}.facts();
-    if (!lines.orders.empty()) {
-        GearOptions options;
-        if (lines.ratio) options.ratio = *parse_number(fmt::format("{:.6g}", lines.ratio->value()));
-        options.orders = lines.orders;
-        return options;
-    }
-    if (nothing) identified = identify_readings({&parts.whole, 1}, {});
-    std::string verdict = identified.verdict;
-    while (!verdict.empty() && verdict.back() == '.') verdict.pop_back();
-    if (identified.conclusive && identified.finding == RippleFinding::nothing) {
+    const Identification identified = identify_readings({&log, 1}, {});
+    if (auto lines = lines_of(identified)) return lines;
+    if (parts.train.trace.size() >= fewest_identify_samples)
+        if (auto lines = lines_of(identify_readings({&parts.train, 1}, {}))) return lines;
+    found.why = reason_without_lines(identified);
+    if (identified.conclusive && identified.finding == RippleFinding::nothing)
         found.finding = RecommendationFinding::no_ripple;
-        found.why = verdict;
-    } else {
-        found.why = fmt::format(
-            "no line is stated, and identify reports for {}: {}; give --orders, for example 200/turn",
-            nothing ? "the log, whose first part shows none" : "the log's first part", verdict);
-    }
     return std::nullopt;
 }
 
@@ -256,25 +278,25 @@ void doubt_readings(const Parts& parts, const GearAccount& gear, Recommendation&
 }
 
 // Where the orders that were stated are not there, and others are, nothing is settled.
-void name_other_lines(const Parts& parts, const GearAccount& gear, Recommendation& found) {
+void name_other_lines(const Log& log, const GearAccount& gear, Recommendation& found) {
     if (found.finding != RecommendationFinding::no_ripple) return;
     IdentifyOptions options;
     if (gear.has_ratio()) options.hint = gear.ratio;
+    const double resolution = ripple_resolution_orders * gear.orders.front().value();
     std::vector<std::string> others;
-    for (const Line& line : identify_readings({&parts.whole, 1}, options).lines) {
+    for (const Line& line : identify_readings({&log, 1}, options).lines) {
         if (line.kind != LineKind::order || !line.order_output) continue;
         const double order = *line.order_output / gear.ratio.value();
-        const bool asked = std::any_of(gear.orders.begin(), gear.orders.end(), [order](Order one) {
-            return std::abs(one.value() - order) < ripple_resolution_orders;
-        });
+        const bool asked = std::any_of(gear.orders.begin(), gear.orders.end(),
+                                       [&](Order one) { return std::abs(one.value() - order) < resolution; });
         if (!asked && others.size() < most_other_lines)
-            others.push_back(fmt::format("{:.3g} Nm at {}", line.amplitude_nm,
+            others.push_back(fmt::format("{:.2g} Nm at {}", line.amplitude_nm,
                                          order_in_words(Order(to_digits(order, 4)), gear.ratio)));
     }
     if (others.empty()) return;
     found.finding = RecommendationFinding::cannot_tell;
     found.why +=
-        fmt::format("; but identify finds {}: --orders states which to remove", fmt::join(others, ", "));
+        fmt::format(". But identify finds {}: --orders states which to remove", fmt::join(others, ", "));
 }
 
 std::vector<std::string> assumptions(const RecommendRequest& request, const Parts& parts,
@@ -282,13 +304,12 @@ std::vector<std::string> assumptions(const RecommendRequest& request, const Part
     std::vector<std::string> all;
     for (const Assumption& one : parts.whole.layout.assumptions)
         all.push_back(fmt::format("{}: {} ({})", one.about, one.assumed, one.settle_with));
-    all.push_back(fmt::format(
-        "{}, {}",
-        gear.has_ratio() ? fmt::format("gear ratio {:.6g}", gear.ratio.value())
-                         : orders_text(gear.orders, gear.ratio, ", ") + " of the joint",
-        stated             ? "as stated: " + gear.source
-        : gear.has_ratio() ? "as identify finds it in the log's first part; --gear-ratio settles it"
-                           : "as identify finds them in the log's first part; no filter needs the ratio"));
+    all.push_back(fmt::format("{}, {}",
+                              gear.has_ratio() ? fmt::format("gear ratio {:.6g}", gear.ratio.value())
+                                               : orders_text(gear.orders, gear.ratio, ", ") + " of the joint",
+                              stated             ? "as stated: " + gear.source
+                              : gear.has_ratio() ? "as identify finds it; --gear-ratio settles it"
+                                                 : "as identify finds them; no filter needs the ratio"));
     if (request.gear.joint_file)
         all.push_back(
             fmt::format("{} was not made from the part of the log that is judged", *request.gear.joint_file));
@@ -296,33 +317,67 @@ std::vector<std::string> assumptions(const RecommendRequest& request, const Part
     return all;
 }
 
-Recommendation judged_at(const std::vector<Contender>& contenders, const Parts& parts,
-                         const GearAccount& gear, const RecommendationLimits& limits,
-                         const std::optional<TorqueBand>& band) {
-    ComparedLog log{parts.judge.trace.view()};
-    log.trace.sample_rate = parts.judge.recording.clock.nominal_rate;
-    return recommend(contenders, log, gear, limits, ripple_of(parts.whole.trace, gear), band);
-}
+class Judge {
+  public:
+    Judge(TriedMethods& tried, const Parts& parts, const GearAccount& gear,
+          const RecommendationLimits& limits, const std::optional<TorqueBand>& band)
+        : tried_(tried),
+          parts_(parts),
+          gear_(gear),
+          limits_(limits),
+          band_(band),
+          ripple_(ripple_of(parts.whole.trace, gear)) {}
 
-// What cannot be designed at the log's rate, and a map that does not reach as far as the judged part of the
-// log moves, is left out; the others are judged without it.
-Recommendation judged_methods(TriedMethods& candidates, const Parts& parts, const GearAccount& gear,
-                              const RecommendationLimits& limits, const std::optional<TorqueBand>& band) {
-    std::erase_if(candidates.contenders, [&](const Contender& one) {
-        const std::string why = one.refusal(parts.judge.recording.clock.nominal_rate);
-        if (!why.empty()) candidates.leave_out(why);
-        return !why.empty();
-    });
-    try {
-        return judged_at(candidates.contenders, parts, gear, limits, band);
-    } catch (const DataError& error) {
-        if (std::erase_if(candidates.contenders, [](const Contender& one) { return one.map != nullptr; }) ==
-            0)
-            throw;
-        candidates.leave_out(error.what());
-        return judged_at(candidates.contenders, parts, gear, limits, band);
+    /// What cannot be designed at the log's rate, and a map of part of the speeds that the log moves at, is
+    /// left out. A log whose last part is too short is judged in all, by the methods that learn nothing of
+    /// it: `on_all` says so.
+    Recommendation result(bool& on_all) {
+        std::erase_if(tried_.contenders, [&](const Contender& one) {
+            const std::string why = one.refusal(parts_.whole.recording.clock.nominal_rate);
+            if (!why.empty()) tried_.leave_out(why);
+            return !why.empty();
+        });
+        leave_out_far_maps();
+        Recommendation found = judged(parts_.judge);
+        on_all = found.finding == RecommendationFinding::cannot_tell &&
+                 std::any_of(ripple_.begin(), ripple_.end(), std::mem_fn(&RippleEstimate::present));
+        if (!on_all) return found;
+        leave_out_maps("a ripple map: the log is too short to make it of one part and judge it on another");
+        return judged(parts_.whole);
     }
-}
+
+  private:
+    [[nodiscard]] ComparedLog compared(const Log& on) const {
+        ComparedLog log{on.trace.view()};
+        log.trace.sample_rate = parts_.whole.recording.clock.nominal_rate;
+        return log;
+    }
+    [[nodiscard]] Recommendation judged(const Log& on) const {
+        return recommend(tried_.contenders, compared(on), gear_, limits_, ripple_, band_);
+    }
+    // The command that is printed filters all of the log.
+    void leave_out_far_maps() {
+        const auto mapped = std::find_if(tried_.contenders.begin(), tried_.contenders.end(),
+                                         [](const Contender& one) { return one.map != nullptr; });
+        if (mapped == tried_.contenders.end()) return;
+        try {
+            static_cast<void>(output_on_log(*mapped, compared(parts_.whole)));
+        } catch (const DataError& error) {
+            leave_out_maps(error.what());
+        }
+    }
+    void leave_out_maps(const std::string& why) {
+        const auto has_map = [](const Contender& one) { return one.map != nullptr || one.method->is_map; };
+        if (std::erase_if(tried_.contenders, has_map) > 0) tried_.leave_out(why);
+    }
+
+    TriedMethods& tried_;
+    const Parts& parts_;
+    const GearAccount& gear_;
+    const RecommendationLimits& limits_;
+    const std::optional<TorqueBand>& band_;
+    std::vector<RippleEstimate> ripple_;
+};
 
 // Empty where the log has to show the lines: orders by the motor name none without a ratio.
 std::optional<GearAccount> stated_gear(const GearOptions& options, const GearChoice& choice) {
@@ -338,12 +393,13 @@ RecommendationReport report_of(const RecommendRequest& request, Provenance& prov
     const auto target = request.target ? std::optional(find_any_target(*request.target)) : std::nullopt;
     const auto band = stated_band(request.torque_band);
     const GearChoice stated(request.gear);
-    Parts parts = read_parts(request, stated_gear(request.gear, stated), report.split_s, provenance);
+    const std::optional<GearAccount> stated_lines = stated_gear(request.gear, stated);
+    Parts parts = read_parts(request, stated_lines, report.split_s, provenance);
     if (stated.joint()) provenance.inputs.push_back(input_record(stated.joint()->path));
     GearOptions gear_options = request.gear;
     report.found.limits = {request.limits.max_delay, request.limits.min_attenuation_db,
                            !request.gear.orders.empty()};
-    if (!stated_gear(request.gear, stated)) {
+    if (!stated_lines) {
         const auto found = found_gear_options(parts, report.found);
         report.conclusive = report.found.finding == RecommendationFinding::no_ripple;
         if (!found) return report;
@@ -352,36 +408,45 @@ RecommendationReport report_of(const RecommendRequest& request, Provenance& prov
     }
     const GearChoice choice(gear_options);
     report.gear = choice.of();
-    const bool is_stated = stated_gear(request.gear, stated).has_value();
-    if (!is_stated) report.gear->source = "identify, on the log's first part";
+    if (!stated_lines) report.gear->source = "identify";
     say(request.common, gear_in_words(*report.gear));
     const std::string split = split_words(report.split_s);
-    TriedMethods candidates = candidates_for({parts.train, parts.whole.recording.clock.nominal_rate,
-                                              shell_quoted(request.log) + request.log_words({}, split),
-                                              choice, *report.gear, target});
-    report.found = judged_methods(candidates, parts, *report.gear, report.found.limits, band);
+    const Hertz rate = parts.whole.recording.clock.nominal_rate;
+    TriedMethods candidates =
+        candidates_for({parts.train, rate, shell_quoted(request.log) + request.log_words({}, split), choice,
+                        *report.gear, target});
+    bool on_all = false;
+    report.found = Judge(candidates, parts, *report.gear, report.found.limits, band).result(on_all);
+    const JudgedMethod* const first = report.found.taken();
     if (report.found.finding == RecommendationFinding::out_of_reach && target &&
-        find_method(parse_spec(report.found.taken()->figures.method).name).part == MethodPart::control)
+        part_of(first->figures) == MethodPart::control)
         report.found.why = fmt::format("{} can hold none of the methods", target->spec.text());
-    name_other_lines(parts, *report.gear, report.found);
+    if (stated_lines) name_other_lines(parts.whole, *report.gear, report.found);
     doubt_readings(parts, *report.gear, report.found);
-    report.assumed = assumptions(request, parts, *report.gear, is_stated);
+    report.assumed = assumptions(request, parts, *report.gear, stated_lines.has_value());
     report.conclusive = report.found.finding != RecommendationFinding::cannot_tell;
     // Where nothing can be told, nothing was tried: no list of what was not.
     if (report.conclusive) report.left_out = candidates.left_out;
-    if (const std::string against = is_stated ? against_gear({&parts.whole, 1}, *report.gear) : "";
-        !against.empty()) {
+    const std::string against = stated_lines ? against_gear({&parts.whole, 1}, *report.gear) : "";
+    if (!against.empty()) {
         warn(request.common, against);
         report.assumed.insert(report.assumed.begin(), against);
         report.conclusive = false;
     }
     if (report.found.methods.empty()) return report;
-    const CommandLines commands({request.log, request.log_words({}, {}), request.log_words(split, {}),
-                                 parts.judge.recording.clock.nominal_rate, candidates, target, *report.gear});
+    if (on_all) {
+        report.split_s = 0.0;
+        report.assumed.emplace_back(
+            "the log is too short for a part of its own to judge by: all of it judges");
+    }
+    const std::string all = request.log_words({}, {});
+    const CommandLines commands{request.log, all,        on_all ? all : request.log_words(split, {}),
+                                rate,        candidates, target,
+                                *report.gear};
     const JudgedMethod* const next = report.found.runner_up();
-    report.take = commands.of(report.found.taken()->figures);
+    report.take = commands.of(first->figures);
     if (next != nullptr) report.runner_up = commands.of(next->figures);
-    report.check = commands.check({report.found.taken(), next});
+    report.check = commands.check({first, next});
     return report;
 }
 

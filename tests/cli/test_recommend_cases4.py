@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: MIT
+"""Which filter, on logs in the layouts that people have and whose truth is known: ../shared/cases-4, section 1."""
+
+import json
+import unittest
+
+from commands import LOGS, Case, run
+
+CASES = LOGS.parent / "cases-4"
+PANDA = LOGS / "gpl3" / "panda_gaz_j1.csv"
+
+
+def told(done):
+    return json.loads(done.stdout)
+
+
+@unittest.skipUnless(CASES.is_dir(), "SKIPPED: no logs of ../shared/cases-4")
+class CasesOfUsers(Case):
+    def test_a_line_is_all_that_a_filter_needs(self):
+        """One line, 200 times per turn of the joint: the same filter for gear 100, order 2, and gear 200, order 1."""
+        log = CASES / "phase_constant.csv"
+        alone = told(run("recommend", log, "--json", "-q"))
+        self.assertEqual(alone["finding"], "recommended", alone["verdict"])
+        self.assertIsNone(alone["gear"]["ratio"])
+        self.assertRegex(alone["verdict"], r"^Use .*\b(200|199\.99\d*)/turn down \d+ dB, ")
+        same = [told(run("recommend", log, "--json", "-q", *words)) for words in
+                (("--orders", "200/turn"), ("--gear-ratio", "100", "--orders", "2"), ("--gear-ratio", "200", "--orders", "1"))]
+        for other in same[1:]:
+            for mine, theirs in zip(same[0]["methods"], other["methods"], strict=True):
+                self.assertEqual(mine["method"].split(",gear-ratio")[0].split(",orders")[0], theirs["method"].split(",gear-ratio")[0].split(",orders")[0])
+                self.assertAlmostEqual(mine["error_nm"], theirs["error_nm"], delta=0.01 * mine["error_nm"])
+
+    @unittest.skipUnless(PANDA.exists(), "SKIPPED: the folder of real logs is not here")
+    def test_faint_orders_are_not_asked_to_meet_an_attenuation_unless_they_are_named(self):
+        asked = told(run("recommend", PANDA, "--min-attenuation", "20dB", "--json", "-q"))
+        self.assertEqual(asked["finding"], "recommended", asked["verdict"])
+        self.assertLess(asked["methods"][0]["longest_delay_ms"], 10.0)
+
+    @unittest.skipUnless(PANDA.exists(), "SKIPPED: the folder of real logs is not here")
+    def test_a_stated_ratio_that_the_lines_contradict_is_doubted(self):
+        done = run("recommend", PANDA, "--gear-ratio", "100", "--json", "--require-conclusive")
+        self.assertEqual(done.returncode, 5, done.stderr)
+        self.assertIn("100", done.stderr)
+        self.assertFalse(told(done)["conclusive"])
+
+    @unittest.skipUnless(PANDA.exists(), "SKIPPED: the folder of real logs is not here")
+    def test_what_no_method_meets_is_said_so(self):
+        done = run("recommend", PANDA, "--max-delay", "0.1ms", "--min-attenuation", "60dB", "--json", "-q")
+        self.assertEqual(done.returncode, 1)
+        self.assertRegex(told(done)["verdict"], r"^None fits: the nearest is \S+ at [\d.]+ dB of order \d \(asked: 60 dB\)\.$")
+        done = run("recommend", PANDA, "--target", "pinocchio", "--json", "-q")
+        self.assertEqual(done.returncode, 2)
+        done = run("recommend", PANDA, "--target", "ros-filters", "--json", "-q", "--orders", "1,2", "--gear-ratio", "120.05")
+        self.assertIn(done.returncode, (0, 1))
+        self.assertNotIn("Leave the torque", told(done)["verdict"])
+
+    @unittest.skipUnless(PANDA.exists(), "SKIPPED: the folder of real logs is not here")
+    def test_a_joint_without_a_ratio_has_its_filter_and_its_commands_have_none(self):
+        done = run("recommend", LOGS / "kuka_kr300_trajA_all.csv", "--joint", "j2", "--json", "-q")
+        self.assertEqual(told(done)["finding"], "recommended", told(done)["verdict"])
+        self.assertNotIn("--gear-ratio", " ".join(told(done)["take_commands"]))
+
+
+if __name__ == "__main__":
+    unittest.main()
