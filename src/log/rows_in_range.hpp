@@ -104,13 +104,4 @@ class ColumnReader;
 [[nodiscard]] std::unique_ptr<LogReader> rows_in_range(std::unique_ptr<ColumnReader> whole,
                                                        const ReadOptions& options);
 
-/// LogFormat::open of a format whose reader gives its rows by rows_in_range().
-template <class Reader>
-std::unique_ptr<LogReader> open_with(std::unique_ptr<ByteSource> source, std::string first_bytes,
-                                     const ReadOptions& options) {
-    return rows_in_range(
-        std::make_unique<Reader>(std::move(source), std::move(first_bytes), options_of_whole(options)),
-        options);
-}
-
 }  // namespace ripplenotch

@@ -567,6 +567,31 @@ TEST_CASE("signals with times of their own are joined to the torque's", "[log]")
     }
 }
 
+TEST_CASE("columns with times of their own, in columns or in rows of their own, are joined to the torque's",
+          "[log]") {
+    // Velocity is the time in s, torque that of its own row.
+    std::string columns = "time,velocity_deg_s,time,torque_nm\n", rows = "stamp,velocity_deg_s,torque_nm\n";
+    const std::int64_t epoch_ns = 1716537600000000000;
+    for (int k = 0; k < 100; ++k) {
+        columns += fmt::format("{:.3f},{:.3f},{:.3f},{:.3f}\n", 0.002 * k, 0.002 * k, 0.003 * k, 0.003 * k);
+        rows += fmt::format("{},{:.3f},\n{},,{:.7f}\n", epoch_ns + 2000000 * k, 0.002 * k,
+                            epoch_ns + 2000000 * k + 400001, 0.002 * k + 0.000400001);
+    }
+    for (const std::string& text : {columns, rows}) {
+        const Log log = read_text(text);
+        REQUIRE(log.trace.size() > 60);
+        for (std::size_t k = 0; k < log.trace.size(); ++k) {
+            CHECK(log.trace.velocity_deg_s[k] == Approx(log.trace.torque_nm[k]).margin(1e-7));
+            CHECK(log.trace.time_s[k] - log.trace.time_s[0] ==
+                  Approx(log.trace.torque_nm[k] - log.trace.torque_nm[0]).margin(1e-7));
+        }
+    }
+    // One clock in two columns leaves the rows as they are.
+    std::string same = "time,velocity_deg_s,time,torque_nm\n";
+    for (int k = 0; k < 9; ++k) same += fmt::format("{0:.3f},{1},{0:.3f},{1}\n", 0.001 * k, k);
+    CHECK(rewritten(same, [](double torque) { return torque; }) == same);
+}
+
 TEST_CASE("a title over two columns makes no trace of them", "[log]") {
     std::string text = "run 3\n";
     for (int k = 0; k < 9; ++k) text += fmt::format("{};{}\n", 10 + k % 2, 5 + k % 3);

@@ -10,7 +10,7 @@
 #include "log/text/csv_reader.hpp"
 #include "log/text/csv_writer.hpp"
 #include "log/text/long_table.hpp"
-#include "log/text/scope_channels.hpp"
+#include "log/text/own_clocks.hpp"
 #include "log/text/text_dialect.hpp"
 #include "ripplenotch/core/number.hpp"
 
@@ -63,9 +63,7 @@ std::unique_ptr<LogReader> open_text(std::unique_ptr<ByteSource> source, std::st
                                      const ReadOptions& options) {
     if (options.skip_lines == 0 && may_be_long(first_bytes))
         return open_long(std::move(source), std::move(first_bytes), options);
-    if (may_be_scope_export(first_bytes))
-        return open_scope_export(std::move(source), std::move(first_bytes), options);
-    return open_with<CsvReader>(std::move(source), std::move(first_bytes), options);
+    return open_table(std::move(source), std::move(first_bytes), options);
 }
 
 // Reshaped rows, and channels that were joined by time, are none of the file that could be written again.

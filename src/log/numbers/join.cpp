@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -26,9 +27,10 @@ Join join_named(std::string_view word) {
     raise<UsageError>("--join: '{}' is none of nearest, hold, linear", word);
 }
 
-/// The clock of columns, their first, in whole nanoseconds.
-std::vector<std::int64_t> clock_ns(const Columns& columns, const ColumnNumbers& clock, double ns_per_unit) {
-    if (columns.info()[0].whole && ns_per_unit == 1.0) return clock.counts;
+/// The clock of columns, their first, in whole nanoseconds; where all that is joined counts alike, as it is.
+std::vector<std::int64_t> clock_ns(const Columns& columns, const ColumnNumbers& clock, double ns_per_unit,
+                                   bool counted) {
+    if (counted) return clock.counts;
     std::vector<std::int64_t> times;
     for (const double value : clock.values) {
         const double ns = value * ns_per_unit;
@@ -43,23 +45,25 @@ std::vector<std::int64_t> clock_ns(const Columns& columns, const ColumnNumbers& 
 /// A signal as its last value and the next.
 class Side {
   public:
-    Side(SideColumn signal, Join how) : signal_(std::move(signal)), how_(how) {
+    Side(SideColumn signal, Join how, bool counted)
+        : signal_(std::move(signal)), how_(how), counted_(counted) {
         Columns& columns = *signal_.columns;
         std::vector<bool> wanted(columns.info().size(), false);
         wanted[0] = wanted[signal_.column] = true;
         columns.keep(std::move(wanted));
         read_on();
-        double period_ns = 0.0;
+        double period = 0.0;
         if (times_.size() > 1)
-            period_ns = (static_cast<double>(times_.back()) - static_cast<double>(times_.front())) /
-                        static_cast<double>(times_.size() - 1);
-        limit_ns_ = static_cast<std::int64_t>(periods_apart * std::max(period_ns, least_ns));
+            period = (static_cast<double>(times_.back()) - static_cast<double>(times_.front())) /
+                     static_cast<double>(times_.size() - 1);
+        unit_ns_ = counted_ ? signal_.ns_per_unit : 1.0;
+        limit_ = static_cast<std::int64_t>(periods_apart * std::max(period, least_ns / unit_ns_));
         advance();
         advance();
     }
     [[nodiscard]] const ColumnInfo& info() const { return signal_.columns->info()[signal_.column]; }
     [[nodiscard]] std::string_view noun() const { return signal_.noun; }
-    [[nodiscard]] std::int64_t limit_ns() const { return limit_ns_; }
+    [[nodiscard]] double limit_ns() const { return unit_ns_ * static_cast<double>(limit_); }
     /// At a time that is not before those asked for until now; none before the first value and behind the
     /// last.
     std::optional<double> at(std::int64_t time_ns) {
@@ -71,13 +75,12 @@ class Side {
         const std::int64_t away = how_ == Join::hold      ? since
                                   : how_ == Join::nearest ? std::min(since, until)
                                                           : std::max(since, until);
-        if (away > limit_ns_) {
+        if (away > limit_) {
             raise<DataError>(
                 "{}: read no {} of {} within {} s of the row at {} s, expected one; leave the gap out "
                 "with --from and --to, or read what has one clock",
-                signal_.columns->name(), signal_.noun, info().path,
-                shortest(1e-9 * static_cast<double>(limit_ns_)),
-                shortest(1e-9 * static_cast<double>(time_ns)));
+                signal_.columns->name(), signal_.noun, info().path, shortest(1e-9 * limit_ns()),
+                shortest(1e-9 * unit_ns_ * static_cast<double>(time_ns)));
         }
         if (how_ == Join::hold) return before_->value;
         if (how_ == Join::nearest) return since <= until ? before_->value : after_->value;
@@ -95,7 +98,7 @@ class Side {
         row_ = 0;
         numbers_.assign(signal_.columns->info().size(), {});
         signal_.columns->next(rows_at_once, numbers_, bytes);
-        times_ = clock_ns(*signal_.columns, numbers_[0], signal_.ns_per_unit);
+        times_ = clock_ns(*signal_.columns, numbers_[0], signal_.ns_per_unit, counted_);
     }
     void advance() {
         before_ = after_;
@@ -115,16 +118,19 @@ class Side {
     NumberRows numbers_;
     std::vector<std::int64_t> times_;
     std::size_t row_ = 0;
-    std::int64_t limit_ns_ = 0;
+    bool counted_;
+    double unit_ns_ = 1.0;    ///< of a time
+    std::int64_t limit_ = 0;  ///< in that unit
     std::optional<Point> before_, after_;
 };
 
 class JoinedColumns final : public Columns {
   public:
-    JoinedColumns(std::unique_ptr<Columns> base, double ns_per_unit, std::vector<Side> sides)
+    JoinedColumns(std::unique_ptr<Columns> base, double ns_per_unit, bool counted, std::vector<Side> sides)
         : Columns(base->name(), with_sides(*base, sides)),
           base_(std::move(base)),
           ns_per_unit_(ns_per_unit),
+          counted_(counted),
           sides_(std::move(sides)) {}
     std::size_t next(std::size_t rows, NumberRows& into, std::string& bytes) override {
         std::vector<std::size_t> complete;
@@ -132,7 +138,7 @@ class JoinedColumns final : public Columns {
             numbers_.assign(base_->info().size(), {});
             const std::size_t count = base_->next(rows, numbers_, bytes);
             if (count == 0) return 0;
-            const std::vector<std::int64_t> times = clock_ns(*base_, numbers_[0], ns_per_unit_);
+            const std::vector<std::int64_t> times = clock_ns(*base_, numbers_[0], ns_per_unit_, counted_);
             for (std::size_t row = 0; row < count; ++row)
                 if (read_sides(times[row])) complete.push_back(row);
         }
@@ -166,6 +172,7 @@ class JoinedColumns final : public Columns {
 
     std::unique_ptr<Columns> base_;
     double ns_per_unit_;
+    bool counted_;
     std::vector<Side> sides_;
     NumberRows numbers_;
     std::vector<double> values_;  ///< of all sides, row by row
@@ -176,18 +183,23 @@ class JoinedColumns final : public Columns {
 void join_columns(ColumnLog& log, double ns_per_unit, std::vector<SideColumn> sides,
                   const ReadOptions& options) {
     const std::string how = options.join.value_or("linear");
+    const bool counted =
+        log.columns->info()[0].whole && std::all_of(sides.begin(), sides.end(), [&](const SideColumn& side) {
+            return side.columns->info()[0].whole && side.ns_per_unit == ns_per_unit;
+        });
     std::vector<Side> opened;
     for (SideColumn& side : sides) {
-        const Side& one = opened.emplace_back(std::move(side), join_named(how));
+        const Side& one = opened.emplace_back(std::move(side), join_named(how), counted);
         log.warnings.push_back(
             {"joined by time",
              fmt::format("{} has a clock of its own: joined to the rows by --join {}, from {}s that are up "
-                         "to {} ms away; nearest, hold and linear are allowed",
-                         one.info().path, how, one.noun(), static_cast<double>(one.limit_ns()) / 1e6),
+                         "to {:.4g} ms away; nearest, hold and linear are allowed",
+                         one.info().path, how, one.noun(), one.limit_ns() / 1e6),
              true});
     }
     log.options += fmt::format("{}--join {}", log.options.empty() ? "" : " ", how);
-    log.columns = std::make_unique<JoinedColumns>(std::move(log.columns), ns_per_unit, std::move(opened));
+    log.columns =
+        std::make_unique<JoinedColumns>(std::move(log.columns), ns_per_unit, counted, std::move(opened));
 }
 
 }  // namespace ripplenotch

@@ -38,15 +38,28 @@ std::string dialect_options(const TextDialect& dialect) {
                        dialect.rules.decimal_mark, dialect.has_header ? "" : " --no-header");
 }
 
-CsvReader::CsvReader(std::unique_ptr<ByteSource> source, std::string first_bytes, const ReadOptions& options)
-    : source_(std::move(source)), options_(options) {
-    source_ended_ = read_up_to(*source_, first_bytes, sniff_size);
+TextOpening::TextOpening(std::unique_ptr<ByteSource> from, std::string first_bytes,
+                         const ReadOptions& options)
+    : source(std::move(from)), bytes(std::move(first_bytes)) {
+    ended = read_up_to(*source, bytes, sniff_size);
     // Lines may be long: a verdict on them needs a few whole ones.
-    for (std::size_t size = 2 * sniff_size;
-         !source_ended_ && line_ends(first_bytes) < 8 && size <= 8 * longest_line; size *= 2) {
-        source_ended_ = read_up_to(*source_, first_bytes, size);
-    }
-    dialect_ = sniff_text(first_bytes, source_ended_, *source_, options);
+    for (std::size_t size = 2 * sniff_size; !ended && line_ends(bytes) < 8 && size <= 8 * longest_line;
+         size *= 2)
+        ended = read_up_to(*source, bytes, size);
+    dialect = sniff_text(bytes, ended, *source, options);
+}
+
+std::string TextOpening::whole() {
+    while (!ended) ended = read_up_to(*source, bytes, 2 * bytes.size());
+    return std::move(bytes);
+}
+
+CsvReader::CsvReader(TextOpening opening, const ReadOptions& options)
+    : source_(std::move(opening.source)),
+      options_(options),
+      dialect_(std::move(opening.dialect)),
+      source_ended_(opening.ended) {
+    std::string first_bytes = std::move(opening.bytes);
     layout_ = decide_layout(source_->name(), "csv", facts_of(first_bytes), options);
     layout_.outside = rows_outside(*source_);
     if (dialect_.head_lines > 0) {

@@ -17,9 +17,23 @@ namespace ripplenotch {
 /// "--delimiter ';' --decimal ,", as people type it.
 [[nodiscard]] std::string dialect_options(const TextDialect& dialect);
 
+/// A text log of which as much has been read as tells how it is written.
+struct TextOpening {
+    TextOpening(std::unique_ptr<ByteSource> source, std::string first_bytes, const ReadOptions& options);
+    /// All of it.
+    [[nodiscard]] std::string whole();
+
+    std::unique_ptr<ByteSource> source;
+    std::string bytes;
+    bool ended = false;  ///< the source has no more
+    TextDialect dialect;
+};
+
 class CsvReader : public LogReader {
   public:
-    CsvReader(std::unique_ptr<ByteSource> source, std::string first_bytes, const ReadOptions& options);
+    CsvReader(TextOpening opening, const ReadOptions& options);
+    CsvReader(std::unique_ptr<ByteSource> source, std::string first_bytes, const ReadOptions& options)
+        : CsvReader(TextOpening(std::move(source), std::move(first_bytes), options), options) {}
 
     [[nodiscard]] const Layout& layout() const override { return layout_; }
     [[nodiscard]] std::string_view head() const override { return head_; }

@@ -6,23 +6,16 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <charconv>
-#include <cmath>
-#include <cstdint>
-#include <map>
 #include <optional>
+#include <tuple>
 #include <utility>
 
 #include "core/text/lower_case.hpp"
 #include "log/clock/stamp.hpp"
 #include "log/columns/column_name.hpp"
-#include "log/columns/units.hpp"
-#include "log/numbers/columns.hpp"
 #include "log/read.hpp"
-#include "log/rows_in_range.hpp"
-#include "log/text/csv_reader.hpp"
-#include "log/text/text_cells.hpp"
-#include "log/text/text_dialect.hpp"
+#include "log/text/own_clocks.hpp"
+#include "log/text/signals.hpp"
 #include "log/text/text_header.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
@@ -41,60 +34,10 @@ constexpr std::array<std::string_view, 7> value_words = {"value", "values", "dat
                                                          "werte", "y",      "reading"};
 constexpr std::array<std::string_view, 5> name_keys = {"variable", "name", "variablename", "symbol",
                                                        "symbolname"};
-constexpr std::size_t most_names = 4096;
 
 bool is_one_of(Words words, std::string_view text) {
     const std::string lower = lower_case(text);
     return std::find(words.begin(), words.end(), lower) != words.end();
-}
-
-/// One number over time.
-struct Signal {
-    std::string name, unit;
-    ColumnNumbers time;  ///< with counts as long as all times are whole numbers
-    std::vector<double> values;
-};
-
-/// Lines with their numbers, cut into cells.
-class Lines {
-  public:
-    Lines(std::string_view bytes, std::string source) : bytes_(bytes), source_(std::move(source)) {}
-    bool next() {
-        while (at_ < bytes_.size()) {
-            const std::size_t end = std::min(bytes_.find('\n', at_), bytes_.size());
-            line_ = line_content(bytes_.substr(at_, end - at_));
-            at_ = end + 1;
-            if (number_++ == 0 && line_.starts_with("\xef\xbb\xbf")) line_.remove_prefix(3);
-            if (is_blank_line(line_) || is_comment_line(line_)) continue;
-            return true;
-        }
-        return false;
-    }
-    [[nodiscard]] std::vector<std::string> cells(char delimiter) const {
-        CellSplit split;
-        split_cells(line_, delimiter, split);
-        std::vector<std::string> texts;
-        for (const Cell& cell : split.cells) texts.push_back(cell_text(line_, cell));
-        while (texts.size() > 1 && texts.back().empty()) texts.pop_back();
-        return texts;
-    }
-    [[nodiscard]] std::string_view line() const { return line_; }
-    [[nodiscard]] std::size_t number() const { return number_; }
-    [[noreturn]] void complain(const std::string& sentence) const {
-        raise<DataError>("{}:{}: {}", source_, number_, sentence);
-    }
-
-  private:
-    std::string_view bytes_, line_;
-    std::string source_;
-    std::size_t at_ = 0, number_ = 0;
-};
-
-/// A number, with a comma for its decimals where that separates no cells.
-std::optional<double> number_in(std::string_view text, char delimiter) {
-    auto number = parse_number(text);
-    if (!number && delimiter != ',') number = parse_number(text, ',');
-    return number;
 }
 
 /// Which columns of a tidy table are what, by its header.
@@ -187,112 +130,26 @@ std::vector<std::string> head_cells(const Lines& lines) {
     return {std::string(lines.line())};
 }
 
-class Signals {
-  public:
-    Signals(const Lines& lines, std::string time_name) : lines_(lines), time_name_(std::move(time_name)) {}
-    std::vector<Signal> all;
-
-    std::size_t index_of(const std::string& name, const std::string& unit) {
-        const auto [found, added] = places_.try_emplace(name, all.size());
-        if (added && all.size() == most_names)
-            lines_.complain("read more than 4096 signals, expected the name of one in each row");
-        if (added) all.push_back({name, unit, {}, {}});
-        return found->second;
-    }
-    void add(std::size_t signal, const std::string& time, const std::string& value, char delimiter) {
-        auto number = number_in(time, delimiter);
-        if (!number) {
-            const auto stamp = clock_text(time);
-            if (!stamp)
-                lines_.complain(fmt::format(
-                    "read '{}' in '{}', expected a number, or a time such as {}; correct or remove the line",
-                    time, time_name_, stamp_forms));
-            if (!origin_s_) origin_s_ = stamp->whole_s;
-            number = since(stamp->whole_s, *origin_s_) + stamp->fraction_s;
-        }
-        const auto read = number_in(value, delimiter);
-        if (!read)
-            lines_.complain(
-                fmt::format("read '{}' as the value of '{}', expected a number; correct or remove the line",
-                            value, all[signal].name));
-        Signal& one = all[signal];
-        if (!one.values.empty() && *number < one.time.values.back())
-            lines_.complain(
-                fmt::format("read the time {} of '{}' after {}, expected time to run forward; sort "
-                            "the log",
-                            time, one.name, shortest(one.time.values.back())));
-        std::int64_t count = 0;
-        const char* const end = time.data() + time.size();
-        const auto whole = std::from_chars(time.data(), end, count);
-        all_whole_ = all_whole_ && whole.ec == std::errc() && whole.ptr == end;
-        one.time.values.push_back(*number);
-        one.time.counts.push_back(count);
-        one.values.push_back(*read);
-    }
-    [[nodiscard]] bool all_whole() const { return all_whole_; }
-    [[nodiscard]] std::string time_name() const { return origin_s_ ? "time [s]" : time_name_; }
-
-  private:
-    const Lines& lines_;
-    std::string time_name_;
-    std::map<std::string, std::size_t> places_;
-    std::optional<std::int64_t> origin_s_;
-    bool all_whole_ = true;  ///< the times
-};
-
 /// The signal whose times are those of the rows: the torque, else the one with the most.
-std::size_t base_of(const std::vector<Signal>& signals) {
-    std::size_t base = 0;
-    const auto rank = [&](std::size_t s) {
-        const ColumnName name = read_column_name(signals[s].name);
-        return std::pair(name.role == Role::torque && !name.reference, signals[s].values.size());
+std::size_t base_of(const std::vector<Signal>& signals, const ReadOptions& options) {
+    const auto rank = [&](const Signal& signal) {
+        const ColumnName name = read_column_name(signal.name);
+        const bool asked = std::find(options.columns.begin(), options.columns.end(),
+                                     "torque=" + signal.name) != options.columns.end();
+        return std::tuple(asked, name.role == Role::torque && !name.reference, signal.values.size());
     };
+    std::size_t base = 0;
     for (std::size_t s = 1; s < signals.size(); ++s)
-        if (rank(s) > rank(base)) base = s;
+        if (rank(signals[s]) > rank(signals[base])) base = s;
     return base;
-}
-
-/// What the clock counts in: as its name says, else so that the longest time fits.
-double ns_per_unit_of(const std::string& time_name, const std::vector<Signal>& signals) {
-    constexpr double most_ns = 9e18, seconds = 1e9;
-    const auto unit = usual_unit(split_unit(time_name).unit, Role::time);
-    if (unit) return seconds * role_factor(Role::time, *unit).value_or(1.0);
-    double longest = 1.0;
-    for (const Signal& signal : signals)
-        longest =
-            std::max({longest, std::abs(signal.time.values.front()), std::abs(signal.time.values.back())});
-    double unit_ns = seconds;
-    while (unit_ns > 1.0 && unit_ns * longest > most_ns) unit_ns /= 10.0;
-    return unit_ns;
 }
 
 ColumnLog as_columns(const std::string& source, Signals signals, const std::string& time_name,
                      const std::string& shape, const ReadOptions& options) {
-    std::vector<Signal>& all = signals.all;
-    const std::size_t base = base_of(all);
-    const double ns_per_unit = ns_per_unit_of(time_name, all);
-    const ColumnInfo clock{time_name.empty() ? "time" : time_name, "", "", signals.all_whole(), true};
-    ColumnLog log;
-    log.format = "csv";
-    log.inferences.push_back({"shape", fmt::format("{} signals as columns", all.size()), shape, "", {}});
-    std::vector<ColumnInfo> info = {clock};
-    NumberRows numbers = {all[base].time};
-    std::vector<SideColumn> sides;
-    for (Signal& signal : all) {
-        const ColumnInfo own{signal.name, "", signal.unit, false, true};
-        ColumnNumbers values{std::move(signal.values), {}};
-        if (signal.time.values == numbers[0].values) {
-            info.push_back(own);
-            numbers.push_back(std::move(values));
-        } else {
-            sides.push_back(
-                {std::make_unique<HeldColumns>(source, std::vector{clock, own},
-                                               NumberRows{std::move(signal.time), std::move(values)}),
-                 1, ns_per_unit, "value"});
-        }
-    }
-    log.columns = std::make_unique<HeldColumns>(source, std::move(info), std::move(numbers));
-    if (!sides.empty()) join_columns(log, ns_per_unit, std::move(sides), options);
+    const std::size_t count = signals.all.size();
+    const ColumnInfo clock{time_name.empty() ? "time" : time_name, "", "", false, true};
+    ColumnLog log = signals.columns(source, clock, base_of(signals.all, options), options);
+    log.inferences.push_back({"shape", fmt::format("{} signals as columns", count), shape, "", {}});
     return log;
 }
 
@@ -400,7 +257,7 @@ std::unique_ptr<LogReader> open_long(std::unique_ptr<ByteSource> source, std::st
         return read_columns(tidy_columns(name, bytes, *header, options), options);
     if (has_blocks(bytes)) return read_columns(block_columns(name, bytes, options), options);
     auto held = std::make_unique<ByteSource>(name, std::make_shared<const std::string>(std::move(bytes)));
-    return open_with<CsvReader>(std::move(held), "", options);
+    return open_table(std::move(held), "", options);
 }
 
 }  // namespace ripplenotch

@@ -6,10 +6,12 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <span>
 #include <utility>
 
 #include "log/clock/stamp.hpp"
+#include "log/columns/column_name.hpp"
 #include "log/rows_in_range.hpp"
 #include "log/text/scope_header.hpp"
 #include "log/text/text_header.hpp"
@@ -216,6 +218,36 @@ void look_at_sample(std::string_view bytes, std::span<const TextLine> rows, Text
     }
 }
 
+// "time,A,time,B": the name of the first column over later ones means that each stands in front of its
+// signals, as exports write runs that were recorded apart. Only the first keeps it.
+void take_repeated_clocks(TextDialect& dialect) {
+    std::vector<std::string>& names = dialect.names;
+    if (std::count(names.begin(), names.end(), names.empty() ? "" : names.front()) < 2 ||
+        read_column_name(names.front()).role != Role::time)
+        return;
+    dialect.clock_of.assign(names.size(), 0);
+    for (std::size_t c = 1; c < names.size(); ++c) {
+        const bool clock = names[c] == names.front();
+        dialect.clock_of[c] = clock ? c : dialect.clock_of[c - 1];
+        if (clock) names[c].clear();
+    }
+}
+
+// Whether a signal of a joint has numbers in some rows only, as topics have that were written into one table.
+// Where a third of the cells of many rows is empty, nobody lost them.
+bool has_own_rows(const TextDialect& dialect) {
+    constexpr std::size_t many = 64;
+    for (std::size_t c = 0; c < std::min(dialect.names.size(), dialect.sample.size()); ++c) {
+        const std::vector<double>& numbers = dialect.sample[c];
+        const auto empty = static_cast<std::size_t>(
+            std::count_if(numbers.begin(), numbers.end(), [](double number) { return std::isnan(number); }));
+        if (numbers.size() < many || 3 * empty < numbers.size() || empty + 2 > numbers.size()) continue;
+        const Role role = read_column_name(dialect.names[c]).role;
+        if (role != Role::other && role != Role::time) return true;
+    }
+    return false;
+}
+
 // Only the rows are left in `content`.
 void take_scope_header(const ScopeHeader& scope, std::vector<TextLine>& content, ReadOptions& known,
                        TextDialect& dialect) {
@@ -280,6 +312,9 @@ TextDialect sniff_text(std::string_view bytes, bool whole, const ByteSource& sou
     dialect.data_offset = lines.content[row].begin;
     dialect.data_line = lines.content[row].number;
     look_at_sample(bytes, std::span(lines.content).subspan(row), dialect);
+    if (!scope) take_repeated_clocks(dialect);
+    const std::set<std::size_t> clocks(dialect.clock_of.begin(), dialect.clock_of.end());
+    dialect.own_clocks = clocks.size() > 1 || (has_own_rows(dialect) && !options.hold_bad_values);
     return dialect;
 }
 

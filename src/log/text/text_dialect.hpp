@@ -38,7 +38,9 @@ struct TextDialect {
     std::vector<std::vector<double>> sample;
     std::vector<bool> clock_texts;       ///< by column: dates or times of day; seconds in the sample
     std::vector<StampForm> stamp_forms;  ///< by column, of its dates and times of day
-    std::vector<std::size_t> clock_of;  ///< by column: where its times stand, if each has its own; else empty
+    std::vector<std::size_t>
+        clock_of;             ///< by column: where its times stand, if some have their own; else empty
+    bool own_clocks = false;  ///< some have, in columns of their own or in rows of their own
     std::vector<std::int64_t> first_counts;  ///< by column: the first row's whole number, exact
 };
 
