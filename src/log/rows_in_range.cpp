@@ -15,24 +15,6 @@
 
 namespace ripplenotch {
 
-void KeptNumbers::add(bool kept) {
-    ++seen_;
-    if (!kept) return;
-    const std::size_t left_out = seen_ - ++kept_;
-    const std::size_t before = holes_.empty() ? 0 : holes_.back().left_out;
-    if (left_out == before) return;
-    const std::lock_guard lock(mutex_);
-    holes_.push_back({kept_ - 1, left_out});
-}
-
-std::size_t KeptNumbers::in_file(std::size_t number) const {
-    const std::lock_guard lock(mutex_);
-    for (auto hole = holes_.rbegin(); hole != holes_.rend(); ++hole) {
-        if (number > hole->kept) return number + hole->left_out;
-    }
-    return number;
-}
-
 std::size_t number_in_file(const ByteSource& source, std::size_t number) {
     const auto* const rows = dynamic_cast<const RowsInRange*>(&source);
     return rows == nullptr ? number : rows->number_in_file(number);
@@ -44,7 +26,7 @@ std::shared_ptr<const RowsOutside> rows_outside(const ByteSource& source) {
 }
 
 RowsInRange::RowsInRange(const ReadOptions& options, const Layout& whole, std::size_t head)
-    : source_(whole.source), range_(options.range), numbers_(head) {
+    : source_(whole.source), range_(options.range), head_(head) {
     counts_from_kept_ = whole.stated_rate || whole.time_is_steps;
     if (whole.stated_rate) {
         rate_hz_ = whole.stated_rate->value();
@@ -64,7 +46,13 @@ bool RowsInRange::keeps(std::optional<double> time) {
         const double time_s = rate_hz_ ? *time : *time * factor_;
         if (!first_s_) begin(time_s);
         last_s_ = time_s;
-        place_ = place_of(time_s);
+        const Place place = place_of(time_s);
+        if (place < place_)
+            raise<DataError>(
+                "{}: {}: read the time {} s behind a later one, expected time to run forward; "
+                "sort the log",
+                source_, asked(), shortest(time_s));
+        place_ = place;
         if (counts_from_kept_ && kept_ == 0 && inside()) outside_->zero_s = time_s;
     }
     if (inside())
@@ -75,7 +63,7 @@ bool RowsInRange::keeps(std::optional<double> time) {
 }
 
 bool RowsInRange::keeps_line() {
-    numbers_.add(inside());
+    left_out_ += place_ == Place::before ? 1 : 0;
     return inside();
 }
 

@@ -8,10 +8,8 @@
 #include <cstddef>
 #include <limits>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "log/clock/choose_time.hpp"
 #include "ripplenotch/core/files.hpp"
@@ -19,29 +17,15 @@
 
 namespace ripplenotch {
 
-/// Numbers in the file of what was kept of its lines or records. One thread may ask while another adds.
-class KeptNumbers {
-  public:
-    explicit KeptNumbers(std::size_t head = 0) : seen_(head), kept_(head) {}
-    /// The next line or record.
-    void add(bool kept);
-    /// Both count from 1.
-    [[nodiscard]] std::size_t in_file(std::size_t number) const;
-
-  private:
-    struct Hole {
-        std::size_t kept, left_out;  ///< before what is behind it
-    };
-    mutable std::mutex mutex_;
-    std::vector<Hole> holes_;
-    std::size_t seen_, kept_;
-};
-
-/// Says which rows of a log are inside a range, for what gives the others no further.
+/// Says which rows of a log are inside a range, for what gives the others no further. Time runs forward, so
+/// they follow each other.
 class RowsInRange {
   public:
     virtual ~RowsInRange() = default;
-    [[nodiscard]] std::size_t number_in_file(std::size_t number) const { return numbers_.in_file(number); }
+    /// Of the `number`th line or record that is kept. Both count from 1.
+    [[nodiscard]] std::size_t number_in_file(std::size_t number) const {
+        return number > head_ ? number + left_out_ : number;
+    }
     [[nodiscard]] const std::shared_ptr<RowsOutside>& outside() const { return outside_; }
 
   protected:
@@ -76,7 +60,7 @@ class RowsInRange {
     bool counts_from_kept_ = false;  ///< the times of the rows inside begin at 0
     double factor_ = 1.0;            ///< times in the file to seconds
     TimeAxis axis_;
-    KeptNumbers numbers_;
+    std::size_t head_, left_out_ = 0;  ///< lines in front of the first row; those left out behind them
     std::shared_ptr<RowsOutside> outside_ = std::make_shared<RowsOutside>();
     double from_s_ = -std::numeric_limits<double>::infinity(),
            to_s_ = std::numeric_limits<double>::infinity();

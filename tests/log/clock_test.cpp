@@ -12,7 +12,6 @@
 #include "log/clock/choose_time.hpp"
 #include "log/clock/clock_check.hpp"
 #include "log/clock/stamp.hpp"
-#include "log/rows_in_range.hpp"
 #include "log_support.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/log/clock.hpp"
@@ -515,11 +514,4 @@ TEST_CASE("a time column that is another inside the range is refused with the wa
     for (int k = 0; k < 500; ++k) text += fmt::format("{},1,{}\n", 5 + k, k % 5);
     for (int k = 0; k < 500; ++k) text += fmt::format("{:.3f},1,{}\n", 600 + 0.002 * k, k % 5);
     CHECK_THROWS_WITH(read_text(text, between("600ms", "601ms")), Catch::Contains("--unit time=UNIT"));
-}
-
-TEST_CASE("numbers of what was kept are told as they are in the file", "[log]") {
-    KeptNumbers numbers(2);
-    for (const bool keeps : {false, false, true, true, false, true}) numbers.add(keeps);
-    const std::vector<std::size_t> expected = {1, 2, 5, 6, 8, 9};
-    for (std::size_t k = 0; k < expected.size(); ++k) CHECK(numbers.in_file(k + 1) == expected[k]);
 }
