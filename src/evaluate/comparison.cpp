@@ -279,11 +279,11 @@ struct Runner {
     std::optional<SwitchLedger> ledger = std::nullopt;  ///< ledger of a method that switches
 };
 
-void fill_levels(MethodFigures& figures, const RippleLevels& levels, std::size_t signal) {
+void fill_levels(MethodFigures& figures, const RippleLevels& levels, GearRatio ratio, std::size_t signal) {
     if (levels.windows == 0) return;
     for (const OrderLevel& level : levels.orders) {
         const double before = level.amplitude_nm[0], after = level.amplitude_nm[signal];
-        OrderAttenuation entry{level.order, level.mean_hz, std::nullopt};
+        OrderAttenuation entry{level.order, level.mean_hz, std::nullopt, ratio};
         if (before > 0.0) {
             entry.db = after > 0.0 ? std::min(20.0 * portable::log10(before / after), most_attenuation_db)
                                    : most_attenuation_db;
@@ -362,7 +362,8 @@ MethodFigures measure_on_signals(const Contender& contender, Hertz sample_rate, 
     if (lines != nullptr) {
         for (const Order order : lines->orders) {
             const Hertz at = ripple_frequency(order, lines->ratio, speed);
-            figures.attenuation.push_back({order.value(), at.value(), bench.attenuation_db(at)});
+            figures.attenuation.push_back(
+                {order.value(), at.value(), bench.attenuation_db(at), lines->ratio});
         }
     }
     return figures;
@@ -429,7 +430,7 @@ LogLevels measure_on_log(std::span<const Contender> contenders, const ComparedLo
     for (std::size_t i = 0; i < contenders.size(); ++i) {
         MethodFigures figures;
         figures.method = contenders[i].text;
-        fill_levels(figures, levels, i + 1);
+        fill_levels(figures, levels, lines.ratio, i + 1);
         if (runners[i].ledger) {
             figures.switches = runners[i].filter->switch_count();
             figures.largest_jump_nm = largest_jump_nm(*runners[i].filter);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/evaluate/contender.hpp"
@@ -209,9 +210,10 @@ std::vector<std::string> harm_done(const FilterMetrics& metrics) {
         const auto db = level.windows > 0 ? attenuation_db(level) : std::nullopt;
         if (!db || *db > -growth_db) continue;
         found.push_back(
-            fmt::format("order {:g} grew from {:.3g} to {:.3g} Nm; see other methods with "
+            fmt::format("{} grew from {:.3g} to {:.3g} Nm; see other methods with "
                         "'ripplenotch recommend'",
-                        level.order, level.amplitude_nm[0], level.amplitude_nm[1]));
+                        order_in_words(Order(level.order), metrics.gear->ratio), level.amplitude_nm[0],
+                        level.amplitude_nm[1]));
     }
     const double before = ripple_rms_nm(levels, 0), after = ripple_rms_nm(levels, 1);
     const double taken = std::sqrt(std::max(before * before - after * after, 0.0));
@@ -247,9 +249,9 @@ std::vector<std::string> short_of_prediction(const FilterMetrics& metrics) {
         const double before = level.amplitude_nm[0], after = level.amplitude_nm[1];
         if (!(after > far_from_predicted * *predicted && after > share_that_counts * before)) continue;
         found.push_back(
-            fmt::format("order {:g}: remaining ripple {:.3g} Nm, predicted {:.3g} Nm; the gear ratio may be "
+            fmt::format("{}: remaining ripple {:.3g} Nm, predicted {:.3g} Nm; the gear ratio may be "
                         "wrong, or the speed changes faster than the filter settles",
-                        level.order, after, *predicted));
+                        order_in_words(Order(level.order), metrics.gear->ratio), after, *predicted));
     }
     return found;
 }

@@ -41,10 +41,6 @@ std::string noun_of(const MethodFigures& figures) {
     return fmt::format("{} ({})", find_method(spec.name).noun, made_of);
 }
 
-std::string order_words(const Recommendation& found, double order) {
-    return order_in_words(Order(to_digits(order, 4)), found.ratio);
-}
-
 // "order 1 down 9 dB, order 2 down 10 dB"
 std::string attenuation_text(const Recommendation& found, const MethodFigures& figures) {
     std::vector<std::string> parts;
@@ -52,7 +48,7 @@ std::string attenuation_text(const Recommendation& found, const MethodFigures& f
     for (std::size_t i = 0; i < found.orders.size() && i < figures.attenuation.size(); ++i) {
         const OrderAttenuation& entry = figures.attenuation[i];
         if (!found.asks_for(i) || !entry.db) continue;
-        parts.push_back(fmt::format("{} down {} dB", order_words(found, entry.order), rounded(*entry.db, 0)));
+        parts.push_back(fmt::format("{} down {} dB", entry.name(), rounded(*entry.db, 0)));
         db.push_back(*entry.db);
     }
     if (parts.empty()) return "attenuation not known";
@@ -173,8 +169,7 @@ void hold_to(JudgedMethod& method, const Recommendation& found) {
         const OrderAttenuation& entry = method.figures.attenuation[i];
         const double limit = *limits.min_attenuation_db, db = entry.db.value_or(0.0);
         if (!found.asks_for(i) || db >= limit) continue;
-        method.shortfalls.push_back(
-            fmt::format("{:.1f} dB of {} (asked: {:g} dB)", db, order_words(found, entry.order), limit));
+        method.shortfalls.push_back(fmt::format("{:.1f} dB of {} (asked: {:g} dB)", db, entry.name(), limit));
         method.excess += (limit - db) / std::max(limit, 1.0);
     }
     if (!limits.max_delay || (method.delay && *method.delay <= *limits.max_delay)) return;

@@ -101,7 +101,8 @@ class Code(Case):
             self.assertLess(max(abs(a - b) for a, b in zip(found, expected[method])), MOST[precision], f"{method} in {precision}")
 
     def test_verify_runs_it_beside_the_method_over_a_million_samples(self):
-        for method in "tracking,gear-ratio=100,orders=1:2", "oscillator,gear-ratio=100,orders=1:2", RICH:
+        for method in ("tracking,gear-ratio=100,orders=1:2", "oscillator,gear-ratio=100,orders=1:2",
+                       "oscillator,gear-ratio=100,orders=1.5", "oscillator,orders=200/turn", RICH):
             for precision, most in MOST.items():
                 text = self.export(method, to=f"c-header,precision={precision}").stdout
                 self.assertIn("1000000 samples", text)
@@ -109,9 +110,8 @@ class Code(Case):
 
     def test_what_is_not_written_is_refused_by_name(self):
         for more, said in (("gain=scheduled", "gain=scheduled"), ("angle=velocity", "angle=velocity"), ("rest=0Nm", "rest"), ("cosines=1:1,sines=1:1,zero=unknown", "zero=unknown"),
-                           ("cosines=1:1,sines=1:1,return=0.5", "a return below one turn"),
-                           ("orders=1.5", "order 1.5 is not whole")):
-            orders = "" if more.startswith("orders") else ",orders=1:2"
-            self.assertIn(said, self.export(f"oscillator,gear-ratio=100{orders},{more}", code=2).stderr)
+                           ("cosines=1:1,sines=1:1,return=0.5", "a return below one period")):
+            self.assertIn(said, self.export(f"oscillator,gear-ratio=100,orders=1:2,{more}", code=2).stderr)
         self.assertIn("use c-header", self.export("tracking,gear-ratio=100,orders=1", to="scipy", code=2).stderr)
-        self.assertIn("--tolerance is for coefficients", self.export("tracking,gear-ratio=100,orders=1", "--tolerance", "1", code=2).stderr)
+        self.export("tracking,gear-ratio=100,orders=1", "--tolerance", "1")
+        self.assertIn("tolerance 1e-09 %", self.export("tracking,gear-ratio=100,orders=1", "--tolerance", "1e-9", code=1).stderr)

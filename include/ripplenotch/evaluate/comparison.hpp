@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/core/quantity.hpp"
 #include "ripplenotch/core/trace.hpp"
 #include "ripplenotch/evaluate/contender.hpp"
@@ -21,6 +22,10 @@ struct OrderAttenuation {
     double hz = 0.0;  ///< frequency of the line; on a log its mean
     std::optional<double>
         db;  ///< empty where the line is not below half the sample rate, or was not measured
+    GearRatio ratio = no_ratio;  ///< under which the order counts
+
+    /// "order 2", "200/turn"
+    [[nodiscard]] std::string name() const { return order_in_words(Order(order), ratio); }
 };
 
 /// Performance and cost of one method; values that were not requested or are not available are empty.

@@ -30,8 +30,8 @@ namespace ripplenotch {
 /// before a gear of unknown ratio gives orders of the motor and no ratio.
 [[nodiscard]] Identification identify_readings(std::span<const Log> logs, const IdentifyOptions& options);
 
-/// Why the lines of logs speak against a gear ratio that is stated, a sentence for a warning; empty where they
-/// do not. `found`: identified with that ratio, or without any.
+/// Why the lines of logs speak against a gear ratio that is stated, a sentence for a warning; empty where
+/// they do not. `found`: identified with that ratio, or without any.
 [[nodiscard]] std::string against_ratio(const Identification& found, GearRatio stated);
 /// The same of logs of one joint that are about to be filtered by this gear.
 [[nodiscard]] std::string against_gear(std::span<const Log> logs, const GearAccount& gear);

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/visible_text.hpp"
 
@@ -133,12 +134,28 @@ std::string with_ratio(const Identification& found) {
     for (const Line& line : found.lines) {
         if (line.order) lines.push_back(&line);
     }
-    std::sort(lines.begin(), lines.end(), [](const Line* a, const Line* b) { return *a->order < *b->order; });
-    std::vector<std::string> orders, amplitudes;
+    const auto of_other_spline = [&found](const Line& line) {
+        const std::string words = order_in_words(Order(*line.order), GearRatio(*found.gear_ratio.value));
+        return words.find("other spline") != std::string::npos ? words : std::string();
+    };
+    std::sort(lines.begin(), lines.end(), [&](const Line* a, const Line* b) {
+        return std::pair(!of_other_spline(*a).empty(), *a->order) <
+               std::pair(!of_other_spline(*b).empty(), *b->order);
+    });
+    std::vector<std::string> orders, others, amplitudes;
     for (const Line* line : lines) {
-        orders.push_back(fmt::format("{:.4g}", *line->order));
+        const std::string words = of_other_spline(*line);
+        if (words.empty())
+            orders.push_back(fmt::format("{:.4g}", *line->order));
+        else
+            others.push_back(words);
         amplitudes.push_back(amplitude_text(*line));
     }
+    std::vector<std::string> places;
+    if (!orders.empty())
+        places.push_back(
+            fmt::format("order{} {} of the motor", orders.size() == 1 ? "" : "s", listed(orders)));
+    if (!others.empty()) places.push_back(listed(others));
     std::vector<std::string> doubted;  // may be tones
     for (const Line* line : lines) {
         if (line->kind == LineKind::unknown) doubted.push_back(fmt::format("{:.4g}", *line->order));
@@ -161,9 +178,9 @@ std::string with_ratio(const Identification& found) {
                                 : lines.size() == 1 ? "A line that may be ripple"
                                                     : "Lines that may be ripple";
     return fmt::format(
-        "{} at order{} {} of the motor: gear ratio {:.{}f} +/- {:.{}f} (95 %){}, {} Nm zero to peak, from "
+        "{} at {}: gear ratio {:.{}f} +/- {:.{}f} (95 %){}, {} Nm zero to peak, from "
         "{}{}{}.",
-        subject, lines.size() == 1 ? "" : "s", listed(orders), *ratio.value, decimals, half, decimals,
+        subject, fmt::join(places, " and "), *ratio.value, decimals, half, decimals,
         of_both_splines(ratio, decimals), listed(amplitudes), basis(found.grounds), at_rest(found) + doubt,
         besides(found));
 }

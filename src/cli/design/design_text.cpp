@@ -181,7 +181,7 @@ std::vector<std::vector<std::string>> title_rows(const TableSpec& spec, const Ex
     titles.insert(titles.end(), {"DC delay", "settles", "overshoot"});
     units.insert(units.end(), {"ms", fmt::format("ms to {} %", plain(spec.settle_band_percent)), "%"});
     for (const Order order : spec.orders) {
-        titles.push_back(fmt::format("worst {}", shortest(order.value())));
+        titles.push_back("worst " + order_text(order, spec.gear_ratio));
         units.push_back("dB");
     }
     if (extra.held) {
@@ -189,7 +189,7 @@ std::vector<std::vector<std::string>> title_rows(const TableSpec& spec, const Ex
         units.push_back("dB");
     }
     for (std::size_t i = 0; extra.left && i < spec.orders.size(); ++i) {
-        titles.push_back(fmt::format("remaining {}", shortest(spec.orders[i].value())));
+        titles.push_back("remaining " + order_text(spec.orders[i], spec.gear_ratio));
         units.push_back("Nm");
     }
     return {titles, units};

@@ -84,6 +84,7 @@ struct CodeExport {
     const Contender& method;
     Hertz sample_rate;
     std::string to;
+    std::optional<double> tolerance_percent;
     CommonOptions common;
 };
 
@@ -166,6 +167,16 @@ CodeCheck run_beside(const CodeExport& request, const RunningDesign& design, con
     return check;
 }
 
+// Of what runs on other numbers than coefficients: a share of what it comes to.
+ExitCode within_tolerance(double error_nm, double whole_nm, std::string_view whole,
+                          const std::optional<double>& tolerance_percent) {
+    const double percent = 100.0 * error_nm / whole_nm;
+    if (!tolerance_percent || percent <= *tolerance_percent) return ExitCode::done;
+    talk(fmt::format("ripplenotch export: largest error {:.2g} % of the {}, tolerance {} %", percent, whole,
+                     shortest(*tolerance_percent)));
+    return ExitCode::limit_violated;
+}
+
 // Writes its code, reads it back and runs it beside the method itself over a million samples.
 // Throws UsageError for a target that takes coefficients only.
 ExitCode export_code(const CodeExport& request, const std::string& command_line) {
@@ -188,7 +199,8 @@ ExitCode export_code(const CodeExport& request, const std::string& command_line)
                            again.source, spec.text(), samples, code.arithmetic, check.largest_nm,
                            check.largest_error_nm),
                request.common);
-    return ExitCode::done;
+    return within_tolerance(check.largest_error_nm, check.largest_nm, "largest output",
+                            request.tolerance_percent);
 }
 
 // `export` of a ripple map.
@@ -198,6 +210,7 @@ struct MapExport {
     std::string map, to;
     CommonOptions common;
     std::optional<std::string> motor_of;  ///< of another joint than the map's own
+    std::optional<double> tolerance_percent;
 };
 
 // That of the joint's own motor, or of the motor of another joint: a map each, since each goes by an angle of
@@ -244,9 +257,10 @@ ExitCode export_map(const MapExport& request, const std::string& command_line) {
     write_export(written, request.common);
     const ReadBack again = read_back(written, request.common);
     const LoadedMap loaded = target.read(again.bytes, again.source, map, settings);
-    tell_check(check_text(again.source, std::string(target.name), loaded, verify_map_export(map, loaded)),
-               request.common);
-    return ExitCode::done;
+    const MapCheck check = verify_map_export(map, loaded);
+    tell_check(check_text(again.source, std::string(target.name), loaded, check), request.common);
+    return within_tolerance(check.largest_error_nm, check.ripple_nm, "map's ripple, rms",
+                            request.tolerance_percent);
 }
 
 // What was read back, for people.
@@ -391,15 +405,17 @@ void say_violations(const ExportReport& report) {
 ExitCode run_export(const ExportRequest& request, const std::string& command_line) {
     check_export(request);
     if (is_map(request.table))
-        return export_map({request.table, request.to, request.common, request.motor_of}, command_line);
+        return export_map(
+            {request.table, request.to, request.common, request.motor_of, request.tolerance_percent},
+            command_line);
     if (request.motor_of) raise<UsageError>("--motor-of is for maps, and {} is none", request.table);
     const Spec spec = parse_spec(request.to);
     const Target& target = find_target(spec.name);
     const Contender method = method_of(request);
     if (method.method->running != nullptr) {
-        if (request.tolerance_percent)
-            raise<UsageError>("--tolerance is for coefficients, and those of this method change");
-        return export_code({method, *request.sample_rate, request.to, request.common}, command_line);
+        return export_code(
+            {method, *request.sample_rate, request.to, request.tolerance_percent, request.common},
+            command_line);
     }
     if (ends_with_json(request.common.output) && target.name != "json")
         raise<UsageError>("-o {}: {} is no JSON; use --to json, or name the file otherwise",
@@ -460,10 +476,11 @@ std::function<ExitCode()> attach_export(Options& options) {
                    "with --method: rate at which the filter will run");
     options.count("--band", request->band, 0, 1000000,
                   "only this band of the table, to run at every speed; 0 is the whole table");
-    options.number("--tolerance", request->tolerance_percent, Dimension::none,
-                   "per cent, e.g. 0.1: exit code 1 when a centre has moved by more, or the gain error there "
-                   "or at 0 Hz is "
-                   "larger");
+    options.number(
+        "--tolerance", request->tolerance_percent, Dimension::none,
+        "per cent, e.g. 0.1: exit code 1 when a centre has moved by more, or the gain error there or "
+        "at 0 Hz is larger; of code and maps, when their largest error is more of the largest output or "
+        "of the ripple");
     attach_common(options, request->common, {});
     return [request, &options] { return run_export(*request, options.command_line()); };
 }

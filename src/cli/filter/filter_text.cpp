@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/visible_text.hpp"
 #include "ripplenotch/filter/engine.hpp"
@@ -16,11 +17,11 @@ namespace {
 
 std::string ripple_line(const FilterMetrics& metrics, std::size_t order) {
     const OrderLevel& level = metrics.levels->orders[order];
-    if (level.windows == 0)
-        return fmt::format("order {:g}: not measured, nowhere four periods in one direction", level.order);
+    const std::string name = order_in_words(Order(level.order), metrics.gear->ratio);
+    if (level.windows == 0) return name + ": not measured, nowhere four periods in one direction";
     const auto attenuation = attenuation_db(level), predicted = predicted_nm(metrics, order);
-    return fmt::format("order {:g} (mean {:.4g} Hz): {:.3g} Nm before, {:.3g} Nm after{}{}", level.order,
-                       level.mean_hz, level.amplitude_nm[0], level.amplitude_nm[1],
+    return fmt::format("{} (mean {:.4g} Hz): {:.3g} Nm before, {:.3g} Nm after{}{}", name, level.mean_hz,
+                       level.amplitude_nm[0], level.amplitude_nm[1],
                        attenuation ? fmt::format(", {:.1f} dB", *attenuation) : "",
                        predicted ? fmt::format("; predicted {:.3g} Nm", *predicted) : "");
 }

@@ -23,6 +23,7 @@
 #include "ripplenotch/analysis/identification.hpp"
 #include "ripplenotch/chart/spectrum_figure.hpp"
 #include "ripplenotch/core/files.hpp"
+#include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/progress.hpp"
 #include "ripplenotch/document/identification_json.hpp"
@@ -62,14 +63,18 @@ std::string row(std::size_t kind_width, const std::array<std::string, 9>& cells)
     return text.substr(0, text.find_last_not_of(' ') + 1) + "\n";
 }
 
-std::string line_row(const Line& line, std::size_t kind_width) {
+std::string line_row(const Line& line, std::size_t kind_width, const GearRatioFit& ratio) {
+    std::string note = " " + line.note;
+    if (line.order && ratio.value)
+        if (const std::string words = order_in_words(Order(*line.order), GearRatio(*ratio.value));
+            words.find("other spline") != std::string::npos)
+            note += (line.note.empty() ? "" : ", ") + words;
     return row(kind_width,
                {std::string(kind_text(line)), line.order ? fmt::format("{:.4g}", *line.order) : "-",
                 line.order_output ? fmt::format("{:.3f}", *line.order_output) : "-", hz_range(line),
                 fmt::format("{:.3g}", line.amplitude_nm),
                 line.phase_known ? fmt::format("{:.0f}", std::round(line.phase_deg) + 0.0) : "-",
-                fmt::format("{:.1f}", line.snr), range(line.speed_from_deg_s, line.speed_to_deg_s, 3),
-                " " + line.note});
+                fmt::format("{:.1f}", line.snr), range(line.speed_from_deg_s, line.speed_to_deg_s, 3), note});
 }
 
 // The amplitude by speed and direction.
@@ -208,7 +213,7 @@ std::string identification_report(const CommonOptions& common, const Identificat
         text +=
             "\n" + row(width, {"kind", "order", "output order", "Hz", "amplitude", "phase", "SNR", "speed"});
         text += row(width, {"", "", "per turn", "", "Nm", "deg", "", "deg/s"});
-        for (const Line& line : found.lines) text += line_row(line, width);
+        for (const Line& line : found.lines) text += line_row(line, width, found.gear_ratio);
     }
     if (ratio.second_comb)
         text += fmt::format("second comb: {:.4f} turns of the wave generator against the other spline\n",

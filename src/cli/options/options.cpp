@@ -671,13 +671,13 @@ std::vector<std::string> attenuation_violations(const Gates& gates, const std::s
     const std::string limit = shortest(*gates.min_attenuation_db);
     for (const OrderAttenuation& entry : orders) {
         if (!entry.db) {
-            sentences.push_back(fmt::format(
-                "{}: order {:g} could not be measured, so --min-attenuation {}dB is not shown to hold",
-                method, entry.order, limit));
+            sentences.push_back(
+                fmt::format("{}: {} could not be measured, so --min-attenuation {}dB is not shown to hold",
+                            method, entry.name(), limit));
         } else if (!(*entry.db >= *gates.min_attenuation_db)) {
-            sentences.push_back(fmt::format(
-                "{}: it attenuates order {:g} by {:.1f} dB, {:.1f} dB less than --min-attenuation {}dB",
-                method, entry.order, *entry.db, *gates.min_attenuation_db - *entry.db, limit));
+            sentences.push_back(
+                fmt::format("{}: it attenuates {} by {:.1f} dB, {:.1f} dB less than --min-attenuation {}dB",
+                            method, entry.name(), *entry.db, *gates.min_attenuation_db - *entry.db, limit));
         }
     }
     return sentences;
@@ -691,7 +691,7 @@ std::vector<std::string> filter_violations(const Gates& gates, const Contender& 
     if (!metrics.levels) return found;
     std::vector<OrderAttenuation> orders;
     for (const OrderLevel& level : metrics.levels->orders) {
-        OrderAttenuation entry{level.order, level.mean_hz, std::nullopt};
+        OrderAttenuation entry{level.order, level.mean_hz, std::nullopt, metrics.gear->ratio};
         if (level.windows > 0) entry.db = attenuation_db(level).value_or(most_attenuation_db);
         orders.push_back(entry);
     }

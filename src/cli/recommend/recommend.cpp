@@ -45,13 +45,13 @@ std::string next_commands(std::string_view head, const std::vector<std::string>&
     return fmt::format("\n{}\n    {}\n", head, fmt::join(lines, "\n    "));
 }
 
-std::string orders_text(const Recommendation& found) {
+std::string orders_of_log(const Recommendation& found, GearRatio ratio) {
     std::vector<std::vector<std::string>> rows = {
         {"order", "ripple Nm", "standard error Nm", "detectable Nm", ""}};
     for (const RippleEstimate& one : found.orders) {
         const auto cell = [&](double nm) { return one.searched() ? fmt::format("{:.3f}", nm) : "-"; };
-        rows.push_back({shortest(one.order), cell(one.amplitude_nm), cell(one.standard_error_nm),
-                        cell(one.detectable_nm),
+        rows.push_back({order_text(Order(one.order), ratio), cell(one.amplitude_nm),
+                        cell(one.standard_error_nm), cell(one.detectable_nm),
                         !one.searched() ? one.insufficient
                         : one.present() ? ""
                                         : "not above the noise"});
@@ -59,10 +59,10 @@ std::string orders_text(const Recommendation& found) {
     return "\n" + text_table(rows, "rrrrl");
 }
 
-std::string methods_text(const Recommendation& found) {
+std::string methods_text(const Recommendation& found, GearRatio ratio) {
     std::vector<std::vector<std::string>> rows = {{"method"}};
     for (const RippleEstimate& one : found.orders)
-        rows.front().push_back(fmt::format("order {:g}, dB", one.order));
+        rows.front().push_back(order_in_words(Order(one.order), ratio) + ", dB");
     for (const char* const title :
          {"delay, ms", "gain", "step, %", "ripple, Nm", "distorts, Nm", "adds, Nm", "error, Nm", ""})
         rows.front().emplace_back(title);
@@ -100,9 +100,10 @@ std::string recommendation_view(const CommonOptions& common, const Recommendatio
     std::string text = paragraph(common, recommendation_verdict(found), joint_columns(common));
     text += next_commands("To use it:", report.take);
     text += next_commands("The other:", report.runner_up);
-    if (!found.orders.empty()) text += orders_text(found);
+    const GearRatio ratio = found.ratio;
+    if (!found.orders.empty()) text += orders_of_log(found, ratio);
     if (!found.methods.empty()) {
-        text += methods_text(found);
+        text += methods_text(found, ratio);
         text +=
             "\n" +
             paragraph(
@@ -227,18 +228,23 @@ std::string reason_without_lines(const Identification& found) {
     }
 }
 
-std::optional<GearOptions> lines_of(const Identification& identified) {
+struct FoundLines {
+    GearOptions gear;
+    bool at_one_speed = false;
+};
+
+std::optional<FoundLines> lines_of(const Identification& identified) {
     const GearStatement lines = JointFile{"", "", identified}.facts();
     if (lines.orders.empty()) return std::nullopt;
-    GearOptions options;
-    if (lines.ratio) options.ratio = *parse_number(fmt::format("{:.6g}", lines.ratio->value()));
-    options.orders = lines.orders;
-    return options;
+    FoundLines found{{}, !lines.ratio && identified.finding == RippleFinding::one_speed};
+    if (lines.ratio) found.gear.ratio = *parse_number(fmt::format("{:.6g}", lines.ratio->value()));
+    found.gear.orders = lines.orders;
+    return found;
 }
 
 // The lines of the whole log, as identify reports them, or else of its first part; empty, with the reason,
 // where there are none.
-std::optional<GearOptions> found_gear_options(const Parts& parts, Recommendation& found) {
+std::optional<FoundLines> found_gear_options(const Parts& parts, Recommendation& found) {
     const Log& log = parts.whole;
     if (log.trace.size() < fewest_identify_samples) {
         found.why = fmt::format("{} rows are too few to look for ripple in, and {} are needed",
@@ -399,11 +405,13 @@ RecommendationReport report_of(const RecommendRequest& request, Provenance& prov
     GearOptions gear_options = request.gear;
     report.found.limits = {request.limits.max_delay, request.limits.min_attenuation_db,
                            !request.gear.orders.empty()};
+    bool at_one_speed = false;
     if (!stated_lines) {
         const auto found = found_gear_options(parts, report.found);
         report.conclusive = report.found.finding == RecommendationFinding::no_ripple;
         if (!found) return report;
-        gear_options = *found;
+        gear_options = found->gear;
+        at_one_speed = found->at_one_speed;
         if (!request.gear.orders.empty()) gear_options.orders = request.gear.orders;
     }
     const GearChoice choice(gear_options);
@@ -424,6 +432,11 @@ RecommendationReport report_of(const RecommendRequest& request, Provenance& prov
     if (stated_lines) name_other_lines(parts.whole, *report.gear, report.found);
     doubt_readings(parts, *report.gear, report.found);
     report.assumed = assumptions(request, parts, *report.gear, stated_lines.has_value());
+    if (at_one_speed)
+        report.assumed.emplace_back(
+            "the lines turn with the joint: at one speed they could as well be fixed tones; a log at another "
+            "speed "
+            "settles it");
     report.conclusive = report.found.finding != RecommendationFinding::cannot_tell;
     // Where nothing can be told, nothing was tried: no list of what was not.
     if (report.conclusive) report.left_out = candidates.left_out;

@@ -235,7 +235,7 @@ RunningDesign running(const Settings& settings, Hertz sample_rate) {
         if (is) raise<UsageError>("method oscillator as code: {} is not written; leave it out", what);
     };
     refuse(p.zero_unknown, "zero=unknown");
-    refuse(p.map && settings.number("return") < 1.0, "a return below 1");
+    refuse(p.map && settings.number("return") < 1.0, "a return below one period");
     refuse(p.scheduled, "gain=scheduled");
     refuse(p.source == MotorAngle::Source::velocity, "angle=velocity");
     refuse(p.rest_nm.has_value(), "rest");

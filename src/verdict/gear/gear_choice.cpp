@@ -42,13 +42,15 @@ std::optional<double> order_of(const Line& line, const Identification& found,
     return std::abs(order - whole) <= whole_order_share * order ? whole : order;
 }
 
-// Of a line that turns with the joint, under no ratio. At one speed a line may be a fixed tone; it counts as
-// one that turns.
+// Of a line that turns with the joint, under no ratio; whole where it may be. At one speed a line may be a
+// fixed tone; it counts as one that turns.
 std::optional<double> per_turn_of(const Line& line) {
     std::optional<double> order = line.order_output;
     if (!order && line.kind == LineKind::unknown && line.by_speed.size() == 1)
         order = 360.0 * line.by_speed.front().hz / std::abs(line.by_speed.front().speed_deg_s);
     if (line.kind == LineKind::tone || !order || !(*order >= fewest_per_turn)) return std::nullopt;
+    const double whole = std::round(*order);
+    if (std::abs(*order - whole) <= 2.0 * line.order_output_stderr.value_or(0.0)) return whole;
     return parse_number(fmt::format("{:.6g}", *order));
 }
 
