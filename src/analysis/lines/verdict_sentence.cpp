@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/core/number.hpp"

@@ -17,7 +17,7 @@ command. How a value is written:
     a dict               KEY=VALUE                   unit={"velocity": "rad/s"}, scale={"torque": "0.04Nm"}
     a result, a log      a file that holds it        table=table, model={"schema": ...}, validate=other_log
 
-An option that is a word of Python has a _ behind it: `from_="2s"`. Gear ratios and orders have no unit; numbers without one are in the
+An option that is a word of Python has a _ behind it: `from_="2s"`. Gear ratios have no unit, orders only "200/turn" (of the joint); numbers without one are in the
 unit that the help of the option states.
 
 A log is what `read` returns, a path, or arrays: a mapping (a dict, a pandas.DataFrame) or a structured array with time_s [s],
