@@ -200,12 +200,14 @@ class Doubts(Case):
         self.assertRegex(done.stdout, r"the ratio has a probability of 0\.[0-9]+: 160\.[0-9]+ \(0\.[0-9]+\), 80\.[0-9]+ \(0\.[0-9]+\)")
         found = json.loads((self.folder / "joint.json").read_text())
         self.assertEqual([round(one["value"]) for one in found["gear_ratio"]["candidates"][:2]], [160, 80])
-        # Where none is more probable than all others together there is no value, and design asks for one.
+        # Where none is more probable than all others together there is no value, and design takes the lines as they are.
         found["gear_ratio"] |= {"value": None, "stderr": None, "ci95": None}
         for one in found["gear_ratio"]["candidates"][:2]:
             one["score"] = 0.4
         (self.folder / "joint.json").write_text(json.dumps(found))
-        refused = run("design", "joint.json", "-q", cwd=self.folder)
+        table = json.loads(run("design", "joint.json", "--json", "-q", cwd=self.folder).stdout)
+        self.assertEqual((table["gear_ratio"], [round(order) for order in table["orders"]]), (None, [160, 320]))
+        refused = run("design", "joint.json", "--orders", "1", "-q", cwd=self.folder)
         self.assertEqual(refused.returncode, 3)
         self.assertIn("give --gear-ratio", refused.stderr)
         self.assertRegex(refused.stderr, r"identify could not decide between 160\S* or 80")

@@ -101,9 +101,11 @@ class Code(Case):
             self.assertLess(max(abs(a - b) for a, b in zip(found, expected[method])), MOST[precision], f"{method} in {precision}")
 
     def test_verify_runs_it_beside_the_method_over_a_million_samples(self):
-        for method in ("tracking,gear-ratio=100,orders=1:2", "oscillator,gear-ratio=100,orders=1:2",
-                       "oscillator,gear-ratio=100,orders=1.5", "oscillator,orders=200/turn", RICH):
+        by_joint = ("oscillator,gear-ratio=100,orders=1.5", "oscillator,orders=200/turn")
+        for method in ("tracking,gear-ratio=100,orders=1:2", "oscillator,gear-ratio=100,orders=1:2", RICH, *by_joint):
             for precision, most in MOST.items():
+                if method in by_joint and precision == "float":
+                    most = 1e-4  # the joint's turn in float is a hundred times as coarse as the motor's
                 text = self.export(method, to=f"c-header,precision={precision}").stdout
                 self.assertIn("1000000 samples", text)
                 self.assertLess(float(text.split("largest difference")[1].split()[0]), most, f"{method} in {precision}")
