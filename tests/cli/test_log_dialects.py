@@ -246,7 +246,7 @@ DIALECTS = {
     "both of the motor": (table("time_s|motor_velocity_rpm|torque_nm|motor_position_deg", "t|motor rpm|Nm|motor deg"),
                           ["--gear-ratio", "100"]),
     # Heads and formats.
-    "LabVIEW": (lvm(), ["--unit", "velocity=deg/s,position=deg"]),  # what Y_Unit_Label says is not read
+    "LabVIEW": (lvm(), None),
     "TwinCAT Scope": (twincat("ms"), None),
     "TwinCAT Scope, FILETIME": (twincat("filetime"), None),
     "TwinCAT Scope, one column of times": (twincat_shared(), None),

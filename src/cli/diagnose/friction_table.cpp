@@ -22,6 +22,7 @@ namespace {
 ReadOptions reading_of(const DiagnoseRequest& request) {
     ReadOptions reading = request.log;
     reading.sample_rate = Hertz(1.0);
+    reading.takes_motor_units = true;
     reading.gear_ratio = request.gear.ratio;
     return reading;
 }

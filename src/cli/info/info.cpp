@@ -144,6 +144,13 @@ std::string contents_table(const LogInfo& log) {
 // One screen about a log, a sentence first. Wide files list only the columns that mean something.
 std::string info_to_text(const LogInfo& log, bool all_columns) {
     std::string text = first_sentence(log);
+    // What nobody stated, and what it would be otherwise, before any figure is believed.
+    for (const Assumption& one : log.layout.assumptions) {
+        text += fmt::format("Assumed: {} is {}", one.about, one.assumed);
+        for (const OtherReading& other : one.others)
+            text += fmt::format("; or {} ({})", other.words, other.option);
+        text += fmt::format("; {} settles it.\n", one.settle_with);
+    }
     text += fmt::format("\nclock     {}\n", clock_text(log));
     if (log.layout.outside) {
         const RowsOutside& outside = *log.layout.outside;
@@ -165,8 +172,7 @@ std::string info_to_text(const LogInfo& log, bool all_columns) {
     for (const Assumption& one : log.layout.inferences)
         text += fmt::format("  {} is {}: {}\n", one.about, one.assumed, one.reason);
     for (const Assumption& one : log.layout.assumptions)
-        text += fmt::format("  {} is taken as {}: {}; {} settles it\n", one.about, one.assumed, one.reason,
-                            one.settle_with);
+        text += fmt::format("  {} is taken as {}: {}\n", one.about, one.assumed, one.reason);
     if (!log.warnings.empty()) {
         text += "\nwarnings\n";
         for (const std::string& warning : log.warnings) text += fmt::format("  {}\n", warning);

@@ -355,8 +355,9 @@ void refuse_clocks(const ColumnFacts& facts, const Clocks& clocks, const ReadOpt
                          why)});
         return;
     }
-    raise<DataError>("{}: {}, expected a time column; use --sample-rate 1kHz, {}or --columns time=NAME",
-                     layout.source, why, clocks.counters.empty() ? "" : "--unit time=ms, ");
+    raise<DataError>("{}: {}, expected a time column; use --sample-rate 1kHz{}{}", layout.source, why,
+                     clocks.counters.empty() ? "" : ", --unit time=ms",
+                     facts.names.empty() ? "" : ", or --columns time=NAME");
 }
 
 // A file without a clock whose head says how long a row is.

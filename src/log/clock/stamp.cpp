@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
+#include <cmath>
 
 #include "log/clock/choose_time.hpp"
+#include "log/columns/units.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/quantity.hpp"
@@ -98,7 +100,26 @@ std::optional<std::int64_t> read_zone(std::string_view& text) {
 
 }  // namespace
 
+namespace {
+
+/// "0.002 sec", "12 ms": durations as MATLAB writes them.
+std::optional<ClockTime> with_unit(std::string_view text) {
+    const std::size_t digits = text.find_last_of("0123456789.") + 1;
+    if (digits == 0 || digits == text.size()) return std::nullopt;
+    const auto number = parse_number(text.substr(0, digits));
+    const auto unit = usual_unit(text.substr(digits), Role::time);
+    if (!number || !unit) return std::nullopt;
+    const double seconds = *number * role_factor(Role::time, *unit).value_or(1.0);
+    constexpr double longest = 1e12;
+    if (!(std::abs(seconds) < longest)) return std::nullopt;
+    return ClockTime{
+        static_cast<std::int64_t>(std::floor(seconds)), seconds - std::floor(seconds), false, {}};
+}
+
+}  // namespace
+
 std::optional<ClockTime> clock_text(std::string_view text, StampForm form) {
+    if (const auto duration = with_unit(text)) return duration;
     const auto days = read_date(text, form.day_first);
     const auto hours = read_number(text, 1, 2);
     if (!hours || !skip(text, ":")) return std::nullopt;

@@ -25,9 +25,9 @@ inline constexpr std::string_view stamp_forms =
     "12:30:01.5, 2024-05-01T12:30:01.5Z, 2024-05-01 12:30:01,500, 1.5.2024 12:30:01,5 or 5/1/2024 12:30:01 "
     "PM";
 
-/// Seconds since midnight of "12:30:01.5", since 1970 of a date and time: ISO 8601 in full, a zone offset at
-/// its end is taken into account; with slashes; "1.5.2024 12:30:01", the day first; "5/1/2024 12:30:01 PM",
-/// in the order that the form says unless a field above 12 does. Empty for other texts.
+/// Seconds of "0.002 sec"; since midnight of "12:30:01.5", since 1970 of a date and time: ISO 8601 in full, a
+/// zone offset at its end is taken into account; with slashes; "1.5.2024 12:30:01", the day first; "5/1/2024
+/// 12:30:01 PM", in the order that the form says unless a field above 12 does. Empty for other texts.
 struct ClockTime {
     std::int64_t whole_s = 0;
     double fraction_s = 0.0;  ///< 0 to 1

@@ -357,6 +357,7 @@ ColumnName read_column_name(std::string_view name, bool linear_axis) {
     NameAndUnit parts = split_unit(named.name, quantity.role, linear_axis);
     if (element) parts.name += name.substr(bracket);
     column.unit = parts.unit;
+    column.bare = parts.name;
     column.unit_is_sure = parts.bracketed;
     words = split_words(parts.name);
     take_ampere(words, column.unit);
@@ -525,12 +526,12 @@ std::vector<ColumnName> read_column_names(const std::vector<std::string>& names,
     std::set<std::string> bare_names;
     std::map<Role, std::size_t> measured;
     for (std::size_t c = 0; c < names.size(); ++c) {
-        bare_names.insert(split_unit(names[c]).name);
+        bare_names.insert(columns[c].bare);
         if (!columns[c].reference) ++measured[columns[c].role];
     }
     for (std::size_t c = 0; c < names.size(); ++c) {
         ColumnName& column = columns[c];
-        const std::string bare = split_unit(names[c]).name;
+        const std::string& bare = column.bare;
         const auto* const symbol = std::find_if(symbols.begin(), symbols.end(), [&](const Symbol& known) {
             return known.text == without_number(bare);
         });
@@ -627,10 +628,11 @@ std::vector<JointGroup> collect_groups(const KnownColumns& known, bool merge) {
     std::vector<std::string> labels, choices;
     for (const std::size_t c : best) {
         labels.push_back(column_label(known.facts.names, c));
-        const bool repeated =
-            std::count(known.facts.names.begin(), known.facts.names.end(), known.facts.names[c]) > 1;
-        choices.push_back(fmt::format("--columns {}={}", role_name(role),
-                                      repeated ? std::to_string(c + 1) : known.facts.names[c]));
+        const std::string& name = known.facts.names[c];
+        const bool plain = name.find_first_of(" ,=()[]'\"&;") == std::string::npos &&
+                           std::count(known.facts.names.begin(), known.facts.names.end(), name) == 1;
+        choices.push_back(
+            fmt::format("--columns {}={}", role_name(role), plain ? name : std::to_string(c + 1)));
     }
     raise<DataError>("{}: {} could each be the {}; use {}", known.source, fmt::join(labels, " and "),
                      role_name(role), fmt::join(choices, " or "));

@@ -33,7 +33,8 @@ struct ColumnName {
     Role symbol = Role::other;
     bool sensor = false;  ///< named as measured by a sensor
     std::string
-        suffix;  ///< a last word that is none of the table: a joint's name, or a unit that is not known
+        suffix;        ///< a last word that is none of the table: a joint's name, or a unit that is not known
+    std::string bare;  ///< the name without its unit
     std::vector<const Convention*> conventions;  ///< that the name follows, in the order of the table
     /// The first convention that the name follows as a column of this role; null when there is none.
     [[nodiscard]] const Convention* convention(Role as) const;

@@ -366,10 +366,9 @@ class Decision {
             if (role == Role::torque && options_.every_joint && !options_.torque_of_each) continue;
             const std::string perhaps = maybe(role);
             raise<DataError>(
-                "{}: read {}{}, expected a {} column; {}state which it is, with --columns {}=NAME{}{}",
-                source_, names, facts_.left_out, role_name(role), perhaps.empty() ? "" : perhaps + "; ",
-                role_name(role),
-                facts_.names.empty() ? ", or all by place, with --columns time,velocity,torque" : "",
+                "{}: read {}{}, expected a {} column; {}state which it is, with --columns {}{}", source_,
+                names, facts_.left_out, role_name(role), perhaps.empty() ? "" : perhaps + "; ",
+                facts_.names.empty() ? "time,velocity,torque" : fmt::format("{}=NAME", role_name(role)),
                 role == Role::velocity ? "; or how fast the joint turns, with --constant-speed 60rpm" : "");
         }
     }

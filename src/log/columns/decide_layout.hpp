@@ -29,6 +29,7 @@ struct MotionSample {
     };
     std::vector<double> time;
     std::vector<Joint> joints;
+    bool whole = false;  ///< the log has no more rows
 };
 
 /// A scale that the head of a file states for a column, and not whether the values have it.

@@ -171,7 +171,6 @@ class Inference {
         for (const MotionColumns& joint : joints_)
             places.push_back({place(joint.velocity), place(joint.position)});
         MotionSample rows = facts_.motion_sample(layout_, places, bytes);
-        if (std::exchange(rows_seen_, rows.time.size()) == rows.time.size() && bytes > 0) return true;
         const double factor = layout_.chosen.time   ? layout_.columns[*layout_.chosen.time].factor
                               : layout_.stated_rate ? 1.0 / layout_.stated_rate->value()
                                                     : 1.0;
@@ -202,7 +201,7 @@ class Inference {
             }
         }
         const bool comparable = subject_->velocity && subject_->position;
-        return all_stated_ && (scale || !comparable);
+        return rows.whole || (all_stated_ && (scale || !comparable));
     }
 
     /// Told by the user, for this joint or for all.
@@ -365,7 +364,8 @@ class Inference {
         }
         const bool motor = best_.velocity.side == Shaft::motor || best_.position.side == Shaft::motor;
         if (motor) option += fmt::format("{}--side {}", option.empty() ? "" : " ", side_words());
-        if (option.empty() && !possible.empty()) option = possible.front().option;
+        if (option.empty() && !possible.empty())
+            option = possible.front().changes_side ? "--side joint" : possible.front().option;
         Assumption read{fmt::format("unit{} of {}", motor ? " and side" : "", about), assumed,
                         reason(possible, without_position), option, possible.empty() ? thinkable : possible};
         if (possible.empty()) {
@@ -440,7 +440,6 @@ class Inference {
     MotionEvidence evidence_;
     const MotionColumns* subject_ = nullptr;
     bool all_stated_ = true;
-    std::size_t rows_seen_ = 0;
     MotionReading best_;
 };
 

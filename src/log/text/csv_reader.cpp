@@ -99,8 +99,10 @@ ColumnFacts CsvReader::facts_of(std::string& opening) {
     facts.motion_sample = [this, &opening](const Layout& layout, const std::vector<MotionPlace>& places,
                                            std::size_t bytes) {
         if (!source_ended_ && opening.size() < bytes) source_ended_ = read_up_to(*source_, opening, bytes);
-        return text_motion_sample(std::string_view(opening).substr(dialect_.data_offset), dialect_, layout,
-                                  places);
+        MotionSample sample = text_motion_sample(std::string_view(opening).substr(dialect_.data_offset),
+                                                 dialect_, layout, places);
+        sample.whole = source_ended_;
+        return sample;
     };
     return facts;
 }

@@ -285,12 +285,28 @@ TextPlace place_of(std::string_view bytes, std::size_t offset) {
     return place;
 }
 
+namespace {
+
+// "LabVIEW Measurement", and below it "Separator" and its name.
+std::optional<char> labview_delimiter(std::string_view bytes, const std::vector<TextLine>& content) {
+    if (!content.front().of(bytes).starts_with("LabVIEW Measurement")) return std::nullopt;
+    for (const TextLine& line : content) {
+        const std::string_view text = line.of(bytes);
+        if (text.starts_with("Separator\tTab")) return '\t';
+        if (text.starts_with("Separator,Comma")) return ',';
+    }
+    return std::nullopt;
+}
+
+}  // namespace
+
 TextDialect sniff_text(std::string_view bytes, bool whole, const ByteSource& source,
                        const ReadOptions& options) {
     TextLines lines = opening_lines(bytes, whole, source, options.skip_lines);
     TextDialect dialect;
     ReadOptions known = options;
     if (!known.delimiter) known.delimiter = lines.delimiter;
+    if (!known.delimiter) known.delimiter = labview_delimiter(bytes, lines.content);
     std::optional<ScopeHeader> scope;
     if (options.header.value_or(true)) scope = scope_header(bytes, lines.content, source.name());
     if (scope) take_scope_header(*scope, lines.content, known, dialect);
@@ -307,6 +323,7 @@ TextDialect sniff_text(std::string_view bytes, bool whole, const ByteSource& sou
         lines.content.erase(lines.content.begin(),
                             lines.content.begin() + static_cast<std::ptrdiff_t>(preamble.lines));
         row = read_header(bytes, lines, source.name(), options, dialect);
+        if (dialect.units.empty()) dialect.units = preamble.units;
     }
     if (row >= lines.content.size()) refuse_header_only(lines.content.front(), source.name());
     dialect.data_offset = lines.content[row].begin;

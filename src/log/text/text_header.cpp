@@ -289,6 +289,18 @@ std::optional<double> read_step(const HeaderLines& lines, std::size_t first_row,
     return step;
 }
 
+// LabVIEW: "Y_Unit_Label" and a unit for each channel, behind the column of times.
+std::vector<std::string> read_units(const HeaderLines& lines, std::size_t first_row, std::size_t columns) {
+    for (std::size_t line = 0; line < first_row; ++line) {
+        std::vector<std::string> cells = lines.cells(line);
+        if (cells.front() != "Y_Unit_Label") continue;
+        cells.front().clear();
+        cells.resize(columns);
+        return cells;
+    }
+    return {};
+}
+
 }  // namespace
 
 Preamble find_preamble(std::string_view bytes, const std::vector<TextLine>& content, const CellRules& rules,
@@ -300,6 +312,7 @@ Preamble find_preamble(std::string_view bytes, const std::vector<TextLine>& cont
     const bool names_then_rows = lines.may_be_names(0) && found.first_row <= 2;
     if (found.first_row == 0 || found.first_row == content.size() || names_then_rows) return {};
     found.row_step_s = read_step(lines, found.first_row, rules.decimal_mark);
+    found.units = read_units(lines, found.first_row, columns);
     found.lines = found.first_row;
     const std::size_t above = found.first_row - 1;
     if (above > 0 && lines.is_units(above) && lines.may_be_names(above - 1))

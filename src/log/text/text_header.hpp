@@ -35,6 +35,7 @@ struct Preamble {
     std::size_t first_row = 0;
     /// Seconds from row to row where the head says them (LabVIEW's Delta_X), alike for all channels.
     std::optional<double> row_step_s;
+    std::vector<std::string> units;  ///< by column, where the head says them (LabVIEW's Y_Unit_Label)
 };
 
 /// `content` with rows of `columns` cells somewhere below. None where the first line may be names or a row.

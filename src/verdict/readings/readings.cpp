@@ -357,7 +357,8 @@ void refuse_open_readings(const Log& log) {
                          assumed_reading(one), open.front().words, settling_options(one));
     if (log.layout.motor_units)
         raise<DataError>(
-            "{}: the motion is measured before the gear; --gear-ratio states how to convert it to the joint",
+            "{}: the motion is measured before the gear (stated, named so, or too fast for a joint); use "
+            "--gear-ratio 100, or --side joint if it is the joint's",
             log.layout.source);
 }
 
