@@ -129,7 +129,7 @@ TEST_CASE("recordings between which the ripple grows are told with their values"
     CHECK(one.order == 1.0);
     REQUIRE(one.values.size() == wear.size());
     for (std::size_t i = 0; i < wear.size(); ++i) CHECK_THAT(one.values[i].value, WithinRel(wear[i], 0.05));
-    CHECK_THAT(found.verdict, Contains("the recordings disagree: order 1 from 0.38 to 0.96 Nm"));
+    CHECK_THAT(found.verdict, Contains("The recordings disagree: order 1 from 0.38 to 0.96 Nm"));
     CHECK(found.conclusive);
 }
 

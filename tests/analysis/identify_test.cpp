@@ -50,7 +50,7 @@ TEST_CASE("the paper's four logs give ratio 100, orders 1 and 2, and no line at 
     CHECK(found.evidence == "order spectrum");
     CHECK_THAT(found.verdict, Contains("orders 1 and 2 of the motor: gear ratio "));
     CHECK_THAT(found.verdict,
-               Contains("from 3 sweeps over 5 output turns at 60 to 180 deg/s; no line at rest"));
+               Contains("From 3 sweeps over 5 output turns at 60 to 180 deg/s. No line at rest."));
     REQUIRE(found.lines.size() == 2);
     for (const Line& line : found.lines) {
         CHECK(line.kind == LineKind::order);
@@ -135,7 +135,7 @@ TEST_CASE("a log of one speed says that order and tone look alike there, and is 
     CHECK(found.lines[0].kind == LineKind::unknown);
     CHECK_THAT(*found.lines[0].order_output, WithinRel(137.0, 1e-3));
     CHECK_FALSE(found.conclusive);
-    CHECK_THAT(found.verdict, Contains("record another speed to decide"));
+    CHECK_THAT(found.verdict, Contains("ecord another speed to decide"));
 }
 
 TEST_CASE("a joint without ripple: surely nothing, with the amplitude that would have shown") {

@@ -42,7 +42,7 @@ class ThePapersLogs(Case):
         self.assertLessEqual(low, 100.0)
         self.assertGreaterEqual(high, 100.0)
         self.assertEqual(sorted(line["order"] for line in found["lines"]), [1, 2])
-        self.assertTrue(found["verdict"].endswith("no line at rest."), found["verdict"])
+        self.assertTrue(found["verdict"].endswith("No line at rest."), found["verdict"])
         self.assertTrue(found["conclusive"])
         self.assertEqual(len(found["inputs"]), 4)
         for line in found["lines"]:
@@ -111,7 +111,7 @@ class Answers(Case):
         self.assertEqual(run("identify", path).returncode, 0)
         done = run("identify", path, "--require-conclusive")
         self.assertEqual(done.returncode, 5)
-        self.assertIn("record another speed to decide", done.stdout)
+        self.assertIn("ecord another speed to decide", done.stdout)
 
     def test_the_sentence_is_as_sure_as_the_table(self):
         several, one = identified(*PAPER), identified(str(DATA / "paper_90deg_s.csv"))
@@ -132,7 +132,7 @@ class Answers(Case):
         found = json.loads(done.stdout)
         self.assertEqual(found["gear_ratio"]["value"], 130)
         self.assertFalse(found["conclusive"])
-        self.assertIn("they contradict the stated gear ratio 130: probable are 100.00 (", found["verdict"])
+        self.assertIn("They contradict the stated gear ratio 130: probable are 100.00 (", found["verdict"])
         self.assertEqual([line["order"] for line in found["lines"]], [None, None])
 
     def test_equal_speeds_in_other_units_give_the_same_ratio(self):
@@ -197,7 +197,7 @@ class Doubts(Case):
             "--noise", "0.05Nm", "-o", "log.csv", cwd=self.folder)
         done = run("identify", "log.csv", "-o", "joint.json", "--require-conclusive", "-q", cwd=self.folder)
         self.assertEqual(done.returncode, 5, done.stdout)
-        self.assertRegex(done.stdout, r"the ratio has a probability of 0\.[0-9]+: 160\.[0-9]+ \(0\.[0-9]+\), 80\.[0-9]+ \(0\.[0-9]+\)")
+        self.assertRegex(done.stdout, r"The ratio has a probability of 0\.[0-9]+: 160\.[0-9]+ \(0\.[0-9]+\), 80\.[0-9]+ \(0\.[0-9]+\)")
         found = json.loads((self.folder / "joint.json").read_text())
         self.assertEqual([round(one["value"]) for one in found["gear_ratio"]["candidates"][:2]], [160, 80])
         # Where none is more probable than all others together there is no value, and design takes the lines as they are.
@@ -286,7 +286,7 @@ class Doubts(Case):
         logs = [self.log(f"{i}_{v}.csv", speed=v, ripple_nm=nm, seed=10 * i + v)
                 for i, nm in enumerate(wear) for v in (40, 70)]
         done = run("identify", *logs, "-q")
-        self.assertIn("the recordings disagree", done.stdout.splitlines()[0])
+        self.assertIn("The recordings disagree", done.stdout.splitlines()[0])
         self.assertIn("0_40.csv", done.stdout)
         one = identified(*logs)["disagreements"][0]
         self.assertEqual(one["about"], "amplitude")
@@ -459,7 +459,7 @@ class RealLogs(unittest.TestCase):
         found = identified(str(LOGS / "neura_lara8_j3.csv"))
         self.assertEqual(orders(found), [])
         if orders(found, ("unknown",)):
-            self.assertIn("only one speed", found["verdict"])
+            self.assertIn("Only one speed", found["verdict"])
             self.assertFalse(found["conclusive"])
         else:
             searched = found["searched"]

@@ -6,6 +6,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <utility>
 
@@ -113,8 +114,7 @@ std::string besides(const Identification& found) { return tones_too(found) + dis
 std::string of_both_splines(const GearRatioFit& ratio, int decimals) {
     if (!ratio.second_comb) return "";
     return fmt::format(
-        " with lines of both splines, {:.{}f} and {:.{}f} turns of the wave generator a turn of the joint "
-        "(the "
+        "; lines of both splines: {:.{}f} and {:.{}f} turns of the wave generator a turn of the joint (the "
         "ratio is the {} where the {} spline is the output)",
         std::min(*ratio.value, *ratio.second_comb), decimals, std::max(*ratio.value, *ratio.second_comb),
         decimals, *ratio.second_comb > *ratio.value ? "larger" : "smaller",
@@ -134,6 +134,13 @@ std::string with_ratio(const Identification& found) {
     std::vector<const Line*> lines;
     for (const Line& line : found.lines) {
         if (line.order) lines.push_back(&line);
+    }
+    const std::size_t all_lines = lines.size();
+    constexpr std::size_t most = 4;  // chosen, not derived: a sentence that a person reads
+    if (all_lines > most) {
+        std::partial_sort(lines.begin(), lines.begin() + most, lines.end(),
+                          [](const Line* a, const Line* b) { return a->amplitude_nm > b->amplitude_nm; });
+        lines.resize(most);
     }
     const auto of_other_spline = [&found](const Line& line) {
         const std::string words = order_in_words(Order(*line.order), GearRatio(*found.gear_ratio.value));
@@ -170,6 +177,8 @@ std::string with_ratio(const Identification& found) {
         doubt = fmt::format("; order{} {} or tone{}: record another speed to decide",
                             doubted.size() == 1 ? "" : "s", listed(doubted), doubted.size() == 1 ? "" : "s");
     }
+    if (all_lines > lines.size())
+        doubt += fmt::format("; and {}", how_many(all_lines - lines.size(), "fainter line"));
     const GearRatioFit& ratio = found.gear_ratio;
     if (const double probability = ratio.candidates.front().score; probability <= conclusive_probability)
         doubt += fmt::format("; the ratio has a probability of {:.2f}: {}", probability, candidates(found));
@@ -179,11 +188,10 @@ std::string with_ratio(const Identification& found) {
                                 : lines.size() == 1 ? "A line that may be ripple"
                                                     : "Lines that may be ripple";
     return fmt::format(
-        "{} at {}: gear ratio {:.{}f} +/- {:.{}f} (95 %){}, {} Nm zero to peak, from "
+        "{} at {}: gear ratio {:.{}f} +/- {:.{}f} (95 %); amplitudes {} Nm zero to peak{}; from "
         "{}{}{}.",
-        subject, fmt::join(places, " and "), *ratio.value, decimals, half, decimals,
-        of_both_splines(ratio, decimals), listed(amplitudes), basis(found.grounds), at_rest(found) + doubt,
-        besides(found));
+        subject, fmt::join(places, " and "), *ratio.value, decimals, half, decimals, listed(amplitudes),
+        of_both_splines(ratio, decimals), basis(found.grounds), at_rest(found) + doubt, besides(found));
 }
 
 /// "cannot tell which of 80 and 160 is the gear ratio: 80.00 (0.48), 160.00 (0.47)"
@@ -207,7 +215,7 @@ std::string without_ratio(const Identification& found) {
         if (words.size() < 5)
             words.push_back(fmt::format("{:.5g} ({:.2g} Nm)", *line->order_output, line->amplitude_nm));
     }
-    return fmt::format("Ripple at output order{} {}, from {}{}{}; {}.", words.size() == 1 ? "" : "s",
+    return fmt::format("Ripple at output order{} {}; from {}{}{}; {}.", words.size() == 1 ? "" : "s",
                        listed(words), basis(found.grounds), at_rest(found), besides(found), undecided(found));
 }
 
@@ -215,12 +223,12 @@ std::string one_speed(const Identification& found) {
     const auto unknown = of_kind(found, LineKind::unknown);
     const Line& first = *unknown.front();
     std::string text =
-        fmt::format("{} at {:.4g} Hz ({:.2g} Nm zero to peak), from {}",
+        fmt::format("{} at {:.4g} Hz ({:.2g} Nm zero to peak)",
                     unknown.size() == 1 ? "One line" : how_many(unknown.size(), "line") + ", the strongest",
-                    first.hz.value_or(0.0), first.amplitude_nm, basis(found.grounds));
+                    first.hz.value_or(0.0), first.amplitude_nm);
     if (first.order_output)
         text += fmt::format(": output order {:.5g} if it turns with the joint", *first.order_output);
-    text += order_or_tone(found.grounds);
+    text += "; from " + basis(found.grounds) + order_or_tone(found.grounds);
     if (!found.gear_ratio.candidates.empty()) text += "; as orders: " + undecided(found);
     return text + at_rest(found) + besides(found) + ".";
 }
@@ -234,7 +242,7 @@ std::string nothing(const Identification& found) {
     constexpr std::size_t most = 3;
     if (bounds.size() > most) bounds.erase(bounds.begin() + 1, bounds.end() - (most - 1));
     return fmt::format(
-        "No ripple: no line above {} to {:.4g} cycles per output turn, in {} ({:.2g} % false "
+        "No ripple: no line above {} to {:.4g} cycles per output turn; in {} ({:.2g} % false "
         "alarms){}{}.",
         fmt::join(bounds, ", "), searched.highest_order, basis(found.grounds),
         100.0 * found.grounds.false_alarm, at_rest(found), besides(found));
@@ -244,7 +252,7 @@ std::string too_noisy(const Identification& found) {
     const SearchedOrders& searched = *found.searched;
     return fmt::format(
         "Cannot tell: too noisy or too short: a line of {:.2g} Nm at {:.3g} to {:.4g} cycles per output turn "
-        "would be missed, in {}{}{}.",
+        "would be missed; in {}{}{}.",
         searched.detectable_nm, searched.lowest_order, searched.highest_order, basis(found.grounds),
         at_rest(found), besides(found));
 }
@@ -298,7 +306,23 @@ std::string other_motors_sentence(const Identification& found) {
                        motors.size() == 1 ? "motor" : "motors", fmt::join(motors, " and "));
 }
 
-std::string verdict_sentence(const Identification& found) {
+namespace {
+
+// Clauses after a semicolon as sentences of their own, so that none is too long to be read at once.
+std::string in_sentences(const std::string& text) {
+    std::string sentences;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const bool ends = text.compare(i, 2, "; ") == 0 && i + 2 < text.size();
+        sentences += ends ? '.' : text[i];
+        if (!ends) continue;
+        sentences += ' ';
+        sentences += static_cast<char>(std::toupper(static_cast<unsigned char>(text[i + 2])));
+        i += 2;
+    }
+    return sentences;
+}
+
+std::string clauses(const Identification& found) {
     if (!found.doubts.empty()) return doubted(found);
     switch (found.finding) {
         case RippleFinding::ratio:
@@ -316,5 +340,9 @@ std::string verdict_sentence(const Identification& found) {
     }
     return {};
 }
+
+}  // namespace
+
+std::string verdict_sentence(const Identification& found) { return in_sentences(clauses(found)); }
 
 }  // namespace ripplenotch

@@ -206,11 +206,13 @@ Parts read_parts(const RecommendRequest& request, const std::optional<GearAccoun
 
 // Why a log without a line that turns with the joint has none, and what to record.
 std::string reason_without_lines(const Identification& found) {
-    if (!found.doubts.empty())
-        return found.doubts.front().reason == DoubtReason::clock
-                   ? "position, velocity and time contradict each other"
-                   : "the unit of the motion is not stated, and each reading has other lines; --unit settles "
-                     "it";
+    // A clause of its own says what settles it.
+    if (!found.doubts.empty()) {
+        std::string because = found.doubts.front().because;
+        for (std::size_t at = because.find("; "); at != std::string::npos; at = because.find("; ", at + 1))
+            because[at] = '.';
+        return because;
+    }
     switch (found.finding) {
         case RippleFinding::nothing:
             return fmt::format("no line above {:.2g} Nm from {:.4g} to {:.4g} per turn of the joint",

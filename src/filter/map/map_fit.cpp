@@ -220,10 +220,11 @@ struct OrderWords {
         if (score.in_map || !std::isfinite(score.detectable_nm) || !(score.detectable_nm > 0.0)) return "";
         return fmt::format("{:.2g} Nm of {}", score.detectable_nm, name(score.order));
     }
-    /// One of the sentences of all orders, with commas between them.
+    /// One of the sentences of all orders, with commas or full stops between them.
     template <class Entries, class Sentence>
-    [[nodiscard]] std::string of_all(const Entries& entries, Sentence sentence) const {
-        return joined(entries, ", ", [&](const auto& one) { return (this->*sentence)(one); });
+    [[nodiscard]] std::string of_all(const Entries& entries, Sentence sentence,
+                                     std::string_view between = ", ") const {
+        return joined(entries, between, [&](const auto& one) { return (this->*sentence)(one); });
     }
 };
 
@@ -314,8 +315,8 @@ std::string map_verdict(const MapFit& fit) {
                         "empty.",
                         searched));
     } else {
-        sentences.push_back(fmt::format("Cross-validated: {}; amplitudes {}.",
-                                        words.of_all(fit.scores, &OrderWords::mapped),
+        sentences.push_back(fmt::format("Cross-validated: {}. Amplitudes {}.",
+                                        words.of_all(fit.scores, &OrderWords::mapped, ". Then "),
                                         map_form_words(fit.map.form)));
     }
     if (const std::string bounds = words.of_all(fit.scores, &OrderWords::bound); !bounds.empty())

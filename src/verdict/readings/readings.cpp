@@ -72,7 +72,7 @@ std::string briefly(const std::string& verdict) {
     constexpr std::string_view doubtful = "Cannot tell the gear ratio: ";
     if (verdict.starts_with(doubtful))
         return "the gear ratio is open: " + briefly(verdict.substr(doubtful.size()));
-    return lower_first(verdict.substr(0, std::min(verdict.find(';'), verdict.find(" (95 %)"))));
+    return lower_first(verdict.substr(0, std::min({verdict.find(". "), verdict.find(" (95 %)"), verdict.size() - 1})));
 }
 
 bool in_motor_units(std::span<const Log> logs) {
@@ -119,7 +119,7 @@ Identification of_the_motor(Identification found, double ratio) {
                           "--gear-ratio settles it."
                         : fmt::format(
                               "Cannot tell the gear ratio: the motion is measured before the gear. Ripple at "
-                              "{} cycles per turn of the motor; --gear-ratio settles it.",
+                              "{} cycles per turn of the motor. --gear-ratio settles it.",
                               lines);
     return found;
 }
@@ -174,12 +174,12 @@ Identification cannot_tell(Identification found, const std::string& assumed,
                            const std::string& options) {
     std::string verdict = fmt::format("Cannot tell: {}, {}", assumed, briefly(found.verdict));
     for (const auto& [reading, other] : others) {
-        verdict += fmt::format("; if {}, {}", reading.words, briefly(other.verdict));
+        verdict += fmt::format(". If {}, {}", reading.words, briefly(other.verdict));
         found.notes.push_back(fmt::format("if {} ({}): {}", reading.words, reading.option, other.verdict));
     }
     found.notes.insert(found.notes.end() - static_cast<std::ptrdiff_t>(others.size()),
                        fmt::format("{}: {}", assumed, found.verdict));
-    found.verdict = fmt::format("{}; {} settles it.", verdict, options);
+    found.verdict = fmt::format("{}. {} settles it.", verdict, options);
     found.doubts.push_back(
         {DoubtReason::unit, fmt::format("the log does not state its units; {} settles it", options)});
     found.conclusive = false;
@@ -299,10 +299,10 @@ Diagnosis diagnose_readings(const Model& model, const Log& log, const Log* valid
         }
         const Diagnosis then = under(reading);
         if (then.verdict == taken.verdict && then.named == taken.named) continue;
-        doubt += fmt::format("; if {}, {}", reading.words, gap_in_words(then));
+        doubt += fmt::format(". If {}, {}", reading.words, gap_in_words(then));
     }
     if (doubt.empty()) return taken;
-    taken.doubt = fmt::format("Cannot tell: {}, {}{}; {} settles it.", assumed_reading({&log, 1}),
+    taken.doubt = fmt::format("Cannot tell: {}, {}{}. {} settles it.", assumed_reading({&log, 1}),
                               gap_in_words(taken), doubt, settling_options({&log, 1}));
     taken.verdict = DiagnosisVerdict::undecided;
     taken.model = taken.baseline;
