@@ -54,7 +54,6 @@ class CasesOfUsers(Case):
         self.assert_line(found, "order_output", 200.0, 0.5)
         self.assertEqual(len(found["lines"]), 2, found["verdict"])
 
-    @unittest.expectedFailure  # The torque that is not from a sensor is taken without a question.
     def test_which_of_three_torques(self):
         done = self.run_tool("identify", CASES / "three_torques.csv.gz")
         said = done.stdout + done.stderr

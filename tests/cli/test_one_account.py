@@ -111,7 +111,6 @@ class Angles(Account):
                 ("another_joints_position", "velocity", "0.3 times as much"),
                 ("unrelated_position", "velocity", "another joint's"),
                 ("motor_side_position", "position", "motor side"),
-                ("standing_position", "velocity", "position is constant"),
                 ("reversed_position", "position", "opposite signs"),
                 ("position_stops_on_the_way", "position", "from data row")):
             with self.subTest(name):
@@ -123,13 +122,26 @@ class Angles(Account):
                     self.assertAlmostEqual(order["raw_nm"], hard_logs.RIPPLE_NM[order["order"]], delta=0.01)
                     self.assertGreater(order["attenuation_db"], expected["attenuation_db"] - 1.0)
 
+    def test_a_joint_whose_position_is_constant_is_at_rest(self):
+        log = self.hard["standing_position"]
+        for words, codes, said in ((("identify", log), (0, 5), "the joint is at rest"), (("recommend", log), (0, 5), "the joint is at rest"),
+                                   (("diagnose", log, "--model", "auto", "--improved-model", self.folder / "m.json"), (3,), "does not move")):
+            with self.subTest(words[0]):
+                done = run(*words)
+                self.assertIn(done.returncode, codes, done.stderr)
+                self.assertIn(said, done.stdout + done.stderr)
+                self.assertIn("position is constant", done.stderr)
+        joint = json.loads(run("info", log, "--json").stdout)["joints"][0]
+        self.assertEqual(joint["turns"], 0.0)
+        self.assertFalse(any(not stretch["rest"] for stretch in joint["steady_stretches"]))
+
     def test_a_limit_is_kept_on_the_right_angle(self):
         done = run("filter", self.hard["another_joints_position"], "--method", "tracking", *GEAR, "-o", self.folder / "out.csv", "--force",
                    "--min-attenuation", "15dB")
         self.assertEqual(done.returncode, 0, done.stderr)
 
     def test_compare_measures_what_filter_measures(self):
-        for name in ("another_joints_position", "motor_side_position", "reversed_position", "standing_position",
+        for name in ("another_joints_position", "motor_side_position", "reversed_position",
                      "rate_falls_on_the_way", "lost_rows", "gaps", "position_stops_on_the_way"):
             with self.subTest(name):
                 metrics, _ = self.metrics(name)

@@ -70,6 +70,7 @@ TEST_CASE("speed and acceleration are exact where the speed is a cubic in time, 
     Motion m = make_motion("rest,duration=0.5s", 400_Hz);
     for (std::size_t k = 0; k < m.size(); ++k) {
         const double t = m.time_s[k];
+        m.position_deg[k] = t * (3.0 + t * (-10.0 + t * (70.0 / 3.0 - 25.0 * t)));
         m.velocity_deg_s[k] = 3.0 - 20.0 * t + 70.0 * t * t - 100.0 * t * t * t;
         m.acceleration_deg_s2[k] = -20.0 + 140.0 * t - 300.0 * t * t;
     }
@@ -77,6 +78,9 @@ TEST_CASE("speed and acceleration are exact where the speed is a cubic in time, 
     CHECK(largest_error(measured.velocity_deg_s, m.velocity_deg_s, 0) < 1e-10);
     CHECK(largest_error(measured.acceleration_deg_s2, m.acceleration_deg_s2, 0) < 1e-8);
     CHECK(measured.position_deg == m.position_deg);
+    std::fill(m.position_deg.begin(), m.position_deg.end(), 12.5);
+    const Motion still = motion_along(logged(m, true).view());
+    CHECK(largest_error(still.velocity_deg_s, std::vector<double>(m.size()), 0) == 0.0);
 }
 
 TEST_CASE(

@@ -3,6 +3,7 @@
 // The gear ratio Kg from the combs that output orders lie on: n Kg, where the wave generator turns against
 // the spline that stands still, and n (Kg + 1) or n (Kg - 1) against the one that moves.
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -66,6 +67,7 @@ struct RatioQuestion {
     std::span<const int> hinted_orders{};   ///< n at which the strongest line is assumed to lie
     double resolution = 0.0;                ///< width of a line in output orders
     double lowest = 12.0, highest = 900.0;  ///< output orders that were searched; below are motion and load
+    std::function<double(double order)> detectable_nm = {};  ///< that would have been found there
 };
 /// The n that hinted_orders may hold: 1 to this.
 inline constexpr int highest_motor_order = 16;
@@ -74,10 +76,11 @@ inline constexpr int highest_motor_order = 16;
 inline constexpr double conclusive_probability = 0.95;
 
 /// Ratios are compared by their posterior probability: those of strain wave gears that are sold, ratios
-/// between 22 and 400 that are in no catalogue, the stated one, and no gear at all. A line is at n = 1 to 16
+/// between 12 and 400 that are in no catalogue, the stated one, and no gear at all. A line is at n = 1 to 16
 /// of a comb of the ratio (N, and N + 1 against the other spline) with the share of known joints that show
-/// this n, or anywhere by chance; orders that were searched and are absent count against a ratio; the
-/// strongest line counts by the share of joints in which this n is the strongest. A stated ratio is kept
+/// this n, or anywhere by chance; orders that are absent count against a ratio by
+/// how far below the strongest line they would have been found; the strongest line counts by the share of
+/// joints in which this n is the strongest, or one is that may hide. A stated ratio is kept
 /// within 2 % and fitted; where its probability is below 0.05 it is contradicted. Fit: over the lines, by
 /// Huber's weights (k = 1.345); where they scatter more than their errors make likely (1 %), that widens the
 /// interval, by Student's t; the error that they share comes on top. A line that may be on either comb counts

@@ -28,7 +28,7 @@ struct AngleFacts {
         too_little_motion,  ///< to tell: the position is believed
         agrees,
         reversed,   ///< agrees with its sign turned
-        stands,     ///< while the velocity says that the joint moves
+        stands,     ///< while the velocity says that the joint moves: it does not
         scaled,     ///< follows the velocity, less than half or more than twice as far
         unrelated,  ///< does not follow the velocity
     };

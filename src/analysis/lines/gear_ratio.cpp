@@ -22,11 +22,11 @@ struct SoldRatio {
 };
 constexpr std::array sold{SoldRatio{30.0, 0.03}, SoldRatio{50.0, 0.15},  SoldRatio{80.0, 0.17},
                           SoldRatio{100.0, 0.3}, SoldRatio{120.0, 0.17}, SoldRatio{160.0, 0.18}};
-constexpr double free_share = 0.12;  // of joints whose ratio is in no catalogue, from 22 to 400
-constexpr double lowest_free = 22.0, highest_free = 400.0;
-constexpr std::size_t free_ratios = 4000;  // closer together than any line tells
-constexpr double no_gear_share = 0.1;      // of logs whose lines have nothing to do with each other
-constexpr double lines_off_comb = 1.0;     // expected in a log
+constexpr double free_share = 0.12;  // of joints whose ratio is in no catalogue, from 12 to 400
+constexpr double lowest_free = 12.0, highest_free = 400.0;  // the lowest order that is searched, and above
+constexpr std::size_t free_ratios = 4000;                   // closer together than any line tells
+constexpr double no_gear_share = 0.1;   // of logs whose lines have nothing to do with each other
+constexpr double lines_off_comb = 1.0;  // expected in a log
 constexpr double share_when_stated = 0.95;
 constexpr double stated_reach = 0.02;  // of a stated ratio: scales of logs are right within it
 constexpr std::size_t stated_steps = 200;
@@ -37,28 +37,34 @@ struct JointKind {
     using OfOrder = std::array<double, highest_motor_order + 1>;
     double share;
     OfOrder present, strongest;
-    /// Whether a smaller ripple would show ever more orders: an order that is absent counts the more against
-    /// a ratio the clearer the strongest line is.
-    bool of_many_orders;
+    /// How often an order that is absent counts at most, by factors of two that it would have been found by:
+    /// a smaller ripple shows ever more orders of joints that have many.
+    double most_halvings;
+    /// Orders of one joint are not drawn independently: their shares count with this power.
+    double dependence;
 };
 /// Joints of many orders: 21 of four robots (Panda, xMate, UR10e, Kinova), one joint counted once, lines up
 /// to n = 10. Joints of few orders, as that of the paper whose logs are in data/, and simulated ones: chosen,
 /// not derived; n = 1 comes from eccentric parts, n = 2 from the ellipse (Tuttle and Seering, IEEE Trans.
-/// Robotics and Automation 12, 1996).
+/// Robotics and Automation 12, 1996). How many there are of each, and the dependence, by the likelihood of
+/// what is right in 49 windows of Panda joints and 220 simulated joints (scripts/prove-identify --windows
+/// --ratio).
 constexpr double rare = 0.05, hardly = 0.01;
-constexpr std::array joint_kinds{JointKind{0.98,
+constexpr std::array joint_kinds{JointKind{0.8,
                                            {0.0, 0.43, 0.90, 0.06, 0.71, 0.06, 0.30, 0.05, 0.18, 0.06, 0.11,
                                             rare, rare, rare, rare, rare, rare},
                                            {0.05, 0.02, 0.67, 0.01, 0.15, 0.01, 0.06, 0.05, 0.01, 0.01, 0.01,
                                             hardly, hardly, hardly, hardly, hardly, hardly},
-                                           true},
-                                 JointKind{0.02,
-                                           {0.0, 0.90, 0.95, rare, 0.20, rare, rare, rare, rare, rare, rare,
+                                           1e9,
+                                           0.75},
+                                 JointKind{0.2,
+                                           {0.0, 0.90, 0.95, 0.20, 0.12, rare, rare, rare, rare, rare, rare,
                                             rare, rare, rare, rare, rare, rare},
-                                           {0.05, 0.50, 0.50, hardly, hardly, hardly, hardly, hardly, hardly,
+                                           {0.05, 0.45, 0.50, 0.03, 0.02, hardly, hardly, hardly, hardly,
                                             hardly, hardly, hardly, hardly, hardly, hardly, hardly, hardly},
-                                           false}};
-constexpr double study_snr = 8.0;           // of the strongest lines there; chosen, not derived
+                                           1.0,
+                                           1.0}};
+constexpr double found_snr = 4.0;           // of a line that is just found, where no bound is stated
 constexpr double counts_when_absent = 0.8;  // an order may be there and too small to be found
 constexpr double away_from_hint = 1e-4;     // strongest at another n than the stated ones: these count more
 
@@ -91,7 +97,7 @@ class RatioPosterior {
   public:
     RatioPosterior(std::span<const OrderLine> lines, const RatioQuestion& question)
         : lines_(lines), question_(question), off_(lines_off_comb / (question.highest - question.lowest)) {
-        double clearest = study_snr, sum = 0.0;
+        double clearest = 0.0, sum = 0.0;
         const OrderLine& most = *std::max_element(
             lines.begin(), lines.end(),
             [](const OrderLine& a, const OrderLine& b) { return a.amplitude_nm < b.amplitude_nm; });
@@ -104,7 +110,8 @@ class RatioPosterior {
             sum += strongest_.back();
         }
         for (double& probability : strongest_) probability /= sum;
-        halvings_ = portable::log2(clearest / study_snr);
+        most_nm_ = most.amplitude_nm;
+        usual_nm_ = most_nm_ / std::max(2.0, clearest / found_snr);
     }
 
     [[nodiscard]] double evidence_of_no_gear() const {
@@ -156,25 +163,41 @@ class RatioPosterior {
         all.push_back(std::move(one));
     }
 
+    /// By how many factors of two the strongest line is above what would have been found of an order; below 0
+    /// a stronger one may hide there.
+    [[nodiscard]] double halvings_at(double order) const {
+        return portable::log2(most_nm_ /
+                              (question_.detectable_nm ? question_.detectable_nm(order) : usual_nm_));
+    }
+
     [[nodiscard]] double evidence_of(const RatioHypothesis& one, std::span<const double> density,
                                      const JointKind& kind) const {
         std::array<bool, highest_motor_order + 1> seen{};
-        double evidence = 0.0;
+        double places = 0.0, orders = 0.0, hidden = 0.0, strongest = 0.0;
         for (std::size_t i = 0; i < lines_.size(); ++i) {
             const auto n = static_cast<std::size_t>(one.teeth[i].n);
-            evidence += portable::log(off_ + kind.present.at(n) * density[i]);
+            const double share = n > 0 ? kind.present.at(n) : 1.0;
+            places += portable::log(off_ / share + density[i]);
+            orders += portable::log(share);
             seen.at(n) = true;
         }
-        const double chances = kind.of_many_orders ? 1.0 + halvings_ : 1.0;
         for (std::size_t n = 1; n < seen.size(); ++n) {
             const double order = static_cast<double>(n) * one.ratio;
-            if (!seen.at(n) && order > question_.lowest && order < question_.highest)
-                evidence += chances * portable::log1p(-counts_when_absent * kind.present.at(n));
+            if (seen.at(n) || order >= question_.highest) continue;
+            const double halvings = order > question_.lowest ? halvings_at(order) : -1000.0;
+            // Who states the order of the strongest line speaks of one that is seen.
+            if (question_.hinted_orders.empty())
+                hidden += std::max(0.0, 1.0 - portable::exp2(halvings)) * kind.strongest.at(n);
+            orders += std::clamp(halvings, 0.0, kind.most_halvings) *
+                      portable::log1p(-counts_when_absent * kind.present.at(n));
         }
-        double strongest = 0.0;
-        for (std::size_t i = 0; i < lines_.size(); ++i)
-            strongest += strongest_[i] * strongest_share(kind, one.teeth[i].n);
-        return evidence + portable::log(strongest);
+        for (std::size_t i = 0; i < lines_.size(); ++i) {
+            const int n = one.teeth[i].n;
+            strongest += strongest_[i] * (strongest_share(kind, n) + (n > 0 ? hidden : 0.0));
+        }
+        // What is stated of the strongest line counts in full.
+        const double of_strongest = question_.hinted_orders.empty() ? kind.dependence : 1.0;
+        return places + kind.dependence * orders + of_strongest * portable::log(strongest);
     }
 
     /// Adds the tooth of a line to the hypothesis; returns the density of places about it.
@@ -213,7 +236,8 @@ class RatioPosterior {
     double off_;
     std::vector<double> deviation_;
     std::vector<double> strongest_;  ///< probability that a line is the strongest, by its amplitude's error
-    double halvings_ = 0.0;  ///< by how many factors of two the clearest line is clearer than in the study
+    double most_nm_ = 0.0;           ///< of the strongest line
+    double usual_nm_ = 0.0;          ///< that would have been found, where no bound is stated
 };
 
 /// Hypotheses that are one ratio for who reads it.
@@ -414,7 +438,7 @@ void note_wrong_scale(const GearRatioFit& fit, double stated, std::vector<std::s
 }  // namespace
 
 GearRatioResult fit_gear_ratio(std::span<const OrderLine> lines, const RatioQuestion& question) {
-    constexpr double least_listed = 0.005;      // probability of a candidate that is listed
+    constexpr double least_listed = 0.002;      // probability of a candidate that is listed
     constexpr std::size_t most_candidates = 8;  // chosen, not derived: a list that a person reads
     GearRatioResult result;
     result.order_of_line.resize(lines.size());

@@ -345,6 +345,12 @@ void add_ratio(std::vector<Reported>& reported, const MotionLines& motion, const
         }
         question.highest = std::max(highest, 2.0 * question.lowest);
     }
+    if (motion.searched && !motion.searched->bounds.empty())
+        question.detectable_nm = [&bounds = motion.searched->bounds](double order) {
+            const auto next = std::find_if(bounds.begin() + 1, bounds.end(),
+                                           [order](const auto& bound) { return bound.from_order > order; });
+            return std::prev(next)->detectable_nm;
+        };
     std::vector<OrderLine> orders;
     std::vector<std::size_t> owner;
     for (std::size_t i = 0; i < reported.size(); ++i) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <deque>
 #include <functional>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <numeric>
@@ -152,11 +153,16 @@ double white_noise_of(std::span<const double> values) {
     return deviations_of_median * median_in(changes) / std::sqrt(2.0);
 }
 
-/// True when values range no further than a few times their white noise.
+/// True when values range no further than a few times their white noise, or than two of their least steps.
 bool only_trembles(std::span<const double> values) {
     constexpr double trembling = 8.0;  // the range of thousands of draws, in deviations
     const auto [low, high] = std::minmax_element(values.begin(), values.end());
-    return *high - *low <= trembling * white_noise_of(values);
+    double step = 0.0;
+    for (std::size_t k = 1; k < values.size(); ++k) {
+        const double size = std::abs(values[k] - values[k - 1]);
+        if (size > 0.0 && (step == 0.0 || size < step)) step = size;
+    }
+    return *high - *low <= std::max(trembling * white_noise_of(values), 2.0 * step);
 }
 
 /// The angle varies no more than its noise: a few times its own deviation where it is measured, `walk_deg` as
@@ -197,7 +203,7 @@ double standstill_deg_s(const TraceView& trace, std::span<const double> smoothed
     const double noise = white_noise_of(trace.velocity_deg_s), step = 1.0 / trace.sample_rate.value();
     constexpr double far = 4.0;  // deviations, once in some thousand draws
     if (moves_nowhere(trace, far * noise * std::sqrt(static_cast<double>(trace.size())) * step))
-        return fastest;
+        return std::numeric_limits<double>::infinity();
     const double left = noise / std::sqrt(std::max(1.0, smoothing_s / step));
     return std::max(rest_share * fastest, far * left);
 }

@@ -101,9 +101,9 @@ AngleFacts::Source AngleFacts::source() const {
         case Verdict::too_little_motion:
         case Verdict::agrees:
         case Verdict::reversed:
+        case Verdict::stands:
             return Source::position;
         case Verdict::no_position:
-        case Verdict::stands:
         case Verdict::scaled:
         case Verdict::unrelated:
             break;
@@ -128,7 +128,8 @@ std::string AngleFacts::reason() const {
         case Verdict::reversed:
             return "velocity and position have opposite signs: the sign of the position is inverted";
         case Verdict::stands:
-            return "the position is constant while the velocity is not zero";
+            return "the position is constant: the joint is at rest, whatever its velocity says; a position "
+                   "that was not recorded is left out with --columns";
         case Verdict::scaled:
             return factor_in_words(*factor);
         case Verdict::unrelated:
@@ -139,7 +140,7 @@ std::string AngleFacts::reason() const {
 
 std::string AngleFacts::warning() const {
     std::string text;
-    if (verdict == Verdict::reversed) text = reason();
+    if (verdict == Verdict::reversed || verdict == Verdict::stands) text = reason();
     if (verdict != Verdict::no_position && source() == Source::velocity)
         text = fmt::format("{}; the angle is taken from the velocity", reason());
     if (!contradicted) return text;
@@ -245,7 +246,9 @@ void JointAngle::conclude() {
         facts_.factor = found.factor;
         return;
     }
-    if (facts_.contradicted || facts_.source() == AngleFacts::Source::velocity) return;
+    if (facts_.contradicted || facts_.verdict == AngleFacts::Verdict::stands ||
+        facts_.source() == AngleFacts::Source::velocity)
+        return;
     if (found.verdict != facts_.verdict) facts_.contradicted = {rows_, rows_ - skipped_};
 }
 

@@ -81,6 +81,13 @@ double resolution(std::span<const double> values) {
     return least;
 }
 
+/// True where the position moves by no more than two of its steps, whatever the velocity says.
+bool stands(const TraceView& log) {
+    if (!log.has_position()) return false;
+    const auto [low, high] = std::minmax_element(log.position_deg.begin(), log.position_deg.end());
+    return *high - *low <= 2.0 * resolution(log.position_deg);
+}
+
 bool tell_the_same(const TraceView& log, Seconds smoothing, MotionNoise noise) {
     LocalFit by_velocity(log, {noise.velocity_deg_s, 0.0});
     // A velocity of next to no weight.
@@ -165,6 +172,7 @@ Motion motion_along(const TraceView& log, Seconds smoothing) {
                   .velocity_deg_s = std::vector<double>(log.size()),
                   .acceleration_deg_s2 = std::vector<double>(log.size())};
     if (!log.has_position()) motion.position_deg = integrated(log);
+    if (stands(log)) return motion;
     const MotionNoise noise = noise_of(log, smoothing);
     LocalFit fit(log, noise);
     Windows windows(log, smoothing);
