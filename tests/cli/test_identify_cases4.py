@@ -23,7 +23,6 @@ class CasesOfUsers(Case):
         self.assertTrue(near, f"no line at {value}: {found['verdict']}")
         self.assertAlmostEqual(max(near) / amplitude, 1.0, delta=0.1)
 
-    @unittest.expectedFailure  # Fixed tones below 10 Hz are not searched at rest.
     def test_a_tone_at_rest(self):
         self.assert_line(self.answered("tone7_at_rest"), "hz", 7.0, 0.6)
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iterator>
 
 #include "analysis/motion/line_evidence.hpp"
 #include "analysis/motion/sweep_fit.hpp"
@@ -456,6 +457,19 @@ struct MotionSearch {
     std::vector<Sweep> sweeps;  ///< where the angle is not absolute: no line that was found removed
 };
 
+/// Tones slower than those that are told from the motion, where the joint is at rest.
+std::vector<MotionLine> slow_tones_at_rest(std::span<const Sweep> sweeps, std::span<const TraceView> logs,
+                                           const MotionLinesOptions& options) {
+    std::vector<Sweep> rests;
+    std::copy_if(sweeps.begin(), sweeps.end(), std::back_inserter(rests),
+                 [](const Sweep& sweep) { return sweep.rest(); });
+    if (rests.empty() || rests.size() == sweeps.size()) return {};  // or all were searched so
+    for (Sweep& rest : rests) fit_out(rest, {});
+    std::vector<MotionLine> tones = LineSearch(rests, logs, false, options).lines();
+    std::erase_if(tones, [&](const MotionLine& tone) { return tone.hz >= options.lowest_tone_hz; });
+    return tones;
+}
+
 /// The search for lines in sweeps whose angle is taken as it is.
 MotionSearch search_sweeps(Sweeps cut, std::span<const TraceView> logs, const MotionLinesOptions& options) {
     MotionSearch search;
@@ -474,6 +488,7 @@ MotionSearch search_sweeps(Sweeps cut, std::span<const TraceView> logs, const Mo
     found.slowest_deg_s = search_of.range().slow;
     found.fastest_deg_s = search_of.range().fast;
     found.lines = search_of.lines();
+    for (MotionLine& tone : slow_tones_at_rest(sweeps, logs, options)) found.lines.push_back(std::move(tone));
     const Stack& angle = search_of.stacks().angle;
     found.resolution_orders = angle.resolution;
     found.highest_spectrum_order = static_cast<double>(angle.ratio.size()) * angle.spacing;
