@@ -592,6 +592,52 @@ TEST_CASE("columns with times of their own, in columns or in rows of their own, 
     CHECK(rewritten(same, [](double torque) { return torque; }) == same);
 }
 
+TEST_CASE("a list in a cell is a column for each of its numbers, and as long in every row", "[log]") {
+    std::string text = "kind,stamp_ms,velocities,torques\n", round = text;
+    for (int k = 0; k < 9; ++k) {
+        text += fmt::format("M,{},\"[{}, {}]\",\"[{}, {}]\"\n", 10 * k, k, 10 + k, 20 + k, 30 + k);
+        round += fmt::format("M,{},({} {}),({} {})\n", 10 * k, k, 10 + k, 20 + k, 30 + k);
+    }
+    ReadOptions options;
+    options.joint = "1";
+    options.units = {{"velocity", "deg/s"}, {"torque", "Nm"}};
+    for (const std::string& log : {text, round}) {
+        CHECK(read_text(log, options).trace.velocity_deg_s[8] == 18);
+        CHECK(read_text(log, options).trace.torque_nm[8] == 38);
+        CHECK(read_text(log, options).trace.time_s[8] == Approx(0.08));
+    }
+    CHECK_THAT(complaint(text + "M,90,\"[1]\",\"[1, 2]\"\n", options),
+               Contains("log.csv:11: read '[1]' in 'velocities', expected as many numbers"));
+}
+
+TEST_CASE("JSON is read from lines, from a list of objects and from an object of lists alike", "[log]") {
+    std::string lines, objects, lists[3];
+    for (int k = 0; k < 40; ++k) {
+        const std::string object = fmt::format(
+            R"({{"t": {{"sec": 1716537600, "nanosec": {}}}, "arm": {{"velocity_deg_s": {}, "torque_nm": {}.5}}}})",
+            1000001 * k, k, 2 * k);
+        const std::string between = k == 0 ? "" : ",";
+        lines += object + "\n";
+        objects += between + object;
+        lists[0] += fmt::format("{}{}", between, 1716537600000000000 + 1000001 * k);
+        lists[1] += fmt::format("{}{}", between, k);
+        lists[2] += fmt::format("{}{}.5", between, 2 * k);
+    }
+    const std::string columns = fmt::format(
+        R"({{"gains": [1, 2], "log": {{"t_ns": [{}], "velocity_deg_s": [{}], "torque_nm": [{}]}}}})",
+        lists[0], lists[1], lists[2]);
+    for (const std::string& text :
+         {lines, "[" + objects + "]", R"({"run": 7, "rows": [)" + objects + "]}", columns}) {
+        INFO(text.substr(0, 60));
+        const Log log = read_text(text, text == columns ? ReadOptions() : with_columns({"time=t"}));
+        CHECK(log.layout.format == "json");
+        CHECK(log.trace.size() == 40);
+        CHECK(log.trace.torque_nm[39] == 78.5);
+        CHECK(log.trace.time_s[39] - log.trace.time_s[0] == Approx(39e-3 + 39e-9).epsilon(1e-12));
+    }
+    CHECK_THAT(complaint(lines + "{\"t\": 1}\n"), Contains("log.csv: line 41: read no number as t"));
+}
+
 TEST_CASE("a title over two columns makes no trace of them", "[log]") {
     std::string text = "run 3\n";
     for (int k = 0; k < 9; ++k) text += fmt::format("{};{}\n", 10 + k % 2, 5 + k % 3);

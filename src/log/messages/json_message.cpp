@@ -8,11 +8,13 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 
 #include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/number.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -25,23 +27,27 @@ constexpr int deepest_field = 32;
 constexpr std::size_t most_named_fields = 16384;
 constexpr double largest_exact = 9007199254740992.0;  // 2^53: what a double holds of whole numbers
 
-/// Throws DataError, without a source's name, where the bytes are no such message.
-Json parsed(std::string_view message) {
+/// Throws DataError, without a source's name, where the bytes are none.
+Json json_of(std::string_view text) {
     const auto is_shallow = [](int depth, Json::parse_event_t /*event*/, const Json& /*json*/) {
         if (depth > deepest_field)
             raise<DataError>("lists and objects deeper than {} in a message in JSON", deepest_field);
         return true;
     };
     try {
-        Json json = Json::parse(message.begin(), message.end(), is_shallow);
-        if (json.is_array()) raise<DataError>("a list as a message in JSON, expected an object");
-        if (!json.is_object()) raise<DataError>("a message in JSON that is no object");
-        return json;
+        return Json::parse(text.begin(), text.end(), is_shallow);
     } catch (const Json::parse_error& error) {
         raise<DataError>("byte {} of a message in JSON, where it is none, expected an object", error.byte);
     } catch (const Json::exception& error) {
         raise<DataError>("a message in JSON that is none: {}", error.what());
     }
+}
+
+Json parsed(std::string_view message) {
+    Json json = json_of(message);
+    if (json.is_array()) raise<DataError>("a list as a message in JSON, expected an object");
+    if (!json.is_object()) raise<DataError>("a message in JSON that is no object");
+    return json;
 }
 
 /// What has to be in every message.
@@ -167,7 +173,9 @@ class Reader final : public MessageReader {
         : program_(std::move(program)), wanted_(wanted) {}
 
     void read(std::string_view message, std::vector<LeafNumber>& into) override {
-        const Json json = parsed(message);
+        read(parsed(message), into);
+    }
+    void read(const Json& json, std::vector<LeafNumber>& into) const {
         for (const Program::List& list : program_->lists)
             if (const Json* const found = find(json, list.at);
                 found != nullptr && found->is_array() && found->size() > list.elements)
@@ -214,7 +222,135 @@ class Reader final : public MessageReader {
     std::vector<bool> wanted_;
 };
 
+/// Objects, a row each.
+class RowColumns {
+  public:
+    void add(const Json& object) {
+        if (!reader_) {
+            const auto program = std::make_shared<const Program>(std::move(JsonLayOut(object).program));
+            for (const MessageLeaf& leaf : program->leaves)
+                info_.push_back({leaf.path, leaf.read_as, leaf.stamp ? "ns" : "", leaf.type.whole(), true});
+            row_.resize(info_.size());
+            numbers_.resize(info_.size());
+            reader_.emplace(program, std::vector<bool>(info_.size(), true));
+        }
+        reader_->read(object, row_);
+        for (std::size_t c = 0; c < row_.size(); ++c) {
+            numbers_[c].values.push_back(row_[c].value);
+            if (info_[c].whole) numbers_[c].counts.push_back(row_[c].count);
+        }
+    }
+    std::unique_ptr<Columns> columns(const std::string& source) {
+        if (info_.empty()) raise<DataError>("{}: read objects without numbers, expected some", source);
+        return std::make_unique<HeldColumns>(source, std::move(info_), std::move(numbers_));
+    }
+
+  private:
+    std::optional<Reader> reader_;
+    std::vector<LeafNumber> row_;
+    std::vector<ColumnInfo> info_;
+    NumberRows numbers_;
+};
+
+bool is_list_of_objects(const Json& json) {
+    return json.is_array() && !json.empty() &&
+           std::all_of(json.begin(), json.end(), [](const Json& one) { return one.is_object(); });
+}
+
+bool is_list_of_numbers(const Json& json) {
+    return json.is_array() && !json.empty() && std::all_of(json.begin(), json.end(), [](const Json& one) {
+               return is_number(one) || one.is_null();
+           });
+}
+
+/// The longest list of objects, and lists of numbers by their length.
+struct FoundLists {
+    explicit FoundLists(const Json& json) { look(json, ""); }
+    const Json* objects = nullptr;
+    std::map<std::size_t, std::vector<std::pair<std::string, const Json*>>> numbers;
+
+  private:
+    void look(const Json& json, const std::string& path) {
+        if (is_list_of_objects(json)) {
+            if (objects == nullptr || json.size() > objects->size()) objects = &json;
+        } else if (is_list_of_numbers(json)) {
+            numbers[json.size()].emplace_back(path, &json);
+        } else if (json.is_structured()) {
+            for (const auto& [key, value] : json.items())
+                look(value, json.is_array() ? fmt::format("{}[{}]", path, key)
+                            : path.empty()  ? key
+                                            : fmt::format("{}.{}", path, key));
+        }
+    }
+};
+
+std::unique_ptr<Columns> columns_of_lists(const std::string& source,
+                                          const std::vector<std::pair<std::string, const Json*>>& lists) {
+    std::vector<ColumnInfo> info;
+    NumberRows numbers;
+    for (const auto& [path, list] : lists) {
+        const bool whole =
+            std::all_of(list->begin(), list->end(), [](const Json& one) { return one.is_number_integer(); });
+        info.push_back({path, "", "", whole, true});
+        ColumnNumbers& column = numbers.emplace_back();
+        for (const Json& one : *list) {
+            const double truth = one.is_boolean() && one.get<bool>() ? 1.0 : 0.0;
+            column.values.push_back(one.is_number()    ? one.get<double>()
+                                    : one.is_boolean() ? truth
+                                                       : not_a_number);
+            if (whole) column.counts.push_back(one.get<std::int64_t>());
+        }
+    }
+    return std::make_unique<HeldColumns>(source, std::move(info), std::move(numbers));
+}
+
 }  // namespace
+
+ColumnLog columns_of_json(const std::string& source, std::string_view text) {
+    ColumnLog log;
+    log.format = "json";
+    // Of an object a line, the second begins as the first does.
+    const std::size_t begin = text.find_first_not_of(" \t\r\n"), end = text.find('\n', begin);
+    const std::size_t next = end == std::string_view::npos ? end : text.find_first_not_of(" \t\r\n", end);
+    const bool lines = next != std::string_view::npos && text[begin] == '{' && text[next] == '{';
+    std::size_t row = 0;
+    try {
+        RowColumns rows;
+        if (lines) {
+            for (std::size_t at = 0; at < text.size();) {
+                const std::size_t line_end = std::min(text.find('\n', at), text.size());
+                const std::string_view line = text.substr(at, line_end - at);
+                at = line_end + 1;
+                ++row;
+                if (line.find_first_not_of(" \t\r") != std::string_view::npos) rows.add(parsed(line));
+            }
+            log.columns = rows.columns(source);
+            return log;
+        }
+        const Json json = json_of(text);
+        const FoundLists found(json);
+        const std::size_t longest = found.numbers.empty() ? 0 : found.numbers.rbegin()->first;
+        if (found.objects != nullptr && found.objects->size() >= longest) {
+            for (const Json& object : *found.objects) {
+                ++row;
+                rows.add(object);
+            }
+            log.columns = rows.columns(source);
+            return log;
+        }
+        if (longest < 2)
+            raise<DataError>(
+                "JSON without lists, expected an object a line, a list of objects, or an object of "
+                "lists of numbers");
+        log.columns = columns_of_lists(source, found.numbers.rbegin()->second);
+    } catch (const DataError& error) {
+        const std::string what = error.what();
+        if (what.starts_with(source)) throw;
+        raise<DataError>("{}{}: read {}", source,
+                         row == 0 ? "" : fmt::format(": {} {}", lines ? "line" : "object", row), what);
+    }
+    return log;
+}
 
 MessageLayout lay_out_json(std::string_view first) {
     const auto program = std::make_shared<const Program>(std::move(JsonLayOut(parsed(first)).program));

@@ -10,4 +10,8 @@ namespace ripplenotch {
 /// difference: numbers say that they are. They are 64-bit floats, but for whole ones beyond 2^53.
 [[nodiscard]] MessageLayout lay_out_json(std::string_view first);
 
+/// A log in JSON: an object a line, a list of objects, or an object of lists of numbers; the longest that
+/// there is. Throws DataError, beginning with `source`.
+[[nodiscard]] ColumnLog columns_of_json(const std::string& source, std::string_view text);
+
 }  // namespace ripplenotch

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <optional>
 #include <set>
@@ -148,6 +149,76 @@ ColumnLog own_columns(const std::string& source, std::string_view text, const Cs
     return log;
 }
 
+/// A table some of whose cells hold lists, which have as many numbers in every row.
+class ListTable {
+  public:
+    ListTable(const std::string& source, std::string_view text, const TextDialect& dialect)
+        : rows_(rows_of(source, text, dialect)), dialect_(dialect) {
+        while (next_row(rows_, dialect)) {
+            std::size_t place = 0;
+            for (std::size_t c = 0; c < dialect.columns; ++c) add_cell(c, rows_.cell(c), place);
+            first_ = false;
+        }
+        for (std::size_t c = 0; c < info_.size(); ++c) info_[c].whole = whole_[c];
+    }
+    ColumnLog log(const std::string& source) {
+        ColumnLog log;
+        log.format = "csv";
+        log.options = dialect_options(dialect_);
+        log.columns = std::make_unique<HeldColumns>(source, std::move(info_), std::move(numbers_));
+        return log;
+    }
+
+  private:
+    void add_cell(std::size_t column, std::string_view cell, std::size_t& place) {
+        const std::string name =
+            dialect_.names.empty() ? fmt::format("column {}", column + 1) : dialect_.names[column];
+        const auto list = list_in(cell);
+        const std::size_t length = list ? list->size() : 0;
+        if (first_) lengths_.push_back(length);
+        if (length != lengths_[column])
+            rows_.complain(
+                fmt::format("read '{}' in '{}', expected as many numbers as in the first row: {}; "
+                            "correct or remove the line",
+                            cell.substr(0, 40), name, std::max<std::size_t>(1, lengths_[column])));
+        if (!list) {
+            auto number = number_in(cell, dialect_.rules.delimiter);
+            if (const auto stamp = number ? std::nullopt : clock_text(cell, dialect_.stamp_forms[column])) {
+                if (!origin_s_) origin_s_ = stamp->whole_s;
+                number = since(stamp->whole_s, *origin_s_) + stamp->fraction_s;
+            }
+            return add(place, name, column, cell, number);
+        }
+        for (std::size_t i = 0; i < length; ++i)
+            add(place, fmt::format("{}[{}]", name, i), column, "", (*list)[i]);
+    }
+    void add(std::size_t& place, const std::string& name, std::size_t column, std::string_view cell,
+             std::optional<double> number) {
+        if (first_) {
+            info_.push_back({name, "", column < dialect_.units.size() ? dialect_.units[column] : "", false,
+                             number.has_value()});
+            whole_.push_back(true);
+            numbers_.emplace_back();
+        }
+        std::int64_t count = 0;
+        const char* const end = cell.data() + cell.size();
+        const auto whole = std::from_chars(cell.data(), end, count);
+        whole_[place] = whole_[place] && whole.ec == std::errc() && whole.ptr == end;
+        numbers_[place].values.push_back(number.value_or(not_a_number));
+        numbers_[place].counts.push_back(count);
+        ++place;
+    }
+
+    Lines rows_;
+    const TextDialect& dialect_;
+    bool first_ = true;  ///< in the first row
+    std::vector<ColumnInfo> info_;
+    std::vector<bool> whole_;  ///< by column: all its numbers
+    NumberRows numbers_;
+    std::vector<std::size_t> lengths_;  ///< of the list in a cell, by its place in the row; 0: it is none
+    std::optional<std::int64_t> origin_s_;
+};
+
 }  // namespace
 
 std::unique_ptr<LogReader> open_table(std::unique_ptr<ByteSource> source, std::string first_bytes,
@@ -157,9 +228,11 @@ std::unique_ptr<LogReader> open_table(std::unique_ptr<ByteSource> source, std::s
                              options);
     };
     TextOpening opening(std::move(source), std::move(first_bytes), options);
-    if (!opening.dialect.own_clocks) return plain(std::move(opening));
+    if (!opening.dialect.own_clocks && !opening.dialect.has_lists) return plain(std::move(opening));
     const std::string name = opening.source->name();
     const auto text = std::make_shared<const std::string>(opening.whole());
+    if (opening.dialect.has_lists)
+        return read_columns(ListTable(name, *text, opening.dialect).log(name), options);
     const auto again = [&] {
         return TextOpening(std::make_unique<ByteSource>(name, text), std::string(), options);
     };

@@ -51,6 +51,24 @@ std::optional<double> number_in(std::string_view text, char delimiter) {
     return number;
 }
 
+std::optional<std::vector<double>> list_in(std::string_view cell) {
+    const bool square = cell.starts_with('[') && cell.ends_with(']');
+    if (cell.size() < 3 || !(square || (cell.starts_with('(') && cell.ends_with(')')))) return std::nullopt;
+    std::string_view rest = cell.substr(1, cell.size() - 2);
+    std::vector<double> numbers;
+    while (true) {
+        constexpr std::string_view between = " \t,;";
+        rest.remove_prefix(std::min(rest.find_first_not_of(between), rest.size()));
+        if (rest.empty()) break;
+        const std::size_t end = std::min(rest.find_first_of(between), rest.size());
+        const auto number = parse_number(rest.substr(0, end));
+        if (!number) return std::nullopt;
+        numbers.push_back(*number);
+        rest.remove_prefix(end);
+    }
+    return numbers.empty() ? std::nullopt : std::optional(std::move(numbers));
+}
+
 std::size_t Signals::index_of(const std::string& name, const std::string& unit) {
     const auto [found, added] = places_.try_emplace(name, all.size());
     if (added && all.size() == most_names)

@@ -79,4 +79,7 @@ class Signals {
 /// A number, with a comma for its decimals where that separates no cells.
 [[nodiscard]] std::optional<double> number_in(std::string_view text, char delimiter);
 
+/// The numbers of a list in one cell, "[0.1, 0.2]" or "(0.1 0.2)"; none where it is no such.
+[[nodiscard]] std::optional<std::vector<double>> list_in(std::string_view cell);
+
 }  // namespace ripplenotch

@@ -14,6 +14,7 @@
 #include "log/columns/column_name.hpp"
 #include "log/rows_in_range.hpp"
 #include "log/text/scope_header.hpp"
+#include "log/text/signals.hpp"
 #include "log/text/text_header.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
@@ -197,6 +198,7 @@ void look_at_sample(std::string_view bytes, std::span<const TextLine> rows, Text
         for (std::size_t c = 0; c < dialect.columns; ++c) {
             const std::string_view cell = split.cells[c].of(line);
             const auto value = parse_number(cell, dialect.rules.decimal_mark);
+            if (k == 0) dialect.has_lists |= list_in(cell).has_value();
             if (k == 0) std::from_chars(cell.data(), cell.data() + cell.size(), dialect.first_counts[c]);
             if (!value && (k == 0 || dialect.clock_texts[c])) {
                 dialect.clock_texts[c] = clock_text(cell).has_value();

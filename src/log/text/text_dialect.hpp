@@ -40,6 +40,7 @@ struct TextDialect {
     std::vector<StampForm> stamp_forms;  ///< by column, of its dates and times of day
     std::vector<std::size_t>
         clock_of;             ///< by column: where its times stand, if some have their own; else empty
+    bool has_lists = false;   ///< a cell of the first row is a list: "[0.1, 0.2]", "(0.1 0.2)"
     bool own_clocks = false;  ///< some have, in columns of their own or in rows of their own
     std::vector<std::int64_t> first_counts;  ///< by column: the first row's whole number, exact
 };
