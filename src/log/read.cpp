@@ -159,7 +159,6 @@ class LogPasses::Work {
 
     void first(const Use& use);
     void second(const Use& use);
-    void again(const Use& use);
 
     Layout layout;
     LogFacts facts;
@@ -233,10 +232,6 @@ void LogPasses::Work::first(const Use& use) {
         layout.warnings.push_back({"wrapped position", wrap_in_words(*period), true});
 }
 
-void LogPasses::Work::again(const Use& use) {
-    go_on_from([](const TraceView&) {}, use);
-}
-
 // `logged` gets the rows with the position as it was logged, made continuous; then `use` gets the joint's.
 void LogPasses::Work::go_on_from(const Use& logged_use, const Use& use) {
     std::optional<Unwrapper> unwrapper;
@@ -297,8 +292,6 @@ void LogPasses::keep_rows(std::size_t most_bytes) { work_->kept = KeptParts(most
 void LogPasses::first(const Use& use) { work_->first(use); }
 
 void LogPasses::second(const Use& use) { work_->second(use); }
-
-void LogPasses::again(const Use& use) { work_->again(use); }
 
 const LogFacts& LogPasses::facts() const { return work_->facts; }
 

@@ -62,9 +62,6 @@ class LogPasses {
     [[nodiscard]] const Layout& layout() const;        ///< as Log::layout
     [[nodiscard]] const Recording& recording() const;  ///< as Log::recording
 
-    /// Any number of times: as second.
-    void again(const Use& use);
-
   private:
     class Work;
     std::unique_ptr<Work> work_;
