@@ -26,8 +26,6 @@ constexpr double window_correlation = 1.0 / 6.0;
 constexpr double agreeing_share = 0.5;  // share of the power that segments have in common, for a phase
 constexpr double normal_99 = 2.3263478740408408;  // one-sided quantile of 0.99
 constexpr double independent_spacing = 1.5;       // in bins under a Hann window
-// Efficiency of a median relative to a mean, as in exceedance().
-constexpr double median_knowledge_of_mean = 0.48;
 
 /// Mean power near an order, scaled as the fit of the order receives it, and from how many independent bins.
 struct NoisePower {
@@ -75,20 +73,6 @@ double effective_averages(const OrderSegments& order) {
         squares += share * share;
     }
     return squares > 0.0 ? sum * sum / squares : 1.0;
-}
-
-/// The power over the noise that noise alone exceeds with a probability.
-double threshold(double averages, double bins, double false_alarm) {
-    double low = 1.0, high = 2.0;
-    const auto chance = [&](double ratio) {
-        return exceedance({.ratio = ratio, .averages = averages, .cells = median_efficiency * bins});
-    };
-    while (chance(high) > false_alarm && high < 1e12) high *= 2.0;
-    for (int i = 0; i < 60; ++i) {
-        const double middle = 0.5 * (low + high);
-        (chance(middle) > false_alarm ? low : high) = middle;
-    }
-    return high;
 }
 
 }  // namespace
@@ -140,9 +124,11 @@ RippleEstimate estimate_of(double value, const OrderSegments& order, std::size_t
     // Power of line and noise is about normal, of variance (2 A^2 N + N^2) / averages, and so is the
     // logarithm of the noise, estimated from the bins to one side, in this log and in the one that the limit
     // applies to: the A^2 at which the lower percentile of the power is the threshold solves a quadratic.
-    const double level = threshold(averages, noise.bins, ripple_false_alarm / tries);
+    const double level =
+        exceeded(ripple_false_alarm / tries, {.averages = averages, .cells = median_efficiency * noise.bins})
+            .ratio;
     const double above = level - noise.power / std::max(noise.along_slope, 1e-300);
-    const double known = 0.5 * median_knowledge_of_mean * noise.bins * averages;
+    const double known = 0.5 * median_efficiency * noise.bins * averages;
     const double spread = normal_99 * normal_99 / averages;
     const double doubt = portable::pow(level * (portable::exp(normal_99 * std::sqrt(2.0 / known)) - 1.0), 2);
     const double least = above + spread + std::sqrt(2.0 * above * spread + spread * spread + spread + doubt);
