@@ -62,6 +62,12 @@ std::size_t first_length(Hertz sample_rate) {
     return std::max<std::size_t>(64, static_cast<std::size_t>(std::min(0.5 * sample_rate.value(), 1e6)));
 }
 
+std::size_t run_in(Hertz sample_rate) {
+    return static_cast<std::size_t>(std::llround(run_in_seconds * sample_rate.value()));
+}
+
+constexpr double rounding_share = 1e-8;  // of what a signal has risen to: less is no overshoot
+
 // Amplitude of the sine of `omega` radians per sample in y[from, end), fitted together with a constant.
 double sine_amplitude(std::span<const double> y, std::size_t from, double omega) {
     Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
@@ -78,12 +84,11 @@ double sine_amplitude(std::span<const double> y, std::size_t from, double omega)
 
 }  // namespace
 
-StepMeasurement Bench::step(NewtonMeters height, Seconds run_in) const {
+StepMeasurement Bench::step(NewtonMeters height) const {
     const double h = height.value();
     if (!std::isfinite(h) || h == 0.0) raise<UsageError>("a step of {} Nm is no step", h);
     Run run(contender_, sample_rate_, speed_);
-    // The last sample of rest is the steady state before the step: filters start settled on their first.
-    const auto before = static_cast<std::size_t>(std::llround(run_in.value() * sample_rate_.value()));
+    const std::size_t before = run_in(sample_rate_);
     const auto signal = [h, before](std::size_t k) { return k <= before ? 0.0 : h; };
     const double rest = 0.01 * settle_bands_percent.front() / 100.0;
     std::size_t count = first_length(sample_rate_) + 2 * before;
@@ -96,10 +101,11 @@ StepMeasurement Bench::step(NewtonMeters height, Seconds run_in) const {
     }
     StepMeasurement figures;
     std::array<std::size_t, 4> settled{};
-    double peak = 1.0;
+    double over = 0.0, under = 0.0;
     for (std::size_t k = before + 1; k < count; ++k) {
         const double y = run.out()[k] / h;
-        peak = std::max(peak, y);
+        over = std::max(over, y - 1.0);
+        under = std::max(under, -y);
         for (std::size_t b = 0; b < settled.size(); ++b) {
             if (!(std::abs(y - 1.0) <= settle_bands_percent[b] / 100.0)) settled[b] = k - before;
         }
@@ -107,19 +113,22 @@ StepMeasurement Bench::step(NewtonMeters height, Seconds run_in) const {
     for (std::size_t b = 0; b < settled.size(); ++b) {
         figures.settle[b] = Seconds(static_cast<double>(settled[b]) / sample_rate_.value());
     }
-    // Below a millionth of a per cent it is rounding, not overshoot.
-    figures.overshoot_percent = peak - 1.0 > 1e-8 ? 100.0 * (peak - 1.0) : 0.0;
+    figures.overshoot_percent = over > rounding_share ? 100.0 * over : 0.0;
+    figures.undershoot_percent = under > rounding_share ? 100.0 * under : 0.0;
     return figures;
 }
 
-Seconds Bench::ramp_delay(double slope_nm_s) const {
+RampMeasurement Bench::ramp(double slope_nm_s) const {
     if (!std::isfinite(slope_nm_s) || slope_nm_s == 0.0)
         raise<UsageError>("a ramp of {} Nm/s is no ramp", slope_nm_s);
     const double rise = slope_nm_s / sample_rate_.value();  // per sample
-    const auto signal = [rise](std::size_t k) { return rise * static_cast<double>(k); };
+    const std::size_t before = run_in(sample_rate_);
+    const auto signal = [rise, before](std::size_t k) {
+        return k <= before ? 0.0 : rise * static_cast<double>(k - before);
+    };
     Run run(contender_, sample_rate_, speed_);
     constexpr double rest_s = 1e-8;  // chosen, not derived
-    std::size_t count = first_length(sample_rate_);
+    std::size_t count = first_length(sample_rate_) + 2 * before;
     while (true) {
         run.extend(count, signal);
         const auto lag_s = [&](std::size_t k) { return (signal(k) - run.out()[k]) / slope_nm_s; };
@@ -127,7 +136,14 @@ Seconds Bench::ramp_delay(double slope_nm_s) const {
         bool at_rest = true;
         for (std::size_t k = count / 2; k < count && at_rest; ++k)
             at_rest = std::abs(lag_s(k) - last) <= rest_s;
-        if (at_rest) return Seconds(last);
+        if (at_rest) {
+            double beyond_s = 0.0;
+            for (std::size_t k = before + 1; k < count; ++k)
+                beyond_s = std::max({beyond_s, -lag_s(k), -run.out()[k] / slope_nm_s});
+            const double risen_s = static_cast<double>(count - before) / sample_rate_.value();
+            return {Seconds(last),
+                    beyond_s > rounding_share * risen_s ? beyond_s * std::abs(slope_nm_s) : 0.0};
+        }
         count *= 2;
     }
 }

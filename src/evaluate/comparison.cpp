@@ -6,10 +6,13 @@
 #include <cmath>
 
 #include "ripplenotch/analysis/ripple_estimate.hpp"
+#include "ripplenotch/analysis/ripple_meter.hpp"
+#include "ripplenotch/analysis/spectrum.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
+#include "ripplenotch/core/progress.hpp"
 #include "ripplenotch/evaluate/comparison.hpp"
 #include "ripplenotch/evaluate/contender.hpp"
 #include "ripplenotch/evaluate/ledger.hpp"
@@ -270,12 +273,14 @@ std::optional<double> predicted_nm(const FilterMetrics& metrics, std::size_t ord
 namespace {
 
 constexpr std::size_t block_rows = 4096;  // chosen, not derived
+constexpr double moving_share = 0.05;     // of the fastest |v|: slower is standstill
 
 // One method on its way through a log.
 struct Runner {
     std::unique_ptr<CausalFilter> filter;
     std::vector<double> out;
-    double error_squares = 0.0;
+    double error_squares = 0.0;                         ///< against the true torque
+    double off_squares = 0.0, largest_start = 0.0;      ///< against the reference
     std::optional<SwitchLedger> ledger = std::nullopt;  ///< ledger of a method that switches
 };
 
@@ -293,7 +298,6 @@ void fill_levels(MethodFigures& figures, const RippleLevels& levels, GearRatio r
     figures.ripple_rms_nm = ripple_rms_nm(levels, signal);
     figures.residual_rms_nm = levels.residual_rms_nm[signal];
     figures.residual_peak_to_peak_nm = levels.residual_peak_to_peak_nm[signal];
-    figures.distortion_rms_nm = levels.distortion_rms_nm[signal];
 }
 
 double largest_jump_nm(const CausalFilter& filter) {
@@ -353,8 +357,13 @@ MethodFigures measure_on_signals(const Contender& contender, Hertz sample_rate, 
         for (std::size_t i = 0; i < step.settle.size(); ++i)
             (*figures.settle_ms)[i] = 1e3 * step.settle[i].value();
         figures.overshoot_percent = step.overshoot_percent;
+        figures.undershoot_percent = step.undershoot_percent;
     }
-    if (ramp_nm_s) figures.ramp_delay_ms = 1e3 * bench.ramp_delay(*ramp_nm_s).value();
+    if (ramp_nm_s) {
+        const RampMeasurement ramp = bench.ramp(*ramp_nm_s);
+        figures.ramp_delay_ms = 1e3 * ramp.delay.value();
+        figures.ramp_overshoot_nm = ramp.overshoot_nm;
+    }
     if (const auto frozen = contender.frozen(sample_rate, speed)) {
         figures.dc_delay_ms = 1e3 * group_delay(frozen->cascade, Hertz(0.0), SampledAt(sample_rate)).value();
         figures.note = frozen->note;
@@ -374,7 +383,7 @@ DegPerSec median_moving_speed(const TraceView& trace) {
     for (const double v : trace.velocity_deg_s) fastest = std::max(fastest, std::abs(v));
     std::vector<double> moving;
     for (const double v : trace.velocity_deg_s) {
-        if (std::abs(v) > fastest / 20.0) moving.push_back(std::abs(v));
+        if (std::abs(v) > moving_share * fastest) moving.push_back(std::abs(v));
     }
     if (moving.empty()) return DegPerSec(0.0);
     return DegPerSec(median_in(moving));
@@ -393,20 +402,85 @@ std::vector<double> output_on_log(const Contender& contender, const ComparedLog&
     return out;
 }
 
+namespace {
+
+MethodFigures on_bench(const Contender& contender, Hertz sample_rate, const BenchSignals& signals) {
+    try {
+        return measure_on_signals(contender, sample_rate, signals.speed, signals.step_nm, signals.ramp_nm_s,
+                                  nullptr);
+    } catch (const UsageError&) {
+        // A filter that does not settle has no such figures; the others still count.
+        return measure_on_signals(contender, sample_rate, signals.speed, std::nullopt, std::nullopt, nullptr);
+    }
+}
+
+// Output minus TorqueReference::smooth_nm(), as the blocks of a log go by.
+class ReferenceErrors {
+  public:
+    ReferenceErrors(const ComparedLog& log, const std::vector<double>& smooth_nm) : smooth_nm_(smooth_nm) {
+        for (const double velocity : log.trace.velocity_deg_s)
+            fastest_deg_s_ = std::max(fastest_deg_s_, std::abs(velocity));
+    }
+
+    void add(const TraceView& block, std::vector<Runner>& runners) {
+        const double step_s = 1.0 / block.sample_rate.value();
+        for (std::size_t k = 0; k < block.size(); ++k) {
+            const double smooth = smooth_nm_[block.first_row + k];
+            if (std::isnan(smooth)) continue;
+            ++rows_;
+            const bool starts = moved_s_ < start_seconds;
+            if (std::abs(block.velocity_deg_s[k]) > moving_share * fastest_deg_s_) moved_s_ += step_s;
+            if (starts) own_start_ = std::max(own_start_, std::abs(block.torque_nm[k] - smooth));
+            for (Runner& runner : runners) {
+                const double error = runner.out[k] - smooth;
+                runner.off_squares += error * error;
+                if (starts) runner.largest_start = std::max(runner.largest_start, std::abs(error));
+            }
+        }
+    }
+    void fill(MethodFigures& figures, const Runner& runner) const {
+        if (rows_ > 0) figures.error_nm = std::sqrt(runner.off_squares / static_cast<double>(rows_));
+        if (own_start_ > 0.0) figures.start_ratio = runner.largest_start / own_start_;
+    }
+
+  private:
+    const std::vector<double>& smooth_nm_;
+    double fastest_deg_s_ = 0.0, moved_s_ = 0.0, own_start_ = 0.0;
+    std::size_t rows_ = 0;
+};
+
+}  // namespace
+
 LogLevels measure_on_log(std::span<const Contender> contenders, const ComparedLog& log,
-                         const GearAccount& lines) {
+                         const GearAccount* lines, std::vector<RippleEstimate> ripple,
+                         const BenchSignals& signals, std::optional<TorqueBand> band) {
+    LogLevels result;
+    result.ripple = std::move(ripple);
+    Progress::current().begin("measuring", "methods", contenders.size());
+    for (const Contender& contender : contenders) {
+        result.methods.push_back(on_bench(contender, log.trace.sample_rate, signals));
+        Progress::current().add(1);
+    }
+    if (lines == nullptr) return result;
+    Progress::current().begin("measuring on the log", "", 0);
     std::vector<Runner> runners;
     for (const Contender& contender : contenders) {
         runners.push_back({contender.start(log.trace.sample_rate), {}});
         if (contender.method->needs_table) runners.back().ledger.emplace(log.truth_nm);
     }
-    RippleMeter meter(lines.ratio, lines.orders, log.trace.sample_rate, runners.size() + 1);
+    std::optional<TorqueReference> reference;
+    if (log.trace.size() >= fewest_spectrum_samples) reference.emplace(log, *lines, result.ripple, band);
+    if (reference && reference->smooth_nm().empty()) reference.reset();
+    std::optional<ReferenceErrors> errors;
+    if (reference) errors.emplace(log, reference->smooth_nm());
+    RippleMeter meter(lines->ratio, lines->orders, log.trace.sample_rate, runners.size() + 1);
     std::size_t done = 0;
     for_each_block(
         log.trace,
         [&](const TraceView& block) {
             const auto truth = log.truth_nm.empty() ? log.truth_nm : log.truth_nm.subspan(done, block.size());
             run_block(runners, meter, block, truth);
+            if (errors) errors->add(block, runners);
             for (std::size_t i = 0; log.watch && i < runners.size(); ++i)
                 log.watch(i, block, runners[i].out, truth);
             done += block.size();
@@ -419,8 +493,10 @@ LogLevels measure_on_log(std::span<const Contender> contenders, const ComparedLo
             }
         });
     const RippleLevels levels = meter.levels();
-    LogLevels result{
-        {}, levels.windows > 0 ? ripple_rms_nm(levels, 0) : 0.0, levels.windows, levels.measured_share, ""};
+    result.windows = levels.windows;
+    result.measured_share = levels.measured_share;
+    if (levels.windows > 0) result.raw_ripple_rms_nm = ripple_rms_nm(levels, 0);
+    if (reference) result.band = reference->band();
     if (levels.windows == 0) {
         result.why_none = levels.windows_too_few_samples > 0
                               ? "too few samples per motor turn for so many orders"
@@ -428,9 +504,14 @@ LogLevels measure_on_log(std::span<const Contender> contenders, const ComparedLo
                                 "half the sample rate";
     }
     for (std::size_t i = 0; i < contenders.size(); ++i) {
-        MethodFigures figures;
-        figures.method = contenders[i].text;
-        fill_levels(figures, levels, lines.ratio, i + 1);
+        MethodFigures& figures = result.methods[i];
+        fill_levels(figures, levels, lines->ratio, i + 1);
+        if (errors) errors->fill(figures, runners[i]);
+        if (reference) {
+            const Distortion distortion = reference->distortion(contenders[i]);
+            figures.moved_nm = distortion.moved_nm;
+            figures.added_nm = distortion.added_nm;
+        }
         if (runners[i].ledger) {
             figures.switches = runners[i].filter->switch_count();
             figures.largest_jump_nm = largest_jump_nm(*runners[i].filter);
@@ -440,7 +521,6 @@ LogLevels measure_on_log(std::span<const Contender> contenders, const ComparedLo
             const auto rows = static_cast<double>(log.truth_nm.size());
             figures.error_rms_nm = std::sqrt(runners[i].error_squares / rows);
         }
-        result.methods.push_back(std::move(figures));
     }
     return result;
 }

@@ -67,8 +67,6 @@ void SwitchLedger::split() {
 
 namespace {
 
-// The paper's step and ramp; a linear filter's figures do not depend on them.
-constexpr double step_nm = 10.0, ramp_nm_s = 20.0;
 constexpr std::array typical_speeds_deg_s = {5.0, 10.0, 20.0, 50.0, 100.0, 200.0};
 constexpr int speeds_looked_at = 97;  // steps of 5 % over two decades at most
 constexpr double slowest_searched_deg_s = 0.1, fastest_searched_deg_s = 3000.0;  // chosen, not derived
@@ -101,8 +99,8 @@ LedgerEntry entry_of(const Contender& contender, const Contender& runs, Hertz sa
     if (!request.measured) return entry;
     const Bench bench(runs, sample_rate, speed);
     try {
-        entry.ramp_delay = bench.ramp_delay(ramp_nm_s);
-        entry.step = bench.step(NewtonMeters(step_nm));
+        entry.ramp_delay = bench.ramp(usual_ramp_nm_s).delay;
+        entry.step = bench.step(NewtonMeters(usual_step_nm));
     } catch (const UsageError&) {
         // A filter that does not settle has no such figures; the rest of the ledger still counts.
     }

@@ -70,8 +70,8 @@ std::string two_digits(double value) {
 }
 
 std::string error_text(const Recommendation& found, const JudgedMethod& method) {
-    return fmt::format("error {} instead of {} Nm rms", two_digits(method.error_nm),
-                       two_digits(found.taken()->error_nm));
+    return fmt::format("error {} instead of {} Nm rms", two_digits(method.error_nm()),
+                       two_digits(found.taken()->error_nm()));
 }
 
 // Chosen, not derived: what is a trade, and how much larger the error of it may be.
@@ -125,24 +125,18 @@ std::string recommendation_verdict(const Recommendation& found) {
 }
 
 void judge(Comparison& comparison, std::span<const Contender> contenders, const ComparedLog& log,
-           const RecommendationLimits& limits) {
+           const RecommendationLimits& limits, LogLevels measured) {
     if (comparison.subject() == nullptr || !comparison.lines) return;
     const GearAccount& lines = *comparison.lines;
-    Recommendation found =
-        recommend(contenders, log, lines, limits, estimate_ripple({&log.trace, 1}, lines.ratio, lines.orders),
-                  std::nullopt,
-                  LogLevels{comparison.methods, comparison.raw_ripple_rms_nm, comparison.windows,
-                            comparison.measured_share, comparison.why_none});
+    const Recommendation found =
+        recommend(contenders, log, lines, limits, {}, std::nullopt, std::move(measured));
     comparison.best_sentence = recommendation_verdict(found);
-    if (found.finding == RecommendationFinding::recommended)
-        comparison.best = std::move(found.methods.front());
+    if (found.finding == RecommendationFinding::recommended) comparison.best = found.methods.front();
 }
 
 namespace {
 
-constexpr double slow_turn_s = 0.5;        // chosen, not derived
-constexpr NewtonMeters judged_step{10.0};  // as compare takes on a log
-constexpr Seconds run_in{2.0};             // chosen, not derived: the motor has turned several times
+constexpr double slow_turn_s = 0.5;  // chosen, not derived
 // Speeds of the log at which delays within the band are looked at, alike many rows apart.
 constexpr std::size_t speeds_judged = 9;
 
@@ -198,16 +192,6 @@ JudgedMethod judged(const Contender& contender, MethodFigures&& measured, const 
     JudgedMethod method;
     method.figures = std::move(measured);
     const DegPerSec median = median_moving_speed(trace);
-    const MethodFigures at_median =
-        measure_on_signals(contender, trace.sample_rate, median, std::nullopt, std::nullopt, nullptr);
-    method.figures.dc_delay_ms = at_median.dc_delay_ms;
-    method.figures.note = at_median.note;
-    try {
-        const Bench bench(contender, trace.sample_rate, median);
-        method.figures.overshoot_percent = bench.step(judged_step, run_in).overshoot_percent;
-    } catch (const UsageError&) {
-        // A filter that does not settle has no such figure; the others still count.
-    }
     if (const auto longest =
             longest_of(contender, trace.sample_rate, DegPerSec(speeds.front()), DegPerSec(speeds.back())))
         std::tie(method.delay, method.delay_at) = *longest;
@@ -240,7 +224,7 @@ std::string without_ripple_text(const std::vector<RippleEstimate>& orders) {
 bool better(const JudgedMethod& a, const JudgedMethod& b) {
     if (a.meets() != b.meets()) return a.meets();
     if (!a.meets() && a.excess != b.excess) return a.excess < b.excess;
-    return a.error_nm < b.error_nm;
+    return a.error_nm() < b.error_nm();
 }
 
 std::string name_of(const MethodFigures& figures) {
@@ -267,7 +251,7 @@ const JudgedMethod* Recommendation::runner_up() const {
     if (finding != RecommendationFinding::recommended || is_control(taken()->figures)) return nullptr;
     for (const JudgedMethod& method : methods) {
         if (!method.meets() || is_control(method.figures)) continue;
-        if (method.error_nm > larger_error * taken()->error_nm) break;
+        if (method.error_nm() > larger_error * taken()->error_nm()) break;
         if (name_of(method.figures) != name_of(taken()->figures) && !traded(*taken(), method).empty())
             return &method;
     }
@@ -319,7 +303,7 @@ Recommendation recommend(std::span<const Contender> contenders, const ComparedLo
     Recommendation found;
     found.limits = limits;
     found.ratio = lines.ratio;
-    found.orders = std::move(ripple);
+    found.orders = measured ? measured->ripple : std::move(ripple);
     if (std::none_of(found.orders.begin(), found.orders.end(), std::mem_fn(&RippleEstimate::present))) {
         const bool searched =
             std::all_of(found.orders.begin(), found.orders.end(), std::mem_fn(&RippleEstimate::searched));
@@ -327,30 +311,24 @@ Recommendation recommend(std::span<const Contender> contenders, const ComparedLo
         found.why = without_ripple_text(found.orders);
         return found;
     }
-    LogLevels levels = measured ? std::move(*measured) : measure_on_log(contenders, log, lines);
+    LogLevels levels = measured ? std::move(*measured)
+                                : measure_on_log(contenders, log, &lines, found.orders,
+                                                 {median_moving_speed(log.trace)}, band);
     found.windows = levels.windows;
     found.raw_ripple_rms_nm = levels.raw_ripple_rms_nm;
-    if (levels.windows < fewest_judged_windows) {
-        found.why = levels.windows == 0
-                        ? fmt::format("nothing can be judged on this log: {}", levels.why_none)
-                        : fmt::format(
-                              "the part of the log to judge by is too short: {} window{} of eight motor "
-                              "turns, and {} are needed",
-                              levels.windows, levels.windows == 1 ? "" : "s", fewest_judged_windows);
+    if (levels.windows == 0 || !levels.band) {
+        found.why =
+            fmt::format("nothing can be judged on this log: {}",
+                        levels.windows == 0 ? levels.why_none : "no line of its ripple is known in it");
         return found;
     }
+    found.band = levels.band;
     found.torque_rate_nm_s =
         torque_rate_nm_s(log.trace, GearRatio(lines.ratio.value() * lines.orders.front().value()));
-    const TorqueReference reference(log, lines, found.orders, band);
-    found.band = reference.band();
     const std::vector<double> speeds = speeds_of(log.trace);
     Progress::current().begin("judging", "methods", contenders.size());
     for (std::size_t i = 0; i < contenders.size(); ++i, Progress::current().add(1)) {
         JudgedMethod method = judged(contenders[i], std::move(levels.methods[i]), log.trace, speeds, found);
-        method.distortion = reference.distortion(contenders[i]);
-        method.error_nm = portable::hypot(
-            portable::hypot(method.figures.ripple_rms_nm.value_or(0.0), method.distortion.in_band_nm),
-            method.distortion.added_nm);
         hold_to(method, found);
         found.methods.push_back(std::move(method));
     }

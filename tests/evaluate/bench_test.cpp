@@ -20,7 +20,7 @@ namespace {
 double settle_ms(const Contender& c) {
     return 1e3 * Bench(c, 1000_Hz, 90_deg_s).step(NewtonMeters(10.0)).settle[0].value();
 }
-double ramp_ms(const Contender& c) { return 1e3 * Bench(c, 1000_Hz, 90_deg_s).ramp_delay(20.0).value(); }
+double ramp_ms(const Contender& c) { return 1e3 * Bench(c, 1000_Hz, 90_deg_s).ramp(20.0).delay.value(); }
 
 }  // namespace
 
@@ -79,6 +79,26 @@ TEST_CASE("settling and overshoot on the bench are those of the method's section
     }
 }
 
+TEST_CASE("a wide notch first goes the other way: an undershoot of a step, and beyond a ramp's beginning") {
+    const Contender wide = contender("fixed,centers=25Hz:50Hz,q=0.25");
+    const Bench bench(wide, 1000_Hz, 0_deg_s);
+    const Cascade cascade = wide.frozen(1000_Hz, 0_deg_s)->cascade;
+    std::vector<BiquadState> states(cascade.size());
+    double lowest = 0.0;
+    for (int k = 0; k < 1000; ++k) {
+        double y = 1.0;
+        for (std::size_t i = 0; i < cascade.size(); ++i) y = step(cascade[i], states[i], y);
+        lowest = std::min(lowest, y);
+    }
+    CHECK(lowest < -0.05);
+    CHECK(bench.step(NewtonMeters(10.0)).undershoot_percent == Approx(-100.0 * lowest).epsilon(1e-6));
+    CHECK(bench.step(NewtonMeters(-10.0)).undershoot_percent == Approx(-100.0 * lowest).epsilon(1e-6));
+    CHECK(bench.step(NewtonMeters(10.0)).overshoot_percent == 0.0);
+    CHECK(bench.ramp(20.0).overshoot_nm == Approx(bench.ramp(-20.0).overshoot_nm));
+    const Contender slow = contender("lowpass,cutoff=13rad/s,order=1");
+    CHECK(Bench(slow, 1000_Hz, 0_deg_s).ramp(20.0).overshoot_nm == 0.0);
+}
+
 TEST_CASE("a sine on the bench is attenuated as the response says, to 1e-4 dB") {
     for (const char* text : {"fixed,centers=25Hz:50Hz,q=0.25", "fixed,centers=40Hz,q=5,depth=30dB",
                              "lowpass,cutoff=13rad/s,order=1", "lowpass,cutoff=13Hz,order=4"}) {
@@ -109,7 +129,9 @@ TEST_CASE("the control costs nothing and takes nothing away") {
     const StepMeasurement step = bench.step(NewtonMeters(10.0));
     for (const Seconds settle : step.settle) CHECK(settle.value() == 0.0);
     CHECK(step.overshoot_percent == 0.0);
-    CHECK(bench.ramp_delay(20.0).value() == 0.0);
+    CHECK(step.undershoot_percent == 0.0);
+    CHECK(bench.ramp(20.0).overshoot_nm == 0.0);
+    CHECK(bench.ramp(20.0).delay.value() == 0.0);
     CHECK(bench.attenuation_db(25_Hz).value() == Approx(0.0).margin(1e-9));
 }
 
@@ -120,12 +142,12 @@ TEST_CASE("switching on the bench is the band of that speed, in either direction
         const Band& band = table->bands()[static_cast<std::size_t>(table->find(DegPerSec(v)))];
         const Bench bench(c, 1000_Hz, DegPerSec(v));
         CHECK(bench.step(NewtonMeters(10.0)).settle[0] == band.settle);
-        CHECK(bench.ramp_delay(20.0).value() == Approx(band.dc_delay.value()).margin(1e-7));
+        CHECK(bench.ramp(20.0).delay.value() == Approx(band.dc_delay.value()).margin(1e-7));
     }
 }
 
 TEST_CASE("a step or ramp of nothing is refused") {
     const Contender c = contender("none");
     CHECK_THROWS_WITH(Bench(c, 1000_Hz, 0_deg_s).step(NewtonMeters(0.0)), Catch::Contains("no step"));
-    CHECK_THROWS_WITH(Bench(c, 1000_Hz, 0_deg_s).ramp_delay(0.0), Catch::Contains("no ramp"));
+    CHECK_THROWS_WITH(Bench(c, 1000_Hz, 0_deg_s).ramp(0.0), Catch::Contains("no ramp"));
 }

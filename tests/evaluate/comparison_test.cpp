@@ -35,13 +35,19 @@ Trace steady_log(double speed_deg_s, double noise_nm) {
     return log;
 }
 
+LogLevels measured(const std::vector<Contender>& contenders, const Trace& log) {
+    const TraceView view = log.view();
+    return measure_on_log(contenders, {view}, &paper_lines,
+                          estimate_ripple({&view, 1}, paper_lines.ratio, paper_lines.orders), {90_deg_s});
+}
+
 }  // namespace
 
 TEST_CASE("on a log, attenuation per order is what the method's response says at that speed") {
     const Trace log = steady_log(80.0, 0.0);
     const std::vector<Contender> contenders = {contender("none"), contender("fixed,centers=25Hz:50Hz,q=0.25"),
                                                contender("lowpass,cutoff=13rad/s,order=1")};
-    const LogLevels levels = measure_on_log(contenders, {log.view()}, paper_lines);
+    const LogLevels levels = measured(contenders, log);
     REQUIRE(levels.windows > 0);
     REQUIRE(levels.methods.size() == 3);
     for (std::size_t i = 0; i < contenders.size(); ++i) {
@@ -72,9 +78,9 @@ TEST_CASE("a gap restarts every method, so that nothing rings across it") {
     // The torque has another offset after the gap; a filter that ran on would see a step of 50 Nm.
     for (std::size_t k = 10000; k < log.torque_nm.size(); ++k) log.torque_nm[k] += 50.0;
     const std::vector<Contender> contenders = {contender("lowpass,cutoff=13rad/s,order=1")};
-    const LogLevels run_on = measure_on_log(contenders, {log.view()}, paper_lines);
+    const LogLevels run_on = measured(contenders, log);
     log.run_starts = {10000};
-    const LogLevels split = measure_on_log(contenders, {log.view()}, paper_lines);
+    const LogLevels split = measured(contenders, log);
     CHECK(split.methods[0].residual_rms_nm.value() < 0.1);
     CHECK(run_on.methods[0].residual_rms_nm.value() > 3.0 * split.methods[0].residual_rms_nm.value());
 }

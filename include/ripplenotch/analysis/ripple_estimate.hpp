@@ -55,12 +55,13 @@ struct RippleEstimate {
 
 /// The ripple of a log, row by row.
 struct RippleCourse {
-    std::vector<double> nm;   ///< where it is not known a straight line, so that nothing jumps
-    std::vector<bool> known;  ///< whether a segment of estimate_ripple() holds the row
+    std::vector<double> nm;
+    std::vector<bool> known;  ///< false in runs without a segment of estimate_ripple() for every order
 };
 
 /// The sum of the orders as estimate_ripple() fits them in its overlapping windows, each row by the weight
-/// that it has there.
+/// that it has there. Amplitude and phase between windows, and before the first and after the last, are those
+/// of the nearest ones, interpolated: the ripple belongs to the motor's angle.
 [[nodiscard]] RippleCourse ripple_course(const TraceView& log, GearRatio ratio,
                                          std::span<const Order> orders);
 

@@ -52,14 +52,25 @@ struct Contender {
 // The test bench: a running filter at one constant joint speed, fed with generated torque signals. It reports
 // the output of the filter, sample by sample; no formula replaces it.
 
+/// The paper's step and ramp; a linear filter's figures do not depend on them.
+inline constexpr double usual_step_nm = 10.0, usual_ramp_nm_s = 20.0;
 /// Per cent of a step within which it counts as settled.
 inline constexpr std::array<double, 4> settle_bands_percent = {0.5, 1.0, 2.0, 5.0};
 
 struct StepMeasurement {
     std::array<Seconds, 4>
         settle;  ///< per entry of settle_bands_percent: from the step until it stays within
-    double overshoot_percent = 0.0;  ///< above the step, in its direction
+    double overshoot_percent = 0.0;   ///< above the step, in its direction ...
+    double undershoot_percent = 0.0;  ///< ... and below where it began, the other way
 };
+
+struct RampMeasurement {
+    Seconds delay;  ///< how far the output lags behind once the lag no longer changes, to 1e-5 ms
+    /// How far the output leaves the range that the torque has risen through, on either side.
+    double overshoot_nm = 0.0;
+};
+
+inline constexpr double run_in_seconds = 2.0;  // chosen, not derived: the motor has turned several times
 
 /// Attenuations above this cannot be distinguished from a complete null in double precision and are reported
 /// as this.
@@ -73,12 +84,12 @@ class Bench {
         : contender_(contender), sample_rate_(sample_rate), speed_(speed) {}
     Bench(const Contender&& gone, Hertz sample_rate, DegPerSec speed) = delete;  // it is borrowed
 
-    /// The filter is in steady state at torque 0; the torque is `height` Nm (not 0) from t = 0 on. One that
-    /// has to see the joint move before it is in steady state is given that time at torque 0.
-    [[nodiscard]] StepMeasurement step(NewtonMeters height, Seconds run_in = Seconds(0.0)) const;
-    /// The filter is in steady state at torque 0; the torque rises by `slope_nm_s` (not 0) from t = 0 on: how
-    /// far the output lags behind once the lag no longer changes, to 1e-5 ms.
-    [[nodiscard]] Seconds ramp_delay(double slope_nm_s) const;
+    // The filter has run for run_in_seconds at torque 0: one that learns has learnt that there is no ripple.
+
+    /// The torque is `height` Nm (not 0) from t = 0 on.
+    [[nodiscard]] StepMeasurement step(NewtonMeters height) const;
+    /// The torque rises by `slope_nm_s` (not 0) from t = 0 on.
+    [[nodiscard]] RampMeasurement ramp(double slope_nm_s) const;
     /// Input amplitude over output amplitude of a sine at `at`, once the output has settled; between -inf and
     /// most_attenuation_db. Empty unless 0 < at < sample_rate / 2.
     [[nodiscard]] std::optional<double> attenuation_db(Hertz at) const;

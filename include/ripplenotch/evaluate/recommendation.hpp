@@ -13,41 +13,6 @@
 
 namespace ripplenotch {
 
-// The band of the torque, and what a method does to a torque without ripple.
-
-/// The frequencies in which a log's torque moves.
-struct TorqueBand {
-    Hertz from, to;
-    bool stated = false;   ///< by the user
-    bool at_rest = false;  ///< the torque does not move above its noise: the band is what the log resolves
-};
-
-/// From 0 Hz to the frequency below which 99 % of the variance above the noise lies, of a torque without
-/// ripple: mean and straight line removed, the noise taken as white, at the median density above a quarter of
-/// the sample rate. Never less than four periods in the log. Throws DataError for fewer than 64 samples.
-[[nodiscard]] TorqueBand torque_band(const TraceView& torque);
-
-/// The torque of a log without its ripple: what a method should pass.
-class TorqueReference {
-  public:
-    /// Borrows the log. `ripple`: the orders that are present are taken out, as ripple_course() fits them.
-    TorqueReference(const ComparedLog& log, const GearAccount& lines, std::span<const RippleEstimate> ripple,
-                    std::optional<TorqueBand> stated);
-
-    [[nodiscard]] const TorqueBand& band() const { return band_; }
-    /// Of a method that runs on it, over the rows at which the ripple is known; both band-limited without
-    /// phase. A method with a map runs without the ripple known from it.
-    [[nodiscard]] Distortion distortion(const Contender& contender) const;
-
-  private:
-    [[nodiscard]] double power(std::span<const double> values) const;
-    [[nodiscard]] std::vector<double> powers_beside(const std::vector<double>& torque_nm) const;
-    ComparedLog log_;
-    std::vector<double> torque_nm_, beside_nm2_;
-    std::vector<bool> known_;
-    TorqueBand band_;
-};
-
 /// Of the filter that is active at a constant speed; empty for methods that have none.
 [[nodiscard]] std::optional<BandResponse> band_response(const Contender& contender, Hertz sample_rate,
                                                         DegPerSec speed, const TorqueBand& band);
@@ -92,17 +57,14 @@ struct Recommendation {
 /// Of the strongest order's amplitude: less is faint, and not asked to be attenuated unless it is named.
 inline constexpr double faint_share = 0.1;
 
-/// Fewer windows of eight motor turns are insufficient for a recommendation. They overlap by half: four
-/// lengths.
-inline constexpr std::size_t fewest_judged_windows = 7;
-
 /// Rms rate of the mean torque from one motor turn to the next; of half a second where the motor is slower.
 [[nodiscard]] double torque_rate_nm_s(const TraceView& trace, GearRatio ratio);
 
 /// Runs all over the log and sorts them by the error of their output. The same methods under looser limits
 /// give the same or a better one. The control is among them or not, as given. `ripple`: the result of
 /// estimate_ripple() for the whole log, of which `log` is the part used for the recommendation, one for each
-/// of `lines`. `band`: the torque's, where it is stated. `measured`: what measure_on_log() gave, if it ran.
+/// of `lines`. `band`: the torque's, where it is stated. `measured`: what measure_on_log() gave, in place of
+/// both.
 [[nodiscard]] Recommendation recommend(std::span<const Contender> contenders, const ComparedLog& log,
                                        const GearAccount& lines, const RecommendationLimits& limits,
                                        std::vector<RippleEstimate> ripple,
@@ -113,9 +75,9 @@ inline constexpr std::size_t fewest_judged_windows = 7;
 /// where a second method trades something.
 [[nodiscard]] std::string recommendation_verdict(const Recommendation& found);
 
-/// recommend() among the methods of a comparison, which have been measured on all rows of its log: fills in
-/// the best one and recommendation_verdict(). `contenders` are as its methods.
+/// recommend() among the methods of a comparison, `measured` on all rows of its log: fills in the best one
+/// and recommendation_verdict(). `contenders` are as its methods.
 void judge(Comparison& comparison, std::span<const Contender> contenders, const ComparedLog& log,
-           const RecommendationLimits& limits);
+           const RecommendationLimits& limits, LogLevels measured);
 
 }  // namespace ripplenotch

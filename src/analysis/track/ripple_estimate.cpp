@@ -7,11 +7,14 @@
 #include <cmath>
 #include <complex>
 #include <limits>
+#include <numbers>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "analysis/shared_limits.hpp"
 #include "ripplenotch/analysis/line_test.hpp"
+#include "ripplenotch/analysis/sweeps.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
@@ -178,33 +181,51 @@ std::vector<RippleEstimate> estimate_ripple(std::span<const TraceView> logs, Gea
     return found;
 }
 
+namespace {
+
+// Where no window lies, amplitude and phase are between those of the rows before and after; false where the
+// run has no window at all.
+bool fill_between(RippleSegments::Course& course, std::size_t first, std::size_t end) {
+    std::optional<std::size_t> before;
+    for (std::size_t at = first; at <= end; ++at) {
+        const bool held = at < end && course.weight[at] > 0.0;
+        if (held) course.amplitude[at] /= course.weight[at];
+        if (!held && at < end) continue;
+        for (std::size_t k = before ? *before + 1 : first; k < at && (before || held); ++k) {
+            const auto from = course.amplitude[before.value_or(at)],
+                       to = course.amplitude[held ? at : *before];
+            const double share =
+                before ? static_cast<double>(k - *before) / static_cast<double>(at - *before) : 0.0;
+            course.amplitude[k] = from + share * (to - from);
+        }
+        if (held) before = at;
+    }
+    return before.has_value();
+}
+
+}  // namespace
+
 RippleCourse ripple_course(const TraceView& log, GearRatio ratio, std::span<const Order> orders) {
     RippleSegments all(ratio, orders, {.courses = true});
     all.add(log);
-    RippleCourse course{std::vector<double>(log.size()), std::vector<bool>(log.size())};
-    for (const RippleSegments::Course& one : all.courses()) {
-        for (std::size_t k = 0; k < log.size(); ++k) {
-            if (!(one.weight[k] > 0.0)) continue;
-            course.nm[k] += one.nm[k] / one.weight[k];
-            course.known[k] = true;
+    const OutputAngle angle = output_angle(log);
+    RippleCourse found{std::vector<double>(log.size()), std::vector<bool>(log.size(), true)};
+    std::size_t i = 0;
+    for (RippleSegments::Course course : all.courses()) {
+        const double cycles_a_turn = all.order(i++) * ratio.value();
+        for (std::size_t first = 0, end = 0; first < log.size(); first = end) {
+            for (end = first + 1; end < log.size() && !log.starts_run(end);) ++end;
+            const bool known = fill_between(course, first, end);
+            for (std::size_t k = first; k < end; ++k) {
+                const double cycles = cycles_a_turn * angle.turns[k];
+                const auto on_circle =
+                    portable::phasor(2.0 * std::numbers::pi * (cycles - std::floor(cycles)));
+                found.nm[k] += (course.amplitude[k] * on_circle).real();
+                found.known[k] = found.known[k] && known;
+            }
         }
     }
-    for (std::size_t from = 0; from < log.size();) {
-        std::size_t to = from;
-        while (to < log.size() && !course.known[to] && (to == from || !log.starts_run(to))) ++to;
-        if (to == from) {
-            ++from;
-            continue;
-        }
-        const bool before = from > 0 && !log.starts_run(from), after = to < log.size() && !log.starts_run(to);
-        const double first = before ? course.nm[from - 1] : after ? course.nm[to] : 0.0;
-        const double last = after ? course.nm[to] : first;
-        const double steps = static_cast<double>(to - from + 1);
-        for (std::size_t k = from; k < to; ++k)
-            course.nm[k] = first + (last - first) * static_cast<double>(k - from + 1) / steps;
-        from = to;
-    }
-    return course;
+    return found;
 }
 
 std::string ripple_text(std::span<const RippleEstimate> estimates) {

@@ -110,7 +110,8 @@ std::size_t RippleSegments::add(const TraceView& rows, std::span<const std::span
     Part part{rows, {rows.torque_nm}, std::move(angle.turns), smoothed_speed(rows), angle.absolute};
     part.torques.insert(part.torques.end(), further.begin(), further.end());
     if (options_.courses)
-        courses_.assign(orders_.size(), {std::vector<double>(rows.size()), std::vector<double>(rows.size())});
+        courses_.assign(orders_.size(),
+                        {std::vector<std::complex<double>>(rows.size()), std::vector<double>(rows.size())});
     double fastest = 0.0;
     for (const double speed : part.speed_deg_s) fastest = std::max(fastest, std::abs(speed));
     fastest_deg_s_ = std::max(fastest_deg_s_, fastest);
@@ -190,9 +191,8 @@ void RippleSegments::measure(const Part& part, const SampleRun& window, std::siz
                 torques.front(), {orders_[i] + (p % 2 == 0 ? -apart : apart), turns}, nearest_probe);
         }
         for (std::size_t k = 0; options_.courses && k < window.size(); ++k) {
-            const double cycles = orders_[i] * turns[k], weight = root_weight[k] * root_weight[k];
-            const auto on_circle = portable::phasor(2.0 * std::numbers::pi * (cycles - std::floor(cycles)));
-            courses_[i].nm[window.first + k] += weight * (found.value.front() * on_circle).real();
+            const double weight = root_weight[k] * root_weight[k];
+            courses_[i].amplitude[window.first + k] += weight * found.value.front();
             courses_[i].weight[window.first + k] += weight;
         }
         gathered_[i].segments.push_back(std::move(found));

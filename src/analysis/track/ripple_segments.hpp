@@ -64,9 +64,10 @@ class RippleSegments {
     /// Throws UsageError for a ratio or an order that is not above 0.
     RippleSegments(GearRatio ratio, std::span<const Order> orders, Options options);
 
-    /// The ripple of one order row by row: the fits of the windows, weighted as they weigh their rows.
+    /// The amplitude of one order row by row: the fits of the windows, weighted as they weigh their rows.
     struct Course {
-        std::vector<double> nm, weight;  ///< sum of weighted ripple, and of weights: 0 where no window lies
+        std::vector<std::complex<double>> amplitude;  ///< sum of weighted SegmentAmplitude::value
+        std::vector<double> weight;                   ///< sum of weights: 0 where no window lies
     };
 
     /// Measures a log, or a part of one whose first rows `seen_before` were in the part before, with its own
@@ -81,6 +82,7 @@ class RippleSegments {
     /// Per order, rising, of the latest add(); every window counts.
     [[nodiscard]] const std::vector<Course>& courses() const { return courses_; }
     [[nodiscard]] std::size_t orders() const { return orders_.size(); }
+    [[nodiscard]] double order(std::size_t i) const { return orders_[i]; }  ///< rising
     [[nodiscard]] bool has_gains() const { return static_cast<bool>(options_.gains); }
     /// Rows in segments that hold the lowest order.
     [[nodiscard]] std::size_t rows() const { return rows_; }

@@ -176,6 +176,8 @@ std::vector<ViewColumn> cost_columns(const Comparison& comparison) {
     }
     columns.push_back(
         {"overshoot", "%", [](const MethodFigures& f) { return fixed_or_empty(f.overshoot_percent, 1); }});
+    columns.push_back(
+        {"of a ramp", "Nm", [](const MethodFigures& f) { return fixed_or_empty(f.ramp_overshoot_nm, 2); }});
     columns.push_back({"ramp delay", "ms",
                        [](const MethodFigures& f) { return fixed_or_empty(f.ramp_delay_ms, 1); }, true});
     columns.push_back(
@@ -198,14 +200,20 @@ std::vector<ViewColumn> result_columns(const Comparison& comparison) {
     }
     columns.push_back(
         {"ripple", "Nm rms", [](const MethodFigures& f) { return fixed_or_empty(f.ripple_rms_nm, 4); }});
-    columns.push_back({"torque moved", "Nm rms",
-                       [](const MethodFigures& f) { return fixed_or_empty(f.distortion_rms_nm, 4); }});
+    columns.push_back(
+        {"torque moved", "Nm rms", [](const MethodFigures& f) { return fixed_or_empty(f.moved_nm, 4); }});
+    columns.push_back(
+        {"added", "Nm rms", [](const MethodFigures& f) { return fixed_or_empty(f.added_nm, 4); }});
+    columns.push_back(
+        {"error", "Nm rms", [](const MethodFigures& f) { return fixed_or_empty(f.error_nm, 4); }});
+    columns.push_back(
+        {"start", "of raw", [](const MethodFigures& f) { return fixed_or_empty(f.start_ratio, 1); }});
     columns.push_back({"residual", "Nm rms",
                        [](const MethodFigures& f) { return fixed_or_empty(f.residual_rms_nm, 4); }, true});
     columns.push_back(
         {"", "Nm p-p", [](const MethodFigures& f) { return fixed_or_empty(f.residual_peak_to_peak_nm, 3); }});
     columns.push_back(
-        {"error", "Nm rms", [](const MethodFigures& f) { return fixed_or_empty(f.error_rms_nm, 4); }});
+        {"true error", "Nm rms", [](const MethodFigures& f) { return fixed_or_empty(f.error_rms_nm, 4); }});
     columns.push_back({"switches", "",
                        [](const MethodFigures& f) { return f.switches ? std::to_string(*f.switches) : ""; },
                        true});
@@ -495,9 +503,6 @@ std::vector<std::string> violations(const Comparison& comparison, const CostRequ
     return found;
 }
 
-constexpr double default_step_nm = 10.0,
-                 default_ramp_nm_s = 20.0;  // the paper's; on a log nobody need say them
-
 struct CompareRequest {
     CommonOptions common;
     PlotRequest plot;
@@ -540,37 +545,6 @@ Comparison compare_on_signals(const CompareRequest& request, const Field& field)
         Progress::current().add(1);
     }
     return comparison;
-}
-
-// Delays at the log's speed, and what the method leaves of the log's ripple, in one row.
-void add_methods(Comparison& comparison, const std::vector<Contender>& contenders, const ComparedLog& log,
-                 const CommonOptions& common) {
-    std::optional<LogLevels> levels;
-    Progress::current().begin("measuring on the log", "", 0);
-    if (comparison.lines) levels = measure_on_log(contenders, log, *comparison.lines);
-    Progress::current().begin("measuring", "methods", contenders.size());
-    for (std::size_t i = 0; i < contenders.size(); ++i, Progress::current().add(1)) {
-        MethodFigures figures = measure_on_signals(contenders[i], comparison.sample_rate, comparison.speed,
-                                                   comparison.step_nm, comparison.ramp_nm_s, nullptr);
-        if (levels) {
-            MethodFigures& on_log = levels->methods[i];
-            on_log.settle_ms = figures.settle_ms;
-            on_log.overshoot_percent = figures.overshoot_percent;
-            on_log.ramp_delay_ms = figures.ramp_delay_ms;
-            on_log.dc_delay_ms = figures.dc_delay_ms;
-            on_log.note = figures.note;
-            figures = std::move(on_log);
-        }
-        comparison.methods.push_back(std::move(figures));
-    }
-    if (!levels) return;
-    if (levels->windows == 0 && comparison.windows == 0) {
-        warn(common, fmt::format("the ripple cannot be measured on this log: {}", levels->why_none));
-    }
-    comparison.windows = levels->windows;
-    comparison.raw_ripple_rms_nm = levels->raw_ripple_rms_nm;
-    comparison.why_none = levels->why_none;
-    comparison.measured_share = levels->measured_share;
 }
 
 // The torque that a perfect sensor would have given, row by row: another log of the same motion.
@@ -626,17 +600,28 @@ Comparison compare_on_log(const CompareRequest& request, Field& field, Provenanc
             comparison.fastest == DegPerSec(0.0) ? speed : std::min(comparison.slowest, speed);
         comparison.fastest = std::max(comparison.fastest, speed);
     }
-    comparison.step_nm = request.step_nm.value_or(default_step_nm);
-    comparison.ramp_nm_s = request.ramp_nm_s.value_or(default_ramp_nm_s);
+    comparison.step_nm = request.step_nm.value_or(usual_step_nm);
+    comparison.ramp_nm_s = request.ramp_nm_s.value_or(usual_ramp_nm_s);
     comparison.lines = field.gear;
     if (!comparison.lines)
         warn(request.common,
              "no line is known, so no ripple was measured; give --gear-ratio, --orders 200/turn (lines per "
              "turn of "
              "the joint) or --joint-file");
-    add_methods(comparison, field.contenders, compared, request.common);
+    std::vector<RippleEstimate> ripple;
+    if (field.gear) ripple = estimate_ripple({&compared.trace, 1}, field.gear->ratio, field.gear->orders);
+    LogLevels levels =
+        measure_on_log(field.contenders, compared, field.gear ? &*field.gear : nullptr, std::move(ripple),
+                       {comparison.speed, *comparison.step_nm, *comparison.ramp_nm_s});
+    if (field.gear && levels.windows == 0)
+        warn(request.common, fmt::format("the ripple cannot be measured on this log: {}", levels.why_none));
+    comparison.methods = levels.methods;
+    comparison.windows = levels.windows;
+    comparison.raw_ripple_rms_nm = levels.raw_ripple_rms_nm;
+    comparison.measured_share = levels.measured_share;
     const Gates& gates = request.costs.gates;
-    judge(comparison, field.contenders, compared, {gates.max_delay, gates.min_attenuation_db, true});
+    judge(comparison, field.contenders, compared, {gates.max_delay, gates.min_attenuation_db, true},
+          std::move(levels));
     return comparison;
 }
 

@@ -77,8 +77,9 @@ std::string methods_text(const Recommendation& found, GearRatio ratio) {
                                      : "-");
         const auto& overshoot = method.figures.overshoot_percent;
         rows.back().push_back(overshoot ? rounded(*overshoot, 0) : "-");
-        for (const double nm : {method.figures.ripple_rms_nm.value_or(0.0), method.distortion.in_band_nm,
-                                method.distortion.added_nm, method.error_nm})
+        for (const double nm :
+             {method.figures.ripple_rms_nm.value_or(0.0), method.figures.moved_nm.value_or(0.0),
+              method.figures.added_nm.value_or(0.0), method.figures.error_nm.value_or(0.0)})
             rows.back().push_back(fmt::format("{:.4f}", nm));
         rows.back().push_back(method.meets() ? "" : "no");
     }
@@ -173,7 +174,8 @@ std::optional<TorqueBand> stated_band(const std::optional<std::string>& text) {
     const auto hertz = [](const std::string& part) {
         return Hertz(parse_quantity(part, Dimension::frequency, "--torque-band"));
     };
-    const TorqueBand band{hertz(text->substr(0, colon)), hertz(text->substr(colon + 1)), true, false};
+    const TorqueBand band{hertz(text->substr(0, colon)), hertz(text->substr(colon + 1)), true, false,
+                          hertz(text->substr(colon + 1))};
     if (!(band.from.value() >= 0.0 && band.from < band.to))
         raise<UsageError>("--torque-band: '{}' does not rise from 0 Hz or more", *text);
     return band;
@@ -357,6 +359,7 @@ class Judge {
   private:
     [[nodiscard]] ComparedLog compared(const Log& on) const {
         ComparedLog log{on.trace.view()};
+        log.whole = parts_.whole.trace.view();
         log.trace.sample_rate = parts_.whole.recording.clock.nominal_rate;
         return log;
     }

@@ -95,10 +95,11 @@ void describe(JsonWriter& json, const OrderAttenuation& entry) {
 void describe(JsonWriter& json, const JudgedMethod& method) {
     json("method", method.figures.method);
     json("meets", method.meets());
-    json("error_nm", method.error_nm);
+    json("error_nm", method.figures.error_nm);
     json("ripple_rms_nm", method.figures.ripple_rms_nm);
-    json("distortion_nm", method.distortion.in_band_nm);
-    json("added_nm", method.distortion.added_nm);
+    json("distortion_nm", method.figures.moved_nm);
+    json("added_nm", method.figures.added_nm);
+    json("start_ratio", method.figures.start_ratio);
     json("longest_delay_ms", method.delay, in_ms);
     json("multiplications", method.multiplications);
     json("longest_delay_at_deg_s", method.delay_at);
@@ -110,6 +111,8 @@ void describe(JsonWriter& json, const JudgedMethod& method) {
         within("largest_gain", response.largest_gain);
     });
     json("overshoot_percent", method.figures.overshoot_percent);
+    json("undershoot_percent", method.figures.undershoot_percent);
+    json("ramp_overshoot_nm", method.figures.ramp_overshoot_nm);
     json.each("attenuation_db", method.figures.attenuation,
               [](JsonWriter& one, const OrderAttenuation& entry) {
                   one("order", entry.order);
@@ -156,6 +159,8 @@ void describe(JsonWriter& json, const MethodFigures& figures) {
             settle(shortest(settle_bands_percent[i]), ms[i]);
     });
     json("overshoot_percent", figures.overshoot_percent);
+    json("undershoot_percent", figures.undershoot_percent);
+    json("ramp_overshoot_nm", figures.ramp_overshoot_nm);
     json("ramp_delay_ms", figures.ramp_delay_ms);
     json("dc_delay_ms", figures.dc_delay_ms);
     json("phase_lag_deg", figures.phase_lag_deg);
@@ -164,7 +169,10 @@ void describe(JsonWriter& json, const MethodFigures& figures) {
     json("ripple_rms_nm", figures.ripple_rms_nm);
     json("residual_rms_nm", figures.residual_rms_nm);
     json("residual_peak_to_peak_nm", figures.residual_peak_to_peak_nm);
-    json("distortion_rms_nm", figures.distortion_rms_nm);
+    json("error_nm", figures.error_nm);
+    json("distortion_nm", figures.moved_nm);
+    json("added_nm", figures.added_nm);
+    json("start_ratio", figures.start_ratio);
     json("switches", figures.switches);
     json("largest_jump_nm", figures.largest_jump_nm);
     json("error_rms_nm", figures.error_rms_nm);
