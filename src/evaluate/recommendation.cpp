@@ -166,6 +166,12 @@ void hold_to(JudgedMethod& method, const Recommendation& found) {
         method.shortfalls.push_back(fmt::format("{:.1f} dB of {} (asked: {:g} dB)", db, entry.name(), limit));
         method.excess += (limit - db) / std::max(limit, 1.0);
     }
+    const double start = method.figures.start_ratio.value_or(1.0);
+    if (limits.max_start_ratio && start > *limits.max_start_ratio) {
+        method.shortfalls.push_back(fmt::format("{:.1f} times the raw error at its start (asked: {:g})",
+                                                start, *limits.max_start_ratio));
+        method.excess += start - *limits.max_start_ratio;
+    }
     if (!limits.max_delay || (method.delay && *method.delay <= *limits.max_delay)) return;
     const double limit_ms = 1e3 * limits.max_delay->value();
     if (!method.delay) {

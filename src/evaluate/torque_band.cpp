@@ -127,17 +127,15 @@ TorqueReference::TorqueReference(const ComparedLog& log, const GearAccount& line
     std::vector<Order> present;
     for (const RippleEstimate& one : ripple)
         if (one.present()) present.emplace_back(one.order);
-    const TraceView& whole = log.whole ? *log.whole : log.trace;
-    const std::size_t before = whole.size() - log.trace.size();
-    const RippleCourse course = ripple_course(whole, lines.ratio, present);
-    for (std::size_t k = 0; k < torque_nm_.size(); ++k) torque_nm_[k] -= course.nm[before + k];
+    const RippleCourse course = ripple_course(log.trace, lines.ratio, present);
+    for (std::size_t k = 0; k < torque_nm_.size(); ++k) torque_nm_[k] -= course.nm[k];
     log_.trace.torque_nm = torque_nm_;
     log_.watch = {};
     band_ = stated ? *stated : torque_band(log_.trace);
     smooth_nm_ = torque_nm_;
     low_pass(smooth_nm_, log_.trace, band_.noise_from);
     for (std::size_t k = 0; k < smooth_nm_.size(); ++k)
-        if (!course.known[before + k]) smooth_nm_[k] = not_a_number;
+        if (!course.known[k]) smooth_nm_[k] = not_a_number;
     if (std::all_of(smooth_nm_.begin(), smooth_nm_.end(), [](double nm) { return std::isnan(nm); }))
         smooth_nm_.clear();
     else

@@ -92,6 +92,7 @@ std::vector<std::pair<std::string, std::string>> method_cells(const Json& method
     if (const auto settle = method.find("settle_ms"); settle != method.end() && settle->is_object())
         cells.emplace_back("settles to 0.5 %, ms", cell(*settle, "0.5"));
     cells.emplace_back("overshoot, %", cell(method, "overshoot_percent"));
+    cells.emplace_back("undershoot, %", cell(method, "undershoot_percent"));
     cells.emplace_back("ramp delay, ms", cell(method, "ramp_delay_ms"));
     cells.emplace_back("delay at 0 Hz, ms", cell(method, "dc_delay_ms"));
     cells.emplace_back("lag at the crossover, deg", cell(method, "phase_lag_deg"));
@@ -103,8 +104,9 @@ std::vector<std::pair<std::string, std::string>> method_cells(const Json& method
     cells.emplace_back("residual, Nm rms", cell(method, "residual_rms_nm"));
     cells.emplace_back("switches", cell(method, "switches"));
     cells.emplace_back("largest jump, Nm", cell(method, "largest_jump_nm"));
-    cells.emplace_back("error, Nm rms",
-                       cell(method, method.contains("error_nm") ? "error_nm" : "error_rms_nm"));
+    cells.emplace_back("start, of raw", cell(method, "start_ratio"));
+    cells.emplace_back("error, Nm rms", cell(method, "error_nm"));
+    cells.emplace_back("true error, Nm rms", cell(method, "error_rms_nm"));
     return cells;
 }
 

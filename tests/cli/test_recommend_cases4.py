@@ -52,7 +52,8 @@ class CasesOfUsers(Case):
         self.assertEqual(done.returncode, 2)
         done = run("recommend", PANDA, "--target", "ros-filters", "--json", "-q", "--orders", "1,2", "--gear-ratio", "120.05")
         self.assertIn(done.returncode, (0, 1))
-        self.assertNotIn("Leave the torque", told(done)["verdict"])
+        # Against the published torque within 15 Hz the low-pass errs by 0.291 Nm rms, the torque as it is by 0.243.
+        self.assertRegex(told(done)["verdict"], r"^Leave the torque as it is: each filter tried .* The best, lowpass,")
 
     @unittest.skipUnless(PANDA.exists(), "SKIPPED: the folder of real logs is not here")
     def test_a_joint_without_a_ratio_has_its_filter_and_its_commands_have_none(self):

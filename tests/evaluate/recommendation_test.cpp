@@ -191,7 +191,7 @@ TEST_CASE("looser limits give the same or a better answer, and every answer is w
     for (const double db : {0.0, 10.0, 20.0, 30.0, 90.0}) {
         double before = 1e9;
         for (const double ms : {0.0, 2.0, 6.0, 20.0, 80.0}) {
-            RecommendationLimits limits{Seconds(1e-3 * ms), db};
+            RecommendationLimits limits{Seconds(1e-3 * ms), db, std::nullopt};
             const Recommendation found = recommended(trace, limits);
             const JudgedMethod& first = *found.taken();
             if (!first.meets()) {

@@ -127,8 +127,6 @@ struct Comparison {
 /// A log in memory.
 struct ComparedLog {
     TraceView trace;  ///< its sample_rate is the rate that the filters are designed for
-    std::optional<TraceView> whole =
-        std::nullopt;  ///< where it is the end of a longer log: that, for the ripple
     std::span<const double> truth_nm =
         {};  ///< the torque without ripple and noise, row by row, where it is known
     /// Receives the output of each method, counted from 0, for each block of the log, in the order of the

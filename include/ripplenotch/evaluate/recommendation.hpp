@@ -20,8 +20,9 @@ namespace ripplenotch {
 struct RecommendationLimits {
     std::optional<Seconds> max_delay;          ///< at 0 Hz and within the torque's band, at speeds of the log
     std::optional<double> min_attenuation_db;  ///< attenuation of every order that Recommendation::asks_for
+    std::optional<double> max_start_ratio;     ///< MethodFigures::start_ratio
     bool every_order = false;                  ///< the orders are named: the faint ones are asked for, too
-    [[nodiscard]] bool any() const { return max_delay || min_attenuation_db; }
+    [[nodiscard]] bool any() const { return max_delay || min_attenuation_db || max_start_ratio; }
 };
 
 enum class RecommendationFinding {

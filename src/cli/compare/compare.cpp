@@ -620,8 +620,8 @@ Comparison compare_on_log(const CompareRequest& request, Field& field, Provenanc
     comparison.raw_ripple_rms_nm = levels.raw_ripple_rms_nm;
     comparison.measured_share = levels.measured_share;
     const Gates& gates = request.costs.gates;
-    judge(comparison, field.contenders, compared, {gates.max_delay, gates.min_attenuation_db, true},
-          std::move(levels));
+    judge(comparison, field.contenders, compared,
+          {gates.max_delay, gates.min_attenuation_db, std::nullopt, true}, std::move(levels));
     return comparison;
 }
 

@@ -64,7 +64,7 @@ std::string methods_text(const Recommendation& found, GearRatio ratio) {
     for (const RippleEstimate& one : found.orders)
         rows.front().push_back(order_in_words(Order(one.order), ratio) + ", dB");
     for (const char* const title :
-         {"delay, ms", "gain", "step, %", "ripple, Nm", "distorts, Nm", "adds, Nm", "error, Nm", ""})
+         {"delay, ms", "gain", "step, %", "start", "ripple, Nm", "distorts, Nm", "adds, Nm", "error, Nm", ""})
         rows.front().emplace_back(title);
     for (const JudgedMethod& method : found.methods) {
         const std::string& name = method.figures.method;
@@ -77,6 +77,8 @@ std::string methods_text(const Recommendation& found, GearRatio ratio) {
                                      : "-");
         const auto& overshoot = method.figures.overshoot_percent;
         rows.back().push_back(overshoot ? rounded(*overshoot, 0) : "-");
+        const auto& start = method.figures.start_ratio;
+        rows.back().push_back(start ? rounded(*start, 1) : "-");
         for (const double nm :
              {method.figures.ripple_rms_nm.value_or(0.0), method.figures.moved_nm.value_or(0.0),
               method.figures.added_nm.value_or(0.0), method.figures.error_nm.value_or(0.0)})
@@ -145,6 +147,7 @@ struct RecommendRequest {
     GearOptions gear;
     Gates limits;
     std::optional<std::string> torque_band;
+    std::optional<double> max_start_ratio;
     double train_percent = 60.0;
     bool require_conclusive = false;
 };
@@ -359,7 +362,6 @@ class Judge {
   private:
     [[nodiscard]] ComparedLog compared(const Log& on) const {
         ComparedLog log{on.trace.view()};
-        log.whole = parts_.whole.trace.view();
         log.trace.sample_rate = parts_.whole.recording.clock.nominal_rate;
         return log;
     }
@@ -409,7 +411,7 @@ RecommendationReport report_of(const RecommendRequest& request, Provenance& prov
     if (stated.joint()) provenance.inputs.push_back(input_record(stated.joint()->path));
     GearOptions gear_options = request.gear;
     report.found.limits = {request.limits.max_delay, request.limits.min_attenuation_db,
-                           !request.gear.orders.empty()};
+                           request.max_start_ratio, !request.gear.orders.empty()};
     bool at_one_speed = false;
     if (!stated_lines) {
         const auto found = found_gear_options(parts, report.found);
@@ -501,6 +503,9 @@ std::function<ExitCode()> attach_recommend(Options& options) {
                      "longest delay at 0 Hz and within the torque's band at any speed of the log, e.g. 10ms");
     options.number("--min-attenuation", request->limits.min_attenuation_db, Dimension::decibel,
                    "of every order that shows in the log, e.g. 20dB");
+    options.number(
+        "--max-start-error", request->max_start_ratio, Dimension::none,
+        "largest error in the first two seconds of motion, in times the unfiltered torque's, e.g. 1.5");
     options.text("--torque-band", request->torque_band, "FROM:TO",
                  "frequencies of the torque that have to pass, e.g. 0:10Hz; left out: found in the log");
     options.text("--target", request->target, "TARGET[,KEY=VALUE...]",
