@@ -115,13 +115,12 @@ std::optional<double> least_db(const MethodFigures& figures) {
 
 std::string ripple(const MethodFigures& a, const MethodFigures& b) {
     if (a.ripple_rms_nm && b.ripple_rms_nm) {
-        return fmt::format("and has a remaining ripple of {:.3g} Nm rms against {:.3g}", *a.ripple_rms_nm,
+        return fmt::format("has a remaining ripple of {:.3g} Nm rms against {:.3g}", *a.ripple_rms_nm,
                            *b.ripple_rms_nm);
     }
     const auto mine = least_db(a), theirs = least_db(b);
     if (!mine || !theirs) return "";
-    return fmt::format("and attenuates its weakest line by {} against {}", decibels(*mine),
-                       decibels(*theirs));
+    return fmt::format("attenuates its weakest line by {} against {}", decibels(*mine), decibels(*theirs));
 }
 
 std::string alone(const MethodFigures& a, const std::string& name) {
@@ -200,8 +199,9 @@ std::string differences(const Comparison& comparison) {
     if (a->settle_ms && b->settle_ms) parts.push_back(settling(*a, *b, rival));
     if (const std::string text = lag(*a, *b, parts.empty() ? rival : ""); !text.empty())
         parts.push_back(text);
-    if (const std::string text = ripple(*a, *b); !text.empty()) parts.push_back(text);
-    return fmt::format("{} {}.{}", name, fmt::join(parts, ", "), nearest(*a, name, comparison));
+    const std::string left = ripple(*a, *b);
+    const std::string more = left.empty() || parts.empty() ? left : ". It " + left;
+    return fmt::format("{} {}{}.{}", name, fmt::join(parts, ", "), more, nearest(*a, name, comparison));
 }
 
 std::string verdict(const Comparison& comparison) {

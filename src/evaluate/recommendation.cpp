@@ -23,8 +23,9 @@ namespace {
 // Words for a sentence of a page.
 constexpr std::size_t longest_name = 60, most_orders_named = 2;
 
-// The method as it is typed with the gear as options.
-std::string settings_text(const MethodFigures& figures) {
+}  // namespace
+
+std::string short_method(const MethodFigures& figures) {
     Spec spec = parse_spec(figures.method);
     std::erase_if(spec.values,
                   [](const auto& entry) { return entry.first == "gear-ratio" || entry.first == "orders"; });
@@ -32,13 +33,16 @@ std::string settings_text(const MethodFigures& figures) {
     return text.size() <= longest_name ? text : spec.name;
 }
 
+namespace {
+
 // "a ripple map (map.json)", "tracking notches (tracking,q=1)"
 std::string noun_of(const MethodFigures& figures) {
     const Spec spec = parse_spec(figures.method);
-    std::string made_of = settings_text(figures);
+    const Method& method = find_method(spec.name);
+    std::string made_of = short_method(figures);
     for (const auto& [key, value] : spec.values)
-        if ((key == "map" || key == "table") && spec.values.size() == 1) made_of = value;
-    return fmt::format("{} ({})", find_method(spec.name).noun, made_of);
+        if ((key == "map" && method.is_map) || (key == "table" && method.needs_table)) made_of = value;
+    return fmt::format("{} ({})", method.noun, made_of);
 }
 
 // "order 1 down 9 dB, order 2 down 10 dB"
@@ -105,21 +109,21 @@ std::string recommendation_verdict(const Recommendation& found) {
     const bool is_reached = found.finding != RecommendationFinding::out_of_reach;
     if (!is_reached && is_control(taken->figures)) return fmt::format("None fits: {}.", found.why);
     if (!is_reached)
-        return fmt::format("None fits: the nearest is {} at {}.", settings_text(taken->figures),
+        return fmt::format("None fits: the nearest is {} at {}.", short_method(taken->figures),
                            taken->shortfalls.front());
     if (is_control(taken->figures)) {
         const auto best =
             std::find_if(found.methods.begin() + 1, found.methods.end(), std::mem_fn(&JudgedMethod::meets));
         return fmt::format(
             "Leave the torque as it is: each filter tried errs by more than its ripple. The best, {}: {}.",
-            settings_text(best->figures), error_text(found, *best));
+            short_method(best->figures), error_text(found, *best));
     }
     std::string text = fmt::format("Use {}: {}, {}; {} Nm of {} Nm rms is left.", noun_of(taken->figures),
                                    attenuation_text(found, taken->figures), delay_text(*taken),
                                    two_digits(taken->figures.ripple_rms_nm.value_or(0.0)),
                                    two_digits(found.raw_ripple_rms_nm));
     if (const JudgedMethod* const other = found.runner_up())
-        text += fmt::format(" With {}: {}, {}.", traded(*taken, *other), settings_text(other->figures),
+        text += fmt::format(" With {}: {}, {}.", traded(*taken, *other), short_method(other->figures),
                             error_text(found, *other));
     return text;
 }

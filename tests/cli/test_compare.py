@@ -89,7 +89,7 @@ class Signals(Comparison):
         verdict, _, rest = done.stdout.partition("\n\n")
         lines = rest.split("\n")
         self.assertEqual(verdict, f"{NOTCHES} settles 2.8 times faster than {MISLABELLED} (147 against 408 ms to 0.5 %), "
-                                   "lags 38.9 ms less (38.0 against 76.9 ms), and attenuates its weakest line "
+                                   "lags 38.9 ms less (38.0 against 76.9 ms). It attenuates its weakest line "
                                    "by more than 200 dB against 21.7 dB.")
         for name in ("none", NOTCHES, MISLABELLED):
             self.assertEqual(sum(line.startswith(name + "  ") for line in lines), 2)  # costs, and what is left

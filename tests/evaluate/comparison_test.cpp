@@ -145,7 +145,7 @@ TEST_CASE("the verdict says only what was measured") {
     comparison.methods[0].ripple_rms_nm = 0.01;
     comparison.methods[1].ripple_rms_nm = 0.2;
     CHECK(verdict(comparison) ==
-          "a settles 2.0 times faster than b (100 against 200 ms to 0.5 %), and has a remaining ripple of "
+          "a settles 2.0 times faster than b (100 against 200 ms to 0.5 %). It has a remaining ripple of "
           "0.01 Nm "
           "rms against 0.2.");
 }
@@ -155,7 +155,7 @@ TEST_CASE("the verdict counts a method's weakest line, and does not put a number
     comparison.methods[0].attenuation = {{1.0, 25.0, 200.0}, {2.0, 50.0, 200.0}};
     comparison.methods[1].attenuation = {{1.0, 25.0, 21.74}, {2.0, 50.0, 27.7}};
     CHECK_THAT(verdict(comparison),
-               Catch::Contains("and attenuates its weakest line by more than 200 dB against 21.7 dB."));
+               Catch::Contains("It attenuates its weakest line by more than 200 dB against 21.7 dB."));
     comparison.methods[0].attenuation = {{1.0, 25.0, std::nullopt}};
     CHECK_THAT(verdict(comparison), !Catch::Contains("dB"));
 }

@@ -72,6 +72,10 @@ inline constexpr double faint_share = 0.1;
                                        std::optional<TorqueBand> band = std::nullopt,
                                        std::optional<LogLevels> measured = std::nullopt);
 
+/// A method as it is typed where the gear is stated by options; by its name where that is too long for a
+/// line.
+[[nodiscard]] std::string short_method(const MethodFigures& figures);
+
 /// A sentence with numbers, of 30 words at most: the recommended method and its performance. Another one
 /// where a second method trades something.
 [[nodiscard]] std::string recommendation_verdict(const Recommendation& found);

@@ -38,19 +38,17 @@ namespace {
 
 // A recommendation as people read it.
 
-constexpr std::size_t widest_name = 60;
-
 std::string next_commands(std::string_view head, const std::vector<std::string>& lines) {
     if (lines.empty()) return "";
     return fmt::format("\n{}\n    {}\n", head, fmt::join(lines, "\n    "));
 }
 
-std::string orders_of_log(const Recommendation& found, GearRatio ratio) {
+std::string orders_of_log(const Recommendation& found) {
     std::vector<std::vector<std::string>> rows = {
         {"order", "ripple Nm", "standard error Nm", "detectable Nm", ""}};
     for (const RippleEstimate& one : found.orders) {
         const auto cell = [&](double nm) { return one.searched() ? fmt::format("{:.3f}", nm) : "-"; };
-        rows.push_back({order_text(Order(one.order), ratio), cell(one.amplitude_nm),
+        rows.push_back({order_text(Order(one.order), found.ratio), cell(one.amplitude_nm),
                         cell(one.standard_error_nm), cell(one.detectable_nm),
                         !one.searched() ? one.insufficient
                         : one.present() ? ""
@@ -59,33 +57,21 @@ std::string orders_of_log(const Recommendation& found, GearRatio ratio) {
     return "\n" + text_table(rows, "rrrrl");
 }
 
-std::string methods_text(const Recommendation& found, GearRatio ratio) {
-    std::vector<std::vector<std::string>> rows = {{"method"}};
-    for (const RippleEstimate& one : found.orders)
-        rows.front().push_back(order_in_words(Order(one.order), ratio) + ", dB");
-    for (const char* const title :
-         {"delay, ms", "gain", "step, %", "start", "ripple, Nm", "distorts, Nm", "adds, Nm", "error, Nm", ""})
-        rows.front().emplace_back(title);
+// What each method leaves, in all, and what it costs.
+std::string methods_text(const Recommendation& found) {
+    std::vector<std::vector<std::string>> rows = {
+        {"method", "left", "error", "delay", "overshoot", "start", "cost", ""},
+        {"", "Nm rms", "Nm rms", "ms", "%", "of ripple", "mult.", found.limits.any() ? "fits" : ""}};
+    const auto cell = [](const std::optional<double>& value, int decimals) {
+        return value ? rounded(*value, decimals) : "-";
+    };
     for (const JudgedMethod& method : found.methods) {
-        const std::string& name = method.figures.method;
-        rows.push_back({name.size() > widest_name ? name.substr(0, widest_name) + "..." : name});
-        for (const OrderAttenuation& entry : method.figures.attenuation)
-            rows.back().push_back(entry.db ? rounded(*entry.db, 1) : "-");
-        rows.back().push_back(method.delay ? rounded(1e3 * method.delay->value(), 1) : "-");
-        const auto& within = method.response;
-        rows.back().push_back(within ? fmt::format("{:.2f}-{:.2f}", within->least_gain, within->largest_gain)
-                                     : "-");
-        const auto& overshoot = method.figures.overshoot_percent;
-        rows.back().push_back(overshoot ? rounded(*overshoot, 0) : "-");
-        const auto& start = method.figures.start_ratio;
-        rows.back().push_back(start ? rounded(*start, 1) : "-");
-        for (const double nm :
-             {method.figures.ripple_rms_nm.value_or(0.0), method.figures.moved_nm.value_or(0.0),
-              method.figures.added_nm.value_or(0.0), method.figures.error_nm.value_or(0.0)})
-            rows.back().push_back(fmt::format("{:.4f}", nm));
-        rows.back().push_back(method.meets() ? "" : "no");
+        const MethodFigures& figures = method.figures;
+        rows.push_back({short_method(figures), cell(figures.ripple_rms_nm, 4), cell(figures.error_nm, 4),
+                        method.delay ? rounded(1e3 * method.delay->value(), 1) : "not known",
+                        cell(figures.overshoot_percent, 0), cell(figures.start_ratio, 2),
+                        rounded(method.multiplications, 0), method.meets() ? "" : "no"});
     }
-    rows.front().back() = found.limits.any() ? "within limits" : "";
     return "\n" + text_table(rows, "lr");
 }
 
@@ -97,33 +83,32 @@ std::string bulleted(const CommonOptions& common, std::string_view head,
     return text;
 }
 
-// Verdict, commands to paste, what is in the log, all methods, and what was assumed.
+// Verdict, all methods, commands to paste, what is in the log, and what was assumed.
 std::string recommendation_view(const CommonOptions& common, const RecommendationReport& report) {
     const Recommendation& found = report.found;
     std::string text = paragraph(common, recommendation_verdict(found), joint_columns(common));
+    if (!found.methods.empty()) text += methods_text(found);
     text += next_commands("To use it:", report.take);
     text += next_commands("The other:", report.runner_up);
-    const GearRatio ratio = found.ratio;
-    if (!found.orders.empty()) text += orders_of_log(found, ratio);
+    if (!found.orders.empty()) text += orders_of_log(found);
     if (!found.methods.empty()) {
-        text += methods_text(found, ratio);
-        text +=
-            "\n" +
-            paragraph(
-                common,
-                fmt::format(
-                    "Trained up to {:.6g} s, evaluated from there on in {} windows. The torque's band, {}: "
-                    "{:.3g} to {:.3g} Hz. Error, rms: the remaining ripple, the distortion of the torque "
-                    "without "
-                    "ripple within its band, and what is added to it outside the band. Gain, within the "
-                    "band, "
-                    "and step: at the log's median speed; delay: maximum over its speeds.",
-                    report.split_s, found.windows,
-                    found.band->stated ? "as stated"
-                    : found.band->at_rest
-                        ? "which does not rise above the noise, as far as this log resolves it"
-                        : "99 % of what rises above the noise",
-                    found.band->from.value(), found.band->to.value()));
+        const std::string parts =
+            report.split_s > 0.0
+                ? fmt::format("Trained up to {:.6g} s, evaluated from there on", report.split_s)
+                : "Evaluated on all of the log";
+        text += "\n" +
+                paragraph(common,
+                          fmt::format("{} in {} windows. Error: output less the torque without ripple and "
+                                      "noise. Delay: maximum over the "
+                                      "log's speeds, at 0 Hz and within the torque's band, {:.3g} to {:.3g} "
+                                      "Hz{}. Start: largest error in "
+                                      "the first {:g} s of motion, over that of the raw torque. Cost: "
+                                      "multiplications in a sample.",
+                                      parts, found.windows, found.band->from.value(), found.band->to.value(),
+                                      found.band->stated    ? " as stated"
+                                      : found.band->at_rest ? ", which is all that this log resolves"
+                                                            : "",
+                                      start_seconds));
     }
     if (!report.check.empty()) text += next_commands("To measure it again:", {report.check});
     return text + bulleted(common, "Assumed:", report.assumed) +
