@@ -60,39 +60,20 @@ struct DriveObject {
     std::string_view unit, words;
 };
 
-#define SYMBOL(...)
-#define OBJECT(...)
-#define UNIT(...)
 #define NAME(family, beside, names, meaning, rank, unit, side, source) \
     NameLine{family, beside, names, Meaning::meaning, rank, unit, Shaft::side, source},
-#define WORDS(language, meaning, rank, words) NAME(language, "", words, meaning, rank, "", joint, "")
 constexpr std::array name_lines = {
 #include "log/columns/names.def"
 };
-#undef NAME
-#undef WORDS
-#undef SYMBOL
-#undef OBJECT
-#define NAME(...)
-#define WORDS(...)
-#define OBJECT(...)
 #define SYMBOL(text, role, rivals) Symbol{text, Role::role, rivals},
 constexpr std::array symbols = {
 #include "log/columns/names.def"
 };
-#undef SYMBOL
-#undef OBJECT
-#define SYMBOL(...)
 #define OBJECT(index, role, meaning, unit, words) \
     DriveObject{index, Role::role, Meaning::meaning, unit, words},
 constexpr std::array drive_objects = {
 #include "log/columns/names.def"
 };
-#undef NAME
-#undef WORDS
-#undef SYMBOL
-#undef OBJECT
-#undef UNIT
 
 Role role_of(Meaning meaning) {
     constexpr std::array roles = {Role::time, Role::velocity, Role::torque, Role::position};
@@ -667,35 +648,28 @@ bool differ(const Numbering& a, const Numbering& b) {
     return shifted(a, b) || shifted(b, a);
 }
 
-/// "sm_2", of which there is a torque alone, is another torque of joint 2; "sensor" of the one joint that
-/// moves.
+/// "sm_2", of which there is a torque alone, is another torque of joint 2; "sensor" of the one joint that has
+/// no name.
 void share_torques(std::vector<JointGroup>& groups) {
     const auto moves = [](const JointGroup& group) {
         return group.has(Role::velocity) || group.has(Role::position);
     };
-    std::map<std::string, std::size_t> moving;
-    for (std::size_t g = 0; g < groups.size(); ++g)
-        if (moves(groups[g])) moving[groups[g].key] = g;
-    if (moving.empty()) return;
-    std::vector<JointGroup> kept;
-    std::vector<bool> taken(groups.size());
-    for (std::size_t g = 0; g < groups.size(); ++g) {
-        if (moves(groups[g])) continue;
-        auto owner = moving.find("");
-        for (std::size_t cut = groups[g].key.find('_'); cut != std::string::npos;
-             cut = groups[g].key.find('_', cut + 1)) {
-            const auto named = moving.find(joint_key(groups[g].key.substr(cut + 1)));
-            if (named != moving.end()) owner = named;
-        }
-        if (owner == moving.end() || moving.size() > (owner->first.empty() ? 1U : moving.size())) continue;
-        std::vector<std::size_t>& torques = groups[owner->second].candidates[Role::torque];
-        const auto& more = groups[g].candidates[Role::torque];
+    const auto still = std::stable_partition(groups.begin(), groups.end(), moves);
+    std::map<std::string, JointGroup*> moving;
+    for (auto group = groups.begin(); group != still; ++group) moving[group->key] = &*group;
+    const auto shared = [&](const JointGroup& group) {
+        auto owner = moving.size() == 1 ? moving.find("") : moving.end();
+        for (std::size_t cut = group.key.find('_'); cut != std::string::npos;
+             cut = group.key.find('_', cut + 1))
+            if (const auto named = moving.find(joint_key(group.key.substr(cut + 1))); named != moving.end())
+                owner = named;
+        if (owner == moving.end()) return false;
+        std::vector<std::size_t>& torques = owner->second->candidates[Role::torque];
+        const auto& more = group.candidates.at(Role::torque);
         torques.insert(torques.end(), more.begin(), more.end());
-        taken[g] = true;
-    }
-    for (std::size_t g = 0; g < groups.size(); ++g)
-        if (!taken[g]) kept.push_back(std::move(groups[g]));
-    groups = std::move(kept);
+        return true;
+    };
+    groups.erase(std::remove_if(still, groups.end(), shared), groups.end());
 }
 
 }  // namespace

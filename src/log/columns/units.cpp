@@ -25,19 +25,10 @@ struct UnitLine {
     Dimension dimension;
     std::string_view usual, spellings;
 };
-#define NAME(...)
-#define WORDS(...)
-#define SYMBOL(...)
-#define OBJECT(...)
 #define UNIT(dimension, usual, spellings) UnitLine{Dimension::dimension, usual, spellings},
 constexpr std::array unit_lines = {
 #include "log/columns/names.def"
 };
-#undef NAME
-#undef WORDS
-#undef SYMBOL
-#undef OBJECT
-#undef UNIT
 
 constexpr std::string_view electrical_rpm = "erpm";
 
