@@ -343,7 +343,7 @@ class WhatIsSaidWithoutAUnit(Case):
         done = self.run_tool("identify", "log.csv", "-q")
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         self.assertTrue(done.stdout.startswith("Cannot tell: if it is rad/s and rad, as assumed, ripple"), done.stdout)
-        self.assertIn("; if the speed is in deg/s, ", done.stdout)
+        self.assertIn(". If the speed is in deg/s, ", done.stdout)
         self.assertEqual(self.run_tool("identify", "log.csv", "--require-conclusive").returncode, 5)
         found = json.loads(self.run_tool("identify", "log.csv", "--json", "-q").stdout)
         self.assertFalse(found["conclusive"])
