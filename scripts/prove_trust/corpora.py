@@ -50,7 +50,8 @@ def logs(source):
 def containers(source):
     """(target, bytes): the examples of the laws, and recordings with what the laws' are without: topics, joints, stamps, texts."""
     examples = source / "tests/log/data"
-    for target, name in (("npz", "law.npz"), ("mat", "law.mat"), ("hdf5", "law.h5"), ("mcap", "law.mcap"), ("rosbag2", "law.db3"), ("raw", "law.raw")):
+    for target, name in (("npz", "law.npz"), ("mat", "law.mat"), ("hdf5", "law.h5"), ("mcap", "law.mcap"), ("rosbag2", "law.db3"), ("json", "law.jsonl"),
+                         ("raw", "law.raw")):
         if (examples / name).exists():
             yield target, (examples / name).read_bytes()
     csv = (examples / "law.csv").read_bytes()

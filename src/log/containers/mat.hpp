@@ -28,9 +28,6 @@ enum : std::uint32_t {
     utf16 = 17
 };
 
-/// Of an object that only MATLAB opens: its class, and the lines of MATLAB that save its numbers.
-[[nodiscard]] std::string matlab_object_text(const std::string& name, const std::string& class_name);
-
 }  // namespace ripplenotch::mat_type
 
 namespace ripplenotch {
