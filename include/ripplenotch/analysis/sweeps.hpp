@@ -17,7 +17,7 @@ namespace ripplenotch {
 /// Output angle in turns, one value a sample, without jumps.
 struct OutputAngle {
     std::vector<double> turns;
-    bool absolute = false;  ///< counted from the zero of the joint's position; else from the first sample
+    bool absolute = false;    ///< counted from the zero of the joint's position; else from the first sample
     double step_turns = 0.0;  ///< of a coarse encoder, between whose steps the angle is smooth; 0: none
 };
 
