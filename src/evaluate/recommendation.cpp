@@ -222,7 +222,10 @@ JudgedMethod judged(const Contender& contender, MethodFigures&& measured, const 
 
 // Of many orders one sentence: the first that was not searched, or the largest bound.
 std::string without_ripple_text(const std::vector<RippleEstimate>& orders) {
-    if (orders.size() <= most_orders_named) return ripple_text(orders);
+    const bool all_searched =
+        std::all_of(orders.begin(), orders.end(), std::mem_fn(&RippleEstimate::searched));
+    if (orders.size() == 1 || (all_searched && orders.size() <= most_orders_named))
+        return ripple_text(orders);
     const auto worse = [](const RippleEstimate& a, const RippleEstimate& b) {
         return std::pair(!a.searched(), a.detectable_nm) < std::pair(!b.searched(), b.detectable_nm);
     };
