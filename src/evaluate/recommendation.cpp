@@ -21,7 +21,7 @@ namespace ripplenotch {
 namespace {
 
 // Words for a sentence of a page.
-constexpr std::size_t longest_name = 60, most_orders_named = 2;
+constexpr std::size_t longest_method_name = 60, most_orders_named = 2;
 
 }  // namespace
 
@@ -30,7 +30,7 @@ std::string short_method(const MethodFigures& figures) {
     std::erase_if(spec.values,
                   [](const auto& entry) { return entry.first == "gear-ratio" || entry.first == "orders"; });
     const std::string text = spec.text();
-    return text.size() <= longest_name ? text : spec.name;
+    return text.size() <= longest_method_name ? text : spec.name;
 }
 
 namespace {

@@ -72,7 +72,8 @@ std::string briefly(const std::string& verdict) {
     constexpr std::string_view doubtful = "Cannot tell the gear ratio: ";
     if (verdict.starts_with(doubtful))
         return "the gear ratio is open: " + briefly(verdict.substr(doubtful.size()));
-    return lower_first(verdict.substr(0, std::min({verdict.find(". "), verdict.find(" (95 %)"), verdict.size() - 1})));
+    return lower_first(
+        verdict.substr(0, std::min({verdict.find(". "), verdict.find(" (95 %)"), verdict.size() - 1})));
 }
 
 bool in_motor_units(std::span<const Log> logs) {
