@@ -126,7 +126,7 @@ TEST_CASE("mains at every speed and at rest is a tone with a name, not an order"
     CHECK_FALSE(tones[0]->order.has_value());
     REQUIRE(found.gear_ratio.value.has_value());
     CHECK_THAT(*found.gear_ratio.value, WithinAbs(100.0, 0.2));
-    CHECK_THAT(found.verdict, Contains("at rest 50 Hz"));
+    CHECK_THAT(found.verdict, Contains("At rest 50 Hz"));
 }
 
 TEST_CASE("a log of one speed says that order and tone look alike there, and is not conclusive") {

@@ -52,7 +52,7 @@ class TorqueOnly(Case):
         self.assertAlmostEqual(line["ripple"]["amplitude_nm"], 0.8, delta=0.01)
         told = self.json_of("recommend", "bench.csv", *STATED, "--gear-ratio", 100, "--orders", 1)
         self.assertEqual(told["finding"], "recommended")
-        self.assertTrue(all("--constant-speed 60deg/s" in command for command in told["take_commands"]))
+        self.assertTrue(all("--constant-speed 60deg/s" in command for command in told["take_commands"] if "bench.csv" in command))
         self.good("filter", "bench.csv", *STATED, "--method", "tracking,gear-ratio=100,orders=1", "-o", "out.csv")
         self.assertEqual((self.folder / "out.csv").read_text().split("\n")[0], "time_s,torque_Nm")
 
