@@ -27,7 +27,8 @@ class Printed(SharedCase):
         for word in shlex.split(line):
             words += sorted(map(str, self.folder.glob(word))) if word.endswith("/*.csv") else [word]
         force = ["--force"] if "-o" in words or "--metrics" in words else []
-        done = run(*words[1:], *force, cwd=self.folder)
+        piped = (self.folder / "log.csv").read_text() if "-" in words else None
+        done = run(*words[1:], *force, cwd=self.folder, stdin=piped)
         self.assertEqual(done.returncode, 0, f"{line}: {done.stderr}")
 
     def paste_all(self, text, least=0):

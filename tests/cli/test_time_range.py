@@ -5,7 +5,6 @@ import json
 import math
 
 from commands import ACCOUNTS, DATA, Case, asked_for_json
-from commands import DATA, Case
 
 METHOD = ["--method", "tracking,gear-ratio=100,orders=1:2"]
 
@@ -60,7 +59,8 @@ class TwoLogs(Case):
     def result(self, side, *words, **more):
         """The JSON without what names the input and the range, and what was left out."""
         result = json.loads(self.said(side, *words, **more))
-        result.pop("command")
+        for command in "command", "check", "take_commands", "runner_up_commands":
+            result.pop(command, None)
         for one in result["inputs"]:
             one.pop("sha256", None)
         recordings = [result["recording"]] if "recording" in result else result["recordings"]
