@@ -124,11 +124,6 @@ std::vector<double> TextReader::numbers(char open, char close, std::size_t count
 
 std::string TextReader::word() { return std::string(token()); }
 
-bool TextReader::at_end() {
-    while (at_ < text_.size() && std::isspace(static_cast<unsigned char>(text_[at_])) != 0) ++at_;
-    return at_ == text_.size();
-}
-
 namespace {
 
 std::string with_point(std::string digits) {

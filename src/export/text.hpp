@@ -37,7 +37,6 @@ class TextReader {
     [[nodiscard]] std::vector<double> numbers(char open, char close, std::size_t count);
     /// The next name or number, as text; empty at the end.
     [[nodiscard]] std::string word();
-    [[nodiscard]] bool at_end();
     [[noreturn]] void fail(std::string_view read, std::string_view expected) const;
 
   private:

@@ -22,8 +22,6 @@ constexpr FigureKind list[] = {
 
 }  // namespace
 
-std::span<const FigureKind> figure_kinds() { return list; }
-
 std::string figures_of(std::string_view command) {
     std::string names;
     for (const FigureKind& kind : list) {

@@ -54,9 +54,7 @@ const Effect& find_effect(std::string_view name) {
 
 bool needs_gear_ratio(const Effect& effect) {
     return effect.ripple_order || (effect.side == Side::ripple && !effect.whole) ||
-           std::ranges::any_of(effect.parameters, [](const Parameter& parameter) {
-               return parameter.hint == Hint::gear_ratios;
-           });
+           &effect == &effects::gear_ratio;
 }
 
 std::optional<std::size_t> find_parameter(const Effect& effect, std::string_view name) {

@@ -23,23 +23,21 @@ using Values = std::span<const double>;
 using Torques = std::span<double>;
 using Gains = std::span<std::complex<double>>;
 
-// Rows of the table of an effect's parameters: name, unit, help, numbers, where a screening begins, hint.
+// Rows of the table of an effect's parameters: name, unit, help, numbers.
 
 struct ParameterRange {
     double start, lower, upper, neutral = 0.0;
 };
 
 inline Parameter plain(std::string_view name, std::string_view unit, std::string_view help,
-                       ParameterRange range, std::vector<double> tried = {}, Hint hint = Hint::none) {
+                       ParameterRange range) {
     return {.name = name,
             .unit = unit,
             .help = help,
             .neutral = range.neutral,
             .start = range.start,
             .lower = range.lower,
-            .upper = range.upper,
-            .tried = std::move(tried),
-            .hint = hint};
+            .upper = range.upper};
 }
 
 /// The torque is an affine function of it.
@@ -53,7 +51,8 @@ inline Parameter linear(std::string_view name, std::string_view unit, std::strin
 /// A search moves in its logarithm.
 inline Parameter logarithmic(std::string_view name, std::string_view unit, std::string_view help,
                              ParameterRange range, std::vector<double> tried = {}) {
-    Parameter row = plain(name, unit, help, range, std::move(tried));
+    Parameter row = plain(name, unit, help, range);
+    row.tried = std::move(tried);
     row.logarithmic = true;
     return row;
 }
@@ -72,9 +71,8 @@ inline Parameter width_parameter() {
 }
 
 /// Cycles per turn, amplitude and phase of a cosine of an angle.
-inline Parameter cycles_parameter(std::string_view name, std::string_view help, double start, double upper,
-                                  std::vector<double> tried) {
-    Parameter row = plain(name, "", help, {start, 0.01, upper, start}, std::move(tried));
+inline Parameter cycles_parameter(std::string_view name, std::string_view help, double start, double upper) {
+    Parameter row = plain(name, "", help, {start, 0.01, upper, start});
     row.left_out = LeftOut::refused;
     return row;
 }
@@ -90,15 +88,15 @@ inline Parameter cosine_phase_parameter() {
 inline Parameter initial_state_parameter() {
     return assumed(plain("initial_state", "", "state at the start of the log, -1 to 1", {0.0, -1.0, 1.0}));
 }
-inline Parameter reversal_width_parameter(std::string_view help, std::vector<double> tried) {
-    return logarithmic("width_deg", "deg", help, {1.0, 0.001, 1000.0, 1.0}, std::move(tried));
+inline Parameter reversal_width_parameter(std::string_view help) {
+    return logarithmic("width_deg", "deg", help, {1.0, 0.001, 1000.0, 1.0});
 }
 
 /// Which ripple terms an effect changes.
 inline Parameter ripple_order_parameter() {
     return assumed(plain("order", "",
                          "of the ripple that it changes, in cycles per motor revolution; 0 is every order",
-                         {0.0, 0.0, 1000.0}, {}, Hint::ripple_orders));
+                         {0.0, 0.0, 1000.0}));
 }
 [[nodiscard]] inline bool concerns(Order order, double parameter) {
     return parameter == 0.0 || parameter == order.value();

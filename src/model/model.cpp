@@ -11,7 +11,6 @@
 #include <utility>
 #include <vector>
 
-#include "model/model.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/spec.hpp"
@@ -104,12 +103,21 @@ std::vector<std::string> missing_values(const Model& model) {
 
 namespace {
 
-bool has_side(const Model& model, Side side) {
-    return std::ranges::any_of(model.terms, [&](const Term& term) { return side_of(term) == side; });
+using Gain = std::vector<std::complex<double>>;
+
+template <class Action>
+void each(const Model& model, Side side, const Action& action) {
+    for (const Term& term : model.terms) {
+        if (side_of(term) == side) action(*term.effect, values_of(term));
+    }
 }
 
-}  // namespace
+// Whether the torques behind this term see another motion than the log's.
+bool changes_motion(const Term& term) {
+    return term.effect->change_motion != nullptr && side_of(term) != Side::ripple;
+}
 
+// The motion that the joint's torques see, and the gear ratio; empty where it is the log's.
 std::optional<Motion> motion_behind(const Model& model, const Motion& logged, GearRatio& ratio) {
     std::optional<Motion> changed;
     for (const Term& term : model.terms) {
@@ -120,6 +128,7 @@ std::optional<Motion> motion_behind(const Model& model, const Motion& logged, Ge
     return changed;
 }
 
+// Throws UsageError that lists the values which the model does not state.
 void refuse_missing_values(const Model& model) {
     if (const auto missing = missing_values(model); !missing.empty()) {
         raise<UsageError>("the model does not state {}; give the value, or fit it to a log first",
@@ -127,6 +136,7 @@ void refuse_missing_values(const Model& model) {
     }
 }
 
+// Torque of the terms that bear load; nothing when no effect needs it.
 std::vector<double> load_nm(const Model& model, const Situation& situation) {
     std::vector<double> load;
     if (std::ranges::none_of(model.terms, [](const Term& term) { return term.effect->uses_load; }))
@@ -139,8 +149,10 @@ std::vector<double> load_nm(const Model& model, const Situation& situation) {
     return load;
 }
 
+// The gain of a ripple term of the given order; empty when nothing changes the model's ripple.
 Gain gain_of(const Model& model, const Situation& situation, double order) {
-    if (!has_side(model, Side::ripple)) return {};
+    if (std::ranges::none_of(model.terms, [](const Term& term) { return side_of(term) == Side::ripple; }))
+        return {};
     Gain gain(situation.motion.size(), 1.0);
     each(model, Side::ripple, [&](const Effect& change, const std::vector<double>& numbers) {
         change.change_ripple(situation, Order(order), numbers, gain);
@@ -148,25 +160,14 @@ Gain gain_of(const Model& model, const Situation& situation, double order) {
     return gain;
 }
 
-void add_torque(const Term& term, const Situation& situation, const Gain& gain, std::span<double> torque_nm) {
-    Situation with_gain = situation;
-    with_gain.ripple_gain = gain;
-    term.effect->apply(with_gain, values_of(term), torque_nm);
-}
-
-Gain gain_for(const Model& model, const Term& term, const Situation& situation) {
-    if (!term.effect->ripple_order) return {};
-    return gain_of(model, situation, values_of(term)[*term.effect->ripple_order]);
-}
-
-namespace {
-
-// Adds the torques of all of them.
 void add_joint_torque(const Model& model, const Situation& situation, std::span<double> torque_nm) {
-    for (const Term& term : model.terms) {
-        if (term.effect->side == Side::joint)
-            add_torque(term, situation, gain_for(model, term, situation), torque_nm);
-    }
+    each(model, Side::joint, [&](const Effect& effect, const std::vector<double>& values) {
+        Gain gain;
+        if (effect.ripple_order) gain = gain_of(model, situation, values[*effect.ripple_order]);
+        Situation with_gain = situation;
+        with_gain.ripple_gain = gain;
+        effect.apply(with_gain, values, torque_nm);
+    });
 }
 
 // A model along a motion: motion effects first, then ripple gains, then the sum of torques, then the chain of

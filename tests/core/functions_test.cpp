@@ -310,10 +310,6 @@ Numbers made_of(const Numbers& a, const Numbers& b, const Numbers& c, const Numb
     Numbers scaled = c;
     add_scaled(0.37, a.data(), scaled.data(), n);
     made.insert(made.end(), scaled.begin(), scaled.end());
-    Numbers one = c, other = d;
-    add_scaled_pair({0.37, -1.2, 0.11, 2.3}, {a.data(), b.data()}, {one.data(), other.data()}, n);
-    made.insert(made.end(), one.begin(), one.end());
-    made.insert(made.end(), other.begin(), other.end());
     return made;
 }
 

@@ -59,8 +59,6 @@ TEST_CASE("effects have unique names in kebab-case, are found by them, and descr
         CHECK((!effect->whole || is_ripple));
         CHECK((!effect->chance || effect->side == Side::converter));
         CHECK((!effect->bears_load || effect->side == Side::joint));
-        CHECK((effect->restate != nullptr) == effect->stated_from.has_value());
-        if (effect->stated_from) CHECK(effect->parameters[*effect->stated_from].unit == "deg/s");
         if (effect->ripple_order) CHECK(effect->parameters[*effect->ripple_order].name == "order");
         if (effect->polar) {
             CHECK(effect->parameters[effect->polar->size].linear);
@@ -81,7 +79,6 @@ TEST_CASE("each effect of the converter says how a log shows it, and no other ef
         CAPTURE(effect->name);
         CHECK((effect->detect != nullptr) == (effect->side == Side::converter));
         CHECK((effect->detect_turn == 0 || effect->detect != nullptr));
-        CHECK((!effect->range_limit || effect->parameters[*effect->range_limit].unit == "Nm"));
     }
 }
 

@@ -228,26 +228,6 @@ TEST_CASE("ripple that depends on speed, load, direction: gains worked by hand")
     CHECK(at_speed({one, "ripple-direction-dependence,gain_percent=0,phase_deg=60"}, -50.0) == Approx(1.0));
 }
 
-TEST_CASE("a change of the ripple stated from another speed is the same torque with another amplitude") {
-    for (const Effect* effect : catalogue()) {
-        if (!effect->restate) continue;
-        CAPTURE(effect->name);
-        std::mt19937_64 engine(12);
-        for (const auto& [from, to] : {std::pair(0.0, 60.0), {60.0, 0.0}, {60.0, 25.0}}) {
-            auto values = random_values(*effect, engine);
-            values[*effect->stated_from] = from;
-            const auto before = predict_nm(with(base_model(), *effect, values), rich_motion());
-            const double amplitude = effect->restate(to, values);
-            CHECK(values[*effect->stated_from] == to);
-            Model after = with(base_model(), *effect, values);
-            for (Term& term : after.terms) {
-                if (term.effect->ripple_order) *term.values[term.effect->polar->size] *= amplitude;
-            }
-            CHECK(largest_difference(predict_nm(after, rich_motion()), before) < 1e-11);
-        }
-    }
-}
-
 TEST_CASE("modulation splits a line into three") {
     const Motion m = move({"constant,speed=36deg/s,duration=10s"});
     const auto torque =

@@ -10,7 +10,6 @@
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/model/model.hpp"
 #include "ripplenotch/model/motions.hpp"
-#include "ripplenotch/model/prediction.hpp"
 #include "support/catch.hpp"
 
 using namespace ripplenotch;

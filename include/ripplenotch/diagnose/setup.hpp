@@ -17,8 +17,6 @@ namespace ripplenotch {
 struct SimulatedMotion {
     std::vector<double> time_s, position_deg, velocity_deg_s;
     std::vector<double> torque_nm;
-
-    [[nodiscard]] bool has_motion() const { return !position_deg.empty() || !velocity_deg_s.empty(); }
 };
 
 /// A shorter delay is within the definition of the sampling instant.

@@ -18,8 +18,6 @@ struct FigureKind {
     std::string_view command;  ///< the command that draws it with --plot
 };
 
-/// All figures, in the order of figures.def.
-[[nodiscard]] std::span<const FigureKind> figure_kinds();
 /// "campbell, order-map": those of one command.
 [[nodiscard]] std::string figures_of(std::string_view command);
 /// Throws std::logic_error, which names the list, where no figure has this name.

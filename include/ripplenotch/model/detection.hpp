@@ -30,7 +30,6 @@ struct DetectedFault {
     std::vector<double> values;  ///< values of the effect's parameters, in their order; bounds are ignored
     std::vector<std::size_t> spoiled;  ///< samples that do not hold the joint's torque, rising
     std::string words;                 ///< what was seen, for people
-    double bends_nm = 0.0;  ///< steps so coarse that they bend whatever is in the torque; 0: there are none
 };
 
 }  // namespace ripplenotch

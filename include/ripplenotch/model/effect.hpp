@@ -34,17 +34,6 @@ enum class LeftOut {
     assumed,  ///< `start` is assumed: a log hardly determines it
 };
 
-/// Where in a log the search for a parameter may begin, in addition to Parameter::tried.
-enum class Hint {
-    none,
-    ripple_orders,  ///< at the orders of the model's own ripple terms
-    tones,          ///< at the strongest lines of the residual against time, in hertz
-    delay,          ///< where the torques of a log and of its simulation agree best
-    gear_ratios,    ///< where the gear ratio would put the model's ripple on lines of the log
-    both_ways,     ///< at values of `tried`, if the log passes a fair part of their cycles in both directions
-    change_times,  ///< when inertia and gravity change in the residual, in s from the first sample
-};
-
 /// One number of an effect. Aggregate, so that tables read as data.
 struct Parameter {
     std::string_view name;  ///< with its unit: "inertia_kgm2", "amplitude_nm", "phase_deg"
@@ -57,8 +46,7 @@ struct Parameter {
     bool linear = false;              ///< the torque is an affine function of this parameter
     bool logarithmic = false;         ///< a search moves in its logarithm; lower is above 0
     LeftOut left_out = LeftOut::fitted;
-    std::vector<double> tried = {};  ///< where a screening begins; `start` when there are none
-    Hint hint = Hint::none;          ///< further places to begin at
+    std::vector<double> tried = {};  ///< where a search begins; `start` when there are none
 };
 
 /// The dimension whose base unit is the parameter's unit, so that values can be typed with any unit of it.
@@ -124,14 +112,9 @@ struct Effect {
     bool linear_in_torque = true;  ///< sensor, converter: acts on a sum as the sum of its actions
     std::optional<std::size_t> ripple_order = std::nullopt;  ///< joint: it is a ripple term, and this
                                                              ///< parameter is its order
-
-    /// ripple: this parameter is the speed at which the ripple has the amplitude of its term
-    std::optional<std::size_t> stated_from = std::nullopt;
     /// ripple: from 0.5 on this parameter lets it act on the whole torque, as a sensor's effect does and by
     /// `apply`; see side_of(term)
     std::optional<std::size_t> whole = std::nullopt;
-    /// converter: this parameter is the end of the range in Nm, so that torques near it are cut on one side
-    std::optional<std::size_t> range_limit = std::nullopt;
     /// converter: detectors of a lower turn have marked the samples that they invalidate before this one runs
     std::size_t detect_turn = 0;
 
@@ -148,9 +131,6 @@ struct Effect {
     /// amplitude * Re(gain * exp(i * angle)).
     void (*change_ripple)(const Situation& situation, Order order, std::span<const double> values,
                           std::span<std::complex<double>> gain) = nullptr;
-    /// ripple, with stated_from: states the values from another speed. Returns the factor for the amplitude
-    /// of the ripple terms it concerns that leaves the torque the same.
-    double (*restate)(double from_deg_s, std::span<double> values) = nullptr;
 
     /// converter, in addition to apply: whether a log shows this effect, and where. Every one has it: a fit
     /// cannot determine the effects of a converter.

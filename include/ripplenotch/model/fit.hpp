@@ -18,9 +18,6 @@ struct Interval {
     double low = 0.0, high = 0.0;
 };
 
-class Carriers;
-class Weighing;
-
 struct FittedValue {
     std::size_t term = 0, parameter = 0;  ///< places in the model
     double value = 0.0;
@@ -32,20 +29,16 @@ struct FittedValue {
 struct Fit {
     Model model;                      ///< with every value that can be fitted
     std::vector<FittedValue> values;  ///< in the order of terms and parameters
-    double residual_rms_nm = 0.0;     ///< rms residual of the samples used, after whitening
+    double residual_rms_nm = 0.0;     ///< rms residual of the samples used
     std::size_t samples = 0;          ///< used
     int iterations = 0;
-    std::size_t applied = 0;  ///< number of evaluations of an effect along the motion: the cost of the fit
     bool converged = false;
 };
 
 struct FitOptions {
     /// First guesses: a model of the same terms. Values that it states take the place of Parameter::start.
     const Model* first_guess = nullptr;
-    /// Coefficients a1 ... ap of the noise e(k) = a1 e(k-1) + ... + ap e(k-p) + white. Empty: white.
-    std::span<const double> noise_color = {};
-    /// Samples to leave out, 0 for those; torque_nm.size() entries or none. The p samples after each of them
-    /// are left out as well.
+    /// Samples to leave out, 0 for those; torque_nm.size() entries or none.
     std::span<const unsigned char> use = {};
     int most_iterations = 50;  ///< chosen, not derived
     /// Improvement of the sum of squares at which the search ends, relative.
@@ -55,10 +48,6 @@ struct FitOptions {
     std::size_t error_stretch = 0;
     /// Whether standard errors are computed, which takes about one more iteration.
     bool errors = true;
-    /// In place of noise_color and use; it must be made for torques of the same length.
-    const Weighing* weighing = nullptr;
-    /// Kept for further fits along the same motion; none: the fit has its own.
-    Carriers* carriers = nullptr;
 };
 
 /// Estimates the values that `model` leaves out (LeftOut::fitted) so that the sum of squares of `torque_nm`

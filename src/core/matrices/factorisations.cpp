@@ -25,10 +25,6 @@ ScaledDefiniteFactors::ScaledDefiniteFactors(MatrixXd matrix, double least)
 VectorXd ScaledDefiniteFactors::solve(const VectorXd& right) const {
     return scale_.cwiseProduct(factored_.solve(VectorXd(scale_.cwiseProduct(right))));
 }
-VectorXd ScaledDefiniteFactors::inverse_diagonal() const {
-    const MatrixXd unit = MatrixXd::Identity(scale_.size(), scale_.size());
-    return factored_.solve(unit).diagonal().cwiseProduct(scale_).cwiseProduct(scale_);
-}
 
 HermitianFactors::HermitianFactors(const MatrixXcd& matrix) : factored_(matrix) {}
 MatrixXcd HermitianFactors::solve(const MatrixXcd& right) const { return factored_.solve(right); }

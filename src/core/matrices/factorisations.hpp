@@ -44,7 +44,6 @@ class ScaledDefiniteFactors {
     ScaledDefiniteFactors(Eigen::MatrixXd matrix, double least);
 
     [[nodiscard]] Eigen::VectorXd solve(const Eigen::VectorXd& right) const;
-    [[nodiscard]] Eigen::VectorXd inverse_diagonal() const;
 
   private:
     Eigen::VectorXd scale_;

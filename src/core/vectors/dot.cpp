@@ -43,35 +43,6 @@ struct AddScaled {
     }
 };
 
-struct AddScaledPair {
-    template <class Lanes>
-    RIPPLENOTCH_INLINED static void run(const double* factors, const double* from0, const double* from1,
-                                        double* to0, double* to1, std::size_t count) {
-        Lanes by00, by01, by10, by11, x0, x1, y0, y1;
-        fill(by00, factors[0]);
-        fill(by01, factors[1]);
-        fill(by10, factors[2]);
-        fill(by11, factors[3]);
-        std::size_t k = 0;
-        for (; k + lane_count <= count; k += lane_count) {
-            load(x0, from0 + k);
-            load(x1, from1 + k);
-            load(y0, to0 + k);
-            load(y1, to1 + k);
-            y0 += by00 * x0;
-            y1 += by01 * x0;
-            y0 += by10 * x1;
-            y1 += by11 * x1;
-            store(to0 + k, y0);
-            store(to1 + k, y1);
-        }
-        for (; k < count; ++k) {
-            to0[k] = to0[k] + factors[0] * from0[k] + factors[2] * from1[k];
-            to1[k] = to1[k] + factors[1] * from0[k] + factors[3] * from1[k];
-        }
-    }
-};
-
 struct AddDots {
     template <class Lanes>
     RIPPLENOTCH_INLINED static void run(const double* a0, const double* a1, const double* b0,
@@ -149,11 +120,6 @@ double dot(const double* a, const double* b, std::size_t count) { return in_lane
 
 void add_scaled(double factor, const double* from, double* to, std::size_t count) {
     in_lanes<AddScaled>(factor, from, to, count);
-}
-
-void add_scaled_pair(const double (&factors)[4], const double* const (&from)[2], double* const (&to)[2],
-                     std::size_t count) {
-    in_lanes<AddScaledPair>(static_cast<const double*>(factors), from[0], from[1], to[0], to[1], count);
 }
 
 void add_dots(const double* const (&a)[2], const double* const (&b)[2], std::size_t count,

@@ -9,9 +9,6 @@ namespace ripplenotch {
 [[nodiscard]] double dot(const double* a, const double* b, std::size_t count);
 /// to[k] += factor * from[k].
 void add_scaled(double factor, const double* from, double* to, std::size_t count);
-/// to[j][k] += factors[2 i + j] * from[i][k], the first i first, of two columns to two: in half of the time.
-void add_scaled_pair(const double (&factors)[4], const double* const (&from)[2], double* const (&to)[2],
-                     std::size_t count);
 /// sums[2 i + j] += dot(a[i], b[j]) for two columns and two.
 void add_dots(const double* const (&a)[2], const double* const (&b)[2], std::size_t count, double (&sums)[4]);
 

@@ -264,7 +264,6 @@ const Effect effects::saturation{
                          "largest torque that is logged; at the upper bound there is no limit",
                          {2.0, 0.0, 1e6, 1e6})},
     .linear_in_torque = false,
-    .range_limit = 0,
     .apply =
         [](const Situation&, Values values, Torques torque_nm) {
             for (std::size_t k = 0; k < torque_nm.size(); ++k)
@@ -318,8 +317,7 @@ const Effect effects::quantization{
         return DetectedFault{.values = {log.step_nm},
                              .spoiled = {},
                              .words = fmt::format("the log holds {} distinct values, {:.3g} Nm apart",
-                                                  levels.size(), log.step_nm),
-                             .bends_nm = log.step_nm};
+                                                  levels.size(), log.step_nm)};
     }};
 
 const Effect effects::spikes{

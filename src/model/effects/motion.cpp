@@ -20,9 +20,8 @@ const Effect effects::gear_ratio{
     .source = "the definition of the ratio",
     .side = Side::motion,
     .domain = Domain::order,
-    .parameters = {plain(
-        "error_percent", "%", "by which the gear ratio is larger than in the model", {0.1, -99.0, 900.0},
-        {-1.0, -0.5, -0.25, -0.12, -0.06, -0.03, 0.03, 0.06, 0.12, 0.25, 0.5, 1.0}, Hint::gear_ratios)},
+    .parameters = {plain("error_percent", "%", "by which the gear ratio is larger than in the model",
+                         {0.1, -99.0, 900.0})},
     .change_motion = [](Values values, Motion&, GearRatio& ratio) {
         ratio = GearRatio(ratio.value() * (1.0 + 0.01 * values[0]));
     }};
@@ -40,9 +39,7 @@ const Effect effects::velocity_bias{
     .source = "integration of an offset",
     .side = Side::motion,
     .domain = Domain::order,
-    .parameters = {plain(
-        "bias_deg_s", "deg/s", "that the log shows too much", {0.01, -100.0, 100.0},
-        {-0.5, -0.3, -0.2, -0.12, -0.06, -0.03, -0.01, 0.01, 0.03, 0.06, 0.12, 0.2, 0.3, 0.5})},
+    .parameters = {plain("bias_deg_s", "deg/s", "that the log shows too much", {0.01, -100.0, 100.0})},
     .change_motion = [](Values values, Motion& motion, GearRatio&) {
         const double bias_deg_s = values[0];
         if (bias_deg_s == 0.0) return;
@@ -72,12 +69,11 @@ const Effect effects::encoder_eccentricity{
         "Ellin and Dolsak, Sensor Review 28, 2008, for eccentric discs; the derivatives by the chain rule",
     .side = Side::motion,
     .domain = Domain::order,
-    .parameters = {cycles_parameter("order", "cycles of the error per output revolution", 1.0, 1e3,
-                                    {1.0, 2.0}),
+    .parameters = {cycles_parameter("order", "cycles of the error per output revolution", 1.0, 1e3),
                    plain("amplitude_deg", "deg", "error of the angle on the output side, zero to peak",
-                         {0.1, 0.0, 10.0}, {0.03, 0.1, 0.3}),
+                         {0.1, 0.0, 10.0}),
                    plain("phase_deg", "deg", "phase of the cosine where the position of the log is zero",
-                         {0.0, -360.0, 360.0}, {-90.0, 0.0, 90.0, 180.0})},
+                         {0.0, -360.0, 360.0})},
     .change_motion = [](Values values, Motion& motion, GearRatio&) {
         const double order = values[0], amplitude_deg = values[1], phase_deg = values[2];
         if (amplitude_deg == 0.0) return;

@@ -41,8 +41,7 @@ const Effect effects::hysteresis{
     .source = "Dahl, 1968; for harmonic drives Taghirad and Belanger, 1998; Tuttle, 1992",
     .domain = Domain::position,
     .parameters = {linear("torque_nm", "Nm", "half the width of the loop", {0.5, 0.0, 1e5}),
-                   reversal_width_parameter("angle after a reversal in which 63 % of the change is made",
-                                            {0.3, 0.7, 1.5, 3.0, 6.0, 12.0, 24.0}),
+                   reversal_width_parameter("angle after a reversal in which 63 % of the change is made"),
                    initial_state_parameter()},
     .resists = true,
     .apply = [](const Situation& situation, Values values, Torques torque_nm) {
@@ -92,8 +91,7 @@ const Effect effects::backlash{
         "cube of the twist",
     .domain = Domain::position,
     .parameters = {linear("torque_nm", "Nm", "torque that the flanks carry beyond the play", {0.5, 0.0, 1e5}),
-                   reversal_width_parameter("play: angle from the contact of one flank to that of the other",
-                                            {0.2, 0.5, 1.0, 2.0, 4.0, 8.0}),
+                   reversal_width_parameter("play: angle from the contact of one flank to that of the other"),
                    initial_state_parameter()},
     .apply = [](const Situation& situation, Values values, Torques torque_nm) {
         const std::vector<double>& position_deg = situation.motion.position_deg;
@@ -128,10 +126,9 @@ const Effect effects::start_stop_ringing{
     .parameters = {linear("amplitude_nm", "Nm", "zero to peak just after the acceleration grew by 100 deg/s2",
                           {0.5, 0.0, 1e5}),
                    plain("phase_deg", "deg", "of the cosine at the change", {0.0, -360.0, 360.0}),
-                   logarithmic("frequency_hz", "Hz", "of the ringing", {5.0, 0.05, 1e4, 5.0},
-                               {1.5, 2.0, 2.7, 3.6, 4.7, 6.2, 8.0, 10.5, 14.0, 18.0, 24.0}),
-                   logarithmic("decay_s", "s", "time in which it falls to 37 %", {0.5, 0.001, 100.0, 0.5},
-                               {0.25, 0.8})},  // chosen, not derived
+                   logarithmic("frequency_hz", "Hz", "of the ringing", {5.0, 0.05, 1e4, 5.0}),
+                   logarithmic("decay_s", "s", "time in which it falls to 37 %",
+                               {0.5, 0.001, 100.0, 0.5})},  // chosen, not derived
     .polar = Polar{0, 1},
     .apply = [](const Situation& situation, Values values, Torques torque_nm) {
         const std::vector<double>& acceleration = situation.motion.acceleration_deg_s2;

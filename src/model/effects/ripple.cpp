@@ -45,8 +45,7 @@ const Effect effects::ripple{
                      "a travel of a whole output revolution"}},
     .source = "Kim, Kim, Song, Trans. KSME A, 2011, eq. 1 and 3; Taghirad and Belanger, 1998",
     .domain = Domain::order,
-    .parameters = {cycles_parameter("order", "cycles per motor revolution", 1.0, 1000.0,
-                                    {0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 10.0, 12.0}),
+    .parameters = {cycles_parameter("order", "cycles per motor revolution", 1.0, 1000.0),
                    cosine_amplitude_parameter(), cosine_phase_parameter()},
     .polar = Polar{1, 2},
     .ripple_order = 0,
@@ -82,8 +81,7 @@ const Effect effects::output_ripple{
     .source =
         "Taghirad and Belanger, 1998, for misalignment; Godler et al., 1999, for the placing of the gauges",
     .domain = Domain::position,
-    .parameters = {cycles_parameter("order", "cycles per output revolution", 2.0, 1e5,
-                                    {2.0, 3.0, 4.0, 5.0, 6.0}),
+    .parameters = {cycles_parameter("order", "cycles per output revolution", 2.0, 1e5),
                    cosine_amplitude_parameter(), cosine_phase_parameter()},
     .polar = Polar{1, 2},
     .apply = [](const Situation& situation, Values values, Torques torque_nm) {
@@ -116,34 +114,22 @@ const Effect effects::ripple_speed_dependence{
                           "part of the ripple at that speed is gone at rest",
                           {30.0, -1000.0, 1e6}),
                    plain("exponent", "", "how it grows with the speed; 1 is in proportion",
-                         {1.0, 0.1, 4.0, 1.0}, {0.5, 1.0, 2.0}),
+                         {1.0, 0.1, 4.0, 1.0}),
                    ripple_order_parameter(),
                    assumed(
                        plain("from_deg_s", "deg/s",
                              "speed at which the ripple has the amplitude of its term; below 0.001 at rest",
                              {0.0, 0.0, 1e5}))},
-    .stated_from = from_place,
-    .change_ripple =
-        [](const Situation& situation, Order order, Values values, Gains gain) {
-            if (!concerns(order, values[2])) return;
-            const Line line = line_of(values);
-            const auto speed = [&](std::size_t k) {
-                return std::abs(situation.motion.velocity_deg_s[k]) / line.unit_deg_s;
-            };
-            const auto raise = [&](std::span<double> speeds) { portable::pow(speeds, values[1], speeds); };
-            with_values(gain.size(), speed, raise,
-                        [&](std::size_t k, double grown) { gain[k] *= line.at_rest + line.growth * grown; });
-        },
-    .restate =
-        [](double from_deg_s, std::span<double> values) {
-            const Line line = line_of(values);
-            const double unit_deg_s = is_from_rest(from_deg_s) ? 100.0 : from_deg_s;
-            const double growth = line.growth * portable::pow(unit_deg_s / line.unit_deg_s, values[1]);
-            const double there = is_from_rest(from_deg_s) ? line.at_rest : line.at_rest + growth;
-            values[0] = 100.0 * growth / there;
-            values[from_place] = from_deg_s;
-            return there;
-        }};
+    .change_ripple = [](const Situation& situation, Order order, Values values, Gains gain) {
+        if (!concerns(order, values[2])) return;
+        const Line line = line_of(values);
+        const auto speed = [&](std::size_t k) {
+            return std::abs(situation.motion.velocity_deg_s[k]) / line.unit_deg_s;
+        };
+        const auto raise = [&](std::span<double> speeds) { portable::pow(speeds, values[1], speeds); };
+        with_values(gain.size(), speed, raise,
+                    [&](std::size_t k, double grown) { gain[k] *= line.at_rest + line.growth * grown; });
+    }};
 
 const Effect effects::ripple_load_dependence{
     .name = "ripple-load-dependence",
@@ -225,7 +211,7 @@ const Effect effects::ripple_modulation{
     .side = Side::ripple,
     .domain = Domain::order,
     .parameters = {cycles_parameter("output_order", "cycles of the modulation per output revolution", 1.0,
-                                    1e4, {1.0, 2.0, 3.0}),
+                                    1e4),
                    linear("depth_percent", "%", "zero to peak, of the size of the ripple",
                           {30.0, 0.0, 1000.0}),
                    cosine_phase_parameter(), ripple_order_parameter()},
@@ -262,8 +248,7 @@ const Effect effects::resonance{
                       110.0, 150.0, 220.0}),
          logarithmic("damping", "",
                      "damping ratio; from 0.5 on it is a low-pass of second order rather than a resonance",
-                     {0.1, 0.001, 2.0, 0.1},
-                     {0.06, 0.2, 0.6}),  // chosen, not derived: weak, middling, strong
+                     {0.1, 0.001, 2.0, 0.1}),  // chosen, not derived: weak, middling, strong
 
          assumed(plain("direct", "",
                        "ripple that does not pass the elastic joint, as a part of what does; 1 at 180 deg is "
@@ -278,7 +263,7 @@ const Effect effects::resonance{
          assumed(plain("whole", "",
                        "1 where the motor's angle is logged, so that inertia, friction and all other torque "
                        "pass the elastic joint as well; 0: the ripple alone",
-                       {0.0, 0.0, 1.0}, {0.0, 1.0}))},
+                       {0.0, 0.0, 1.0}))},
     .whole = 5,
     .apply =
         [](const Situation& situation, Values values, Torques torque_nm) {
