@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Which filter, on logs in the layouts that people have and whose truth is known: ../shared/cases-4, section 1."""
 
+import csv
+import gzip
 import json
 import unittest
 
@@ -8,6 +10,13 @@ from commands import LOGS, Case, run
 
 CASES = LOGS.parent / "cases-4"
 PANDA = LOGS / "gpl3" / "panda_gaz_j1.csv"
+
+
+def table(path):
+    """The torques of a log."""
+    text = gzip.open(path, "rt") if path.suffix == ".gz" else open(path)
+    with text:
+        return [float(row["torque_nm"]) for row in csv.DictReader(text)]
 
 
 def told(done):
@@ -29,6 +38,15 @@ class CasesOfUsers(Case):
             for mine, theirs in zip(same[0]["methods"], other["methods"], strict=True):
                 self.assertEqual(mine["method"].split(",gear-ratio")[0].split(",orders")[0], theirs["method"].split(",gear-ratio")[0].split(",orders")[0])
                 self.assertAlmostEqual(mine["error_nm"], theirs["error_nm"], delta=0.01 * mine["error_nm"])
+
+    def test_an_oscillator_does_not_learn_the_torque_s_own_rise(self):
+        """It is never further from the truth than 1.5 times as far as the torque as it is."""
+        log, true = (table(CASES / name) for name in ("loaded_3s.csv.gz", "loaded_3s_true.csv.gz"))
+        for more in ("", ",output=minus-ripple", ",gain=scheduled", ",slip=0"):
+            out = self.folder / "out.csv"
+            run("filter", CASES / "loaded_3s.csv.gz", "--method", f"oscillator,gear-ratio=120,orders=1:2:4:6:8{more}", "-o", out, "--force")
+            raw, off = (max(abs(a - b) for a, b in zip(one, true, strict=True)) for one in (log, table(out)))
+            self.assertLess(off, 1.5 * raw, more)
 
     @unittest.skipUnless(PANDA.exists(), "SKIPPED: the folder of real logs is not here")
     def test_faint_orders_are_not_asked_to_meet_an_attenuation_unless_they_are_named(self):

@@ -73,9 +73,10 @@ KnownMove reversal() {
 
 }  // namespace
 
+// A cold start waits for 0.4 s of this move: before, the ripple of 0.67 Nm rms stays.
 TEST_CASE(
-    "on the paper's move the oscillator leaves less than 0.1 Nm from a cold and 0.03 Nm from a warm start") {
-    CHECK(error_on_move(cold) < 0.1);
+    "on the paper's move the oscillator leaves less than 0.27 Nm from a cold and 0.03 Nm from a warm start") {
+    CHECK(error_on_move(cold) < 0.27);
     CHECK(error_on_move(warm) < 0.03);
 }
 
@@ -84,7 +85,7 @@ TEST_CASE("an angle from a velocity with noise of 0.15 deg/s serves as well") {
         integrate_noisy_velocity(move, 0.15, 0.0, seed);
     };
     for (const bool with_position : {true, false}) {
-        CHECK(error_on_move(cold, noisy, with_position) < 0.1);
+        CHECK(error_on_move(cold, noisy, with_position) < 0.27);
         CHECK(error_on_move(warm + ",start=90deg", noisy, with_position) < 0.03);
     }
 }
@@ -107,15 +108,50 @@ TEST_CASE("what a cold start costs is the ripple that stands still with the join
         for (double phase2 = 0.0; phase2 < 360.0; phase2 += 60.0) {
             const KnownMove move = paper_move(7, phase1, phase2);
             const auto out = filtered(*start(cold), move.signals.samples());
-            // From 0.4 s on the motor has turned three times and the ripple is known.
+            // From 0.4 s on the motor has turned three times and the ripple is known and taken out.
             CHECK(rms_error(out, move.true_nm, 400) < 0.06);
             const double error = rms_error(out, move.true_nm);
             sum += error * error / 36.0;
             worst = std::max(worst, error);
         }
     }
-    CHECK(std::sqrt(sum) < 0.20);
-    CHECK(worst < 0.34);
+    CHECK(std::sqrt(sum) < 0.29);
+    CHECK(worst < 0.38);
+}
+
+TEST_CASE(
+    "a torque that rises while the motor has hardly turned is not learnt as ripple, cold or beside a map") {
+    // Friction, gravity and ripple of five orders: at rest for 50 ms, then up to 50 deg/s.
+    KnownMove move;
+    double angle = -126.0, raw = 0.0;
+    for (std::size_t k = 0; k < 3000; ++k) {
+        const double t = static_cast<double>(k) / 1000.0,
+                     v = 50.0 * std::pow(std::clamp((t - 0.05) / 0.6, 0.0, 1.0), 3);
+        angle += v / 1000.0;
+        const double theta = 120.0 * angle * std::numbers::pi / 180.0;
+        move.true_nm.push_back(3.0 * std::tanh(v / 0.3) + 14.0 * std::cos(angle * std::numbers::pi / 180.0) +
+                               0.02 * v);
+        move.signals.velocity_deg_s.push_back(v);
+        move.signals.position_deg.push_back(angle);
+        double ripple = 0.0;
+        for (const double order : {1.0, 2.0, 4.0, 6.0, 8.0}) ripple += 0.3 * std::cos(order * theta + order);
+        move.signals.torque_nm.push_back(move.true_nm.back() + ripple);
+    }
+    add_white_noise(move.signals.torque_nm, 0.05, 6, NoiseChannel::torque);
+    const auto worst_of = [&](const std::vector<double>& out) {
+        double worst = 0.0;
+        for (std::size_t k = 0; k < out.size(); ++k)
+            worst = std::max(worst, std::abs(out[k] - move.true_nm[k]));
+        return worst;
+    };
+    raw = worst_of(move.signals.torque_nm);
+    for (const char* output : {"", ",output=minus-ripple", ",slip=0", ",gain=scheduled"}) {
+        const auto out = filtered(*start("oscillator,gear-ratio=120,orders=1:2:4:6:8" + std::string(output)),
+                                  move.signals.samples());
+        CAPTURE(output);
+        CHECK(worst_of(out) < 1.2 * raw);
+        CHECK(rms_error(out, move.true_nm, 1500) < 0.05);
+    }
 }
 
 TEST_CASE("told what the joint bears at rest, a cold start leaves less than 0.16 Nm, whatever the phases") {
@@ -237,9 +273,9 @@ TEST_CASE(
     const auto in_steps = [](KnownMove& move, std::uint64_t) {
         for (double& p : move.signals.position_deg) p = 0.1 * std::round(10.0 * p);
     };
-    CHECK(error_on_move(cold, noisy) < 0.1);
+    CHECK(error_on_move(cold, noisy) < 0.27);
     CHECK(error_on_move(warm, noisy) < 0.03);
-    CHECK(error_on_move(cold, in_steps) < 0.15);
+    CHECK(error_on_move(cold, in_steps) < 0.27);
     CHECK(error_on_move(warm, in_steps) < 0.05);
 }
 

@@ -46,6 +46,13 @@ struct TrackingDesign {
     double slew = 1.0;        ///< 1 for none
 };
 
+/// For how many periods of the lowest order the oscillator gives the torque as it is measured, less the
+/// ripple of its map: a torque that rises while the motor has hardly turned cannot be told from ripple. Then
+/// what it has learnt is faded in. Chosen by measurement: docs/methods/oscillator.md#starting.
+struct OscillatorWait {
+    static constexpr double from = 0.5, until = 1.0;
+};
+
 /// A Kalman filter of torque and ripple with its gain computed at every sample (docs/methods/oscillator.md).
 struct OscillatorDesign {
     /// In units of the noise.
@@ -62,6 +69,7 @@ struct OscillatorDesign {
     double return_turns = 0.0;  ///< turns over which amplitudes decay towards 0; 0: never
     double jump = 0.0;          ///< 0: never
     double largest_slip = 0.0;
+    bool waits = false;  ///< OscillatorWait
     bool minus_ripple = false;
     /// Subtracted first, its angles counted from position 0: the amplitudes are those of the remaining
     /// ripple.

@@ -29,6 +29,7 @@ typedef struct {
     @real@ p[@NAME@_COVARIANCES]; /* their covariance, row by row from the diagonal on */
     @real@ h[@NAME@_STATES - 2];  /* how each order shows */
     @real@ origin, turns, slip, slipped, lost, left;
+    @real@ waited; /* periods of the lowest order before what is learnt counts */
     int started;
 } @name@_state;
 
@@ -41,6 +42,7 @@ static inline void @name@_begin(@name@_state* s, @real@ torque_nm) {
     s->started = 1;
     s->origin = torque_nm;
     s->left = 1;
+    s->waited = 0;
     for (i = 0; i < @NAME@_COVARIANCES; ++i) s->p[i] = 0;
     s->x[0] = s->x[1] = 0;
     s->p[0] = 1;
@@ -160,8 +162,8 @@ LoadedCode oscillator_loaded(TextReader& reader, const OscillatorDesign& d, cons
         using Real = decltype(real);
         std::optional<MapRun<Real>> map;
         if (tables) map.emplace(*d.map, *tables);
-        auto run =
-            std::make_shared<OscillatorRun<Real>>(orders, priors, values, minus_ripple, std::move(map));
+        auto run = std::make_shared<OscillatorRun<Real>>(orders, priors, values, minus_ripple, d.waits,
+                                                         std::move(map));
         return {"", [run](const CodeInput& in) { return run->step(in); }};
     });
 }

@@ -37,11 +37,13 @@ class StepCode {
         : d_(design),
           m_(2 + 2 * design.orders.size()),
           slips_(design.largest_slip > 0.0),
-          forgets_(design.return_turns > 0.0) {}
+          forgets_(design.return_turns > 0.0),
+          waits_(design.waits) {}
 
     std::string written() {
         look();
         line("    if (s->started) {{");
+        if (waits_) wait();
         if (forgets_) forget();
         predict();
         update();
@@ -49,8 +51,10 @@ class StepCode {
         line("    }} else {{\n        @name@_begin(s, torque_nm);\n    }}");
         for (std::size_t i = 2; i < m_; ++i) line("    s->h[{}] = {};", i - 2, h(i));
         line("    s->turns = motor_turns;\n    const @real@ ripple = {};", shown(2, "s->x"));
-        line(d_.minus_ripple ? "    return @name@_fma(-c->noise_nm, ripple, torque_nm);"
-                             : "    return @name@_fma(c->noise_nm, s->x[0] - ripple, s->origin);");
+        line("    {} {};", waits_ ? "const @real@ clean =" : "return",
+             d_.minus_ripple ? "@name@_fma(-c->noise_nm, ripple, torque_nm)"
+                             : "@name@_fma(c->noise_nm, s->x[0] - ripple, s->origin)");
+        if (waits_) fade_in();
         return std::move(text_);
     }
 
@@ -152,6 +156,17 @@ class StepCode {
             }
         }
     }
+    void wait() {
+        line("        s->waited = @name@_fma(size, (@real@){}, s->waited);",
+             decimal(*std::min_element(d_.orders.begin(), d_.orders.end())));
+    }
+    // What is learnt counts once the motor has turned far enough to tell it from the torque.
+    void fade_in() {
+        line("    if (!(s->waited < (@real@){})) return clean;", OscillatorWait::until);
+        line("    const @real@ share = (s->waited - (@real@){0}) / ((@real@){1} - (@real@){0});",
+             OscillatorWait::from, OscillatorWait::until);
+        line("    return share > 0 ? @name@_fma(share, clean - torque_nm, torque_nm) : torque_nm;");
+    }
     // Corrects the angle's rate from the ripple's phase.
     void correct() {
         const double lowest = *std::min_element(d_.orders.begin(), d_.orders.end());
@@ -180,7 +195,7 @@ class StepCode {
 
     const OscillatorDesign& d_;
     std::size_t m_;
-    bool slips_, forgets_;
+    bool slips_, forgets_, waits_;
     std::string text_;
 };
 

@@ -49,13 +49,15 @@ class OscillatorRun {
     using Value = OscillatorValue;
 
   public:
-    /// Arrays as in the header.
+    /// Arrays as in the header; `waits`: OscillatorDesign::waits.
     OscillatorRun(const std::vector<double>& orders, const std::vector<double>& priors,
-                  const std::vector<double>& values, bool minus_ripple, std::optional<MapRun<Real>> map)
+                  const std::vector<double>& values, bool minus_ripple, bool waits,
+                  std::optional<MapRun<Real>> map)
         : orders_(orders.begin(), orders.end()),
           priors_(priors.begin(), priors.end()),
           c_(values.begin(), values.end()),
           minus_ripple_(minus_ripple),
+          waits_(waits),
           map_(std::move(map)),
           m_(2 + 2 * orders.size()),
           x_(m_),
@@ -64,6 +66,7 @@ class OscillatorRun {
           v_(m_),
           p_(m_ * m_),
           slowest_fade_(static_cast<Real>(full_below_rate / *std::max_element(orders.begin(), orders.end()))),
+          lowest_(static_cast<Real>(*std::min_element(orders.begin(), orders.end()))),
           slowest_corrected_(static_cast<Real>(slowest_corrected_periods /
                                                *std::min_element(orders.begin(), orders.end()))) {}
 
@@ -78,6 +81,7 @@ class OscillatorRun {
         look(turns + slipped_, std::abs(step));
         torque -= mapped(in);
         if (started_) {
+            waited_ += std::abs(step) * lowest_;
             forget(std::abs(step));
             predict(std::abs(step));
             update((torque - origin_) * c_[Value::in_noise]);
@@ -89,8 +93,9 @@ class OscillatorRun {
         turns_ = turns;
         Real ripple = 0;
         for (std::size_t i = 2; i < m_; ++i) ripple += h_[i - 2] * x_[i];
-        return static_cast<double>(minus_ripple_ ? torque - c_[Value::noise_nm] * ripple
-                                                 : c_[Value::noise_nm] * (x_[0] - ripple) + origin_);
+        const Real clean = minus_ripple_ ? torque - c_[Value::noise_nm] * ripple
+                                         : c_[Value::noise_nm] * (x_[0] - ripple) + origin_;
+        return static_cast<double>(faded_in(torque, clean));
     }
 
   private:
@@ -122,6 +127,14 @@ class OscillatorRun {
         Real sum = 0;
         for (std::size_t i = 0; i < z.size(); ++i) sum += z[i] * h_[i];
         return sum;
+    }
+    // What is learnt counts once the motor has turned far enough to tell it from the torque.
+    Real faded_in(Real torque, Real clean) {
+        constexpr Real from = static_cast<Real>(OscillatorWait::from),
+                       until = static_cast<Real>(OscillatorWait::until);
+        if (!waits_ || !(waited_ < until)) return clean;
+        const Real share = (waited_ - from) / (until - from);
+        return share > 0 ? share * (clean - torque) + torque : torque;
     }
     void begin(Real torque) {
         started_ = true;
@@ -204,11 +217,13 @@ class OscillatorRun {
     }
 
     std::vector<Real> orders_, priors_, c_;
-    bool minus_ripple_;
+    bool minus_ripple_, waits_;
     std::optional<MapRun<Real>> map_;
     std::size_t m_;
     std::vector<Real> x_, h_, before_, v_, p_;  ///< p_: above the diagonal; v_: its first row before a sample
     Real slowest_fade_;                         ///< turns a sample at which the first order begins to fade
+    Real lowest_;                               ///< order
+    Real waited_ = 0;                           ///< periods of OscillatorWait
     Real slowest_corrected_;                    ///< turns a sample above which the angle's rate is corrected
     Real left_ = 1;  ///< remaining share of the amplitudes, since they were last rescaled
     Real origin_ = 0, turns_ = 0, slip_ = 0, slipped_ = 0, lost_ = 0, surprise_ = 0, squares_ = 0,

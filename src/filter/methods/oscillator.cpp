@@ -43,6 +43,7 @@ struct Plan {
     double noise_nm = 0.0;
     std::optional<RippleMap> map;  ///< mean of the amplitudes
     bool zero_unknown = false;
+    bool knows_phases = false;
     std::optional<MapReach> reach;  ///< speed range of the map
 };
 
@@ -115,6 +116,7 @@ Plan plan(const Settings& settings, Hertz sample_rate, RippleOrders ripple) {
     p.largest_slip = settings.number("slip");
     plan_priors(p, settings);
     plan_map(p, settings);
+    p.knows_phases = settings.has("phases");
     p.model.memory_turns /= p.ripple.lowest();
     p.model.return_turns /= p.ripple.lowest();
     return p;
@@ -148,7 +150,9 @@ class OscillatorFilter final : public CausalFilter {
             }
             const double clean = plan_.minus_ripple ? beside_nm - plan_.noise_nm * filter_->ripple()
                                                     : origin_nm_ + plan_.noise_nm * filter_->torque();
-            out[k] = clean;
+            const double share =
+                (waited_ - OscillatorWait::from) / (OscillatorWait::until - OscillatorWait::from);
+            out[k] = share < 1.0 ? beside_nm + std::max(share, 0.0) * (clean - beside_nm) : clean;
         }
     }
     void restart() override {
@@ -165,6 +169,7 @@ class OscillatorFilter final : public CausalFilter {
         filter_ = tied ? &warm_ : &cold_;
         const bool known = plan_.rest_nm && std::abs(velocity_deg_s) < standing_deg_s;
         origin_nm_ = known ? *plan_.rest_nm : torque_nm;
+        waited_ = known || (filter_ == &warm_ && plan_.knows_phases) ? OscillatorWait::until : 0.0;
         if (known) {
             filter_->start_unloaded(angle_.turns(), (torque_nm - origin_nm_) / plan_.noise_nm);
         } else {
@@ -177,6 +182,7 @@ class OscillatorFilter final : public CausalFilter {
     void run(double measured) {
         const double moved = angle_.step_turns(), step = moved * (1.0 + slip_);
         slipped_turns_ += moved * slip_;
+        waited_ += std::abs(step) * plan_.ripple.lowest();
         filter_->next(measured, angle_.turns() + slipped_turns_, step);
         const double share = std::min(std::abs(step) / (4.0 * plan_.model.memory_turns), 0.01);
         const double ahead_turns = share * filter_->phase_advance_turns();
@@ -196,6 +202,7 @@ class OscillatorFilter final : public CausalFilter {
     std::optional<MapMean> mean_;
     RippleKalman* filter_ = nullptr;
     double origin_nm_ = 0.0, correction_deg_s_ = 0.0;
+    double waited_ = 0.0;                      ///< periods of OscillatorWait
     double slip_ = 0.0, slipped_turns_ = 0.0;  ///< correction of the gear ratio, as a share; its integral
     bool started_ = false;
 };
@@ -251,6 +258,7 @@ RunningDesign running(const Settings& settings, Hertz sample_rate) {
     design.return_turns = p.model.return_turns;
     design.jump = p.model.jump;
     design.largest_slip = p.largest_slip;
+    design.waits = !p.knows_phases;
     design.minus_ripple = p.minus_ripple;
     design.map = p.map;
     return design;
@@ -270,7 +278,7 @@ double multiplications(const Settings& settings, const CandidateTable*) {
     const auto orders = static_cast<double>(ripple_orders("oscillator", settings).orders.size()),
                m = 2.0 + 2.0 * orders;
     const double of_states = settings.text("gain") == "scheduled" ? 6.0 * m : 1.5 * m * m + 5.5 * m;
-    constexpr double of_order = 14.0 + circle_multiplications, of_sample = 22.0;
+    constexpr double of_order = 14.0 + circle_multiplications, of_sample = 23.0;
     return of_states + orders * of_order + of_sample + map_multiplications(settings);
 }
 
