@@ -40,11 +40,19 @@ a:hover { text-decoration: underline; }
 .summary .facts { margin: 0; }
 nav h2 { margin-top: 1.4rem; }
 nav ol { margin: 0; padding-left: 1.5rem; }
+.lead + nav { margin-top: 1rem; } .lead + nav h2 { display: none; }
+.lead + nav ol { display: flex; flex-wrap: wrap; gap: .3rem 1.2rem; list-style: none; padding: 0; }
 .verdict { font-size: 1.1rem; font-weight: 600; margin: .3rem 0 1rem; }
 .facts { display: flex; flex-wrap: wrap; gap: .6rem; margin: 0 0 1rem; padding: 0; list-style: none; }
 .facts li { border: 1px solid var(--rule); border-radius: .4rem; padding: .3rem .7rem; }
 .facts b { display: block; font-size: 1.05rem; }
 .facts span, .note, figcaption, dl { color: var(--soft); font-size: .9rem; }
+.answer { background: var(--box); border-radius: .3rem; padding: .6rem .8rem; }
+.lead:first-of-type { border-top: 0; margin-top: 0; padding-top: 0; }
+.command { display: flex; gap: .5rem; align-items: start; max-width: 62rem; }
+.command pre { flex: 1; margin: .25rem 0; }
+.command button { font: inherit; font-size: .85rem; color: var(--link); background: var(--box); cursor: pointer;
+  border: 1px solid var(--rule); border-radius: .3rem; margin: .25rem 0; padding: .5rem .7rem; min-width: 5rem; }
 figure { margin: 1.2rem 0; }
 .plot { width: 100%; }
 figure img { width: 100%; height: auto; }
@@ -64,7 +72,9 @@ details > summary { cursor: pointer; color: var(--soft); }
 @media (max-width: 32rem) { body { padding: .7rem; font-size: 15px; } .facts li { flex: 1 1 40%; } }
 @media (max-width: 45rem) { figure { overflow-x: auto; } figure img { width: 44rem; } }
 @media print { :root { --ink: #000; --paper: #fff; --soft: #444; --rule: #ccc; --box: #fff; --link: #000; }
-  body { max-width: none; padding: 0; } details, .modebar { display: none; }
+  body { max-width: none; padding: 0; font-size: 11pt; } details, .modebar, .command button, nav { display: none; }
+  .scroll { overflow: visible; } table { font-size: 8pt; } th, td { padding: .1rem .25rem; }
+  .plot, figure img { max-width: 100%; }
   figure, table, article { break-inside: avoid; } figure img { filter: none; } }
 )css";
 
@@ -94,6 +104,7 @@ function draw(source, light) {
   const place = document.getElementById(source.dataset.figure);
   const whole = JSON.parse(source.textContent), read = narrow.matches ? narrowed(whole) : whole;
   const figure = dark.matches && !light ? dressed(read, "") : read;
+  if (light) figure.layout.width = 690;
   figure.layout.paper_bgcolor = "rgba(0,0,0,0)";
   figure.layout.modebar = {bgcolor: "rgba(0,0,0,0)"};
   const config = {responsive: true, displaylogo: false, showSendToCloud: false, plotlyServerURL: "",
@@ -108,8 +119,21 @@ const draw_all = (light) => sources.forEach((source) => draw(source, light));
 draw_all(false);
 dark.addEventListener("change", () => draw_all(false));
 narrow.addEventListener("change", () => draw_all(false));
+// A page of paper is narrower than the window.
 addEventListener("beforeprint", () => draw_all(true));
 addEventListener("afterprint", () => draw_all(false));
+)js";
+
+// Copies a command; where the page may not, the command is selected.
+const std::string_view copy_script = R"js(
+document.addEventListener("click", (event) => {
+  const line = event.target.matches(".command button") && event.target.previousElementSibling;
+  if (!line) return;
+  getSelection().selectAllChildren(line);
+  const said = (word) => { event.target.textContent = word; };
+  if (navigator.clipboard) navigator.clipboard.writeText(line.textContent).then(() => said("copied"), () => said("selected"));
+  else said(document.execCommand("copy") ? "copied" : "selected");
+});
 )js";
 
 namespace {
@@ -147,22 +171,36 @@ std::string script_hash(std::string_view script) {
 
 class Writer {
   public:
-    explicit Writer(const std::optional<std::string>& plotly_js) : plotly_js_(plotly_js) {}
+    Writer(const Page& page, const std::optional<std::string>& plotly_js)
+        : pictured_(std::any_of(page.sections.begin(), page.sections.end(),
+                                [](const PageSection& one) { return !one.figures.empty(); })),
+          plotly_js_(pictured_ ? plotly_js : std::nullopt) {}
 
     [[nodiscard]] std::string written(const Page& page) {
-        head(page.title);
+        head(page);
         put("<h1>{}</h1>\n", shown(page.title));
-        if (!plotly_js_) {
+        if (pictured_ && !plotly_js_) {
             put("<p class=\"note\">plotly.js was not found when this page was made, so the figures are "
                 "pictures: no zoom, no "
                 "values under the pointer.</p>\n");
         }
-        summary(page);
-        contents(page);
-        for (const PageSection& one : page.sections) section(one);
+        const auto leads = [](const PageSection& one) { return one.leads; };
+        const bool led = std::any_of(page.sections.begin(), page.sections.end(), leads);
+        if (!led) {
+            summary(page);
+            contents(page);
+        }
+        for (const PageSection& one : page.sections) {
+            if (one.leads)
+                lead(one, one.title != page.title);
+            else
+                section(one);
+            if (led && &one == page.sections.data()) contents(page);
+        }
         put("<p class=\"note\">Made by {} {}; this page loads nothing from anywhere.</p>\n", tool_name,
             version());
         if (plotly_js_) put("<script>{}</script>\n<script>{}</script>\n", *plotly_js_, page_script);
+        if (copies(page)) put("<script>{}</script>\n", copy_script);
         put("</body>\n</html>\n");
         return std::move(text_);
     }
@@ -174,9 +212,16 @@ class Writer {
     }
     static std::string shown(std::string_view text) { return html_escaped(visible_text(text)); }
 
-    void head(const std::string& title) {
-        std::string scripts = "'none'";
+    static bool copies(const Page& page) {
+        return std::any_of(page.sections.begin(), page.sections.end(),
+                           [](const PageSection& one) { return !one.commands.empty(); });
+    }
+
+    void head(const Page& page) {
+        std::string scripts;
         if (plotly_js_) scripts = script_hash(*plotly_js_) + " " + script_hash(page_script);
+        if (copies(page)) scripts += (scripts.empty() ? "" : " ") + script_hash(copy_script);
+        if (scripts.empty()) scripts = "'none'";
         put("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
             "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src {}; "
             "style-src "
@@ -184,7 +229,7 @@ class Writer {
             "<meta name=\"color-scheme\" content=\"light dark\">\n"
             "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{}</title>\n"
             "<style>{}</style>\n</head>\n<body>\n",
-            scripts, shown(title), page_style);
+            scripts, shown(page.title), page_style);
     }
 
     // The question, the verdict and the numbers of each result, before anything else.
@@ -193,8 +238,8 @@ class Writer {
         for (std::size_t i = 0; i < page.sections.size(); ++i) {
             const PageSection& one = page.sections[i];
             if (!one.in_summary) continue;
-            put("<article{}>\n<h2><a href=\"#result-{}\">{}</a></h2>\n", state_class(one.state), i + 1,
-                shown(one.title));
+            put("<article class=\"result{}\">\n<h2><a href=\"#result-{}\">{}</a></h2>\n",
+                answer_class(one.state), i + 1, shown(one.title));
             if (!one.verdict.empty()) put("<p>{}{}</p>\n", state_badge(one.state), shown(one.verdict));
             facts(one.key);
             put("</article>\n");
@@ -202,10 +247,10 @@ class Writer {
         put("</div>\n");
     }
 
-    static std::string_view state_class(PageState state) {
-        return state == PageState::good       ? " class=\"good\""
-               : state == PageState::doubtful ? " class=\"doubtful\""
-               : state == PageState::bad      ? " class=\"bad\""
+    static std::string_view answer_class(PageState state) {
+        return state == PageState::good       ? " good"
+               : state == PageState::doubtful ? " doubtful"
+               : state == PageState::bad      ? " bad"
                                               : "";
     }
     static std::string_view state_badge(PageState state) {
@@ -217,9 +262,13 @@ class Writer {
 
     void contents(const Page& page) {
         if (page.sections.size() < 2) return;
+        // What stands above needs no entry; of several answers, one each is enough.
+        const auto leads = std::count_if(page.sections.begin(), page.sections.end(),
+                                         [](const PageSection& one) { return one.leads; });
         put("<nav>\n<h2>Contents</h2>\n<ol>\n");
-        for (std::size_t i = 0; i < page.sections.size(); ++i)
-            put("<li><a href=\"#result-{}\">{}</a></li>\n", i + 1, shown(page.sections[i].title));
+        for (std::size_t i = leads > 0 ? 1 : 0; i < page.sections.size(); ++i)
+            if (leads < 2 || page.sections[i].leads)
+                put("<li><a href=\"#result-{}\">{}</a></li>\n", i + 1, shown(page.sections[i].title));
         put("</ol>\n</nav>\n");
     }
 
@@ -231,10 +280,31 @@ class Writer {
         put("</ul>\n");
     }
 
+    // The picture, the answer, its numbers, and what to do.
+    void lead(const PageSection& one, bool titled) {
+        put("<section class=\"lead\">\n<h2 id=\"result-{}\"{}>{}</h2>\n", ++sections_,
+            titled ? "" : " hidden", shown(one.title));
+        if (!one.about.empty()) put("<p class=\"note\">{}</p>\n", shown(one.about));
+        for (const Figure& drawn : one.figures) figure(drawn, false);
+        if (!one.verdict.empty())
+            put("<p class=\"verdict answer{}\">{}{}</p>\n", answer_class(one.state), state_badge(one.state),
+                shown(one.verdict));
+        for (const PageTable& numbers : one.tables) rows(numbers);
+        for (const std::string& command : one.commands)
+            put("<div class=\"command\"><pre>{}</pre><button type=\"button\">copy</button></div>\n",
+                shown(command));
+        put("</section>\n");
+    }
+
     void section(const PageSection& one) {
         put("<section>\n<h2 id=\"result-{}\">{}</h2>\n", ++sections_, shown(one.title));
         if (!one.verdict.empty()) put("<p class=\"verdict\">{}</p>\n", shown(one.verdict));
         facts(one.key);
+        if (!one.notes.empty()) {
+            put("<ul>\n");
+            for (const std::string& note : one.notes) put("<li>{}</li>\n", shown(note));
+            put("</ul>\n");
+        }
         for (const Figure& drawn : one.figures) figure(drawn, drawn.title != one.title);
         for (const PageTable& shown_table : one.tables)
             if (!shown_table.folded) table(shown_table);
@@ -259,7 +329,21 @@ class Writer {
         reproduce(one);
     }
 
-    void figure(const Figure& drawn, bool titled) {
+    // A panel of two dots, or of nothing, is none.
+    static bool shows(const Panel& panel) {
+        if (panel.map || !panel.ribbons.empty()) return true;
+        std::size_t dots = 0;
+        for (const Curve& curve : panel.curves) {
+            const bool drawn = curve.style == CurveStyle::points || curve.style == CurveStyle::crosses;
+            if (!drawn && curve.x.size() > 1) return true;
+            dots += curve.x.size();
+        }
+        return dots > 2;
+    }
+
+    void figure(Figure drawn, bool titled) {
+        std::erase_if(drawn.panels, [](const Panel& panel) { return !shows(panel); });
+        if (drawn.panels.empty()) return;
         const std::string id = fmt::format("figure-{}", ++figures_);
         put("<figure>\n");
         if (titled) put("<h3>{}</h3>\n", shown(drawn.title));
@@ -319,7 +403,8 @@ class Writer {
             html_escaped(visible_json(one.json)));
     }
 
-    const std::optional<std::string>& plotly_js_;
+    bool pictured_ = false;
+    std::optional<std::string> plotly_js_;  ///< where there is a figure to draw
     std::string text_;
     int figures_ = 0, sections_ = 0;
 };
@@ -354,7 +439,7 @@ std::string html_escaped(std::string_view text) {
 }
 
 std::string html_page(const Page& page, const std::optional<std::string>& plotly_js) {
-    return Writer(plotly_js).written(page);
+    return Writer(page, plotly_js).written(page);
 }
 
 }  // namespace ripplenotch

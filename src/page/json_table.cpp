@@ -138,7 +138,8 @@ std::string value_text(const Json& json) {
 
 std::string coarse_text(double value) {
     constexpr double dust = 1e-9;  // in Nm, dB, %, ms: rounding errors of zero
-    return std::abs(value) < dust ? "0" : fmt::format("{:.4g}", value);
+    if (std::abs(value) < dust) return "0";
+    return std::abs(value) < 999.5 ? fmt::format("{:.3g}", value) : fmt::format("{:.0f}", value);
 }
 
 std::string field_text(const Json& owner, const std::string& name) {

@@ -22,7 +22,7 @@ struct Spoken {
 /// "-" for null; numbers with six significant digits, or four below 1, spans as "0.5 to 2.25; 4 to 5".
 [[nodiscard]] std::string value_text(const Json& json);
 
-/// Four significant digits; 0 for a rounding error of zero (below 1e-9).
+/// Three significant digits, whole numbers from 1000 on; 0 for a rounding error of zero (below 1e-9).
 [[nodiscard]] std::string coarse_text(double value);
 
 /// A field of `owner`: digits as far as its standard error (NAME_stderr, or stderr and ci95 next to a value)

@@ -548,6 +548,24 @@ void add_method_ledgers(PageSection& section, const Json& methods, const PageTab
     }
 }
 
+// The best methods, the first of them; the others on demand.
+void add_best(PageSection& section, PageTable methods) {
+    constexpr std::size_t best = 5;
+    const auto count = std::min(best, methods.rows.size());
+    PageTable others = methods;
+    methods.rows.resize(count);
+    std::erase_if(methods.legend, [&](const PageFact& fact) {
+        return std::none_of(methods.rows.begin(), methods.rows.end(),
+                            [&](const auto& row) { return row[0] == fact.name; });
+    });
+    section.tables.push_back(std::move(methods));
+    others.rows.erase(others.rows.begin(), others.rows.begin() + static_cast<std::ptrdiff_t>(count));
+    if (others.rows.empty()) return;
+    others.title = "The other methods";
+    others.folded = true;
+    section.tables.push_back(std::move(others));
+}
+
 // The tables that people read across have columns of their own choice; false for any other.
 bool add_known_table(PageSection& section, const std::string& kind, const std::string& name,
                      const Json& rows) {
@@ -556,7 +574,7 @@ bool add_known_table(PageSection& section, const std::string& kind, const std::s
         section.tables.push_back(comparison_table(rows));
         add_method_ledgers(section, rows, PageTable(section.tables.back()));
     } else if (kind == "recommendation" && name == "methods") {
-        section.tables.push_back(comparison_table(rows));
+        add_best(section, comparison_table(rows));
         section.tables.push_back(table_of(name, rows));
         section.tables.back().title = "Every value of the methods";
         section.tables.back().folded = true;

@@ -11,7 +11,7 @@
 
 namespace ripplenotch {
 
-// Tables of results that people read across: columns chosen and named, four digits.
+// Tables of results that people read across: columns chosen and named, three digits.
 
 /// The methods of a comparison under the labels A, B, C in the order given (a control keeps its name), with
 /// the meaning of each label below, and the reason why a method does not fit where that was requested;

@@ -141,18 +141,37 @@ class Pages(SharedCase):
              "ramp,from-speed=20deg/s,to-speed=65deg/s,duration=6s", "--sample-rate", "500Hz", "--noise", "0.05Nm", "--seed", "3",
              "-o", "moving.csv", cwd=self.folder)
         page = self.page("moving.csv")
-        titles = re.findall(r'<h2 id="result-\d+">([^<:]*)', page)
-        for kind in ("Recommended method", "Ripple lines and gear ratio", "The log"):
-            self.assertIn(kind, titles)
-        self.assertEqual(titles[0], "Recommended method")
+        titles = re.findall(r'<h2 id="result-\d+"[^>]*>([^<]*)', page)
+        self.assertEqual(titles[:3], ["moving.csv", "Which ripple, and which gear", "Which method, and why"])
+        self.assertEqual(titles[-2:], ["What the log does not tell", "How the log was read"])
+        lead = page[:page.index("Which ripple, and which gear</h2>")]
+        self.assertLess(lead.index("<figure>"), lead.index("Use "))
+        self.assertRegex(lead, r"(?s)<th>order</th><th>before, Nm</th><th>after, Nm</th>.*<td>2</td>")
+        self.assertRegex(lead, r"<pre>ripplenotch filter moving\.csv .*</pre><button")
+        self.assertRegex(lead, r"<pre>ripplenotch export .*</pre><button")
+        self.assertNotIn(str(self.folder), page)
         self.assertEqual(self.page("moving.csv"), page)  # no temporary names in it
         self.assertNotIn("ripplenotch-report", page)
         done = run("report", "data/paper_move_2s.csv", "--unit", "velocity=furlong", cwd=self.folder)
         self.assertEqual((done.returncode, done.stdout), (2, ""), done.stderr)
         done = run("report", "data/paper_move_2s.csv", "joint.json", cwd=self.folder)
-        self.assertEqual((done.returncode, "a report is one of a log, or one of results" in done.stderr), (2, True))
+        self.assertEqual((done.returncode, "a report is one of logs, or one of results" in done.stderr), (2, True))
         done = run("data/paper_move_2s.csv", cwd=self.folder)
         self.assertEqual((done.returncode, "ripplenotch report data/paper_move_2s.csv" in done.stderr), (2, True), done.stderr)
+
+    def test_a_pipe_several_logs_several_joints_and_rest_have_a_page(self):
+        log = (DATA / "paper_60deg_s.csv").read_text()
+        done = run("report", "-", "-q", cwd=self.folder, stdin=log)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("<h1>standard input</h1>", done.stdout)
+        self.assertIn("<pre>ripplenotch filter log.csv ", done.stdout)
+        page = self.page("data/paper_60deg_s.csv", "data/paper_120deg_s.csv")
+        self.assertRegex(page, r"(?s)<td[^>]*>paper_60deg_s.csv</td>.*<td[^>]*>paper_120deg_s.csv</td>.*Which ripple")
+        rows = [line.split(",") for line in (DATA / "paper_move_2s.csv").read_text().split()]
+        names = ["time_s", *(f"j{joint}_{name}" for joint in (1, 2) for name in rows[0][1:])]
+        (self.folder / "two.csv").write_text("\n".join(",".join(row) for row in [names] + [row + row[1:] for row in rows[1:]]))
+        self.assertRegex(self.page("two.csv"), r"(?s)The joints.*<td[^>]*>j1</td>.*<td[^>]*>j2</td>.*>j1</h2>.*>j2</h2>")
+        self.assertIn("record motion in one direction at several speeds", self.page("data/paper_rest.csv"))
 
     def test_what_is_no_result_is_named(self):
         for name, text in (("log.csv", "a,b\n1,2\n"), ("x.json", "{}"), ("y.json", '{"schema": "ripplenotch/joint/1"}')):

@@ -146,8 +146,23 @@ TEST_CASE("a page shows hostile text as text and lets no script run but its own 
 }
 
 TEST_CASE("the hash in the policy is that of the script: the empty one's is known") {
-    const std::string html = html_page({"t", {}}, "");
+    const Page page{"t", {section_of_result(figure_json(full_figure()), "a.json")}};
+    const std::string html = html_page(page, "");
     CHECK_THAT(html, Contains("'sha256-47DEQpj8HBSa+/TImW+5JCeuQeRkm5NMpJWZG3hSuFU='"));
+}
+
+TEST_CASE("a page without a figure needs no plotly") {
+    const std::string html = html_page({"t", {}}, "var Plotly;");
+    CHECK_THAT(html, Contains("script-src 'none'") && !Contains("<script") && !Contains("plotly"));
+}
+
+TEST_CASE("commands can be copied, by a script that the policy names") {
+    Page page{"t", {{}}};
+    page.sections[0].leads = true;
+    page.sections[0].commands = {"ripplenotch filter 'a <b>.csv' -o out.csv"};
+    const std::string html = html_page(page, std::nullopt);
+    CHECK_THAT(html, Contains("<pre>ripplenotch filter &#39;a &lt;b&gt;.csv&#39; -o out.csv</pre><button"));
+    CHECK_THAT(html, Contains("script-src 'sha256-") && Contains("<script>"));
 }
 
 TEST_CASE("without plotly the page carries pictures, says so, and runs no script") {
@@ -182,12 +197,12 @@ TEST_CASE("any result becomes verdict, facts and tables with units from its name
     CHECK(section.figures.empty());
     REQUIRE(section.facts.size() == 3);
     CHECK(section.facts[1].name == "clock rate, Hz");
-    CHECK(section.facts[2].value == "0.01235");
+    CHECK(section.facts[2].value == "0.0123");
     REQUIRE(section.tables.size() == 2);
     CHECK(section.tables[0].title == "clock gaps");
     const std::vector<std::string> header{"name", "level, Nm", "settle 0.5, ms", "settle 1, ms", "note"};
     CHECK(section.tables[1].header == header);
-    CHECK(section.tables[1].rows[1] == std::vector<std::string>{"second", "0.1235", "-", "-", "late"});
+    CHECK(section.tables[1].rows[1] == std::vector<std::string>{"second", "0.123", "-", "-", "late"});
 }
 
 TEST_CASE("what is no result is refused by name") {
@@ -216,7 +231,7 @@ TEST_CASE("a value has the digits that its interval or its standard error allows
     CHECK(field_text(coarse, "value") == "1234");  // an interval that there is not says nothing
 }
 
-TEST_CASE("numbers without an error have four digits, whole ones all of theirs") {
+TEST_CASE("numbers without an error have three or four digits, whole ones all of theirs") {
     const Json row = {
         {"rms_nm", 0.434973912}, {"speed_deg_s", 109.4951234}, {"score", 0.04798308}, {"rows", 123456789},
         {"db", 12.345678},       {"residual_hz", 1.2345678},   {"time_s", 6.503}};
@@ -224,8 +239,8 @@ TEST_CASE("numbers without an error have four digits, whole ones all of theirs")
     CHECK(field_text(row, "speed_deg_s") == "109.5");
     CHECK(field_text(row, "score") == "0.04798");
     CHECK(field_text(row, "rows") == "123456789");
-    CHECK(field_text(row, "db") == "12.35");
-    CHECK(field_text(row, "residual_hz") == "1.235");
+    CHECK(field_text(row, "db") == "12.3");
+    CHECK(field_text(row, "residual_hz") == "1.23");
     CHECK(field_text(row, "time_s") == "6.503");
 }
 

@@ -40,6 +40,11 @@ struct PageSection {
     bool in_summary = false;       ///< a result; false: a figure alone
     PageState state = PageState::none;
     std::vector<PageFact> key = {};  ///< at most three numbers that answer it
+    /// The answer of a whole page: the figures, then the verdict, the tables and the commands.
+    bool leads = false;
+    std::string about = {};                  ///< below the title
+    std::vector<std::string> notes = {};     ///< a list of sentences
+    std::vector<std::string> commands = {};  ///< to be pasted, one a line
 };
 
 struct Page {
@@ -50,8 +55,8 @@ struct Page {
 // A page as one self-contained HTML file that makes no network requests.
 
 /// `plotly_js` is the text of that library, which draws the figures; without it gnuplot's pictures take their
-/// place. The same page gives the same bytes. Only the two scripts that it holds itself may run: its content
-/// security policy names them by their hashes and forbids every address.
+/// place; a page without a figure does not hold it. The same page gives the same bytes. Only the scripts that
+/// it holds itself may run: its content security policy names them by their hashes and forbids every address.
 [[nodiscard]] std::string html_page(const Page& page, const std::optional<std::string>& plotly_js);
 
 /// Text between tags and in attributes.

@@ -4,20 +4,27 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <filesystem>
-#include <fstream>
+#include <iterator>
 #include <optional>
 #include <system_error>
+#include <utility>
 
 #include "cli/command.hpp"
 #include "cli/run.hpp"
 #include "core/files/byte_sink.hpp"
 #include "document/json/json.hpp"
+#include "page/json_table.hpp"
+#include "page/result_section.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/files.hpp"
 #include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/document/figure_json.hpp"
+#include "ripplenotch/figure/figure.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -51,6 +58,13 @@ class Workspace {
         return text;
     }
 
+    /// Where the commands find the log: its file, or what was piped in, under a name that they can print.
+    [[nodiscard]] std::string holding(const LogReport& report) const {
+        if (report.piped.empty()) return report.log;
+        write_all(path("log.csv"), report.piped, ByteSink::Overwrite{true});
+        return path("log.csv");
+    }
+
   private:
     std::string folder_;
 };
@@ -60,20 +74,35 @@ Words operator+(Words words, const Words& more) {
     return words;
 }
 
-class Run {
+/// One joint of a log: the answer with its picture first, then a section for each question.
+class JointReport {
   public:
-    explicit Run(const LogReport& report) : report_(report), gear_(report.gear) {}
+    JointReport(const LogReport& report, std::string title, Words joint)
+        : report_(report),
+          log_(workspace_.holding(report)),
+          title_(std::move(title)),
+          reading_(report.reading + joint),
+          gear_(report.gear) {}
 
+    /// Throws where identify refuses the log: the other commands would repeat its message.
     std::vector<PageSection> sections() {
-        // Its refusal is that of the whole report: the others would repeat it.
-        command({"identify", report_.log, "--json", "-o", workspace_.path("joint.json")},
-                report_.reading + report_.ratio, report_.quiet);
-        const auto advice =
-            try_step({"recommend", report_.log}, report_.reading + report_.gear, "recommendation.json");
-        take("joint.json");
-        if (advice) show_recommended(*advice);
-        show_spectrogram();
-        try_step({"info", report_.log}, report_.reading, "info.json");
+        command({"identify", log_, "--json", "-o", workspace_.path("joint.json")}, reading_ + report_.ratio,
+                report_.quiet);
+        const Json found = taken("joint.json", "Which ripple, and which gear");
+        const Json advice = tried({"recommend", log_}, reading_ + report_.gear, "recommendation.json",
+                                  "Which method, and why");
+        const Json log = tried({"info", log_}, reading_, "info.json", "How the log was read");
+        if (advice.contains("take")) show_recommended(advice);
+        if (const auto campbell =
+                figure({"spectrum", log_, "--map", "campbell", "-o", workspace_.path("campbell.csv")},
+                       reading_, "campbell.json"))
+            add("The spectrum at each speed", *campbell);
+        add_notes(found, advice, log);
+        sections_.insert(sections_.begin(), lead(found, advice, log));
+        // The answer stands above.
+        for (PageSection& section : sections_)
+            if (!section.leads && section.verdict == sections_.front().verdict) section.verdict.clear();
+        order_by_question();
         return std::move(sections_);
     }
 
@@ -85,40 +114,53 @@ class Run {
             raise<DataError>("{} ended with exit code {}", words.front(), static_cast<int>(code));
     }
 
-    /// Runs a command that writes JSON, and adds its sections; none where it refuses.
-    std::optional<Json> try_step(const Words& words, const Words& options, const std::string& file) {
+    /// Runs a command that writes JSON, and adds its section; one with its message where it refuses.
+    Json tried(const Words& words, const Words& options, const std::string& file, const std::string& title) {
         try {
             command(words + Words{"--json", "-o", workspace_.path(file)}, options, true);
         } catch (const Error& error) {
             PageSection section;
-            section.title = fmt::format("{}: {}", words.front(), report_.log);
+            section.title = title;
             section.verdict = error.what();
             sections_.push_back(std::move(section));
-            return std::nullopt;
+            return Json::object();
         }
-        return take(file);
+        return taken(file, title);
     }
 
-    Json take(const std::string& file) {
+    Json taken(const std::string& file, const std::string& title) {
         const std::string text = workspace_.text(file);
-        for (PageSection& section : sections_of_result(text, report_.log))
+        for (PageSection& section : sections_of_result(text, "")) {
+            section.title = title;
+            // The page names the log once.
+            for (Figure& drawn : section.figures)
+                if (drawn.title.ends_with(": ")) drawn.title.resize(drawn.title.size() - 2);
             sections_.push_back(std::move(section));
+        }
         return Json::parse(text);
     }
 
     /// The figure that a command draws; a command without one, or a figure without points, is no loss.
-    void try_figure(const Words& words, const Words& options, const std::string& file) {
+    std::optional<Figure> figure(const Words& words, const Words& options, const std::string& file) {
         try {
             command(words + Words{"--plot", workspace_.path(file)}, options, true);
-            take(file);
+            return figure_from_json(workspace_.text(file), file);
         } catch (const Error&) {
-            return;
+            return std::nullopt;
         }
+    }
+
+    void add(const std::string& title, Figure drawn) {
+        PageSection section;
+        section.title = title;
+        section.verdict = std::exchange(drawn.sentence, "");
+        drawn.title = title;
+        section.figures.push_back(std::move(drawn));
+        sections_.push_back(std::move(section));
     }
 
     /// What the recommended method does to the log.
     void show_recommended(const Json& advice) {
-        if (!advice.contains("take")) return;  // several joints: a section each has been added
         // As recommend found it, in the first part of the log.
         const Json& found = advice["gear"];
         if (report_.gear.empty() && found.is_object()) {
@@ -132,9 +174,13 @@ class Run {
         if (!advice["take"].is_string()) return;
         const auto method = with_files(advice["take"].get<std::string>(), advice);
         if (!method) return;
-        try_figure(Words{"filter", report_.log, "-o", workspace_.path("filtered.csv"), "--decimals", "6"} +
-                       Words{"--method", *method},
-                   report_.reading + gear_, "filtered.json");
+        filtered_ = figure(Words{"filter", log_, "-o", workspace_.path("filtered.csv"), "--decimals", "6",
+                                 "--method", *method},
+                           reading_ + gear_, "filtered.json");
+        if (!filtered_ || filtered_->panels.size() < 2) return;
+        Figure whole = *filtered_;
+        whole.panels.erase(whole.panels.begin());
+        add("The whole log, before and after", std::move(whole));
     }
 
     /// The method with the map that it needs, made of the first part of the log; none for other files.
@@ -143,53 +189,235 @@ class Run {
         const std::size_t at = method.find(map);
         if (at == std::string::npos)
             return method.find(".json") == std::string::npos ? std::optional(method) : std::nullopt;
-        if (!map_made_)
-            map_made_ = try_step({"map", report_.log},
-                                 without_range() + Words{"--to", seconds(advice)} + gear_, "map.json")
-                            .has_value();
-        if (!map_made_) return std::nullopt;
+        const Json made =
+            tried({"map", log_},
+                  without_range() + Words{"--to", shortest(advice.at("split_s").get<double>()) + "s"} + gear_,
+                  "map.json", "The ripple map");
+        if (made.empty()) return std::nullopt;
         return method.replace(at, map.size(), "map=" + workspace_.path("map.json"));
     }
 
-    static std::string seconds(const Json& advice) {
-        return shortest(advice.at("split_s").get<double>()) + "s";
-    }
-
     // recommend splits what --from and --to leave; its parts have ends of their own.
-    Words without_range() const {
+    [[nodiscard]] Words without_range() const {
         Words words;
-        for (std::size_t i = 0; i < report_.reading.size(); ++i) {
-            if (report_.reading[i] == "--from" || report_.reading[i] == "--to")
+        for (std::size_t i = 0; i < reading_.size(); ++i) {
+            if (reading_[i] == "--from" || reading_[i] == "--to")
                 ++i;
             else
-                words.push_back(report_.reading[i]);
+                words.push_back(reading_[i]);
         }
         return words;
     }
 
-    void show_spectrogram() {
-        try_figure({"spectrum", report_.log, "--map", "campbell", "-o", workspace_.path("campbell.csv")},
-                   report_.reading, "campbell.json");
+    PageSection lead(const Json& found, const Json& advice, const Json& log) {
+        PageSection top;
+        top.title = title_;
+        top.leads = true;
+        top.about = about(log);
+        const bool advised = advice.contains("verdict");
+        top.verdict = value_text(advised ? advice["verdict"] : found["verdict"]);
+        top.state = state_of(advised ? advice : found);
+        if (auto picture = first_picture(found)) top.figures.push_back(std::move(*picture));
+        if (auto orders = before_and_after(advice); !orders.rows.empty())
+            top.tables.push_back(std::move(orders));
+        if (advice.contains("take_commands"))
+            for (const Json& line : advice["take_commands"]) top.commands.push_back(value_text(line));
+        return top;
     }
 
+    static std::string about(const Json& log) {
+        if (!log.contains("rows")) return "";
+        std::string text = fmt::format("{} rows in {:.4g} s", log["rows"].get<std::size_t>(),
+                                       log["duration_s"].get<double>());
+        if (log["sample_rate_hz"].is_number())
+            text += fmt::format(" at {:.4g} Hz", log["sample_rate_hz"].get<double>());
+        const auto& speed = log["speed_deg_s"];
+        if (speed.is_object() && speed["min"].is_number())
+            text += fmt::format("; speed {:.3g} to {:.3g} deg/s", speed["min"].get<double>(),
+                                speed["max"].get<double>());
+        return text + ".";
+    }
+
+    /// A detail of the torque, and the spectrum over orders, each before and after the method.
+    std::optional<Figure> first_picture(const Json& found) {
+        const Words by_order{"--domain", "order"};
+        auto before = figure(Words{"spectrum", log_, "-o", workspace_.path("before.csv")} + by_order,
+                             reading_, "before.json");
+        if (before && before->panels.size() == 1) before->panels[0].y.label = "amplitude";
+        Figure picture{"torque", "", "", {}};
+        if (filtered_) {
+            picture.panels.push_back(filtered_->panels.front());
+            picture.panels.back().title = "Torque, where the ripple is largest";
+        }
+        if (before && before->panels.size() == 1) {
+            Panel panel = std::move(before->panels.front());
+            panel.title = "Spectrum over orders";
+            panel.curves.resize(1);
+            panel.curves[0].name = filtered_ ? "before" : "torque";
+            panel.curves[0].ink = Ink::orange;
+            name_lines(panel, found);
+            if (filtered_) {
+                const Words spectrum{"spectrum", workspace_.path("filtered.csv"), "-o",
+                                     workspace_.path("after.csv")};
+                auto after = figure(spectrum + by_order, reading_, "after.json");
+                if (!after) after = figure(spectrum + by_order, {}, "after.json");
+                if (after && after->panels.size() == 1) {
+                    panel.curves.push_back(std::move(after->panels.front().curves.front()));
+                    panel.curves.back().name = "after";
+                    panel.curves.back().ink = Ink::blue;
+                    const auto& low = panel.curves.back().y;
+                    panel.y.from = std::min(panel.y.from.value_or(1e300),
+                                            0.7 * *std::min_element(low.begin(), low.end()));
+                }
+            }
+            picture.panels.push_back(std::move(panel));
+        }
+        if (picture.panels.empty()) return std::nullopt;
+        // The answer below shall be on the same screen.
+        for (Panel& panel : picture.panels) panel.height = 0.7;
+        return picture;
+    }
+
+    /// The lines of identify, each with the colour of its order; the axis ends behind the highest of them.
+    static void name_lines(Panel& panel, const Json& found) {
+        panel.lines.clear();
+        double highest = 0.0;
+        for (const Json& line : found.value("lines", Json::array())) {
+            if (!line["order_output"].is_number()) continue;
+            const double place = line["order_output"].get<double>();
+            const bool named = line["order"].is_number();
+            const double order = named ? line["order"].get<double>() : 0.0;
+            highest = std::max(highest, place);
+            panel.lines.push_back(
+                {.name = named ? fmt::format("order {:.4g}", order) : fmt::format("{:.4g} per turn", place),
+                 .run = NamedLine::Run::at_x,
+                 .value = place,
+                 .ink = named ? order_ink(order) : unknown_ink});
+        }
+        constexpr double beyond = 1.5;  // so that the highest line stands clear of the edge
+        if (highest > 0.0) panel.x.to = std::min(panel.x.to.value_or(1e300), beyond * highest);
+    }
+
+    /// What the recommended method leaves of each order, and what it costs.
+    static PageTable before_and_after(const Json& advice) {
+        PageTable table{"", {"order", "before, Nm", "after, Nm", "longest delay, ms"}, {}};
+        if (!advice.contains("take") || !advice["take"].is_string()) return table;
+        for (const Json& method : advice["methods"]) {
+            if (method["method"] != advice["take"]) continue;
+            for (const Json& fall : method["attenuation_db"]) {
+                for (const Json& order : advice["orders"]) {
+                    if (order["order"] != fall["order"] || !order["amplitude_nm"].is_number()) continue;
+                    const double before_nm = order["amplitude_nm"].get<double>();
+                    const bool known = fall["db"].is_number();
+                    table.rows.push_back(
+                        {fmt::format("{:.4g}", order["order"].get<double>()), coarse_text(before_nm),
+                         known ? coarse_text(before_nm * std::pow(10.0, -fall["db"].get<double>() / 20.0))
+                               : "0",
+                         method["longest_delay_ms"].is_number()
+                             ? fmt::format("{:.3g}", method["longest_delay_ms"].get<double>())
+                             : "-"});
+                }
+            }
+        }
+        return table;
+    }
+
+    /// What was assumed, what was not tried and why, and what a further log should have.
+    void add_notes(const Json& found, const Json& advice, const Json& log) {
+        PageSection section;
+        section.title = not_told;
+        const auto list = [&](const Json& of, const char* name, std::string_view before) {
+            for (const Json& one : of.value(name, Json::array()))
+                section.notes.push_back(fmt::format("{}{}", before, value_text(one)));
+        };
+        list(found, "notes", "");
+        list(log, "warnings", "");
+        list(advice, "assumed", "Assumed: ");
+        list(advice, "left_out", "Not tried: ");
+        for (const Json& use : log.value("uses", Json::array()))
+            if (!use["possible"].get<bool>())
+                section.notes.push_back(
+                    fmt::format("Not possible: {}: {}", value_text(use["name"]), value_text(use["reason"])));
+        if (!section.notes.empty()) sections_.push_back(std::move(section));
+    }
+
+    /// The lead first; what the log does not tell and how it was read last.
+    void order_by_question() {
+        const auto rank = [](const PageSection& section) {
+            if (section.leads) return 0;
+            if (section.title.starts_with("Which ripple")) return 1;
+            if (section.title.starts_with("Which method")) return 2;
+            if (section.title == not_told) return 4;
+            return section.title.starts_with("How the log") ? 5 : 3;
+        };
+        std::stable_sort(sections_.begin(), sections_.end(),
+                         [&](const PageSection& a, const PageSection& b) { return rank(a) < rank(b); });
+    }
+
+    static constexpr std::string_view not_told = "What the log does not tell";
+
     const LogReport& report_;
-    Words gear_;
     Workspace workspace_;
+    std::string log_, title_;
+    Words reading_, gear_;
     std::vector<PageSection> sections_;
-    bool map_made_ = false;
+    std::optional<Figure> filtered_;
 };
+
+/// The joints of a log that are named, as options; one without any where it has one joint or one was chosen.
+std::vector<std::string> joints_of(const LogReport& report) {
+    if (std::find(report.reading.begin(), report.reading.end(), "--joint") != report.reading.end()) return {};
+    const Workspace workspace;
+    run_within(Words{"info", workspace.holding(report), "--json", "-o", workspace.path("info.json"), "-q"} +
+               report.reading);
+    std::vector<std::string> names;
+    for (const Json& joint : Json::parse(workspace.text("info.json")).value("joints", Json::array()))
+        if (joint["joint"].is_string()) names.push_back(joint["joint"].get<std::string>());
+    return names.size() > 1 ? names : std::vector<std::string>{};
+}
 
 }  // namespace
 
-bool is_log(const std::string& path) {
-    if (path == "-" || path.ends_with(".json")) return false;
-    std::ifstream file(path, std::ios::binary);
-    char first = ' ';
-    while (file.get(first) && std::isspace(static_cast<unsigned char>(first)) != 0) {
-    }
-    return file && first != '{' && first != '[';
+bool is_log(std::string_view text) {
+    const std::string_view head = text.substr(0, 4096);
+    const std::size_t first = head.find_first_not_of(" \t\r\n");
+    if (first == std::string_view::npos) return false;
+    return head[first] != '{' || head.find("\"ripplenotch/") == std::string_view::npos;
 }
 
-std::vector<PageSection> sections_of_log(const LogReport& report) { return Run(report).sections(); }
+std::string shown_name(const std::string& path) {
+    return path == "-" ? "standard input" : std::filesystem::path(path).filename().string();
+}
+
+std::vector<PageSection> sections_of_logs(const std::vector<LogReport>& reports) {
+    PageSection overview;
+    overview.leads = true;
+    overview.tables.push_back({"", {"joint", "answer"}, {}});
+    std::vector<PageSection> all;
+    const auto add = [&](const LogReport& report, const std::string& title, const Words& joint) {
+        auto sections = JointReport(report, title, joint).sections();
+        overview.tables[0].rows.push_back({title, sections.front().verdict});
+        all.insert(all.end(), std::make_move_iterator(sections.begin()),
+                   std::make_move_iterator(sections.end()));
+    };
+    for (const LogReport& report : reports) {
+        const auto joints = joints_of(report);
+        const std::string name = shown_name(report.log);
+        for (const std::string& joint : joints) {
+            // A joint that one command refuses is said in the table; the others have their sections.
+            try {
+                add(report, reports.size() > 1 ? fmt::format("{}, {}", name, joint) : joint,
+                    {"--joint", joint});
+            } catch (const DataError& error) {
+                overview.tables[0].rows.push_back({joint, error.what()});
+            }
+        }
+        if (joints.empty()) add(report, name, {});
+    }
+    if (overview.tables[0].rows.size() < 2) return all;
+    overview.title = "The joints";
+    all.insert(all.begin(), std::move(overview));
+    return all;
+}
 
 }  // namespace ripplenotch

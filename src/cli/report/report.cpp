@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <fstream>
 #include <memory>
 
 #include "cli/command.hpp"
@@ -57,24 +58,44 @@ std::optional<std::string> plotly_js_of(const ReportRequest& request) {
     return text;
 }
 
+// Empty where it cannot be read: who reads all of it says why.
+std::string beginning_of(const std::string& path) {
+    constexpr std::size_t enough = 4096;  // bytes, for the schema of a document
+    std::string text(enough, '\0');
+    std::ifstream file(path, std::ios::binary);
+    file.read(text.data(), static_cast<std::streamsize>(text.size()));
+    text.resize(static_cast<std::size_t>(file.gcount()));
+    return text;
+}
+
 ExitCode run_report(const ReportRequest& request, const Options& options) {
     if (ends_with_json(request.output))
         raise<UsageError>("-o {}: a report is an HTML page; name it .html", request.output);
     check_output_name(request.output, "a report", ".html .htm");
-    if (request.results.size() > 1 && std::any_of(request.results.begin(), request.results.end(), is_log))
-        raise<UsageError>("a report is one of a log, or one of results; read {}",
-                          fmt::join(request.results, ", "));
+    std::vector<LogReport> logs;
+    std::vector<std::string> names;
     Page page{"ripplenotch report", {}};
     for (const std::string& path : request.results) {
-        if (is_log(path)) {
-            page.title = fmt::format("ripplenotch report: {}", path);
-            page.sections = sections_of_log({path, options.given("--format", "--hold-bad-values"),
-                                             options.given("--gear-ratio", "--joint-file"),
-                                             options.given("--gear-ratio", "--gear-ratio"), request.quiet});
+        // A log may be longer than the memory; what commands wrote is not.
+        std::string text = path == "-" ? read_all(path) : beginning_of(path);
+        if (is_log(text)) {
+            logs.push_back({path, path == "-" ? std::move(text) : "",
+                            options.given("--format", "--hold-bad-values"),
+                            options.given("--gear-ratio", "--joint-file"),
+                            options.given("--gear-ratio", "--gear-ratio"), request.quiet});
+            names.push_back(shown_name(path));
             continue;
         }
-        for (PageSection& section : sections_of_result(read_all(path), path == "-" ? "standard input" : path))
+        for (PageSection& section :
+             sections_of_result(path == "-" ? text : read_all(path), path == "-" ? "standard input" : path))
             page.sections.push_back(std::move(section));
+    }
+    if (!logs.empty() && logs.size() < request.results.size())
+        raise<UsageError>("a report is one of logs, or one of results; read {}",
+                          fmt::join(request.results, ", "));
+    if (!logs.empty()) {
+        page.title = fmt::format("{}", fmt::join(names, ", "));
+        page.sections = sections_of_logs(logs);
     }
     write_all(request.output, html_page(page, plotly_js_of(request)), ByteSink::Overwrite{request.force});
     return ExitCode::done;
@@ -83,7 +104,7 @@ ExitCode run_report(const ReportRequest& request, const Options& options) {
 std::function<ExitCode()> attach_report(Options& options) {
     const auto request = std::make_shared<ReportRequest>();
     options.arguments("RESULT", request->results, true,
-                      "a log, of which info, identify, recommend and filter are run; or JSON that "
+                      "logs, of which info, identify, recommend and filter are run; or JSON that "
                       "commands wrote: joint.json, table.json, metrics, comparisons, diagnoses, figures "
                       "(--plot FILE.json); - is standard input");
     options.text("-o,--output", request->output, "FILE", "where the page goes; - is standard output");
