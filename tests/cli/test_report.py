@@ -143,7 +143,7 @@ class Pages(SharedCase):
         page = self.page("moving.csv")
         titles = re.findall(r'<h2 id="result-\d+"[^>]*>([^<]*)', page)
         self.assertEqual(titles[:3], ["moving.csv", "Which ripple, and which gear", "Which method, and why"])
-        self.assertEqual(titles[-2:], ["What the log does not tell", "How the log was read"])
+        self.assertEqual(titles[-2:], ["What the log does not show", "How the log was read"])
         lead = page[:page.index("Which ripple, and which gear</h2>")]
         self.assertLess(lead.index("<figure>"), lead.index("Use "))
         self.assertRegex(lead, r"(?s)<th>order</th><th>before, Nm</th><th>after, Nm</th>.*<td>2</td>")

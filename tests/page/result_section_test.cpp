@@ -160,8 +160,8 @@ TEST_CASE("the rounds of a diagnosis are a table that fits a page") {
     REQUIRE(rounds.rows.size() == 2);
     CHECK(rounds.rows[0] == std::vector<std::string>{"coulomb-friction", "confirmed",
                                                      "torque 0.4999 (0.4987 to 0.5010) Nm; width 2 deg/s",
-                                                     "8.701", "0.435 to 0.0497", "0.433 to 0.0503",
-                                                     "offset", "-"});
+                                                     "8.701", "0.435 to 0.0497", "0.433 to 0.0503", "offset",
+                                                     "-"});
     CHECK(rounds.rows[1][2] == "frequency 50.00 (49.90 to 50.10) Hz; amplitude 0.02 Nm; phase 10 deg");
     CHECK(rounds.rows[1][5] == "-");
 }

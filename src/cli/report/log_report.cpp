@@ -6,7 +6,7 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cmath>
+
 #include <filesystem>
 #include <iterator>
 #include <optional>
@@ -23,6 +23,7 @@
 #include "ripplenotch/core/files.hpp"
 #include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/document/figure_json.hpp"
 #include "ripplenotch/figure/figure.hpp"
 
@@ -311,8 +312,9 @@ class JointReport {
                     const bool known = fall["db"].is_number();
                     table.rows.push_back(
                         {fmt::format("{:.4g}", order["order"].get<double>()), coarse_text(before_nm),
-                         known ? coarse_text(before_nm * std::pow(10.0, -fall["db"].get<double>() / 20.0))
-                               : "0",
+                         known
+                             ? coarse_text(before_nm * portable::pow(10.0, -fall["db"].get<double>() / 20.0))
+                             : "0",
                          method["longest_delay_ms"].is_number()
                              ? fmt::format("{:.3g}", method["longest_delay_ms"].get<double>())
                              : "-"});
@@ -325,7 +327,7 @@ class JointReport {
     /// What was assumed, what was not tried and why, and what a further log should have.
     void add_notes(const Json& found, const Json& advice, const Json& log) {
         PageSection section;
-        section.title = not_told;
+        section.title = not_shown;
         const auto list = [&](const Json& of, const char* name, std::string_view before) {
             for (const Json& one : of.value(name, Json::array()))
                 section.notes.push_back(fmt::format("{}{}", before, value_text(one)));
@@ -347,14 +349,14 @@ class JointReport {
             if (section.leads) return 0;
             if (section.title.starts_with("Which ripple")) return 1;
             if (section.title.starts_with("Which method")) return 2;
-            if (section.title == not_told) return 4;
+            if (section.title == not_shown) return 4;
             return section.title.starts_with("How the log") ? 5 : 3;
         };
         std::stable_sort(sections_.begin(), sections_.end(),
                          [&](const PageSection& a, const PageSection& b) { return rank(a) < rank(b); });
     }
 
-    static constexpr std::string_view not_told = "What the log does not tell";
+    static constexpr std::string_view not_shown = "What the log does not show";
 
     const LogReport& report_;
     Workspace workspace_;
