@@ -5,8 +5,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cctype>
-
 #include <filesystem>
 #include <iterator>
 #include <optional>
