@@ -97,11 +97,13 @@ struct Declared {
     std::function<ExitCode()> work;
 };
 
-// "help identify", "help effects" and "version", as people type them elsewhere.
+// "help identify", "help effects", "help --json" and "version", as people type them elsewhere.
 CommandWords in_our_words(CommandWords words) {
     if (words.empty() || is_command(words.front())) return words;
     if (words.front() == "help" && words.size() == 2 && words[1] == "effects")
         return {"diagnose", "--effects"};
+    if (words.front() == "help" && words.size() == 2 && words[1] == "--json")
+        return {"--generate", "catalogue"};
     if (words.front() == "version") words.front() = "--version";
     if (words.front() != "help") return words;
     words.erase(words.begin());
@@ -124,7 +126,8 @@ void declare_program(CLI::App& app) {
     app.set_help_flag("-h,--help", "print this help and end");
     app.add_option_function<std::string>(
            "--generate", [](const std::string& /*kind*/) {},
-           fmt::format("print a man page or the completion for bash: {}", generated_kinds))
+           fmt::format("print a man page, the completion for bash, or all that has a name as JSON: {}",
+                       generated_kinds))
         ->type_name("KIND");
     app.footer(
         "Begin with: ripplenotch report LOG -o page.html\nEach command explains itself: ripplenotch COMMAND "

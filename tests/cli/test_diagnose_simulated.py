@@ -183,12 +183,13 @@ class Simulated(Case):
     def test_a_file_of_time_and_torque_alone_gives_the_same_as_a_column(self):
         written(self.folder / "sim.csv", ["t", "tau"], [[t, arm_nm(t, q, 1.0)] for t, _, _, q in self.rows])
         found = []
-        for source in ("log,file=sim.csv,column=tau", "tau_model_nm"):
+        for source in ("log,file=sim.csv,column=tau", "file=sim.csv,column=tau", "tau_model_nm"):
             done = self.run_tool("diagnose", "log.csv", "--simulated", source, "--gear-ratio", "100", "--json")
             self.assertEqual(done.returncode, 0, done.stderr)
             found.append(json.loads(done.stdout))
-        self.assertEqual(found[0]["named"], found[1]["named"])
-        self.assertAlmostEqual(found[0]["gap"]["after_nm"], found[1]["gap"]["after_nm"], delta=1e-6)
+        self.assertEqual(found[0]["gap"], found[1]["gap"])
+        self.assertEqual(found[0]["named"], found[2]["named"])
+        self.assertAlmostEqual(found[0]["gap"]["after_nm"], found[2]["gap"]["after_nm"], delta=1e-6)
 
     def test_ripple_is_found_in_measured_minus_simulated(self):
         motion = [word for lap in range(4) for to, s in ((150, 2.2), (-150, 4), (0, 1.6))

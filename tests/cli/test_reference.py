@@ -2,6 +2,7 @@
 """Man pages and the completion for bash are made of what --help is made of: the same options, no more and no fewer; and the programs
 that read them take them."""
 
+import json
 import re
 import shutil
 import subprocess
@@ -44,6 +45,23 @@ class Reference(unittest.TestCase):
                 branch = script.split(f"\n        {command})\n")[1].split("\n            ;;\n")[0]
                 self.assertEqual(set(re.search(r'options="(.*)"', branch)[1].split()), options_of_help(command))
 
+    def test_the_catalogue_has_all_that_the_commands_take(self):
+        catalogue = json.loads(run("help", "--json").stdout)
+        self.assertEqual([one["name"] for one in catalogue["commands"]], list(commands()))
+        for command in catalogue["commands"]:
+            with self.subTest(command["name"]):
+                names = {name for option in command["options"] if option["kind"] != "argument" for name in option["names"]}
+                self.assertEqual(names, options_of_help(command["name"]))
+        effects = run("diagnose", "--effects").stdout
+        for effect in catalogue["effects"]:
+            self.assertIn(effect["name"], effects)
+            self.assertIn(f"`{effect['name']}`", (SOURCE / "docs/effects/README.md").read_text())
+        for kind in ("methods", "export", "formats"):
+            pages = "".join(page.read_text() for page in (SOURCE / "docs" / kind).glob("*.md"))
+            for one in catalogue["targets" if kind == "export" else kind]:
+                self.assertIn(one["name"], pages)
+        self.assertEqual(catalogue, json.loads(run("--generate", "catalogue").stdout))
+
     def test_exit_codes_are_those_of_the_docs(self):
         page = (SOURCE / "docs/commands/README.md").read_text().split("## Exit codes")[1]
         documented = re.findall(r"^\| (\d+) \|", page, re.M)
@@ -72,7 +90,7 @@ class Reference(unittest.TestCase):
         self.assertIn("there is no command 'nonsense'", done.stderr)
         done = run("--generate", "man-nonsense")
         self.assertEqual((done.returncode, done.stdout), (2, ""))
-        self.assertIn("expected one of man, man-COMMAND, complete-bash", done.stderr)
+        self.assertIn("expected one of man, man-COMMAND, complete-bash, catalogue", done.stderr)
 
 
 class Bash(Case):

@@ -73,6 +73,7 @@ std::string generated(const Reference& reference, std::string_view kind) {
     constexpr std::string_view page_of = "man-";
     if (kind == "man") return man_page(reference, nullptr);
     if (kind == "complete-bash") return bash_completion(reference);
+    if (kind == "catalogue") return catalogue_text(reference);
     for (const CommandEntry& command : reference.commands) {
         if (kind.starts_with(page_of) && kind.substr(page_of.size()) == command.name)
             return man_page(reference, &command);

@@ -39,15 +39,18 @@ struct Reference {
 /// Of an app whose commands have all declared their options.
 [[nodiscard]] Reference reference_of(const CLI::App& app);
 
-/// What --generate prints, for the ending of a message: "man, man-COMMAND, complete-bash".
-inline constexpr std::string_view generated_kinds = "man, man-COMMAND, complete-bash";
+/// What --generate prints, for the ending of a message: "man, man-COMMAND, complete-bash, catalogue".
+inline constexpr std::string_view generated_kinds = "man, man-COMMAND, complete-bash, catalogue";
 
-/// A man page ("man", "man-identify") or the completion for bash ("complete-bash"). Throws UsageError for a
-/// kind that there is not.
+/// A man page ("man", "man-identify"), the completion for bash ("complete-bash") or the catalogue. Throws
+/// UsageError for a kind that there is not.
 [[nodiscard]] std::string generated(const Reference& reference, std::string_view kind);
 
 /// In the man macros of troff. `command`: null for the program's own page.
 [[nodiscard]] std::string man_page(const Reference& reference, const CommandEntry* command);
 [[nodiscard]] std::string bash_completion(const Reference& reference);
+/// Schema ripplenotch/catalogue/1: commands with their options, methods, export targets, effects, formats of
+/// logs and units, each as declared.
+[[nodiscard]] std::string catalogue_text(const Reference& reference);
 
 }  // namespace ripplenotch

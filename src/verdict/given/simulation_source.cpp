@@ -126,9 +126,9 @@ bool states(const Spec& spec, std::string_view key) {
                        [&](const auto& pair) { return pair.first == key; });
 }
 
-// A name alone is that of a column.
+// A name alone is that of a column; a file is a log without that word, too.
 Spec spec_of(std::string_view text) {
-    Spec spec = parse_spec(text);
+    Spec spec = parse_spec(text.starts_with("file=") ? fmt::format("log,{}", text) : std::string(text));
     if (spec.name == "column" || spec.name == "log") return spec;
     if (states(spec, "name") || states(spec, "file") || states(spec, "column"))
         raise<UsageError>("--simulated: '{}' is neither column,name=NAME nor log,file=FILE,column=NAME",
