@@ -21,8 +21,10 @@ An option that is a word of Python has a _ behind it: `from_="2s"`. Gear ratios 
 unit that the help of the option states.
 
 A log is what `read` returns, a path, or arrays: a mapping (a dict, a pandas.DataFrame) or a structured array with time_s [s],
-velocity_deg_s [deg/s], torque_nm [Nm] and, where it is known, position_deg [deg], each of shape (n,). Time may be left out where
-`sample_rate` is given. Arrays are written to a temporary file (folder TMPDIR) as 64-bit floats.
+velocity_deg_s [deg/s], torque_nm [Nm] and, where it is known, position_deg [deg], each of shape (n,). Other names are read as those
+of a CSV file are, by their units (velocity_rad_s) or by columns= and unit=; columns that are no numbers are left out. Time may be
+left out where `sample_rate` is given. Arrays are written to a temporary file (folder TMPDIR) as 64-bit floats; results of them name
+no commands, since that file goes.
 
 Warnings of the tool are issued as `RipplenotchWarning`; what it refuses is raised as `UsageError`, `DataError` or `FileError`, with
 the program's message. Calls release the GIL; those of several threads take turns. Ctrl-C takes effect when a call returns.
@@ -50,11 +52,17 @@ from . import _ripplenotch
 __version__ = _ripplenotch.version
 __license__ = "GPL-2.0-or-later"  # of the binary; the sources are MIT
 __all__ = ["DataError", "Diagnosis", "Error", "FileError", "GearRatio", "Identification", "Inconclusive", "LimitViolated", "Log",
-           "Result", "RipplenotchWarning", "Table", "UsageError", "design", "diagnose", "filter", "help", "identify", "read", "run"]
+           "Panel", "Recommendation", "Result", "RipplenotchWarning", "Table", "UsageError", "design", "diagnose", "filter", "help",
+           "identify", "plot", "read", "recommend", "report", "run"]
 
 _COLUMNS = ("time_s", "velocity_deg_s", "torque_nm", "position_deg")
 # Options of several values that stand in the command line once for each.
 _REPEATED = {"accept", "method", "motion", "effect", "rule", "scale", "without"}
+# Fields that are command lines.
+_COMMANDS = {"command", "take_commands", "runner_up_commands", "check"}
+# Options of reading that `read` takes, too.
+_READING = {"joint", "gear_ratio", "columns", "unit", "scale", "side", "sample_rate", "from_", "to", "format", "delimiter", "decimal",
+            "no_header", "skip_lines", "kt", "hold_bad_values", "clock", "layout"}
 # Options that name a document of the program, and what the file is called that holds one.
 _DOCUMENTS = {"joint_file": "joint.json", "model": "model.json", "residual": "model.json"}
 
@@ -214,6 +222,42 @@ class Diagnosis(Result):
         return self["model"]
 
 
+class Recommendation(Result):
+    """What `recommend` advises. Fields: docs/commands/recommend.md."""
+
+    @property
+    def verdict(self) -> str:
+        return self["verdict"]
+
+    @property
+    def method(self) -> str | None:
+        """What `filter` takes as `method`; None where no filter is recommended."""
+        return self["take"]
+
+    @property
+    def methods(self) -> list[dict[str, Any]]:
+        """Best first: method, error_nm, ripple_rms_nm, attenuation_db, longest_delay_ms, overshoot_percent, start_ratio, ..."""
+        return self["methods"]
+
+
+class Panel(NamedTuple):
+    """One pair of axes of a figure, as `plot` returns it.
+
+    title, x_label, y_label  texts; labels with their units
+    x_log, y_log             whether an axis is logarithmic
+    curves                   list of (name, x, y): arrays of one shape (n,); a nan breaks the line
+    map                      None, or (x_edges, y_edges, cells) of shapes (m+1,), (n+1,), (n, m), as matplotlib's pcolormesh takes them
+    """
+
+    title: str
+    x_label: str
+    y_label: str
+    x_log: bool
+    y_log: bool
+    curves: list[tuple[str, np.ndarray, np.ndarray]]
+    map: tuple[np.ndarray, np.ndarray, np.ndarray] | None
+
+
 AnyLog = Union[Log, str, "os.PathLike[str]", "Mapping[str, Any]", np.ndarray]
 
 
@@ -285,9 +329,63 @@ def diagnose(log: AnyLog, model: Mapping[str, Any] | str | os.PathLike[str] | No
     """Where model and log disagree, which effect is missing, and how far the gap shrinks with it.
 
     model    "auto": gear ratio and ripple as `identify` finds them in the log; a model.json, or its fields; None with simulated= or arm=
-    options  gear_ratio=, validate=, without=[...], accept=[...], simulated=, arm=, smoothing=, and how paths and arrays are read
+    options  gear_ratio=, validate=, without=[...], accept=[...], simulated=, arm=, smoothing=, and how paths and arrays are read;
+             simulated= may be an array of shape (n,), in Nm: the torque of your own simulation at each row of the log. Then the
+             model is None unless it is given
     """
-    return _run("diagnose", [log], {"model": model, **options}, Diagnosis)
+    simulated = options.get("simulated")
+    if simulated is None or isinstance(simulated, (str, os.PathLike)):
+        return _run("diagnose", [log], {"model": model, **options}, Diagnosis)
+    model = None if model == "auto" else model
+    torque_nm = np.asarray(simulated, dtype=np.float64)
+    if _is_arrays(log) or isinstance(log, (str, os.PathLike)):
+        source = _structured(log) if _is_arrays(log) else read(log, **{name: value for name, value in options.items() if name in _READING})
+    else:
+        source = log
+    rows = len(source)
+    if torque_nm.shape != (rows,):
+        raise UsageError(f"simulated: read an array of shape {torque_nm.shape}, expected ({rows},): one value for each row of the log")
+    if isinstance(source, np.ndarray) and "time_s" not in source.dtype.names:
+        rate = options.get("sample_rate")
+        raise UsageError(f"simulated: read arrays without time_s (sample_rate {rate}), expected time_s beside them")
+    time_s = source["time_s"] if isinstance(source, np.ndarray) else source.time_s
+    with _Files() as files:
+        path = files._new("simulated.npy")
+        np.save(path, np.rec.fromarrays([time_s, torque_nm], names="time_s,torque_nm"))
+        return _run("diagnose", [log], {"model": model, **options, "simulated": f"log,file={path},column=torque_nm"}, Diagnosis)
+
+
+def recommend(log: AnyLog, **options: Any) -> Recommendation:
+    """Which filter a joint needs, with what each method leaves, costs and adds.
+
+    options  gear_ratio=, orders=, max_delay=, min_attenuation=, max_overshoot=, max_start_error=, target=, and how paths and arrays
+             are read
+    """
+    return _run("recommend", [log], options, Recommendation)
+
+
+def report(logs: AnyLog | list[AnyLog], **options: Any) -> str:
+    """One self-contained HTML page about a log, or logs: its text, to be written to a file.
+
+    options  gear_ratio=, and how paths and arrays are read
+    """
+    with _Files() as files:
+        paths = files.logs(list(logs) if isinstance(logs, (list, tuple)) else [logs])
+        return files.call(["report", *paths, *files.words(options)]).decode()
+
+
+def plot(command: str, *inputs: Any, **options: Any) -> list[Panel]:
+    """The figure that a command draws with --plot, as arrays for any program that draws.
+
+    for panel, axes in zip(panels, figure.subplots(len(panels), squeeze=False)[:, 0]):
+        for name, x, y in panel.curves:
+            axes.plot(x, y, label=name)
+    """
+    with _Files() as files:
+        path = files._new("figure.json")
+        files.call([command, *files.logs(inputs), *files.words(options), "--plot", path])
+        drawn = json.loads(pathlib.Path(path).read_text(encoding="utf-8"))
+    return [_panel(one) for one in drawn["panels"]]
 
 
 def run(command: str, *inputs: Any, **options: Any) -> Result:
@@ -301,10 +399,30 @@ def help(command: str) -> str:
         return files.call([command, "--help"]).decode()
 
 
+def _label(axis):
+    return f"{axis['label']}, {axis['unit']}" if axis["unit"] else axis["label"]
+
+
+def _values(numbers):
+    return np.array([np.nan if one is None else one for one in numbers], dtype=np.float64)
+
+
+def _panel(drawn):
+    heat = drawn["map"]
+    if heat is not None:
+        x, y = _values(heat["x_edges"]), _values(heat["y_edges"])
+        heat = x, y, _values(heat["cells"]).reshape(len(y) - 1, len(x) - 1)
+    return Panel(drawn["title"], _label(drawn["x"]), _label(drawn["y"]), *(drawn[axis]["scale"] == "logarithmic" for axis in "xy"),
+                 [(one["name"], _values(one["x"]), _values(one["y"])) for one in drawn["curves"]], heat)
+
+
 def _run(command, inputs, options, kind):
     with _Files() as files:
         words = [command, *files.logs(inputs), *files.words(options), "--json"]
-        result = kind(files.call(words, kind).decode())
+        text = files.call(words, kind).decode()
+        # The commands would name files that are gone.
+        result = kind(json.dumps({name: value for name, value in json.loads(text).items() if name not in _COMMANDS}, indent=2) + "\n"
+                      if any(map(_is_arrays, inputs)) else text)
     if kind is not Result and "joints" in result._fields:
         names = [str(one["joint"]) for one in result["joints"]]
         raise UsageError(f"read {len(names)} joints ({', '.join(names)}), expected one; say which with joint=, or take "
@@ -370,7 +488,11 @@ def _words(options):
 def _is_arrays(value):
     if isinstance(value, np.ndarray):
         return value.dtype.names is not None
-    return hasattr(value, "keys") and "torque_nm" in value.keys()
+    if isinstance(value, Result) or not hasattr(value, "keys"):
+        return False
+    # A document has a schema, texts and lists of fields; a log has columns of one length.
+    columns = [np.asarray(value[name]) for name in value.keys()] if "schema" not in value.keys() else []
+    return any(column.ndim == 1 and len(column) > 1 and column.dtype.kind in "fiu" for column in columns)
 
 
 def _may_be_npy(log):
@@ -378,7 +500,7 @@ def _may_be_npy(log):
     if isinstance(log, Log):
         return log._format == "npy"
     if _is_arrays(log):
-        return False  # 64-bit floats in the tool's units
+        return not set(_structured(log).dtype.names) <= set(_COLUMNS)  # else 64-bit floats in the tool's units
     try:
         with open(_file(log), "rb") as file:
             return file.read(6).startswith((b"\x93NUMPY", b"\x1f\x8b", b"\x28\xb5\x2f\xfd", b"\x04\x22\x4d\x18", b"\xfd7zXZ"))
@@ -395,11 +517,9 @@ def _outside():
 
 
 def _structured(arrays):
-    names = list(arrays.dtype.names if isinstance(arrays, np.ndarray) else arrays.keys())
-    unknown = [str(name) for name in names if name not in _COLUMNS]
-    if unknown:
-        raise UsageError(f"read arrays named {', '.join(unknown)}, expected {', '.join(_COLUMNS)}")
-    columns = {name: np.asarray(arrays[name], dtype=np.float64) for name in _COLUMNS if name in names and arrays[name] is not None}
+    names = arrays.dtype.names if isinstance(arrays, np.ndarray) else arrays.keys()
+    columns = {str(name): np.asarray(arrays[name]) for name in names if arrays[name] is not None}
+    columns = {name: column.astype(np.float64) for name, column in columns.items() if column.dtype.kind in "fiub"}
     shapes = {name: column.shape for name, column in columns.items()}
     if any(len(shape) != 1 for shape in shapes.values()) or len(set(shapes.values())) != 1:
         raise UsageError("read arrays of shapes " + ", ".join(f"{name} {shape}" for name, shape in shapes.items()) +
