@@ -7,7 +7,7 @@ import json
 import math
 import unittest
 
-from commands import COMMANDS, GEAR, OF_A_LOG, Case, SharedCase, asked
+from commands import COMMANDS, GEAR, OF_A_LOG, Case, SharedCase, asked, ended
 
 # Those that take several joints, with what each gives: a document with `joints`, or CSV with a column `joint`.
 LISTS = {
@@ -156,10 +156,7 @@ class Selection(Case):
                             (["j3-j1"], "runs backwards"), (["j1", "--joint", "elbow"], "no joint 'elbow'")):
             for command in ("info", "spectrum", "identify", "filter", "map", "diagnose", "compare", "spectrum --track", "recommend"):
                 with self.subTest(words=words, command=command):
-                    done = self.run_tool(*asked(command, "wide.csv"), "--joint", *words)
-                    self.assertEqual(done.returncode, 2, done.stderr)
-                    self.assertIn(said, done.stderr)
-                    self.assertIn("j1, j2, j3", done.stderr)
+                    ended(2, self.run_tool(*asked(command, "wide.csv"), "--joint", *words), said, "j1, j2, j3")
 
     def test_what_is_of_one_joint_says_so(self):
         self.write("wide.csv", wide_log(rows=1500))
@@ -169,14 +166,10 @@ class Selection(Case):
                     self.good(*asked(command, "wide.csv"), "--plot", "a.json")
                     self.assertEqual(json.loads((self.folder / "a.json").read_text())["name"], "motor-matrix")
                 else:
-                    done = self.run_tool(*asked(command, "wide.csv"), "--plot", "a.json")
-                    self.assertEqual(done.returncode, 2, done.stderr)
-                    self.assertIn("a picture shows one joint", done.stderr)
+                    ended(2, self.run_tool(*asked(command, "wide.csv"), "--plot", "a.json"), "a picture shows one joint")
                 self.good(*asked(command, "wide.csv"), "--plot", f"{command}_{{joint}}.json")
                 self.assertTrue((self.folder / f"{command}_j2.json").exists())
-        done = self.run_tool(*asked("spectrum --track", "wide.csv"), "-o", "a.npy")
-        self.assertEqual(done.returncode, 2)
-        self.assertIn("put {joint} into the name", done.stderr)
+        ended(2, self.run_tool(*asked("spectrum --track", "wide.csv"), "-o", "a.npy"), "put {joint} into the name")
         self.good(*asked("spectrum --track", "wide.csv"), "-o", "a_{joint}.npy")
         self.assertTrue((self.folder / "a_j3.npy").exists())
 
@@ -195,9 +188,7 @@ class LeftOut(Case):
                     done = self.good(*asked(command, "wide.csv"), *words)
                     self.assertIn("warning: joint j2 is left out: it has no torque", done.stderr)
                     self.assertEqual(done.stderr.count("left out: it has no torque"), 1)
-            done = self.run_tool(*asked(command, "wide.csv"), "--joint", "j2")
-            self.assertEqual(done.returncode, 2)
-            self.assertIn("it has no torque", done.stderr)
+            ended(2, self.run_tool(*asked(command, "wide.csv"), "--joint", "j2"), "it has no torque")
 
     def test_no_table_or_joint_file(self):
         self.good("design", *GEAR, "--sample-rate", "1kHz", "--speed", "20:180:20", "--q", "1", "-o", "table_j1.json", "--json")
@@ -215,8 +206,7 @@ class LeftOut(Case):
         self.assertEqual({row[0] for row in rows_of((self.folder / "track.csv").read_text())}, {"joint", "j1"})
 
     def test_nothing_is_left(self):
-        done = self.run_tool("spectrum", "wide.csv", "--track", "--joint-file", "found_{joint}.json")
-        self.assertEqual(done.returncode, 4, done.stderr)
+        done = ended(4, self.run_tool("spectrum", "wide.csv", "--track", "--joint-file", "found_{joint}.json"))
         self.assertEqual(done.stdout, "")
 
 

@@ -4,7 +4,7 @@
 import json
 import math
 
-from commands import SharedCase, good, run
+from commands import SharedCase, ended, good, run
 
 RIPPLE_NM = (0.8, 0.5)
 
@@ -145,9 +145,8 @@ class Gates(Budget):
                 "-o", "paper.json", "--force")
 
     def test_filter_writes_its_output_and_says_which_band_breaks_the_limit_by_how_much(self):
-        done = run("filter", "steady.csv", "--method", "switching,table=paper.json", "-o", "gate.csv", "--force", "--max-delay", "30ms",
-                   cwd=self.folder)
-        self.assertEqual(done.returncode, 1, done.stderr)
+        done = ended(1, run("filter", "steady.csv", "--method", "switching,table=paper.json", "-o", "gate.csv", "--force", "--max-delay", "30ms",
+                            cwd=self.folder))
         self.assertEqual(len((self.folder / "gate.csv").read_text().split("\n")), 4002)
         self.assertIn("band 4 (72-90 deg/s) delays by 42.3 ms, 12.3 ms more than --max-delay 30ms", done.stderr)
         self.assertEqual(done.stderr.count("\n"), 1)  # the other bands never come into force on this log
@@ -158,9 +157,8 @@ class Gates(Budget):
         self.assertEqual((done.returncode, done.stderr), (0, ""))
 
     def test_filter_holds_the_measured_attenuation_against_the_limit(self):
-        done = run("filter", "steady.csv", "--method", "lowpass,cutoff=13rad/s", "--gear-ratio", "100", "-o", "gate.csv",
-                   "--force", "--min-attenuation", "25dB", cwd=self.folder)
-        self.assertEqual(done.returncode, 1)
+        done = ended(1, run("filter", "steady.csv", "--method", "lowpass,cutoff=13rad/s", "--gear-ratio", "100", "-o", "gate.csv",
+                            "--force", "--min-attenuation", "25dB", cwd=self.folder))
         self.assertRegex(done.stderr, r"lowpass,cutoff=13rad/s: it attenuates order 1 by 21\.\d dB, 3\.\d dB less than")
         self.assertNotIn("order 2", done.stderr)
 
@@ -168,18 +166,15 @@ class Gates(Budget):
         words = ["compare", "--ramp", "20Nm/s", "--speed", "20deg/s", "--sample-rate", "1kHz", "--gear-ratio", "100",
                  "--orders", "1,2", "--method", "tracking,q=2", "--method", "lowpass,cutoff=13Hz", "--max-delay", "15ms",
                  "--min-attenuation", "3dB"]
-        done = run(*words, cwd=self.folder)
-        self.assertEqual(done.returncode, 1)
+        done = ended(1, run(*words, cwd=self.folder))
         self.assertIn("lowpass", done.stdout)
         self.assertRegex(done.stderr, r"tracking,\S+: it delays by 2\d\.\d ms, \d+\.\d ms more than --max-delay 15ms at 20 deg/s")
         self.assertRegex(done.stderr, r"from 2[89](\.\d)? deg/s on it stays within")
         self.assertRegex(done.stderr, r"lowpass,cutoff=13Hz: it attenuates order 1 by 0\.\d dB")
 
     def test_a_limit_on_attenuation_without_a_gear_is_a_usage_error(self):
-        done = run("filter", "steady.csv", "--method", "lowpass,cutoff=13Hz", "-o", "gate.csv", "--force",
-                   "--min-attenuation", "25dB", cwd=self.folder)
-        self.assertEqual(done.returncode, 2)
-        self.assertIn("--min-attenuation needs to know where the ripple is", done.stderr)
+        ended(2, run("filter", "steady.csv", "--method", "lowpass,cutoff=13Hz", "-o", "gate.csv", "--force",
+                     "--min-attenuation", "25dB", cwd=self.folder), "--min-attenuation needs to know where the ripple is")
 
 
 class NoisySpeed(Budget):

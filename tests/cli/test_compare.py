@@ -7,7 +7,7 @@ import os
 import pathlib
 import unittest
 
-from commands import DATA, Case, run
+from commands import DATA, Case, ended, run
 from test_wrapped import on_terminal
 
 LOG = str(DATA / "paper_90deg_s.csv")
@@ -34,8 +34,7 @@ def synthetic_log(seconds=20, speed=80.0, rate=1000, ratio=100.0):
 
 class Comparison(Case):
     def compare(self, *words, **more):
-        done = run("compare", *words, "--json", **more)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        done = ended(0, run("compare", *words, "--json", **more))
         result = json.loads(done.stdout)
         self.assertEqual(result["schema"], "ripplenotch/comparison/1")
         return result, {row["method"]: row for row in result["methods"]}
@@ -156,21 +155,16 @@ class Logs(Comparison):
     def test_a_table_for_another_rate_is_refused(self):
         table = os.path.join(self.folder, "table.json")
         run("design", *RIPPLE, "--sample-rate", "500Hz", "--speed", "18:180:18", "-o", table)
-        done = run("compare", LOG, *methods(f"switching,table={table}"))
-        self.assertEqual(done.returncode, 3)
-        self.assertIn("the log runs at 1000 Hz, the table was designed for 500 Hz", done.stderr)
+        ended(3, run("compare", LOG, *methods(f"switching,table={table}")), "the log runs at 1000 Hz, the table was designed for 500 Hz")
 
     def test_without_gear_ratio_the_delays_still_come_with_a_warning(self):
-        done = run("compare", LOG, *methods(NOTCHES), "--json")
-        self.assertEqual(done.returncode, 0)
-        self.assertIn("no line is known, so no ripple was measured", done.stderr)
+        done = ended(0, run("compare", LOG, *methods(NOTCHES), "--json"), "no line is known, so no ripple was measured")
         row = json.loads(done.stdout)["methods"][1]
         self.assertIsNone(row["residual_rms_nm"])
         self.assertAlmostEqual(row["ramp_delay_ms"], 38.0, delta=0.1)
 
     def test_a_log_at_rest_has_no_ripple_to_measure_and_says_why(self):
-        done = run("compare", str(DATA / "paper_rest.csv"), *RIPPLE, *methods(NOTCHES), "--json")
-        self.assertEqual(done.returncode, 0, done.stderr)
+        done = ended(0, run("compare", str(DATA / "paper_rest.csv"), *RIPPLE, *methods(NOTCHES), "--json"))
         result = json.loads(done.stdout)
         self.assertEqual(result["windows"], 0)
         self.assertIsNone(result["methods"][0]["ripple_rms_nm"])
@@ -185,8 +179,7 @@ class Best(Comparison):
 
     def told(self, *words, code=0):
         """The document, and the first sentence of the text, which is its reason."""
-        done = run("compare", *words, "--json")
-        self.assertEqual(done.returncode, code, done.stderr)
+        done = ended(code, run("compare", *words, "--json"))
         result = json.loads(done.stdout)
         rows = {row["method"]: row for row in result["methods"]}
         text = run("compare", *words).stdout
@@ -210,8 +203,7 @@ class Best(Comparison):
 
     def test_the_page_has_its_figures_at_the_top(self):
         run("compare", self.MOVE, *RIPPLE, *methods("oscillator", "tracking"), "-o", "c.json", cwd=self.folder)
-        done = run("report", "c.json", "-o", "c.html", "-q", cwd=self.folder)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        ended(0, run("report", "c.json", "-o", "c.html", "-q", cwd=self.folder))
         page = (self.folder / "c.html").read_text()
         self.assertIn("oscillator: remaining ripple (rms)", page)
         self.assertNotIn("tracking: remaining ripple (rms)", page)
@@ -306,11 +298,9 @@ class Truth(Comparison):
     def setUp(self):
         super().setUp()
         for name, more in (("true.csv", []), ("log.csv", ["--ripple", "1:0.8Nm:0deg", "--noise", "0.05Nm"])):
-            done = run("simulate", *self.JOINT, "--effect", "offset,torque_nm=4", *more, "-o", name, cwd=self.folder)
-            self.assertEqual(done.returncode, 0, done.stderr)
-        done = run("design", *RIPPLE, "--sample-rate", "1kHz", "--speed", "18:180:18", "-o", "table.json",
-                   cwd=self.folder)
-        self.assertEqual(done.returncode, 0, done.stderr)
+            ended(0, run("simulate", *self.JOINT, "--effect", "offset,torque_nm=4", *more, "-o", name, cwd=self.folder))
+        ended(0, run("design", *RIPPLE, "--sample-rate", "1kHz", "--speed", "18:180:18", "-o", "table.json",
+                     cwd=self.folder))
 
     def torque(self, name):
         lines = (self.folder / name).read_text().splitlines()[1:]
@@ -368,12 +358,6 @@ class Truth(Comparison):
         short = self.folder / "short.csv"
         lines = (self.folder / "true.csv").read_text().splitlines()
         pathlib.Path(short).write_text("\n".join(lines[:-5]) + "\n")
-        done = run(*words, *RIPPLE, "--truth", "short.csv", cwd=self.folder)
-        self.assertEqual(done.returncode, 3)
-        self.assertIn("short.csv has 2995 rows, log.csv has 3000", done.stderr)
-        done = run(*words, "--truth", "true.csv", cwd=self.folder)
-        self.assertEqual(done.returncode, 2)
-        self.assertIn("--gear-ratio", done.stderr)
-        done = run("compare", *SIGNALS, *methods("none"), "--truth", "true.csv", cwd=self.folder)
-        self.assertEqual(done.returncode, 2)
-        self.assertIn("--truth goes with a LOG", done.stderr)
+        ended(3, run(*words, *RIPPLE, "--truth", "short.csv", cwd=self.folder), "short.csv has 2995 rows, log.csv has 3000")
+        ended(2, run(*words, "--truth", "true.csv", cwd=self.folder), "--gear-ratio")
+        ended(2, run("compare", *SIGNALS, *methods("none"), "--truth", "true.csv", cwd=self.folder), "--truth goes with a LOG")

@@ -6,7 +6,7 @@ import io
 import json
 import unittest
 
-from commands import DATA, Case, run
+from commands import DATA, Case, ended, run
 
 
 PAPER = ["--gear-ratio", "100", "--orders", "1,2", "--sample-rate", "1kHz", "--speed", "18:180:18", "--q", "0.25"]
@@ -44,8 +44,7 @@ class Table1(Case):
                       done.stdout)
 
     def test_csv_has_the_papers_bands_and_centres_under_stable_names(self):
-        done = design(*PAPER, "-o", "table.csv", cwd=self.folder)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        ended(0, design(*PAPER, "-o", "table.csv", cwd=self.folder))
         rows = list(csv.DictReader(io.StringIO((self.folder / "table.csv").read_text())))
         self.assertEqual(list(rows[0]), [
             "number", "speed_from_deg_s", "speed_to_deg_s", "center_1_hz", "center_2_hz", "q", "dc_delay_ms",
@@ -107,9 +106,7 @@ def joint(ratio=100.0, orders=(1.0, 2.0), speeds=(58.6, 179.2), rate=1000.0, ci9
 
 class FromJoint(Case):
     def table(self, text, *words, stderr=""):
-        done = design("-", *words, "--json", stdin=text)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertIn(stderr, done.stderr)
+        done = ended(0, design("-", *words, "--json", stdin=text), stderr)
         return json.loads(done.stdout)
 
     def test_ratio_orders_and_rate_come_from_the_file(self):
@@ -170,21 +167,14 @@ class FromJoint(Case):
         self.assertIsNone(found["gear_ratio"])
         self.assertEqual(found["orders"], [100, 200])
         self.assertEqual(found["gear"]["ratio"], None)
-        done = design("-", stdin=joint(ratio=None, orders=()))
-        self.assertEqual(done.returncode, 3)
-        self.assertIn("gear ratio is null", done.stderr)
-        self.assertIn("--gear-ratio", done.stderr)
+        ended(3, design("-", stdin=joint(ratio=None, orders=())), "gear ratio is null", "--gear-ratio")
         self.assertEqual(self.table(joint(ratio=None), "--gear-ratio", "100")["gear_ratio"], 100)
 
     def test_a_joint_without_lines_asks_for_orders(self):
-        done = design("-", stdin=joint(orders=()))
-        self.assertEqual(done.returncode, 3)
-        self.assertIn("no line that follows the motor; give --orders", done.stderr)
+        ended(3, design("-", stdin=joint(orders=())), "no line that follows the motor; give --orders")
 
     def test_a_file_that_is_no_joint_is_exit_code_3_and_a_missing_one_4(self):
-        done = design("-", stdin="{\"schema\": \"ripplenotch/table/1\"}")
-        self.assertEqual(done.returncode, 3)
-        self.assertIn("ripplenotch/joint/1", done.stderr)
+        ended(3, design("-", stdin="{\"schema\": \"ripplenotch/table/1\"}"), "ripplenotch/joint/1")
         self.assertEqual(design("-", stdin="rubbish").returncode, 3)
         self.assertEqual(design("no-such.json").returncode, 4)
 
@@ -193,16 +183,14 @@ class PapersChain(unittest.TestCase):
     def test_from_the_papers_logs_to_its_table(self):
         logs = [str(DATA / f"paper_{speed}deg_s.csv") for speed in (60, 120, 180)]
         found = run("identify", *logs, "--json")
-        done = design("-", "--speed", "18:180:18", stdin=found.stdout)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        done = ended(0, design("-", "--speed", "18:180:18", stdin=found.stdout))
         rows = [line.split() for line in done.stdout.split("\n") if line.strip()[:1].isdigit()]
         self.assertEqual([(int(r[0]), *r[1].split("-"), r[2], r[3]) for r in rows], TABLE_1)
 
 
 class Units(unittest.TestCase):
     def bands(self, *words):
-        done = design(*with_option(PAPER, "--speed"), *words, "--json")
-        self.assertEqual(done.returncode, 0, done.stderr)
+        done = ended(0, design(*with_option(PAPER, "--speed"), *words, "--json"))
         return [(b["speed_from_deg_s"], b["speed_to_deg_s"]) for b in json.loads(done.stdout)["bands"]]
 
     def test_a_unit_on_the_last_number_holds_for_all(self):
@@ -216,9 +204,7 @@ class Units(unittest.TestCase):
         self.assertEqual(self.bands("--bands", "18:36,10:20rpm"), [(18, 36), (60, 120)])
 
     def test_a_mixture_of_numbers_with_and_without_unit_is_refused(self):
-        done = design(*with_option(PAPER, "--speed"), "--speed", "0.3rad/s:3:0.3")
-        self.assertEqual(done.returncode, 2)
-        self.assertIn("mixes numbers with and without a unit", done.stderr)
+        ended(2, design(*with_option(PAPER, "--speed"), "--speed", "0.3rad/s:3:0.3"), "mixes numbers with and without a unit")
 
 
 class OneLetterNames(unittest.TestCase):
@@ -232,9 +218,7 @@ class OneLetterNames(unittest.TestCase):
         self.assertIn("--quality is given more than once", twice.stderr)
 
     def test_after_two_dashes_q_is_a_file(self):
-        done = design(*with_option(PAPER, "--q"), "--", "--q=2")
-        self.assertEqual(done.returncode, 4, done.stderr)
-        self.assertIn("--q=2", done.stderr)
+        ended(4, design(*with_option(PAPER, "--q"), "--", "--q=2"), "--q=2")
 
 
 class Refusals(unittest.TestCase):
@@ -284,8 +268,7 @@ class Refusals(unittest.TestCase):
 
 class Limits(unittest.TestCase):
     def test_a_limit_that_is_broken_is_exit_code_1_with_the_bands_named_and_the_table_written(self):
-        done = design(*PAPER, "--max-delay", "100ms", "--min-attenuation", "23dB")
-        self.assertEqual(done.returncode, 1)
+        done = ended(1, design(*PAPER, "--max-delay", "100ms", "--min-attenuation", "23dB"))
         self.assertEqual(done.stdout, design(*PAPER).stdout)
         self.assertIn("band 1 (18-36 deg/s) delays by 127.3 ms, more than --max-delay 100ms", done.stderr)
         self.assertIn("band 1 (18-36 deg/s) attenuates order 1 by as little as 18.9 dB", done.stderr)
@@ -304,8 +287,7 @@ class Goals(Case):
     """--min-attenuation and --max-delay: what is left open is chosen to hold them."""
 
     def table(self, *words, stdin=None):
-        done = design(*words, "--json", stdin=stdin)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        done = ended(0, design(*words, "--json", stdin=stdin))
         return json.loads(done.stdout)
 
     def test_every_band_holds_the_attenuation_and_the_delay(self):
@@ -371,15 +353,13 @@ class Goals(Case):
 
 class Warnings(unittest.TestCase):
     def test_a_band_that_reaches_beyond_half_the_sample_rate_is_warned_of(self):
-        done = design(*with_option(PAPER, "--sample-rate", "191Hz"))
-        self.assertEqual(done.returncode, 0)
-        self.assertIn("warning: band 9 (162-180 deg/s): order 2 passes half the sample rate at 171.9 deg/s", done.stderr)
+        ended(0, design(*with_option(PAPER, "--sample-rate", "191Hz")),
+              "warning: band 9 (162-180 deg/s): order 2 passes half the sample rate at 171.9 deg/s")
 
 
 class Hysteresis(unittest.TestCase):
     def table(self, *words, stdin=None):
-        done = design(*words, "--json", stdin=stdin)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        done = ended(0, design(*words, "--json", stdin=stdin))
         return json.loads(done.stdout)
 
     def test_a_band_is_rated_as_far_as_it_stays_in_force(self):

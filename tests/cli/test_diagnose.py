@@ -3,7 +3,7 @@
 
 import json
 
-from commands import Case
+from commands import Case, ended
 
 MODEL = {"schema": "ripplenotch/model/1", "gear_ratio": 100,
          "effects": [{"effect": "inertia"}, {"effect": "ripple", "order": 1}, {"effect": "ripple", "order": 2}]}
@@ -24,9 +24,8 @@ class Diagnose(Case):
 
     def log(self, name, motion, *hidden, seed=1):
         words = [word for effect in hidden for word in ("--effect", effect)]
-        done = self.run_tool("simulate", *JOINT, *words, *motion, "--sample-rate", "500Hz", "--noise", "0.05Nm",
-                             "--velocity-noise", "0.05deg/s", "--seed", str(seed), "-o", name)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        ended(0, self.run_tool("simulate", *JOINT, *words, *motion, "--sample-rate", "500Hz", "--noise", "0.05Nm",
+                               "--velocity-noise", "0.05deg/s", "--seed", str(seed), "-o", name))
 
     def test_what_is_hidden_is_named_added_and_the_improved_model_does_on_another_log_what_was_said(self):
         self.log("log.csv", move(0, 120, -60, 30, -40), "viscous-friction,coefficient_nm_per_deg_s=0.006")
@@ -52,8 +51,7 @@ class Diagnose(Case):
 
     def test_a_difference_of_viscous_friction_is_not_examined_on_a_log_of_one_direction(self):
         self.log("log.csv", move(0, 60, 90, 400, 520, 560), "viscous-friction,coefficient_nm_per_deg_s=0.006")
-        done = self.run_tool("diagnose", "log.csv", "--model", "model.json", "--json", "-q")
-        self.assertEqual(done.returncode, 0, done.stderr)
+        done = ended(0, self.run_tool("diagnose", "log.csv", "--model", "model.json", "--json", "-q"))
         found = json.loads(done.stdout)
         self.assertEqual((found["verdict"], found["named"]), ("explained", ["viscous-friction"]))
         self.assertEqual([(one["effect"], one["reason"]) for one in found["undecidable"]],
@@ -61,8 +59,7 @@ class Diagnose(Case):
 
     def test_a_torque_of_the_output_angle_over_less_than_its_cycle_is_not_confirmed(self):
         self.log("log.csv", move(0, 130, 10, 120, 5), "output-ripple,order=2,amplitude_nm=70,phase_deg=20")
-        done = self.run_tool("diagnose", "log.csv", "--model", "model.json", "--json", "-q")
-        self.assertEqual(done.returncode, 0, done.stderr)
+        done = ended(0, self.run_tool("diagnose", "log.csv", "--model", "model.json", "--json", "-q"))
         found = json.loads(done.stdout)
         self.assertNotIn("output-ripple", found["named"])
         for one in found["rounds"]:
@@ -71,16 +68,14 @@ class Diagnose(Case):
 
     def test_the_same_log_gives_the_same_bytes_and_a_conclusive_verdict_can_be_asked_for(self):
         self.log("log.csv", move(0, 120, -60), "offset,torque_nm=0.4")
-        first = self.run_tool("diagnose", "log.csv", "--model", "model.json", "--require-conclusive")
-        self.assertEqual(first.returncode, 0, first.stderr)
+        first = ended(0, self.run_tool("diagnose", "log.csv", "--model", "model.json", "--require-conclusive"))
         self.assertEqual(first.stdout, self.run_tool("diagnose", "log.csv", "--model", "model.json").stdout)
         # The answer comes first.
         self.assertRegex(first.stdout, r"^Missing: offset 0\.4\d* \+/- 0\.00\d+ Nm; residual 0\.3\d+ to 0\.04\d+ Nm rms, noise 0\.04\d+ Nm rms\.\n"
                                        r"gap 0\.3\d* -> 0\.0\d* Nm, \d+\.\d % of it closed\nverdict: explained\nnamed: offset\n")
         others = [name for effect in ("offset", "drift", "gravity", "output-ripple", "coulomb-friction", "hysteresis")
                   for name in ("--without", effect)]
-        second = self.run_tool("diagnose", "log.csv", "--model", "model.json", "--require-conclusive", *others)
-        self.assertEqual(second.returncode, 5)
+        second = ended(5, self.run_tool("diagnose", "log.csv", "--model", "model.json", "--require-conclusive", *others))
         self.assertIn("named: nothing\n", second.stdout)
         self.assertIn("remaining: ", second.stdout)
 
@@ -98,9 +93,8 @@ class Diagnose(Case):
 
     def test_a_model_is_made_of_the_log_by_identify(self):
         self.log("log.csv", move(0, 120, -60), "coulomb-friction,torque_nm=0.4,width_deg_s=2")
-        done = self.run_tool("diagnose", "log.csv", "--model", "auto", "-v", "--improved-model", "made.json", "--force")
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertIn("the model is made of the log: gear ratio ", done.stderr)
+        done = ended(0, self.run_tool("diagnose", "log.csv", "--model", "auto", "-v", "--improved-model", "made.json", "--force"),
+                     "the model is made of the log: gear ratio ")
         self.assertIn("named: coulomb-friction", done.stdout)
         made = json.loads((self.folder / "made.json").read_text())
         self.assertAlmostEqual(made["gear_ratio"], MODEL["gear_ratio"], delta=0.1)
@@ -125,9 +119,7 @@ class Diagnose(Case):
                 done = self.run_tool(*words, *spelling, "--force")
                 self.assertEqual((done.returncode, done.stdout, done.stderr), (0, expected.stdout, said))
                 self.assertEqual((self.folder / "old.json").read_bytes(), (self.folder / "improved.json").read_bytes())
-        twice = self.run_tool(*words, "-o", "a.json", "--improved-model", "b.json")
-        self.assertEqual(twice.returncode, 2)
-        self.assertIn("--improved-model is given more than once", twice.stderr)
+        ended(2, self.run_tool(*words, "-o", "a.json", "--improved-model", "b.json"), "--improved-model is given more than once")
         told = self.run_tool(*words, "--improved-model", "-")
         self.assertEqual((told.returncode, told.stdout), (2, ""))
         self.assertIn("--improved-model -: the result goes to standard output; give a file", told.stderr)

@@ -3,7 +3,7 @@
 
 import json
 
-from commands import Case
+from commands import Case, ended
 
 MODEL = {"schema": "ripplenotch/model/1", "gear_ratio": 100, "effects": [
     {"effect": "inertia"}, {"effect": "ripple", "order": 1}, {"effect": "ripple", "order": 2}]}
@@ -21,15 +21,13 @@ class Accept(Case):
         (self.folder / "model.json").write_text(json.dumps(MODEL))
 
     def json_of(self, *words):
-        done = self.run_tool(*words, "--json", "-q", "--force")
-        self.assertEqual(done.returncode, 0, done.stderr)
+        done = ended(0, self.run_tool(*words, "--json", "-q", "--force"))
         return json.loads(done.stdout)
 
     def log(self, name, motions):
         words = [word for motion in motions for word in ("--motion", motion)]
-        done = self.run_tool("simulate", *TRUTH, *words, "--sample-rate", "500Hz", "--noise", "0.05Nm", "--velocity-noise",
-                         "0.1deg/s", "--seed", "1", "-o", name)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        ended(0, self.run_tool("simulate", *TRUTH, *words, "--sample-rate", "500Hz", "--noise", "0.05Nm", "--velocity-noise",
+                           "0.1deg/s", "--seed", "1", "-o", name))
 
     def test_a_refused_candidate_is_taken_and_told_as_accepted(self):
         self.log("log.csv", THERE_AND_BACK)
@@ -53,9 +51,7 @@ class Accept(Case):
         for words, part in (((*BLIND, "--accept", "velocity-bias"), "no finding of that name; uncertain findings: "),
                             (("--accept", "coulomb-friction"), "it is confirmed, and in the model already; uncertain findings: "),
                             (("--accept", "coulomb"), "there is no effect 'coulomb'")):
-            done = self.run_tool("diagnose", "log.csv", "--model", "model.json", *words)
-            self.assertEqual(done.returncode, 2, done.stderr)
-            self.assertIn(part, done.stderr)
+            ended(2, self.run_tool("diagnose", "log.csv", "--model", "model.json", *words), part)
 
     def test_nothing_in_doubt_nothing_to_do(self):
         self.log("log.csv", THERE_AND_BACK)
@@ -72,6 +68,5 @@ class Accept(Case):
         self.assertEqual([one["effect"] for one in taken["accepted"]], [sides[1]])
         # What a user accepts is no verdict.
         self.assertEqual(taken["verdict"], "partly-explained")
-        done = self.run_tool("diagnose", "log.csv", "--model", "model.json", "--accept", sides[1], "--require-conclusive")
-        self.assertEqual(done.returncode, 5)
+        done = ended(5, self.run_tool("diagnose", "log.csv", "--model", "model.json", "--accept", sides[1], "--require-conclusive"))
         self.assertIn("accepted by you and not confirmed by this log", done.stdout)

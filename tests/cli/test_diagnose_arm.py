@@ -6,7 +6,7 @@ import math
 import random
 import unittest
 
-from commands import LOGS, SHORT, Case
+from commands import LOGS, SHORT, Case, ended
 
 # Two links that hang in a plane: lengths, masses at their ends (m, kg).
 LENGTH, MASS, G = (0.5, 0.4), (4.0, 2.5), 9.81
@@ -62,8 +62,7 @@ class Arm(Case):
         (self.folder / "dh.csv").write_text(DH)
 
     def diagnosed(self, *words):
-        done = self.run_tool("diagnose", *words, "--gear-ratio", "100", "--json", "-q")
-        self.assertEqual(done.returncode, 0, done.stderr)
+        done = ended(0, self.run_tool("diagnose", *words, "--gear-ratio", "100", "--json", "-q"))
         return json.loads(done.stdout)
 
     def test_friction_of_a_joint_is_named_beside_the_arm_and_the_gap_closes_on_another_log(self):
@@ -130,8 +129,7 @@ class Arm(Case):
     def test_without_the_arm_the_next_step_says_that_other_joints_move(self):
         write_log(self.folder / "log.csv", 1, coulomb_nm=1.2)
         (self.folder / "own.json").write_text('{"schema": "ripplenotch/model/1", "gear_ratio": 100, "effects": [{"effect": "inertia"}]}')
-        done = self.run_tool("diagnose", "log.csv", "--joint", "j1", "--model", "own.json", "--json", "-q")
-        self.assertEqual(done.returncode, 0, done.stderr)
+        done = ended(0, self.run_tool("diagnose", "log.csv", "--joint", "j1", "--model", "own.json", "--json", "-q"))
         found = json.loads(done.stdout)
         self.assertIn("the log has 2 joints", found["next"][0])
         self.assertIn("--arm", found["next"][0])
@@ -159,8 +157,7 @@ class Arm(Case):
 
     def test_the_story_tells_the_arm_and_verbose_the_pairs(self):
         write_log(self.folder / "log.csv", 5, coulomb_nm=1.2, seconds=12.0)
-        done = self.run_tool("diagnose", "log.csv", "--joint", "j1", "--arm", f"dh,file=dh.csv,{DOWN}", "--gear-ratio", "100", "-v")
-        self.assertEqual(done.returncode, 0, done.stderr)
+        done = ended(0, self.run_tool("diagnose", "log.csv", "--joint", "j1", "--arm", f"dh,file=dh.csv,{DOWN}", "--gear-ratio", "100", "-v"))
         self.assertRegex(done.stdout, r"^arm: 2 joints of dh.csv matched by \w+ \(-v shows them\); ")
         self.assertIn("with friction included, 5-fold cross-validated", done.stdout)
         self.assertIn("of the log, and goes", done.stderr)
@@ -182,9 +179,7 @@ class Arm(Case):
                 (["diagnose", "-", "--joint", "j1", "--gear-ratio", "100", "--arm", arm], 2, "file")):
             with self.subTest(words=words):
                 text = (self.folder / "log.csv").read_text()
-                done = self.run_tool(*words, stdin=text)
-                self.assertEqual(done.returncode, code, done.stderr)
-                self.assertIn(message, done.stderr)
+                done = ended(code, self.run_tool(*words, stdin=text), message)
                 self.assertEqual(len(done.stderr.strip().splitlines()), 1, done.stderr)
         self.assertFalse((self.folder / "one.json").exists())
 
@@ -200,9 +195,8 @@ class Arm(Case):
                                        ("shoulder_lift_joint", {"coulomb-friction"}, 3.0),
                                        ("wrist_2_joint", {"coulomb-friction"}, 0.7)):
             with self.subTest(joint=joint):
-                done = self.run_tool("diagnose", "first.csv", "--joint", joint, "--arm", "dh,file=ur10.csv", "--gear-ratio", "101",
-                                 "--validate", "last.csv", "--json", "-q")
-                self.assertEqual(done.returncode, 0, done.stderr)
+                done = ended(0, self.run_tool("diagnose", "first.csv", "--joint", joint, "--arm", "dh,file=ur10.csv", "--gear-ratio", "101",
+                                          "--validate", "last.csv", "--json", "-q"))
                 found = json.loads(done.stdout)
                 self.assertLessEqual(names, set(found["named"]))
                 self.assertLess(found["gap"]["validation_after_nm"], after_nm)

@@ -11,7 +11,7 @@ import subprocess
 import unittest
 import xml.etree.ElementTree
 
-from commands import SOURCE, Case
+from commands import SOURCE, Case, ended
 
 # A folder with node_modules/@mujoco/mujoco: RIPPLENOTCH_MUJOCO, or that of the repository.
 NODE = pathlib.Path(os.environ.get("RIPPLENOTCH_MUJOCO", SOURCE))
@@ -35,8 +35,7 @@ class Joint(Case):
     RATE = "500Hz"
 
     def run_tool(self, *words, code=0):
-        done = super().run_tool(*words)
-        self.assertEqual(done.returncode, code, done.stderr)
+        done = ended(code, super().run_tool(*words))
         return done
 
     def logged(self, *effects, name="log.csv"):
@@ -72,9 +71,8 @@ class Joint(Case):
 
     def mujocos_torque(self, name, joint, rows):
         told = json.dumps({"xml": (self.folder / name).read_text(), "joint": joint, "rows": rows})
-        done = subprocess.run(["node", SOURCE / "scripts/prove_diagnose/mujoco/along.mjs"], input=told, cwd=NODE, capture_output=True,
-                              text=True)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        done = ended(0, subprocess.run(["node", SOURCE / "scripts/prove_diagnose/mujoco/along.mjs"], input=told, cwd=NODE, capture_output=True,
+                                       text=True))
         return json.loads(done.stdout)
 
     def gap(self, name, rows, joint="joint"):

@@ -10,7 +10,7 @@ import subprocess
 import unittest
 
 import commands
-from commands import COMPILER, DATA, FILTER, SELF_TEST
+from commands import COMPILER, DATA, FILTER, SELF_TEST, ended
 
 SWITCHING = ("c-header", "cmsis-dsp", "scipy", "matlab", "json")
 FIXED = ("--method", "fixed,centers=60Hz:120Hz,q=2", "--sample-rate", "1kHz")
@@ -188,9 +188,8 @@ class Content(Case):
         self.good("export", "table.json", "--to", "matlab", "-o", "n.m")
         program = "n; printf('%d %d %.17g %.17g %g', numel(ripplenotch.sos), rows(ripplenotch.sos{9}), " \
                   "ripplenotch.sos{9}(2, 5), ripplenotch.fs, ripplenotch.to_deg_s(9))"
-        done = subprocess.run([octave, "--no-gui", "--quiet", "--eval", program], cwd=self.folder, capture_output=True,
-                              text=True, timeout=60)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        done = ended(0, subprocess.run([octave, "--no-gui", "--quiet", "--eval", program], cwd=self.folder, capture_output=True,
+                                       text=True, timeout=60))
         table = json.loads((self.folder / "table.json").read_text())
         bands, sections, a1, rate, last = done.stdout.split()
         self.assertEqual((int(bands), int(sections), float(rate), float(last)), (9, 2, 1000, 180))
@@ -267,8 +266,7 @@ class Verify(Case):
                 self.assertLess(abs(section["mean_error_nm"]), 2e-2)
 
     def test_a_tolerance_that_is_passed_is_exit_code_1_with_the_section_the_value_and_the_tolerance(self):
-        done = self.run_tool("export", *SLOW, "--to", "cmsis-dsp", "-o", "notch.h", "--tolerance", "0.5")
-        self.assertEqual(done.returncode, 1)
+        done = ended(1, self.run_tool("export", *SLOW, "--to", "cmsis-dsp", "-o", "notch.h", "--tolerance", "0.5"))
         self.assertRegex(done.stderr.decode(), r"ripplenotch export: section 1 \(2 Hz\): gain error at the centre 0\.\d+ %, tolerance 0.5 %\n")
         self.assertIn("notch.h: cmsis-dsp, read back and run at 4000 Hz in float32, direct form I", done.stdout.decode())
 

@@ -6,7 +6,7 @@ import json
 import pathlib
 
 import commands
-from commands import run
+from commands import ended, run
 
 GEAR = ["--gear-ratio", "100", "--orders", "1,2"]
 JOINT = ["--gear-ratio", "100", "--inertia", "1.2", "--ripple", "1:0.5Nm:30deg", "--ripple", "2:0.8Nm:10deg",
@@ -20,13 +20,11 @@ MOTION = ["--motion", "multisine,frequency=0.15Hz,amplitude=60deg,duration=8s"]
 class Case(commands.Case):
     def log(self, name="log.csv", joint=JOINT, friction=WINDING, motion=MOTION, seed=1, rate="500Hz"):
         path = self.folder / name
-        done = run("simulate", *joint, *friction, *motion, "--sample-rate", rate, "--noise", "0.05Nm", "--seed", seed, "-o", path)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        ended(0, run("simulate", *joint, *friction, *motion, "--sample-rate", rate, "--noise", "0.05Nm", "--seed", seed, "-o", path))
         return path
 
     def line(self, *words, code=0):
-        done = run("features", *words)
-        self.assertEqual(done.returncode, code, done.stderr)
+        done = ended(code, run("features", *words))
         lines = [json.loads(line) for line in done.stdout.splitlines()]
         self.assertEqual(len(lines), 1)
         return lines[0]
@@ -138,17 +136,14 @@ class Conditions(Case):
 
     def test_patterns_that_are_none_are_refused(self):
         for pattern, word in (("%Y-%m.csv", "%d"), ("%Y%Y%m%d", "twice"), ("%Y%m%d%q", "Y m d")):
-            done = run("features", "x.csv", "--date-from-name", pattern)
-            self.assertEqual(done.returncode, 2)
-            self.assertIn(word, done.stderr)
+            ended(2, run("features", "x.csv", "--date-from-name", pattern), word)
 
 
 class ManyLogs(Case):
     def test_a_failed_log_is_a_line_and_the_others_are_done(self):
         good, bad = self.log(), self.folder / "bad.csv"
         bad.write_text("time_s,velocity_deg_s,torque_nm\n0,1,x\n")
-        done = run("features", bad, good, self.folder / "none.csv", *GEAR)
-        self.assertEqual(done.returncode, 3)
+        done = ended(3, run("features", bad, good, self.folder / "none.csv", *GEAR))
         lines = [json.loads(line) for line in done.stdout.splitlines()]
         self.assertEqual([pathlib.Path(line["log"]).name for line in lines], ["bad.csv", "log.csv", "none.csv"])
         self.assertEqual(["error" in line for line in lines], [True, False, True])
@@ -176,6 +171,4 @@ class ManyLogs(Case):
         done = run("features", "--merge", *lines, lines[0])
         self.assertEqual((done.returncode, done.stdout), (3, ""))
         self.assertIn("already", done.stderr)
-        done = run("features", "--merge", first)
-        self.assertEqual(done.returncode, 3)
-        self.assertIn("line 1", done.stderr)
+        ended(3, run("features", "--merge", first), "line 1")

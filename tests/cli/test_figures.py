@@ -7,7 +7,7 @@ import os
 import re
 import subprocess
 
-from commands import SOURCE, Case, run
+from commands import SOURCE, Case, ended, run
 
 FIGURES = SOURCE / "docs" / "figures"
 
@@ -30,9 +30,8 @@ def alike(kept, made, path=""):
 
 class Figures(Case):
     def test_every_picture_shows_what_its_command_shows_today(self):
-        done = subprocess.run([SOURCE / "scripts" / "make-figures", self.folder], capture_output=True, timeout=120,
-                              env=dict(os.environ, ONLY_DATA="1"))
-        self.assertEqual(done.returncode, 0, done.stderr)
+        ended(0, subprocess.run([SOURCE / "scripts" / "make-figures", self.folder], capture_output=True, timeout=120,
+                                env=dict(os.environ, ONLY_DATA="1")))
         made = {path.name: json.loads(path.read_text()) for path in self.folder.glob("*.json")}
         kept = {path.name: json.loads(path.read_text()) for path in FIGURES.glob("*.json")}
         self.assertEqual(sorted(kept), sorted(made))

@@ -13,7 +13,7 @@ import threading
 import time
 import unittest
 
-from commands import DATA, TOOL, Case
+from commands import DATA, TOOL, Case, ended
 
 
 LOWPASS = ("--method", "lowpass,cutoff=13rad/s,order=1")
@@ -36,8 +36,7 @@ class InFolder(Case):
 class Hashes(InFolder):
     def test_metrics_name_the_log_that_was_read(self):
         raw = self.hash_of("log.csv")
-        done = self.run_tool("filter", "log.csv", *LOWPASS, *GEAR, "-o", "out.csv", "--metrics", "m.json")
-        self.assertEqual(done.returncode, 0, done.stderr)
+        ended(0, self.run_tool("filter", "log.csv", *LOWPASS, *GEAR, "-o", "out.csv", "--metrics", "m.json"))
         self.assertEqual(json.loads((self.folder / "m.json").read_text())["inputs"][0]["sha256"], raw)
 
     def test_every_command_that_names_a_hash_names_the_right_one(self):
@@ -53,8 +52,7 @@ class Hashes(InFolder):
         for command in (("identify",), ("spectrum", "--track", *GEAR), ("spectrum",), ("map", *GEAR), ("compare", *GEAR, *LOWPASS)):
             for number, output in enumerate((("--json",), ("-o", "NAME"), ("--plot", "NAME"))):
                 name = f"{len(command)}_{command[0]}_{number}.json"
-                done = self.run_tool(command[0], "log.csv", *command[1:], *(w.replace("NAME", name) for w in output))
-                self.assertEqual(done.returncode, 0, done.stderr)
+                done = ended(0, self.run_tool(command[0], "log.csv", *command[1:], *(w.replace("NAME", name) for w in output)))
                 words = json.loads(done.stdout if output == ("--json",) else (self.folder / name).read_text())
                 self.assertEqual(words["inputs"][0]["sha256"], raw, f"{command} {output}")
 
@@ -111,9 +109,8 @@ class LogsThatChangeBetweenPasses(InFolder):
     def setUp(self):
         super().setUp()
         # Longer than what is kept from one pass to the next.
-        done = self.run_tool("simulate", *GEAR[:2], "--inertia", "0.4", "--motion", "constant,speed=90deg/s,duration=2500s",
-                             "--sample-rate", "1kHz", "-o", "long.npy")
-        self.assertEqual(done.returncode, 0, done.stderr)
+        ended(0, self.run_tool("simulate", *GEAR[:2], "--inertia", "0.4", "--motion", "constant,speed=90deg/s,duration=2500s",
+                               "--sample-rate", "1kHz", "-o", "long.npy"))
         self.size = (self.folder / "long.npy").stat().st_size
 
     def read_by(self, process):
@@ -179,8 +176,7 @@ class Collisions(InFolder):
 
     def setUp(self):
         super().setUp()
-        made = self.run_tool("design", *GEAR, "--sample-rate", "1kHz", "--speed", "18:180:18", "--json", "-o", "table.json")
-        self.assertEqual(made.returncode, 0, made.stderr)
+        ended(0, self.run_tool("design", *GEAR, "--sample-rate", "1kHz", "--speed", "18:180:18", "--json", "-o", "table.json"))
         os.symlink("table.json", self.folder / "link.json")
         os.link(self.folder / "log.csv", self.folder / "same.csv")
 
@@ -204,24 +200,21 @@ class Collisions(InFolder):
             self.refuse(*words)
 
     def test_what_is_no_file_collides_with_nothing(self):
-        done = self.run_tool("filter", "log.csv", *LOWPASS, "-o", "/dev/null", "--metrics", "/dev/null")
-        self.assertEqual(done.returncode, 0, done.stderr)
+        ended(0, self.run_tool("filter", "log.csv", *LOWPASS, "-o", "/dev/null", "--metrics", "/dev/null"))
 
 
 class Places(InFolder):
     def test_rights_are_kept(self):
         (self.folder / "out.csv").write_text("old")
         os.chmod(self.folder / "out.csv", 0o600)
-        done = self.run_tool("filter", "log.csv", *LOWPASS, "--force", "-o", "out.csv")
-        self.assertEqual(done.returncode, 0, done.stderr)
+        ended(0, self.run_tool("filter", "log.csv", *LOWPASS, "--force", "-o", "out.csv"))
         self.assertEqual(stat.S_IMODE((self.folder / "out.csv").stat().st_mode), 0o600)
 
     @unittest.skipUnless(os.geteuid() == 0, "only root may give files away")
     def test_owner_and_group_are_kept(self):
         (self.folder / "out.csv").write_text("old")
         os.chown(self.folder / "out.csv", 1234, 2345)
-        done = self.run_tool("filter", "log.csv", *LOWPASS, "--force", "-o", "out.csv")
-        self.assertEqual(done.returncode, 0, done.stderr)
+        ended(0, self.run_tool("filter", "log.csv", *LOWPASS, "--force", "-o", "out.csv"))
         status = (self.folder / "out.csv").stat()
         self.assertEqual((status.st_uid, status.st_gid), (1234, 2345))
 
@@ -229,8 +222,7 @@ class Places(InFolder):
         (self.folder / "there").mkdir()
         (self.folder / "there/out.csv").write_text("old")
         os.symlink("there/out.csv", self.folder / "out.csv")
-        done = self.run_tool("filter", "log.csv", *LOWPASS, "--force", "-o", "out.csv")
-        self.assertEqual(done.returncode, 0, done.stderr)
+        ended(0, self.run_tool("filter", "log.csv", *LOWPASS, "--force", "-o", "out.csv"))
         self.assertTrue((self.folder / "out.csv").is_symlink())
         self.assertGreater((self.folder / "there/out.csv").stat().st_size, 10000)
 
@@ -238,8 +230,7 @@ class Places(InFolder):
         for number in range(50):
             (self.folder / f"out.csv.part-{os.getpid() + number}-0").write_text("left")
         for _ in range(3):
-            done = self.run_tool("filter", "log.csv", *LOWPASS, "--force", "-o", "out.csv")
-            self.assertEqual(done.returncode, 0, done.stderr)
+            ended(0, self.run_tool("filter", "log.csv", *LOWPASS, "--force", "-o", "out.csv"))
 
     @unittest.skipUnless(shutil.which("strace"), "no strace here, which counts the calls")
     def test_a_result_is_on_the_disk_before_it_has_its_name(self):
@@ -258,5 +249,4 @@ class Places(InFolder):
 class Numbers(InFolder):
     def test_numbers_beyond_reason_are_a_mistake_in_the_command(self):
         for ratio in ("1e308", "1e30", "0", "-1"):
-            done = self.run_tool("spectrum", "log.csv", "--track", "--gear-ratio", ratio)
-            self.assertEqual(done.returncode, 2, done.stderr)
+            ended(2, self.run_tool("spectrum", "log.csv", "--track", "--gear-ratio", ratio))

@@ -7,7 +7,7 @@ import re
 import unittest
 
 import commands
-from commands import DATA, LOGS
+from commands import DATA, LOGS, ended
 
 LOWPASS = "lowpass,cutoff=13rad/s"
 
@@ -306,8 +306,7 @@ class Threads(Case):
             text = "\n".join([*rows[:line], bad, *rows[line + 1:]]).encode()
             outputs = set()
             for threads in (1, 2, 5):
-                done = self.run_tool("filter", "-", "--method", LOWPASS, "--threads", threads, "-q", stdin=text)
-                self.assertEqual(done.returncode, 3, done.stderr)
+                done = ended(3, self.run_tool("filter", "-", "--method", LOWPASS, "--threads", threads, "-q", stdin=text))
                 self.assertIn(f"standard input:{line + 1}:{said}", done.stderr.decode())
                 outputs.add(done.stdout)
             self.assertEqual(len(outputs), 1)
@@ -318,8 +317,7 @@ class Threads(Case):
             row = rows[line - 1]
             text = "\n".join([*rows[:line], "0.001" + row[row.index(","):], *rows[line:]]).encode()
             for threads in (1, 4):
-                done = self.run_tool("filter", "-", "--method", LOWPASS, "--threads", threads, "-q", stdin=text)
-                self.assertEqual(done.returncode, 3)
+                done = ended(3, self.run_tool("filter", "-", "--method", LOWPASS, "--threads", threads, "-q", stdin=text))
                 self.assertIn(f"standard input:{line + 1}:1: read the time 0.001 after", done.stderr.decode())
 
 
@@ -355,8 +353,7 @@ class Harm(Case):
         # A map with the wrong sign doubles what it should take out.
         log = self.simulated("log.csv", "0.2kgm2", "sine,amplitude=60deg,frequency=0.1Hz,duration=20s")
         opposite = "map,gear-ratio=100,orders=1:2,cosines=-0.6928Nm:-0.5Nm,sines=0.4Nm:0Nm"
-        done = self.run_tool("filter", log, "--method", opposite, "-o", "out.csv")
-        self.assertEqual(done.returncode, 0, done.stderr)
+        done = ended(0, self.run_tool("filter", log, "--method", opposite, "-o", "out.csv"))
         self.assertRegex(done.stderr.decode(), r"order 1 grew from 0\.(79|8)\d* to 1\.\d+ Nm")
 
     @unittest.skipUnless((LOGS / "gpl3" / "panda_gaz_j1.csv").exists(), "SKIPPED: the folder of real logs is not here")

@@ -4,7 +4,7 @@
 import json
 
 import commands
-from commands import DATA
+from commands import DATA, ended
 
 MOVE = DATA / "paper_move_2s.csv"
 
@@ -57,9 +57,8 @@ class WhereTheGearComesFrom(Case):
         self.assertEqual(metrics["method"], "tracking,orders=2,gear-ratio=100")
 
     def test_without_a_gear_it_says_what_to_give(self):
-        done = self.run_tool("filter", MOVE, "--method", "tracking")
-        self.assertEqual(done.returncode, 2)
-        self.assertIn("method tracking needs to know where the ripple is: give --gear-ratio, for example 100", done.stderr)
+        ended(2, self.run_tool("filter", MOVE, "--method", "tracking"),
+              "method tracking needs to know where the ripple is: give --gear-ratio, for example 100")
 
     def test_a_joint_file_without_a_ratio_gives_its_lines_by_turns_of_the_joint(self):
         (self.folder / "lines.json").write_text(joint(ratio=None))
@@ -69,13 +68,9 @@ class WhereTheGearComesFrom(Case):
 
     def test_a_joint_file_that_found_nothing_is_refused_with_the_way_out(self):
         (self.folder / "nothing.json").write_text(joint(ratio=None, orders=()))
-        done = self.run_tool("filter", MOVE, "--method", "tracking,joint=nothing.json")
-        self.assertEqual(done.returncode, 3)
-        self.assertIn("give --gear-ratio", done.stderr)
+        ended(3, self.run_tool("filter", MOVE, "--method", "tracking,joint=nothing.json"), "give --gear-ratio")
         (self.folder / "no_lines.json").write_text(joint(orders=()))
-        done = self.run_tool("filter", MOVE, "--method", "tracking,joint=no_lines.json")
-        self.assertEqual(done.returncode, 3)
-        self.assertIn("give --orders", done.stderr)
+        ended(3, self.run_tool("filter", MOVE, "--method", "tracking,joint=no_lines.json"), "give --orders")
         self.assertFalse((self.folder / "out.csv").exists())
 
     def test_compare_knows_the_lines_from_the_method_alone(self):

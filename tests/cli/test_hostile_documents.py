@@ -3,7 +3,7 @@
 
 import json
 
-from commands import SOURCE, TOOL, Case, good, sanitized
+from commands import SOURCE, TOOL, Case, ended, good, sanitized
 from commands import SOURCE, TOOL, Case, sanitized
 from prove_trust import documents
 
@@ -113,8 +113,7 @@ class Documents(Case):
     def test_what_design_can_make_can_be_read(self):
         path = self.folder / "x.json"
         self.good("design", "--gear-ratio", "100", "--orders", "1,2", "--sample-rate", "1kHz", "--speed", "20:200:0.2", "--json", "-o", path)
-        done = self.read(path.read_text(), "export", "x.json", "--to", "json")
-        self.assertEqual(done.returncode, 0, done.stderr)
+        ended(0, self.read(path.read_text(), "export", "x.json", "--to", "json"))
 
     def test_models_and_figures_are_bounded(self):
         model = {**head("model"), "gear_ratio": 100, "effects": [{"effect": "inertia", "inertia_kgm2": 1}] * 257}

@@ -8,7 +8,7 @@ import random
 import tempfile
 import unittest
 
-from commands import DATA, LOGS, Case, run
+from commands import DATA, LOGS, Case, ended, run
 
 PAPER = [str(DATA / f"paper_{name}.csv") for name in ("rest", "60deg_s", "120deg_s", "180deg_s")]
 
@@ -90,13 +90,11 @@ class ThePapersLogs(Case):
         self.assertEqual(run("identify", "--json", *PAPER).stdout, run("identify", "--json", *PAPER).stdout)
 
     def test_the_file_is_json_and_the_terminal_gets_the_report(self):
-        done = run("identify", *PAPER, "-o", "joint.json", cwd=self.folder)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        done = ended(0, run("identify", *PAPER, "-o", "joint.json", cwd=self.folder))
         self.assertEqual(done.stderr, "")
         stored = json.loads((self.folder / "joint.json").read_text())
         self.assertEqual(done.stdout.splitlines()[0], stored["verdict"])
-        again = run("identify", *PAPER, "-o", "joint.json", cwd=self.folder)
-        self.assertEqual(again.returncode, 4)
+        ended(4, run("identify", *PAPER, "-o", "joint.json", cwd=self.folder))
         self.assertEqual(run("design", "joint.json", "-q", cwd=self.folder).returncode, 0)
 
 
@@ -109,8 +107,7 @@ class Answers(Case):
     def test_one_speed_is_not_conclusive_and_exits_5_on_request(self):
         path = self.write("one.csv", log_text(83.0, 0.5))
         self.assertEqual(run("identify", path).returncode, 0)
-        done = run("identify", path, "--require-conclusive")
-        self.assertEqual(done.returncode, 5)
+        done = ended(5, run("identify", path, "--require-conclusive"))
         self.assertIn("ecord another speed to decide", done.stdout)
 
     def test_the_sentence_is_as_sure_as_the_table(self):
@@ -122,8 +119,7 @@ class Answers(Case):
 
     def test_no_ripple_is_a_conclusive_answer(self):
         paths = [self.write(f"{v}.csv", log_text(v, 0.0, seed=v)) for v in (40, 80)]
-        done = run("identify", *paths, "--require-conclusive")
-        self.assertEqual(done.returncode, 0)
+        done = ended(0, run("identify", *paths, "--require-conclusive"))
         self.assertTrue(done.stdout.startswith("No ripple: no line above"), done.stdout)
 
     def test_a_stated_ratio_is_kept_and_that_the_lines_contradict_it_is_told(self):
@@ -155,9 +151,7 @@ class Answers(Case):
         self.assertEqual(run("identify", *PAPER, "--evidence", "magic").returncode, 2)
         self.assertEqual(run("identify", *PAPER, "--gear-ratio", "-3").returncode, 2)
         self.assertEqual(run("identify").returncode, 2)
-        short = run("identify", "-", stdin=log_text(60, 0.5, seconds=0.1))
-        self.assertEqual(short.returncode, 3)
-        self.assertIn("at least 64", short.stderr)
+        ended(3, run("identify", "-", stdin=log_text(60, 0.5, seconds=0.1)), "at least 64")
 
 
 class Doubts(Case):
@@ -207,9 +201,7 @@ class Doubts(Case):
         (self.folder / "joint.json").write_text(json.dumps(found))
         table = json.loads(run("design", "joint.json", "--json", "-q", cwd=self.folder).stdout)
         self.assertEqual((table["gear_ratio"], [round(order) for order in table["orders"]]), (None, [160, 320]))
-        refused = run("design", "joint.json", "--orders", "1", "-q", cwd=self.folder)
-        self.assertEqual(refused.returncode, 3)
-        self.assertIn("give --gear-ratio", refused.stderr)
+        refused = ended(3, run("design", "joint.json", "--orders", "1", "-q", cwd=self.folder), "give --gear-ratio")
         self.assertRegex(refused.stderr, r"identify could not decide between 160\S* or 80")
 
     def test_a_motor_in_radians_without_a_unit_is_asked_for_its_unit(self):
@@ -301,10 +293,9 @@ class FixedTones(Case):
 
     def found_of(self, *more):
         log = str(self.folder / "log.csv")
-        done = run("simulate", "--gear-ratio", "100", "--inertia", "0.992kgm2", "--ripple", "1:0.8Nm:30deg", "--ripple",
-                   "2:0.5Nm", "--motion", "multisine,amplitude=60deg,frequency=0.2Hz,duration=20s", "--sample-rate", "1kHz",
-                   "--noise", "0.05Nm", *more, "-o", log, "--force")
-        self.assertEqual(done.returncode, 0, done.stderr)
+        ended(0, run("simulate", "--gear-ratio", "100", "--inertia", "0.992kgm2", "--ripple", "1:0.8Nm:30deg", "--ripple",
+                     "2:0.5Nm", "--motion", "multisine,amplitude=60deg,frequency=0.2Hz,duration=20s", "--sample-rate", "1kHz",
+                     "--noise", "0.05Nm", *more, "-o", log, "--force"))
         return identified(log)
 
     def test_ripple_where_the_speed_has_an_extremum_is_no_tone_and_a_tone_is_one(self):
@@ -319,8 +310,7 @@ class FixedTones(Case):
 
 class Spectra(unittest.TestCase):
     def test_a_pipe_ends_in_json_with_peaks_floor_window_and_resolution(self):
-        done = run("spectrum", "-", "--json", stdin=log_text(72.0, 0.5))
-        self.assertEqual(done.returncode, 0, done.stderr)
+        done = ended(0, run("spectrum", "-", "--json", stdin=log_text(72.0, 0.5)))
         found = json.loads(done.stdout)
         self.assertEqual((found["window"], found["domain"]), ("hann", "frequency"))
         one = found["spectra"][0]
@@ -357,9 +347,7 @@ class Spectra(unittest.TestCase):
     def test_orders_of_a_move(self):
         found = json.loads(run("spectrum", str(DATA / "paper_move_2s.csv"), "--domain", "order", "--json").stdout)
         self.assertEqual([round(line["order_output"]) for line in found["lines"]], [100, 200])
-        still = run("spectrum", str(DATA / "paper_rest.csv"), "--domain", "order")
-        self.assertEqual(still.returncode, 3)
-        self.assertIn("nowhere moves", still.stderr)
+        ended(3, run("spectrum", str(DATA / "paper_rest.csv"), "--domain", "order"), "nowhere moves")
 
 
 class AnyTravelAnyRatio(Case):
@@ -368,8 +356,7 @@ class AnyTravelAnyRatio(Case):
     def simulated(self, ratio, *motions, rate="1kHz", ripple=("1:0.8Nm:30deg", "2:0.5Nm"), noise="0.05Nm", seed=1):
         words = [word for motion in motions for word in ("--motion", motion)] + [word for one in ripple for word in ("--ripple", one)]
         path = str(self.folder / "log.csv")
-        done = run("simulate", "--gear-ratio", str(ratio), *words, "--sample-rate", rate, "--noise", noise, "--seed", str(seed), "-o", path, "--force")
-        self.assertEqual(done.returncode, 0, done.stderr)
+        ended(0, run("simulate", "--gear-ratio", str(ratio), *words, "--sample-rate", rate, "--noise", noise, "--seed", str(seed), "-o", path, "--force"))
         return path
 
     def to_and_fro(self, degrees, seconds, times=5):
@@ -447,8 +434,7 @@ class RealLogs(unittest.TestCase):
     def test_panda_clock_makes_no_lines_of_the_slow_torque(self):
         # The model's torque is smooth; read at the log's stumbling stamps it showed 0.81 Nm at 59.7 Hz.
         log = str(LOGS / "gpl3" / "panda_gaz_all.csv")
-        done = run("spectrum", log, "--bins", "--columns", "time=time_s,velocity=panda_joint2_velocity_rad_s,torque=panda_joint2_model_torque_Nm")
-        self.assertEqual(done.returncode, 0, done.stderr)
+        done = ended(0, run("spectrum", log, "--bins", "--columns", "time=time_s,velocity=panda_joint2_velocity_rad_s,torque=panda_joint2_model_torque_Nm"))
         for row in done.stdout.splitlines()[1:]:
             hz, amplitude = map(float, row.split(",")[:2])
             if 59.0 < hz < 61.0:

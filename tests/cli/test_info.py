@@ -6,7 +6,7 @@ import math
 import subprocess
 import unittest
 
-from commands import LOGS, SOURCE, TOOL, Case, good, run
+from commands import LOGS, SOURCE, TOOL, Case, ended, good, run
 
 
 def info(*words, stdin=None):
@@ -130,15 +130,13 @@ class Dialects(unittest.TestCase):
                 "libfranka_style": ["--joint", "0", "--unit", "time=ms"], "named_joints": ["--joint", "wrist_1_joint"]}
         for path in sorted((SOURCE / "data/dialects").glob("*.csv")):
             with self.subTest(path.name):
-                done = run("filter", path, "--method", "none", "-q", *more.get(path.stem, []), text=False)
-                self.assertEqual(done.returncode, 0, done.stderr)
+                done = ended(0, run("filter", path, "--method", "none", "-q", *more.get(path.stem, []), text=False))
                 self.assertEqual(done.stdout, path.read_bytes())
 
     def test_the_option_line_of_verbose_forces_the_same_reading(self):
         path = SOURCE / "data/dialects/semicolon_decimal_comma_crlf.csv"
         line = run("info", "-v", path).stderr.split("read as if with ")[1].strip()
-        again = subprocess.run(f"'{TOOL}' info --json '{path}' {line}", shell=True, capture_output=True, timeout=60)
-        self.assertEqual(again.returncode, 0, again.stderr)
+        again = ended(0, subprocess.run(f"'{TOOL}' info --json '{path}' {line}", shell=True, capture_output=True, timeout=60))
         self.assertEqual(json.loads(again.stdout)["options"], line)
 
 

@@ -14,7 +14,7 @@ import shlex
 import struct
 import unittest
 
-from commands import LOGS, TOOL, Case, run, sanitized
+from commands import LOGS, TOOL, Case, ended, run, sanitized
 
 
 RATIO, RATE = 100.0, 500.0
@@ -306,22 +306,19 @@ class ChannelsWithClocksOfTheirOwn(unittest.TestCase):
         return run("info", "-", "--json", *words, stdin=head + "\n".join(rows) + "\nEOF\n")
 
     def test_one_clock_in_several_columns_is_read(self):
-        done = self.info()
-        self.assertEqual(done.returncode, 0, done.stderr)
+        done = ended(0, self.info())
         self.assertEqual([c["role"] for c in json.loads(done.stdout)["columns"]],
                          ["time", "velocity", "other", "torque", "other", "position"])
 
     def test_two_clocks_are_joined_by_time_and_that_is_said(self):
         for at_k in (lambda k: f"{4.0 * k}", lambda k: f"{2.0 * k + 100.0}"):  # half the rate; a later start
-            done = self.info(lambda k, cells: cells[:2] + [at_k(k)] + cells[3:])
-            self.assertEqual(done.returncode, 0, done.stderr)
+            done = ended(0, self.info(lambda k, cells: cells[:2] + [at_k(k)] + cells[3:]))
             told = json.loads(done.stdout)
             self.assertEqual([c["name"] for c in told["columns"]], ["3", "Axis1.ActTorque", "Axis1.ActVelo", "Axis1.ActPos"])
             self.assertIn("Axis1.ActVelo has a clock of its own: joined to the rows by --join linear", told["warnings"][0])
 
     def test_what_is_within_half_a_step_is_the_same_row(self):
-        done = self.info(lambda k, cells: cells[:2] + [f"{2.0 * k + 0.4}"] + cells[3:])
-        self.assertEqual(done.returncode, 0, done.stderr)
+        ended(0, self.info(lambda k, cells: cells[:2] + [f"{2.0 * k + 0.4}"] + cells[3:]))
 
     def test_a_clock_is_compared_in_every_row(self):
         late = lambda k, cells: cells[:2] + [f"{2.0 * k + (4.0 if k > 4000 else 0.0)}"] + cells[3:]  # noqa: E731
@@ -332,8 +329,7 @@ class ChannelsWithClocksOfTheirOwn(unittest.TestCase):
         for words, rate in (((), 250.0), (("--columns", "time=3"), 250.0), (("--columns", "time=1"), 500.0)):
             told = json.loads(self.info(slow, *words).stdout)
             self.assertAlmostEqual(told["sample_rate_hz"], rate)
-            again = self.info(slow, *shlex.split(told["options"]))
-            self.assertEqual(again.returncode, 0, again.stderr)
+            again = ended(0, self.info(slow, *shlex.split(told["options"])))
             self.assertEqual(json.loads(again.stdout)["joints"], told["joints"])
 
 
@@ -355,8 +351,7 @@ class WhatIsSaidWithoutAUnit(Case):
             with self.subTest(name):
                 (self.folder / "log.csv").write_bytes(DIALECTS[name][0])
                 seen = json.loads(self.run_tool("info", "log.csv", "--json").stdout)
-                done = self.run_tool("filter", "log.csv", "--method", "none", "-o", "out.npy", "--force", "-q")
-                self.assertEqual(done.returncode, 0, done.stderr)
+                ended(0, self.run_tool("filter", "log.csv", "--method", "none", "-o", "out.npy", "--force", "-q"))
                 written = json.loads(self.run_tool("info", "out.npy", "--json").stdout)
                 self.assertAlmostEqual(written["sample_rate_hz"], seen["sample_rate_hz"], delta=1e-6)
                 for side in ("min", "max"):
@@ -367,9 +362,7 @@ class WhatIsSaidWithoutAUnit(Case):
 
     def test_motion_of_the_motor_without_a_ratio_is_refused_where_it_would_be_misread(self):
         (self.folder / "log.csv").write_bytes(DIALECTS["motor velocity by name"][0])
-        done = self.run_tool("filter", "log.csv", "--method", "none", "-o", "out.csv")
-        self.assertEqual(done.returncode, 3)
-        self.assertIn("--gear-ratio", done.stderr)
+        ended(3, self.run_tool("filter", "log.csv", "--method", "none", "-o", "out.csv"), "--gear-ratio")
         found = json.loads(self.run_tool("identify", "log.csv", "--json", "-q").stdout)
         self.assertTrue(found["verdict"].startswith("Cannot tell the gear ratio: "), found["verdict"])
         self.assertEqual(sorted(round(line["order"]) for line in found["lines"]), [1, 2])
@@ -377,8 +370,7 @@ class WhatIsSaidWithoutAUnit(Case):
     def test_lines_above_a_table_can_be_skipped_and_stay_in_what_is_written(self):
         text = table("time_s|velocity_deg_s|torque_nm", "t|deg/s|Nm").decode()
         (self.folder / "log.csv").write_text("run 7, warm, 0.5\nsecond line, 1, 2\n" + text)
-        done = self.run_tool("filter", "log.csv", "--skip-lines", "2", "--method", "none", "-o", "out.csv", "-q")
-        self.assertEqual(done.returncode, 0, done.stderr)
+        ended(0, self.run_tool("filter", "log.csv", "--skip-lines", "2", "--method", "none", "-o", "out.csv", "-q"))
         self.assertTrue((self.folder / "out.csv").read_text().startswith("run 7, warm, 0.5\nsecond line, 1, 2\ntime_s,"))
 
     @unittest.skipIf(sanitized(TOOL), "sanitizers need address space of their own")
@@ -396,17 +388,15 @@ class WhatIsSaidWithoutAUnit(Case):
         motion = ["--motion", "rest,duration=0.4s,from=0deg"]
         for target, seconds in ((120, 1.4), (-60, 1.9), (30, 2.4), (-40, 1.4)):
             motion += ["--motion", f"poly6,to={target}deg,duration={seconds}s", "--motion", "rest,duration=0.4s"]
-        done = self.run_tool("simulate", "--gear-ratio", "100", "--inertia", "0.4", "--ripple", "1:0.7Nm:30deg", "--ripple",
-                         "2:0.4Nm:-60deg", "--effect", "coulomb-friction,torque_nm=0.8,width_deg_s=2", *motion,
-                         "--sample-rate", "250Hz", "--noise", "0.05Nm", "--velocity-noise", "0.05deg/s", "--seed", "3",
-                         "-o", "log.csv", "--force")
-        self.assertEqual(done.returncode, 0, done.stderr)
+        ended(0, self.run_tool("simulate", "--gear-ratio", "100", "--inertia", "0.4", "--ripple", "1:0.7Nm:30deg", "--ripple",
+                           "2:0.4Nm:-60deg", "--effect", "coulomb-friction,torque_nm=0.8,width_deg_s=2", *motion,
+                           "--sample-rate", "250Hz", "--noise", "0.05Nm", "--velocity-noise", "0.05deg/s", "--seed", "3",
+                           "-o", "log.csv", "--force"))
         expected = json.loads(self.run_tool("diagnose", "log.csv", "--model", "model.json", "--json", "-q").stdout)
         for header in ("t,dq,tau_J,q", "time,velocity,torque,position"):
             with self.subTest(header=header):
                 (self.folder / "bare.csv").write_text(in_radians(self.folder / "log.csv", header))
-                done = self.run_tool("diagnose", "bare.csv", "--model", "model.json", "--json", "-q")
-                self.assertEqual(done.returncode, 0, done.stderr)
+                done = ended(0, self.run_tool("diagnose", "bare.csv", "--model", "model.json", "--json", "-q"))
                 found = json.loads(done.stdout)
                 if found["verdict"] == "undecided":
                     self.assertIn("--unit velocity=", found["doubt"])
@@ -472,8 +462,7 @@ class RealLogsWithoutUnits(Case):
 class OtherShapes(Case):
     def test_what_has_one_value_a_row_is_written_as_a_table(self):
         (self.folder / "log.csv").write_bytes(tidy())
-        done = self.run_tool("filter", "log.csv", "--method", "none", "-o", "out.csv", "-q")
-        self.assertEqual(done.returncode, 0, done.stderr)
+        ended(0, self.run_tool("filter", "log.csv", "--method", "none", "-o", "out.csv", "-q"))
         self.assertEqual((self.folder / "out.csv").read_text().split("\n")[0], "time_s,velocity_deg_s,torque_nm,position_deg")
 
     def test_electrical_speed_asks_for_the_pairs_of_poles(self):
@@ -500,8 +489,7 @@ class OtherShapes(Case):
                 (self.folder / "axis.csv").write_text(header + "\n" + text)
                 done = self.run_tool("identify", "axis.csv", *words)
                 self.assertEqual((done.returncode, "use --lead 5mm" in done.stderr), (3, True), done.stderr)
-                done = self.run_tool("identify", "axis.csv", *words, "--lead", "5mm")
-                self.assertEqual(done.returncode, 0, done.stderr)
+                done = ended(0, self.run_tool("identify", "axis.csv", *words, "--lead", "5mm"))
                 axis = json.loads(done.stdout)
                 self.assertAlmostEqual(axis["gear_ratio"]["value"], screw["gear_ratio"]["value"], delta=1e-4)
                 for one, other in zip(axis["lines"], screw["lines"], strict=True):

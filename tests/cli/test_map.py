@@ -10,7 +10,7 @@ import subprocess
 import unittest
 
 import commands
-from commands import run
+from commands import ended, run
 
 GEAR = ["--gear-ratio", "100", "--orders", "1,2"]
 
@@ -45,8 +45,7 @@ class Case(commands.Case):
         self.log, self.map = self.folder / "log.csv", self.folder / "map.json"
 
     def made(self, *words):
-        done = run("map", *words, *GEAR, "-o", self.map, "--force")
-        self.assertEqual(done.returncode, 0, done.stderr)
+        done = ended(0, run("map", *words, *GEAR, "-o", self.map, "--force"))
         return json.loads(self.map.read_text()), done.stdout
 
 
@@ -78,22 +77,19 @@ class Maps(Case):
             self.assertLess(one["detectable_nm"], 0.05)
         out = self.folder / "out.csv"
         for method in "map", "oscillator":
-            done = run("filter", self.log, "--method", f"{method},map={self.map}", "-o", out)
-            self.assertEqual(done.returncode, 3, done.stderr)
-            self.assertIn(f"map.json: the map is empty: method {method} has no order to filter by it", done.stderr)
+            ended(3, run("filter", self.log, "--method", f"{method},map={self.map}", "-o", out),
+                  f"map.json: the map is empty: method {method} has no order to filter by it")
             self.assertFalse(out.exists())
 
     def test_a_map_of_other_orders_than_asked_is_an_error(self):
         write_log(self.log, 1)
         self.made(self.log)
-        done = run("filter", self.log, "--method", f"oscillator,map={self.map}", "--gear-ratio", "100", "--orders", "4", "-o", self.folder / "out.csv")
-        self.assertEqual(done.returncode, 3, done.stderr)
-        self.assertIn("map.json: the map holds none of the orders asked for", done.stderr)
+        ended(3, run("filter", self.log, "--method", f"oscillator,map={self.map}", "--gear-ratio", "100", "--orders", "4", "-o", self.folder / "out.csv"),
+              "map.json: the map holds none of the orders asked for")
 
     def test_a_second_of_one_speed_is_enough(self):
-        done = run("simulate", "--gear-ratio", "100", "--ripple", "1:0.8Nm:30deg", "--ripple", "2:0.5Nm", "--motion", "constant,speed=40deg/s,duration=1.5s",
-                   "--sample-rate", "1kHz", "--noise", "0.05Nm", "--seed", "4", "-o", self.log)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        ended(0, run("simulate", "--gear-ratio", "100", "--ripple", "1:0.8Nm:30deg", "--ripple", "2:0.5Nm", "--motion", "constant,speed=40deg/s,duration=1.5s",
+                     "--sample-rate", "1kHz", "--noise", "0.05Nm", "--seed", "4", "-o", self.log))
         found, _ = self.made(self.log)
         self.assertEqual((found["finding"], found["orders"]), ("mapped", [1, 2]))
 
@@ -104,8 +100,7 @@ class Maps(Case):
         found, text = self.made(*logs)
         self.assertFalse(found["conclusive"])
         self.assertIn("The logs disagree", text)
-        done = run("map", *logs, *GEAR, "--require-conclusive")
-        self.assertEqual(done.returncode, 5)
+        ended(5, run("map", *logs, *GEAR, "--require-conclusive"))
 
     def test_a_log_without_a_position_is_not_conclusive(self):
         write_log(self.log, 1, header="time_s,velocity_deg_s,torque_nm")
@@ -121,9 +116,7 @@ class Maps(Case):
 
     def test_who_states_no_gear_is_told_so(self):
         write_log(self.log, 1)
-        done = run("map", self.log)
-        self.assertEqual(done.returncode, 2)
-        self.assertIn("map needs to know where the ripple is", done.stderr)
+        ended(2, run("map", self.log), "map needs to know where the ripple is")
 
     def wide_log(self, shares):
         """A log of one joint for each share, j1 first, which has that share of ripple of 0.8 and 0.3 Nm (orders 1 and 2)."""
@@ -143,8 +136,7 @@ class Maps(Case):
         wide = self.wide_log((1.0, 0.0, 0.5))
         files = ["--joint-file", self.folder / "{joint}.json"]
         self.assertEqual(run("identify", wide, "--joint", "all", "-o", self.folder / "{joint}.json").returncode, 0)
-        done = run("map", wide, "--joint", "all", *files, "-o", self.folder / "{joint}_map.json")
-        self.assertEqual(done.returncode, 3, done.stderr)
+        done = ended(3, run("map", wide, "--joint", "all", *files, "-o", self.folder / "{joint}_map.json"))
         self.assertEqual([line for line in done.stderr.split("\n") if "joint j" in line],
                          [f"ripplenotch map: joint j2: {self.folder}/j2.json: its gear ratio is null, because identify found none; give --gear-ratio, "
                           "or lines per turn of the joint, for example --orders 200/turn"])
@@ -156,19 +148,16 @@ class Maps(Case):
         self.assertNotIn("j2: ", done.stdout)
         # The first joint that failed names the code; a file that is missing is another kind of failure.
         (self.folder / "j1.json").unlink()
-        again = run("map", wide, "--joint", "all", *files, "-o", self.folder / "{joint}_map.json", "--force", "-q")
-        self.assertEqual(again.returncode, 4, again.stderr)
+        again = ended(4, run("map", wide, "--joint", "all", *files, "-o", self.folder / "{joint}_map.json", "--force", "-q"))
         self.assertEqual([line.split(":")[1] for line in again.stderr.strip().split("\n")], [" joint j1", " joint j2"])
         # Without any gear there is one complaint, not one for each joint.
-        none = run("map", wide, "--joint", "all", "-o", self.folder / "{joint}_map.json", "--force")
-        self.assertEqual(none.returncode, 2)
+        none = ended(2, run("map", wide, "--joint", "all", "-o", self.folder / "{joint}_map.json", "--force"))
         self.assertEqual(none.stderr.count("map needs to know where the ripple is"), 1)
 
     def test_every_joint_has_a_map_of_its_own(self):
         """Two joints of one log, the second with half of the ripple: the maps are those of each joint by its name."""
         wide = self.wide_log((1.0, 0.5))
-        done = run("map", wide, *GEAR, "--joint", "all", "-o", self.folder / "{joint}_map.json")
-        self.assertEqual(done.returncode, 0, done.stderr)
+        done = ended(0, run("map", wide, *GEAR, "--joint", "all", "-o", self.folder / "{joint}_map.json"))
         for joint, amplitude in (("j1", 0.8), ("j2", 0.4)):
             found = json.loads((self.folder / f"{joint}_map.json").read_text())
             self.made(wide, "--joint", joint)
@@ -177,21 +166,17 @@ class Maps(Case):
             first = next(one for one in found["coefficients"] if one["order"] == 1)
             self.assertAlmostEqual(first["cosine_nm"], amplitude, delta=0.02)
             self.assertIn(f"{joint}: Cross-validated", done.stdout)
-        filtered = run("filter", wide, "--joint", "all", "--method", f"oscillator,map={self.folder}/{{joint}}_map.json",
-                       "-o", self.folder / "clean.csv")
-        self.assertEqual(filtered.returncode, 0, filtered.stderr)
+        ended(0, run("filter", wide, "--joint", "all", "--method", f"oscillator,map={self.folder}/{{joint}}_map.json",
+                     "-o", self.folder / "clean.csv"))
         for words, said in ((["-o", self.folder / "map.json"], "put {joint} into the name"), (["--json"], "put {joint} into the name")):
-            refused = run("map", wide, *GEAR, "--joint", "all", *words)
-            self.assertEqual(refused.returncode, 2)
-            self.assertIn(said, refused.stderr)
+            ended(2, run("map", wide, *GEAR, "--joint", "all", *words), said)
         self.assertIn("standard input can be read once only", run("map", "-", *GEAR, "--joint", "all").stderr)
 
 
 class Compensators(Case):
     def filtered(self, method):
         out = self.folder / "out.csv"
-        done = run("filter", self.log, "--method", method, "-o", out, "--force")
-        self.assertEqual(done.returncode, 0, done.stderr)
+        ended(0, run("filter", self.log, "--method", method, "-o", out, "--force"))
         return [float(line.split(",")[2]) for line in out.read_text().split("\n")[1:] if line]
 
     def rms(self, method, slow, first=0):
@@ -216,8 +201,7 @@ class Compensators(Case):
         write_log(self.log, 1)
         self.made(self.log)
         metrics = self.folder / "metrics.json"
-        done = run("filter", self.log, "--method", f"map,map={self.map}", "-o", self.folder / "x.csv", "--metrics", metrics)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        ended(0, run("filter", self.log, "--method", f"map,map={self.map}", "-o", self.folder / "x.csv", "--metrics", metrics))
         told = json.loads(metrics.read_text())
         self.assertEqual(told["method"], f"map,map={self.map}")
         self.assertIn(str(self.map), [one["name"] for one in told["inputs"]])
@@ -226,9 +210,8 @@ class Compensators(Case):
         write_log(self.log, 1)
         self.made(self.log)
         for words in ("--gear-ratio", "101"), ("--gear-ratio", "101", "--orders", "1,2"):
-            done = run("filter", self.log, "--method", f"oscillator,map={self.map}", *words, "-o", self.folder / "y.csv")
-            self.assertEqual(done.returncode, 2)
-            self.assertIn("map.json is the map of a joint of gear ratio 100, not of 101", done.stderr)
+            ended(2, run("filter", self.log, "--method", f"oscillator,map={self.map}", *words, "-o", self.folder / "y.csv"),
+                  "map.json is the map of a joint of gear ratio 100, not of 101")
 
     def test_a_map_of_a_joint_of_another_name_and_a_faster_log_are_told(self):
         write_log(self.log, 1)
@@ -237,20 +220,17 @@ class Compensators(Case):
         self.map.write_text(json.dumps(found))
         named = self.folder / "named.csv"
         named.write_text(self.log.read_text().replace("velocity_deg_s,torque_nm,position_deg", "j3_velocity_deg_s,j3_torque_nm,j3_position_deg", 1))
-        done = run("filter", named, "--method", f"map,map={self.map}", "-o", self.folder / "z.csv")
-        self.assertEqual(done.returncode, 2)
-        self.assertIn("the map is of joint j4, and the log is of joint j3", done.stderr)
+        ended(2, run("filter", named, "--method", f"map,map={self.map}", "-o", self.folder / "z.csv"),
+              "the map is of joint j4, and the log is of joint j3")
         found["joint"], found["range"]["speed_deg_s"] = "", [1.0, 40.0]
         self.map.write_text(json.dumps(found))
         for command in ("filter", self.log, "-o", self.folder / "fast.csv"), ("compare", self.log):
             for method in "map", "oscillator":
-                done = run(*command, "--method", f"{method},map={self.map}")
-                self.assertEqual(done.returncode, 3, done.stderr)
+                done = ended(3, run(*command, "--method", f"{method},map={self.map}"))
                 self.assertRegex(done.stderr, f"method {method}: its map was made at 1 to 40 deg/s, and this joint moves at [67].")
                 self.assertFalse((self.folder / "fast.csv").exists())
-        done = run("filter", self.log, "--method", f"map,map={self.map},beyond=hold", "-o", self.folder / "z.csv", "--force")
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertIn("its map was made at 1 to 40 deg/s", done.stderr)
+        ended(0, run("filter", self.log, "--method", f"map,map={self.map},beyond=hold", "-o", self.folder / "z.csv", "--force"),
+              "its map was made at 1 to 40 deg/s")
 
     def test_compare_names_the_joint_of_another_map_too(self):
         write_log(self.log, 1)
@@ -259,9 +239,7 @@ class Compensators(Case):
         self.map.write_text(json.dumps(found))
         named = self.folder / "named.csv"
         named.write_text(self.log.read_text().replace("velocity_deg_s,torque_nm,position_deg", "j3_velocity_deg_s,j3_torque_nm,j3_position_deg", 1))
-        done = run("compare", named, "--method", f"map,map={self.map}")
-        self.assertEqual(done.returncode, 2)
-        self.assertIn("the map is of joint j4, and the log is of joint j3", done.stderr)
+        ended(2, run("compare", named, "--method", f"map,map={self.map}"), "the map is of joint j4, and the log is of joint j3")
 
     def test_against_the_true_torque_a_map_leaves_the_noise(self):
         write_log(self.log, 1)
@@ -271,8 +249,7 @@ class Compensators(Case):
         cells = [row.split(",") for row in rows[1:] if row]
         truth = self.folder / "truth.csv"
         truth.write_text("\n".join([rows[0], *(",".join([t, v, f"{nm!r}", q]) for (t, v, _, q), nm in zip(cells, slow, strict=True))]) + "\n")
-        done = run("compare", self.log, "--truth", truth, "--method", f"map,map={self.map}", "--method", f"oscillator,map={self.map}", "--json")
-        self.assertEqual(done.returncode, 0, done.stderr)
+        done = ended(0, run("compare", self.log, "--truth", truth, "--method", f"map,map={self.map}", "--method", f"oscillator,map={self.map}", "--json"))
         none, mapped, followed = (one["error_rms_nm"] for one in json.loads(done.stdout)["methods"])
         self.assertGreater(none, 0.6)
         self.assertAlmostEqual(mapped, 0.05, delta=0.005)  # the noise
@@ -281,8 +258,7 @@ class Compensators(Case):
     def test_a_map_is_drawn_with_its_intervals(self):
         write_log(self.log, 1)
         picture = self.folder / "map.figure.json"
-        done = run("map", self.log, *GEAR, "-o", self.map, "--plot", picture)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        ended(0, run("map", self.log, *GEAR, "-o", self.map, "--plot", picture))
         panels = json.loads(picture.read_text())["panels"]
         self.assertEqual([panel["y"]["unit"] for panel in panels], ["Nm", "deg"])
         for panel, truths in zip(panels, ((0.8, 0.5), (30.0, 0.0)), strict=True):
@@ -290,24 +266,20 @@ class Compensators(Case):
                 self.assertTrue(all(low <= y <= high for low, y, high in zip(ribbon["low"], curve["y"], ribbon["high"], strict=True)))
                 self.assertAlmostEqual(curve["y"][0], truth, delta=2 * (ribbon["high"][0] - ribbon["low"][0]))
         write_log(self.log, 1, ripple=0.0)
-        done = run("map", self.log, *GEAR, "--plot", self.folder / "empty.json")
-        self.assertEqual(done.returncode, 3)
-        self.assertIn("there is nothing to draw", done.stderr)
+        ended(3, run("map", self.log, *GEAR, "--plot", self.folder / "empty.json"), "there is nothing to draw")
 
     def test_compare_takes_maps_beside_others(self):
         write_log(self.log, 1)
         self.made(self.log)
-        done = run("compare", self.log, "--method", f"map,map={self.map}", "--method", f"oscillator,map={self.map}",
-                   "--method", "tracking,gear-ratio=100,orders=1:2")
-        self.assertEqual(done.returncode, 0, done.stderr)
+        done = ended(0, run("compare", self.log, "--method", f"map,map={self.map}", "--method", f"oscillator,map={self.map}",
+                            "--method", "tracking,gear-ratio=100,orders=1:2"))
         self.assertIn("map.json", done.stdout)
 
     def test_report_shows_a_map(self):
         write_log(self.log, 1)
         self.made(self.log)
         page = self.folder / "page.html"
-        done = run("report", self.map, "-o", page, "-q")
-        self.assertEqual(done.returncode, 0, done.stderr)
+        ended(0, run("report", self.map, "-o", page, "-q"))
         self.assertIn("Cross-validated: order 1 falls from", page.read_text())
         self.assertIn("Ripple over speed", page.read_text())
 
@@ -331,8 +303,7 @@ class Exports(Case):
 
     def exported(self, to, name):
         path = self.folder / name
-        done = run("export", self.map, "--to", to, "-o", path)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        done = ended(0, run("export", self.map, "--to", to, "-o", path))
         return path, done
 
     def test_every_target_is_read_back_and_says_how_far_off_it_is(self):
@@ -367,9 +338,8 @@ class Exports(Case):
         (self.folder / "main.c").write_text(HARNESS)
         for precision, most in ("double", 1e-11), ("float", 1e-5):
             self.exported(f"c-header,precision={precision}", "ripple_map.h")
-            done = subprocess.run(["cc", "-std=c99", "-Wall", "-Wextra", "-Werror", "-O2", "-ffp-contract=off", "main.c", "-lm", "-o", "main"],
-                                  cwd=self.folder, capture_output=True, text=True)
-            self.assertEqual(done.returncode, 0, done.stderr)
+            ended(0, subprocess.run(["cc", "-std=c99", "-Wall", "-Wextra", "-Werror", "-O2", "-ffp-contract=off", "main.c", "-lm", "-o", "main"],
+                                    cwd=self.folder, capture_output=True, text=True))
             found = subprocess.run(["./main"], cwd=self.folder, input=states, capture_output=True, text=True).stdout.split()
             self.assertEqual(len(found), len(expected))
             self.assertLess(max(abs(float(a) - b) for a, b in zip(found, expected)), most, precision)

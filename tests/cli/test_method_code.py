@@ -6,7 +6,7 @@ import shutil
 import subprocess
 import unittest
 
-from commands import Case, run
+from commands import Case, ended, run
 
 ROWS = 20000
 MOST = {"double": 1e-12, "float": 1e-5}
@@ -63,14 +63,12 @@ def rows():
 
 class Code(Case):
     def export(self, method, *words, code=0, to="c-header,name=code", header="code.h"):
-        done = run("export", "--method", method, "--sample-rate", "1kHz", "--to", to, "-o", self.folder / header, "--force", *words)
-        self.assertEqual(done.returncode, code, done.stderr)
+        done = ended(code, run("export", "--method", method, "--sample-rate", "1kHz", "--to", to, "-o", self.folder / header, "--force", *words))
         return done
 
     def filtered(self, log, method):
         out = self.folder / "out.csv"
-        done = run("filter", log, "--method", method, "-o", out, "--force")
-        self.assertEqual(done.returncode, 0, done.stderr)
+        ended(0, run("filter", log, "--method", method, "-o", out, "--force"))
         return [float(line.split(",")[2]) for line in out.read_text().split("\n")[1:] if line]
 
     @unittest.skipUnless(shutil.which("cc"), "SKIPPED: there is no C compiler")
@@ -87,9 +85,8 @@ class Code(Case):
         program += f"static void (*const runs[])(void) = {{{runs}}};\n"
         program += "int main(int count, char** words) {\n    if (count == 2) runs[atoi(words[1])]();\n    return 0;\n}\n"
         (self.folder / "main.c").write_text(program)
-        done = subprocess.run(["cc", "-std=c99", "-Wall", "-Wextra", "-Werror", "-Wdouble-promotion", "-O2", "-ffp-contract=off", "main.c",
-                               "-lm", "-o", "main"], cwd=self.folder, capture_output=True, text=True)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        ended(0, subprocess.run(["cc", "-std=c99", "-Wall", "-Wextra", "-Werror", "-Wdouble-promotion", "-O2", "-ffp-contract=off", "main.c",
+                                 "-lm", "-o", "main"], cwd=self.folder, capture_output=True, text=True))
         alone = ["cc", "-std=c99", "-fsyntax-only", "-x", "c", *(f"code{k}.h" for k in range(len(cases)))]
         done = subprocess.run(alone, cwd=self.folder, capture_output=True, text=True)
         self.assertEqual((done.returncode, done.stderr), (0, ""), "what a header needs, it includes itself")

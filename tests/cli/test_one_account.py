@@ -6,7 +6,7 @@ import json
 import resource
 import unittest
 
-from commands import ACCOUNTS, DATA, GEAR, LOGS, TOOL, SharedCase, asked_for_json, run, sanitized
+from commands import ACCOUNTS, DATA, GEAR, LOGS, TOOL, SharedCase, asked_for_json, ended, run, sanitized
 from commands import DATA, LOGS, TOOL, SharedCase, run, sanitized
 import hard_logs
 
@@ -99,9 +99,8 @@ class Angles(Account):
     """Metrics are measured on the joint's angle, whatever the position column is."""
 
     def metrics(self, name, *more):
-        done = run("filter", self.hard[name], "--method", "tracking", *GEAR, "-o", self.folder / "out.csv", "--json", "--force", "-v",
-                   *more)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        done = ended(0, run("filter", self.hard[name], "--method", "tracking", *GEAR, "-o", self.folder / "out.csv", "--json", "--force", "-v",
+                            *more))
         return json.loads(done.stdout), done.stderr
 
     def test_the_ripple_is_found_and_what_was_decided_is_said(self):
@@ -136,17 +135,15 @@ class Angles(Account):
         self.assertFalse(any(not stretch["rest"] for stretch in joint["steady_stretches"]))
 
     def test_a_limit_is_kept_on_the_right_angle(self):
-        done = run("filter", self.hard["another_joints_position"], "--method", "tracking", *GEAR, "-o", self.folder / "out.csv", "--force",
-                   "--min-attenuation", "15dB")
-        self.assertEqual(done.returncode, 0, done.stderr)
+        ended(0, run("filter", self.hard["another_joints_position"], "--method", "tracking", *GEAR, "-o", self.folder / "out.csv", "--force",
+                     "--min-attenuation", "15dB"))
 
     def test_compare_measures_what_filter_measures(self):
         for name in ("another_joints_position", "motor_side_position", "reversed_position",
                      "rate_falls_on_the_way", "lost_rows", "gaps", "position_stops_on_the_way"):
             with self.subTest(name):
                 metrics, _ = self.metrics(name)
-                done = run("compare", self.hard[name], "--method", "tracking,gear-ratio=100,orders=1:2", *GEAR, "--json")
-                self.assertEqual(done.returncode, 0, done.stderr)
+                done = ended(0, run("compare", self.hard[name], "--method", "tracking,gear-ratio=100,orders=1:2", *GEAR, "--json"))
                 rows = {row["method"].split(",")[0]: row for row in json.loads(done.stdout)["methods"]}
                 for one, other in zip(metrics["orders"], rows["tracking"]["attenuation_db"]):
                     self.assertAlmostEqual(one["attenuation_db"], other["db"], delta=0.02)
@@ -154,8 +151,7 @@ class Angles(Account):
 
 class Clocks(Account):
     def account(self, name):
-        done = run("info", self.hard[name], "--json")
-        self.assertEqual(done.returncode, 0, done.stderr)
+        done = ended(0, run("info", self.hard[name], "--json"))
         return json.loads(done.stdout)
 
     def test_a_change_of_rate_is_told_with_its_row_and_is_no_gap(self):
@@ -176,8 +172,7 @@ class Clocks(Account):
 
     def test_rows_at_another_rate_pass_as_they_are(self):
         log, out = self.hard["rate_falls_on_the_way"], self.folder / "passed.csv"
-        done = run("filter", log, "--method", "lowpass,cutoff=5Hz,order=1", "-o", out, "--force")
-        self.assertEqual(done.returncode, 0, done.stderr)
+        ended(0, run("filter", log, "--method", "lowpass,cutoff=5Hz,order=1", "-o", out, "--force"))
         before, after = log.read_text().split("\n"), out.read_text().split("\n")
         changed = [k for k in range(1, len(before) - 1) if before[k] != after[k]]
         self.assertGreater(len(changed), 16000)
@@ -189,13 +184,10 @@ class Clocks(Account):
         self.assertEqual(account["nominal_rate_hz"], 1000)
         self.assertAlmostEqual(account["mean_rate_hz"], 978.4, delta=0.1)
         joint = self.folder / "joint.json"
-        done = run("identify", log, "-o", joint, "--force")
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertIn("mean rate 978.399 Hz, typical step 1 ms (1000 Hz): samples are missing or delayed", done.stderr)
+        ended(0, run("identify", log, "-o", joint, "--force"), "mean rate 978.399 Hz, typical step 1 ms (1000 Hz): samples are missing or delayed")
         self.assertEqual(json.loads(joint.read_text())["sample_rate_hz"], 1000)
         table = self.folder / "table.json"
-        done = run("design", joint, "-o", table, "--force")
-        self.assertEqual(done.returncode, 0, done.stderr)
+        ended(0, run("design", joint, "-o", table, "--force"))
         self.assertEqual(json.loads(table.read_text())["sample_rate_hz"], 1000)
 
     def test_info_says_what_filter_will_do(self):

@@ -5,7 +5,7 @@ import json
 import math
 import unittest
 
-from commands import DATA, LOGS
+from commands import DATA, LOGS, ended
 from test_gear_methods import Case
 
 CASES = LOGS.parent / "cases"
@@ -27,8 +27,7 @@ def bound_at(searched, order_output):
 
 class Law(Case):
     def told(self, *words):
-        done = self.run_tool(*words)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        done = ended(0, self.run_tool(*words))
         return json.loads(done.stdout.splitlines()[0] if words[0] == "features" else done.stdout)
 
     def lines_of(self, result, ratio, order):
@@ -90,8 +89,7 @@ class Law(Case):
         logs = sorted(DATA.glob("paper_*deg_s.csv"))
         for seed, motion in enumerate(("constant,speed=60deg/s,duration=8s", "multisine,frequency=0.15Hz,amplitude=60deg,duration=8s")):
             logs.append(self.folder / f"{seed}.csv")
-            done = self.run_tool("simulate", *joint, "--motion", motion, "--sample-rate", "1kHz", "--seed", 1100 + seed, "-o", logs[-1])
-            self.assertEqual(done.returncode, 0, done.stderr)
+            ended(0, self.run_tool("simulate", *joint, "--motion", motion, "--sample-rate", "1kHz", "--seed", 1100 + seed, "-o", logs[-1]))
         for log in logs:
             with self.subTest(log=log.name):
                 stated = ["--gear-ratio", 100, "--orders", "1,2"]

@@ -8,7 +8,7 @@ import unittest
 
 import commands
 from arm_log import write_arm_log
-from commands import LOGS, SOURCE, run
+from commands import LOGS, SOURCE, ended, run
 
 
 def rows(path, joint):
@@ -42,8 +42,7 @@ class Case(commands.Case):
         return path, write_arm_log(path, seed, **{"joints": 3, "seconds": 16.0, "rate": 400.0, **options})
 
     def found(self, *words):
-        done = run("identify", *words, "--json", "-q")
-        self.assertEqual(done.returncode, 0, done.stderr)
+        done = ended(0, run("identify", *words, "--json", "-q"))
         return json.loads(done.stdout)
 
 
@@ -84,8 +83,7 @@ class Removed(Case):
     def test_a_map_removes_it_from_rows_that_it_was_not_made_from(self):
         log, ratios = self.arm("log.csv", 13, seconds=24.0, others=[(1, 2, 0.5, 2)])
         gear = ["--gear-ratio", str(ratios[0]), "--orders", "1,2,4"]
-        done = run("map", log, "--joint", "j1", "--to", "14s", *gear, "-o", self.folder / "map.json")
-        self.assertEqual(done.returncode, 0, done.stderr)
+        done = ended(0, run("map", log, "--joint", "j1", "--to", "14s", *gear, "-o", self.folder / "map.json"))
         self.assertIn("The torque also holds ripple of the motor of j2", done.stdout)
         self.assertRegex(done.stdout, r"(?m)^j3 .*none above 0\.[0-9]+ Nm$")
         left = {}
@@ -93,8 +91,7 @@ class Removed(Case):
                             "oscillator": ["--method", f"oscillator,map={self.folder}/map.json"],
                             "tracking": ["--method", "tracking", *gear, "--other-motors", self.folder / "map.json"]}.items():
             out = self.folder / f"{name}.csv"
-            done = run("filter", log, "--joint", "j1", "--from", "14s", *words, "-o", out)
-            self.assertEqual(done.returncode, 0, done.stderr)
+            ended(0, run("filter", log, "--joint", "j1", "--from", "14s", *words, "-o", out))
             left[name] = amplitude(out, "j1", "j2", 2 * ratios[1])
         self.assertGreater(left["raw"], 0.35)
         for name in "map", "oscillator", "tracking":
@@ -107,17 +104,14 @@ class Removed(Case):
         head, *lines = log.read_text().splitlines()
         alone = self.folder / "alone.csv"
         alone.write_text("\n".join(",".join(line.split(",")[:4]) for line in [head, *lines]) + "\n")
-        done = run("filter", alone, "--method", f"map,map={made}", "-o", self.folder / "out.csv")
-        self.assertEqual(done.returncode, 3, done.stderr)
-        self.assertIn("the map also holds ripple of the motor of j2, and the log has no joint of that name", done.stderr)
+        ended(3, run("filter", alone, "--method", f"map,map={made}", "-o", self.folder / "out.csv"),
+              "the map also holds ripple of the motor of j2, and the log has no joint of that name")
         self.assertFalse((self.folder / "out.csv").exists())
 
     def test_a_map_without_other_motors_is_refused_by_the_option(self):
-        done = run("map", SOURCE / "data/paper_120deg_s.csv", "--gear-ratio", "100", "-o", self.folder / "own.json")
-        self.assertEqual(done.returncode, 0, done.stderr)
-        done = run("filter", SOURCE / "data/paper_120deg_s.csv", "--method", "none", "--other-motors", self.folder / "own.json")
-        self.assertEqual(done.returncode, 3, done.stderr)
-        self.assertIn("holds no ripple of the motors of other joints", done.stderr)
+        ended(0, run("map", SOURCE / "data/paper_120deg_s.csv", "--gear-ratio", "100", "-o", self.folder / "own.json"))
+        ended(3, run("filter", SOURCE / "data/paper_120deg_s.csv", "--method", "none", "--other-motors", self.folder / "own.json"),
+              "holds no ripple of the motors of other joints")
 
 
 @unittest.skipUnless(LOGS.is_dir(), "the logs of real robots are not here")
@@ -125,8 +119,7 @@ class Robots(Case):
     def test_panda_joints_1_and_3_are_in_each_others_torque(self):
         log = LOGS / "gpl3/panda_gaz_all.csv"
         for sensor, motor in ("1", "3"), ("3", "1"):
-            done = run("map", log, "--joint", f"panda_joint{sensor}", "--to", "12.6s", "--gear-ratio", "120", "--orders", "1,2,4", "--json", "-q")
-            self.assertEqual(done.returncode, 0, done.stderr)
+            done = ended(0, run("map", log, "--joint", f"panda_joint{sensor}", "--to", "12.6s", "--gear-ratio", "120", "--orders", "1,2,4", "--json", "-q"))
             found = json.loads(done.stdout)["others"]
             self.assertEqual([f"panda_joint{motor}"], [one["joint"] for one in found if one["finding"] == "mapped"])
 

@@ -8,7 +8,7 @@ import subprocess
 import sys
 import unittest
 
-from commands import SOURCE
+from commands import SOURCE, ended
 
 SCRIPT = SOURCE / "scripts" / "reproduce-paper"
 PAPER = SOURCE / "docs" / "paper"
@@ -28,8 +28,7 @@ def script():
 
 class Page(unittest.TestCase):
     def test_every_table_and_every_plot_file_is_what_the_tool_makes(self):
-        done = subprocess.run([sys.executable, "-B", SCRIPT, "--check"], capture_output=True, text=True, timeout=300)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        ended(0, subprocess.run([sys.executable, "-B", SCRIPT, "--check"], capture_output=True, text=True, timeout=300))
 
     def test_every_plot_file_is_named_by_the_page_and_there_is_no_other(self):
         page = (SOURCE / "docs" / "paper.md").read_text(encoding="utf-8")

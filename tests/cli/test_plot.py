@@ -8,7 +8,7 @@ import time
 import unittest
 import xml.dom.minidom
 
-from commands import DATA, Case, run
+from commands import DATA, Case, ended, run
 
 LOG = str(DATA / "paper_90deg_s.csv")
 MOVE = str(DATA / "paper_move_2s.csv")
@@ -43,8 +43,7 @@ class Plots(Case):
 
     def test_every_figure_is_data_with_labels_and_units(self):
         for name, words in COMMANDS.items():
-            done = self.plot(words, "figure.json")
-            self.assertEqual(done.returncode, 0, done.stderr)
+            ended(0, self.plot(words, "figure.json"))
             figure = json.loads((self.folder / "figure.json").read_text())
             self.assertEqual((figure["schema"], figure["name"]), ("ripplenotch/figure/1", name))
             for panel in figure["panels"]:
@@ -57,8 +56,7 @@ class Plots(Case):
         (self.folder / "model.json").write_text(json.dumps(
             {"schema": "ripplenotch/model/1", "gear_ratio": 100,
              "effects": [{"effect": "inertia"}, {"effect": "ripple", "order": 1}]}))
-        done = run("diagnose", MOVE, "--model", "model.json", "--plot", "d.json", "--json", cwd=self.folder)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        done = ended(0, run("diagnose", MOVE, "--model", "model.json", "--plot", "d.json", "--json", cwd=self.folder))
         diagnosis, figure = json.loads(done.stdout), json.loads((self.folder / "d.json").read_text())
         self.assertEqual(figure["name"], "diagnosis")
         gap, residual, before, after = figure["panels"]
@@ -102,8 +100,7 @@ class Plots(Case):
     @needs_gnuplot
     def test_the_terminal_gets_eighty_columns_of_text(self):
         for name, words in COMMANDS.items():
-            done = run(*words, "--plot", "-")
-            self.assertEqual(done.returncode, 0, done.stderr)
+            done = ended(0, run(*words, "--plot", "-"))
             text = done.stdout
             self.assertNotIn("\x1b", text)
             if name in ("spectrum", "campbell", "torque"):
@@ -117,8 +114,7 @@ class Plots(Case):
         os.symlink(LOG, self.folder / "log.csv")
         hostile = HOSTILE.replace("/", "∕")
         os.symlink(LOG, self.folder / hostile)
-        done = run("spectrum", hostile, "-o", "out.csv", "--plot", "page.svg", cwd=self.folder)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        ended(0, run("spectrum", hostile, "-o", "out.csv", "--plot", "page.svg", cwd=self.folder))
         svg = (self.folder / "page.svg").read_bytes()
         self.assertNotIn(b"<script", svg)
         self.assertNotIn(b"\x1b", svg)
@@ -140,10 +136,7 @@ class Plots(Case):
         self.assertFalse((self.folder / "pwned").exists())
 
     def test_without_gnuplot_the_result_and_the_figure_s_data_are_written_and_it_is_said(self):
-        done = self.plot(COMMANDS["spectrum"], "picture.svg", PATH="/nowhere")
-        self.assertEqual(done.returncode, 4)
-        self.assertIn("no gnuplot", done.stderr)
-        self.assertIn("gnuplot-nox", done.stderr)
+        ended(4, self.plot(COMMANDS["spectrum"], "picture.svg", PATH="/nowhere"), "no gnuplot", "gnuplot-nox")
         self.assertTrue((self.folder / "result").read_text().startswith("2 lines in "))
         self.assertEqual(json.loads((self.folder / "picture.json").read_text())["name"], "spectrum")
         self.assertFalse((self.folder / "picture.svg").exists())
@@ -154,17 +147,13 @@ class Plots(Case):
         fake = self.folder / "gnuplot"
         fake.write_text("#!/bin/sh\necho 'it hurts' >&2\nexit 3\n")
         fake.chmod(0o755)
-        done = self.plot(COMMANDS["candidate-table"], "picture.svg", PATH=f"{self.folder}:/usr/bin:/bin")
-        self.assertEqual(done.returncode, 4)
-        self.assertIn("it hurts", done.stderr)
+        ended(4, self.plot(COMMANDS["candidate-table"], "picture.svg", PATH=f"{self.folder}:/usr/bin:/bin"), "it hurts")
 
     def test_a_start_that_fails_only_in_the_child_is_no_gnuplot(self):
         fake = self.folder / "gnuplot"
         fake.write_text("#!/bin/sh\nexit 127\n")
         fake.chmod(0o755)
-        done = self.plot(COMMANDS["spectrum"], "picture.svg", PATH=f"{self.folder}:/usr/bin:/bin")
-        self.assertEqual(done.returncode, 4)
-        self.assertIn("no gnuplot", done.stderr)
+        ended(4, self.plot(COMMANDS["spectrum"], "picture.svg", PATH=f"{self.folder}:/usr/bin:/bin"), "no gnuplot")
 
     def test_requests_that_make_no_sense_are_refused_before_any_work(self):
         for words, part in ((["--plot", "picture.jpg"], ".svg"), (["--plot", "-", "--json"], "standard output")):

@@ -7,7 +7,7 @@ import shlex
 import shutil
 import unittest
 
-from commands import COMMANDS, DATA, LOGS, SharedCase, run
+from commands import COMMANDS, DATA, LOGS, SharedCase, ended, run
 
 # Logs of robots, with one joint of each of a kind: one that a map filters, one without a gear ratio, one that is too short.
 REAL = (("gpl3/panda_gaz_j1.csv",), ("gpl3/panda_gaz_j4.csv",), ("kuka_kr300_trajA_all.csv", "--joint", "j2"), ("kuka_kr300_trajB_all.csv", "--joint", "j6"),
@@ -73,8 +73,7 @@ class Recommended(Printed):
 
 class Pages(Printed):
     def test_of_the_page_of_a_log(self):
-        done = run("report", DATA / "paper_move_2s.csv", "-o", "page.html", "-q", cwd=self.folder)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        ended(0, run("report", DATA / "paper_move_2s.csv", "-o", "page.html", "-q", cwd=self.folder))
         text = re.sub(r"(?s)<script.*?</script>", "", (self.folder / "page.html").read_text())
         text = html.unescape(re.sub(r"<[^>]+>", "\n", text))
         self.paste_all(text, 4)

@@ -7,7 +7,7 @@ import random
 import shlex
 import unittest
 
-from commands import LOGS, SharedCase
+from commands import LOGS, SharedCase, ended
 
 GEAR = ["--gear-ratio", "100", "--orders", "1,2"]
 
@@ -131,9 +131,7 @@ class Limits(Recommended):
         self.assertEqual({one["method"].split(",")[0] for one in self.recommended("--target", "c-header")["methods"]},
                          {"none", "tracking", "oscillator", "map", "switching", "lowpass"})
         self.assertEqual({one["method"].split(",")[0] for one in self.recommended("--target", "moteus,kt=0.1")["methods"]}, {"none", "map"})
-        done = self.run_tool("recommend", "log.csv", *GEAR, "--target", "c-heade")
-        self.assertEqual(done.returncode, 2)
-        self.assertIn("c-header", done.stderr)
+        ended(2, self.run_tool("recommend", "log.csv", *GEAR, "--target", "c-heade"), "c-header")
 
     def test_the_export_of_a_target_can_be_pasted(self):
         for target in ("c-header", "moteus,kt=0.1"):
@@ -211,20 +209,15 @@ class Honest(Recommended):
         self.assertTrue(any("quarter of the sample rate" in one for one in told["left_out"]), told["left_out"])
         self.assertNotIn("oscillator", {one["method"].split(",")[0] for one in told["methods"]} - {"map"})
         words = ("compare", "rare.csv", *GEAR, "--method", "oscillator")
-        done = self.run_tool(*words, "--method", "tracking")
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertIn("it is left out", done.stderr)
+        ended(0, self.run_tool(*words, "--method", "tracking"), "it is left out")
         self.assertEqual(self.run_tool(*words).returncode, 2)
 
     def test_standard_input_is_refused(self):
         for words, said in ((("-",), "name a file"), (("log.csv", "--train", "95"), "10 to 90")):
-            done = self.run_tool("recommend", *words, *GEAR)
-            self.assertEqual(done.returncode, 2)
-            self.assertIn(said, done.stderr)
+            ended(2, self.run_tool("recommend", *words, *GEAR), said)
 
     def test_what_was_assumed_is_listed(self):
-        done = self.run_tool("recommend", "log.csv", *GEAR)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        done = ended(0, self.run_tool("recommend", "log.csv", *GEAR))
         for part in ("Use ", "To use it:", "Assumed:", "gear ratio 100, as stated", "Not tried:"):
             self.assertIn(part, done.stdout)
 

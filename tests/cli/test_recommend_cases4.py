@@ -6,7 +6,7 @@ import gzip
 import json
 import unittest
 
-from commands import LOGS, Case, run
+from commands import LOGS, Case, ended, run
 
 CASES = LOGS.parent / "cases-4"
 PANDA = LOGS / "gpl3" / "panda_gaz_j1.csv"
@@ -56,18 +56,14 @@ class CasesOfUsers(Case):
 
     @unittest.skipUnless(PANDA.exists(), "SKIPPED: the folder of real logs is not here")
     def test_a_stated_ratio_that_the_lines_contradict_is_doubted(self):
-        done = run("recommend", PANDA, "--gear-ratio", "100", "--json", "--require-conclusive")
-        self.assertEqual(done.returncode, 5, done.stderr)
-        self.assertIn("100", done.stderr)
+        done = ended(5, run("recommend", PANDA, "--gear-ratio", "100", "--json", "--require-conclusive"), "100")
         self.assertFalse(told(done)["conclusive"])
 
     @unittest.skipUnless(PANDA.exists(), "SKIPPED: the folder of real logs is not here")
     def test_what_no_method_meets_is_said_so(self):
-        done = run("recommend", PANDA, "--max-delay", "0.1ms", "--min-attenuation", "60dB", "--json", "-q")
-        self.assertEqual(done.returncode, 1)
+        done = ended(1, run("recommend", PANDA, "--max-delay", "0.1ms", "--min-attenuation", "60dB", "--json", "-q"))
         self.assertRegex(told(done)["verdict"], r"^None fits: the nearest is \S+ at [\d.]+ dB of order \d \(asked: 60 dB\)\.$")
-        done = run("recommend", PANDA, "--target", "pinocchio", "--json", "-q")
-        self.assertEqual(done.returncode, 2)
+        ended(2, run("recommend", PANDA, "--target", "pinocchio", "--json", "-q"))
         done = run("recommend", PANDA, "--target", "ros-filters", "--json", "-q", "--orders", "1,2", "--gear-ratio", "120.05")
         self.assertIn(done.returncode, (0, 1))
         # Against the published torque within 15 Hz the low-pass errs by 0.291 Nm rms, the torque as it is by 0.243.

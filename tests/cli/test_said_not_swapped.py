@@ -3,7 +3,7 @@
 
 import json
 
-from commands import COMMANDS, DATA, WRITES_A_LOG, asked
+from commands import COMMANDS, DATA, WRITES_A_LOG, asked, ended
 from commands import COMMANDS
 from test_filter_joints import wide_log
 from test_gear_methods import MOVE, Case
@@ -14,8 +14,7 @@ LOW = ["--method", "lowpass,cutoff=13rad/s"]
 
 class Told(Case):
     def refused(self, words, *pieces, code=2):
-        done = self.run_tool(*words)
-        self.assertEqual(done.returncode, code, done.stderr)
+        done = ended(code, self.run_tool(*words))
         for piece in pieces:
             self.assertIn(piece, done.stderr)
         return done

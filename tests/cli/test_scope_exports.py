@@ -9,7 +9,7 @@ import shlex
 import struct
 import unittest
 
-from commands import Case, run
+from commands import Case, ended, run
 from test_log_dialects import RATE, RATIO, ROWS
 
 
@@ -127,8 +127,7 @@ class EveryOptionOfTheExport(Case):
         return run("identify", path, "--json", "-q", *words)
 
     def check(self, content, *words):
-        done = self.answer(content, *words)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        done = ended(0, self.answer(content, *words))
         found = json.loads(done.stdout)
         self.assertAlmostEqual(found["gear_ratio"]["value"], RATIO, delta=0.1)
         self.assertAlmostEqual(found["sample_rate_hz"], RATE, delta=0.5)
@@ -172,15 +171,13 @@ class WhatAnExportDoesNotSay(Case):
         self.assertIn("--scale torque=2mNm+10mNm where it did not, --unit torque=mNm where it did", done.stderr)
         largest = {}
         for option in (("--scale", "torque=2mNm+10mNm"), ("--unit", "torque=mNm")):
-            done = self.info(content, *option)
-            self.assertEqual(done.returncode, 0, done.stderr)
+            done = ended(0, self.info(content, *option))
             largest[option[0]] = max(line["amplitude_nm"] for line in json.loads(done.stdout)["lines"])
         self.assertAlmostEqual(largest["--scale"], 2 * largest["--unit"], delta=1e-3)
 
     def test_a_scale_of_its_unit_alone_says_nothing_new(self):
         keys = {"Unit ScaleFactor": {"MAIN.ActVelo": "0.0174533", "MAIN.ActTorque": "0.001", "MAIN.ActPos": "0.0174533"}}
-        done = self.info(export([(ALL, 1, None)], keys=keys))
-        self.assertEqual(done.returncode, 0, done.stderr)
+        ended(0, self.info(export([(ALL, 1, None)], keys=keys)))
 
     def test_a_comma_cannot_be_both(self):
         done = self.info(export([(ALL, 1, None)], ",", ","))
@@ -206,8 +203,7 @@ class WhatAnExportDoesNotSay(Case):
     def test_a_table_that_begins_with_name_by_chance_is_read_as_any(self):
         content = "Name,run 7\nOperator,lab\n\ntime_s,velocity_deg_s,torque_nm\n" + "".join(
             f"{k / 500:.3f},{row.velocity:.5f},{row.torque:.5f}\n" for k, row in enumerate(ROWS))
-        done = self.info(content.encode())
-        self.assertEqual(done.returncode, 0, done.stderr)
+        ended(0, self.info(content.encode()))
 
 
 class CountsAndPerMille(Case):
@@ -244,8 +240,7 @@ class CountsAndPerMille(Case):
                     self.assertIn(option, done.stderr)
                 for name in names[1:]:
                     self.assertIn(f"'{name}'", done.stderr)
-                done = run("identify", "-", "--json", "-q", *self.SCALES, stdin=text)
-                self.assertEqual(done.returncode, 0, done.stderr)
+                done = ended(0, run("identify", "-", "--json", "-q", *self.SCALES, stdin=text))
                 found = json.loads(done.stdout)
                 self.assertAlmostEqual(found["gear_ratio"]["value"], RATIO, delta=0.1)
                 self.assertAlmostEqual(max(line["amplitude_nm"] for line in found["lines"]), 0.4, delta=0.02)
@@ -282,15 +277,13 @@ class CountsAndPerMille(Case):
         path.write_bytes(b"\x93NUMPY\x01\x00" + struct.pack("<H", len(head)) + head.encode()
                          + b"".join(struct.pack("<qiih", *row) for row in rows))
         self.assertIn("--scale torque=0.04Nm", run("identify", path, "-q").stderr)
-        done = run("identify", path, "--json", "-q", *self.SCALES)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        done = ended(0, run("identify", path, "--json", "-q", *self.SCALES))
         self.assertAlmostEqual(json.loads(done.stdout)["gear_ratio"]["value"], RATIO, delta=0.1)
 
     def test_filter_writes_in_the_units_of_the_file(self):
         path, out = self.folder / "counts.csv", self.folder / "out.csv"
         path.write_text(self.table(self.NAMES[0]))
-        done = run("filter", path, "-o", out, "--method", "lowpass,cutoff=20Hz", *self.SCALES)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        ended(0, run("filter", path, "-o", out, "--method", "lowpass,cutoff=20Hz", *self.SCALES))
         before, after = ([line.split(",") for line in one.read_text().splitlines()] for one in (path, out))
         self.assertEqual([row[:3] for row in before], [row[:3] for row in after])
         self.assertLess(abs(float(after[3000][3]) - float(before[3000][3])), 30)
@@ -303,8 +296,7 @@ class CountsAndPerMille(Case):
                 ((), ("--scale", "torque=1Nm+100Nm"))}
         low = [one["joints"][0]["torque_nm"]["min"] for one in told.values()]
         self.assertAlmostEqual(low[1] - low[0], 100.0, places=3)
-        done = run("filter", path, "-o", out, "--method", "lowpass,cutoff=20Hz", "--scale", "torque=1Nm+100Nm")
-        self.assertEqual(done.returncode, 0, done.stderr)
+        ended(0, run("filter", path, "-o", out, "--method", "lowpass,cutoff=20Hz", "--scale", "torque=1Nm+100Nm"))
         self.assertGreater(float(out.read_text().splitlines()[2000].split(",")[2]), 90.0)
 
     def test_what_is_no_scale_is_refused(self):
@@ -314,9 +306,7 @@ class CountsAndPerMille(Case):
                                ("torque=0.04Nm/x", "is no torque"), ("torque=0.04Nm+1deg", "no offset in the same unit"),
                                ("torque", "is not COLUMN=FACTOR"), ("torque=0Nm", "does not begin with a number")):
             with self.subTest(scale=scale):
-                done = run("identify", "-", "-q", *self.SCALES, "--scale", scale, stdin=text)
-                self.assertEqual(done.returncode, 2, done.stderr)
-                self.assertIn(message, done.stderr)
+                ended(2, run("identify", "-", "-q", *self.SCALES, "--scale", scale, stdin=text), message)
 
 
 if __name__ == "__main__":

@@ -10,7 +10,7 @@ import subprocess
 import time
 import unittest
 
-from commands import DATA, TOOL, Case, new_folder
+from commands import DATA, TOOL, Case, ended, new_folder
 
 LOG = DATA / "paper_90deg_s.csv"
 LOWPASS = "lowpass,cutoff=13rad/s,order=1"
@@ -36,8 +36,7 @@ class Provenance(Case):
         target = self.folder / "info.json"
         for words in (f"-o {target}", f"-o{target} -qv", f"-vqo {target}", f"-qo{target}", f"--output={target} -q -v",
                       f"--output {target} --quiet --verbose --json"):
-            done = shell(f"{plain} {words} --force")
-            self.assertEqual(done.returncode, 0, done.stderr)
+            ended(0, shell(f"{plain} {words} --force"))
             self.assertEqual(json.loads(target.read_text())["command"], plain, words)
         done = shell(f"ripplenotch info --json -- {LOG} {LOG} -qv")
         self.assertIn(b"-qv: ", done.stderr)  # behind -- it is a name
@@ -47,8 +46,7 @@ class Provenance(Case):
 
 class Pipes(Case):
     def test_a_log_flows_through_filter_into_spectrum(self):
-        done = shell(f"cat {LOG} | ripplenotch filter --method {LOWPASS} - | ripplenotch spectrum - --json")
-        self.assertEqual(done.returncode, 0, done.stderr)
+        done = ended(0, shell(f"cat {LOG} | ripplenotch filter --method {LOWPASS} - | ripplenotch spectrum - --json"))
         self.assertEqual(json.loads(done.stdout)["schema"], "ripplenotch/spectrum/1")
 
     def test_a_pipe_and_a_file_give_the_same_bytes(self):
@@ -63,8 +61,7 @@ class Pipes(Case):
         # Its header holds the number of rows, which a pipe of text tells only at its end.
         target = self.folder / "out.npy"
         self.assertEqual(shell(f"ripplenotch filter --method {LOWPASS} {LOG} -o {target}").returncode, 0)
-        piped = shell(f"cat {LOG} | ripplenotch filter --method {LOWPASS} - --output-format npy | cat")
-        self.assertEqual(piped.returncode, 0, piped.stderr)
+        piped = ended(0, shell(f"cat {LOG} | ripplenotch filter --method {LOWPASS} - --output-format npy | cat"))
         self.assertEqual(piped.stdout, target.read_bytes())
         read = shell(f"cat {LOG} | ripplenotch filter --method none - --output-format npy | ripplenotch info - --json")
         self.assertEqual(json.loads(read.stdout)["rows"], 4000)
@@ -117,9 +114,7 @@ class Pipes(Case):
         self.assertEqual(self.interrupted(self.folder, signal.SIGHUP, ignored=True), (0, ["out.csv"]))
 
     def test_a_full_disk_is_exit_code_4_with_a_reason(self):
-        done = shell(f"ripplenotch filter --method {LOWPASS} {LOG} > /dev/full")
-        self.assertEqual(done.returncode, 4)
-        self.assertIn(b"No space left", done.stderr)
+        ended(4, shell(f"ripplenotch filter --method {LOWPASS} {LOG} > /dev/full"), b"No space left")
 
 
 class Terminals(unittest.TestCase):
@@ -134,14 +129,10 @@ class Terminals(unittest.TestCase):
         return done
 
     def test_binary_to_a_terminal_is_refused(self):
-        done = self.on_terminal(["filter", str(LOG), "--method", LOWPASS, "--output-format", "npy"])
-        self.assertEqual(done.returncode, 2)
-        self.assertIn(b"terminal", done.stderr)
+        ended(2, self.on_terminal(["filter", str(LOG), "--method", LOWPASS, "--output-format", "npy"]), b"terminal")
 
     def test_waiting_for_someone_to_type_a_log_is_refused(self):
-        done = self.on_terminal(["info", "-"], stdin_is_terminal=True)
-        self.assertEqual(done.returncode, 2)
-        self.assertIn(b"terminal", done.stderr)
+        ended(2, self.on_terminal(["info", "-"], stdin_is_terminal=True), b"terminal")
 
 
 class Progress(Case):
@@ -198,15 +189,11 @@ class Files(Case):
         target = self.folder / "out.csv"
         target.write_text("mine")
         command = f"ripplenotch filter --method {LOWPASS} {LOG} -o {target}"
-        refused = shell(command)
-        self.assertEqual(refused.returncode, 4)
-        self.assertIn(b"--force", refused.stderr)
+        ended(4, shell(command), b"--force")
         self.assertEqual(target.read_text(), "mine")
         self.assertEqual(shell(command + " --force").returncode, 0)
         self.assertNotEqual(target.read_text(), "mine")
         self.assertEqual(os.listdir(self.folder), ["out.csv"])
 
     def test_a_folder_that_cannot_be_written_is_exit_code_4(self):
-        done = shell(f"ripplenotch filter --method {LOWPASS} {LOG} -o /proc/none/out.csv")
-        self.assertEqual(done.returncode, 4)
-        self.assertIn(b"/proc/none/out.csv", done.stderr)
+        ended(4, shell(f"ripplenotch filter --method {LOWPASS} {LOG} -o /proc/none/out.csv"), b"/proc/none/out.csv")

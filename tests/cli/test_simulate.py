@@ -11,7 +11,7 @@ import struct
 import subprocess
 import unittest
 
-from commands import DATA, SOURCE, TOOL, Case, run
+from commands import DATA, SOURCE, TOOL, Case, ended, run
 
 JOINT = ["--gear-ratio", "100", "--ripple", "1:0.8Nm:30deg", "--inertia", "0.5kgm2"]
 MOVE = ["--motion", "poly6,to=90deg,duration=1s", "--motion", "constant,speed=60deg/s,duration=0.5s",
@@ -38,9 +38,8 @@ def peak_to_peak(values):
 
 class Data(Case):
     def test_make_data_writes_the_committed_logs_byte_for_byte(self):
-        done = subprocess.run([SOURCE / "scripts" / "make-data", self.folder], capture_output=True, text=True,
-                              env=dict(os.environ, RIPPLENOTCH=TOOL), timeout=60)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        ended(0, subprocess.run([SOURCE / "scripts" / "make-data", self.folder], capture_output=True, text=True,
+                                env=dict(os.environ, RIPPLENOTCH=TOOL), timeout=60))
         made = {path.name: path.read_bytes() for path in self.folder.iterdir()}
         committed = {path.name: path.read_bytes() for path in DATA.glob("*.csv")}
         self.assertEqual(sorted(made), sorted(committed))
@@ -187,8 +186,7 @@ class Logs(unittest.TestCase):
 class Summary(Case):
     def test_json_describes_the_log_that_was_written(self):
         log = str(self.folder / "log.csv")
-        done = simulate(*JOINT, *MOVE, "--noise", "0.05Nm", "--seed", "9", "-o", log, "--json")
-        self.assertEqual(done.returncode, 0, done.stderr)
+        done = ended(0, simulate(*JOINT, *MOVE, "--noise", "0.05Nm", "--seed", "9", "-o", log, "--json"))
         summary = json.loads(done.stdout)
         written = pathlib.Path(log).read_bytes()
         self.assertEqual(summary["schema"], "ripplenotch/simulation/1")
@@ -227,15 +225,13 @@ class AlongLogs(Case):
 
     def log(self, *words, moves=None):
         path = str(self.folder / "log.csv")
-        done = simulate(*self.JOINT, *(moves or self.MOVES), *words, "-o", path, "--force")
-        self.assertEqual(done.returncode, 0, done.stderr)
+        ended(0, simulate(*self.JOINT, *(moves or self.MOVES), *words, "-o", path, "--force"))
         return path
 
     def test_the_right_model_leaves_the_noise_and_a_wrong_one_more(self):
         log = self.log("--noise", "0.06Nm", "--velocity-noise", "0.15deg/s")
         out = str(self.folder / "out.csv")
-        done = simulate(*self.JOINT, log, "-o", out, "--json")
-        self.assertEqual(done.returncode, 0, done.stderr)
+        done = ended(0, simulate(*self.JOINT, log, "-o", out, "--json"))
         summary = json.loads(done.stdout)
         # By the velocity alone its noise would come in through the acceleration: 0.15 deg/s * 1 kHz *
         # sqrt(75 / 51^3) = 3.6 deg/s2, 0.03 Nm, 0.067 Nm in all. The position is surer.
@@ -366,6 +362,4 @@ class Refusals(Case):
         self.assertTrue(log.read_text().startswith("time_s,"))
 
     def test_a_summary_and_a_log_cannot_share_standard_output(self):
-        done = simulate(*JOINT, *MOVE, "--json")
-        self.assertEqual(done.returncode, 2)
-        self.assertIn(b"-o FILE", done.stderr)
+        ended(2, simulate(*JOINT, *MOVE, "--json"), b"-o FILE")

@@ -6,7 +6,7 @@ import io
 import json
 import pathlib
 
-from commands import DATA, Case, run
+from commands import DATA, Case, ended, run
 
 MOVE = str(DATA / "paper_move_2s.csv")
 
@@ -17,8 +17,7 @@ def spectrum(*words):
 
 class Maps(Case):
     def cells(self, *words):
-        done = spectrum(*words)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        done = ended(0, spectrum(*words))
         table = list(csv.reader(io.StringIO(done.stdout)))
         rows = {}
         for speed, where, amplitude in table[1:]:
@@ -50,8 +49,7 @@ class Maps(Case):
         self.assertAlmostEqual(amplitude, 0.8, delta=0.01)
 
     def test_a_resolution_that_the_log_cannot_give_is_not_pretended(self):
-        done = spectrum(MOVE, "--map", "order", "--gear-ratio", "100", "--resolution", "0.001", "--highest", "4", "--json")
-        self.assertEqual(done.returncode, 0, done.stderr)
+        done = ended(0, spectrum(MOVE, "--map", "order", "--gear-ratio", "100", "--resolution", "0.001", "--highest", "4", "--json"))
         result = json.loads(done.stdout)
         self.assertEqual((result["schema"], result["domain"]), ("ripplenotch/spectrum/1", "order-map"))
         self.assertAlmostEqual(result["resolution"], 1.5 / 50, delta=0.002)  # the move is 50 motor turns
@@ -67,9 +65,8 @@ class Maps(Case):
                               (["--gear-ratio", "100", "--orders", "1,2,3,4"], [1, 2, 3, 4]),
                               ([], [])):
             for kind, scale in (("campbell", 100 / 360), ("order", 1)):
-                done = spectrum(MOVE, "--map", kind, "--highest", "5", *words, "-o", f"{self.folder}/map.csv",
-                           "--plot", figure, "--force")
-                self.assertEqual(done.returncode, 0, done.stderr)
+                ended(0, spectrum(MOVE, "--map", kind, "--highest", "5", *words, "-o", f"{self.folder}/map.csv",
+                             "--plot", figure, "--force"))
                 result = json.loads(pathlib.Path(figure).read_text())
                 lines = result["panels"][0]["lines"]
                 self.assertEqual([line["name"] for line in lines], [f"order {n}" for n in orders])
@@ -79,12 +76,8 @@ class Maps(Case):
                 self.assertEqual(names, [MOVE, joint] if "--joint-file" in words else [MOVE])
 
     def test_a_joint_file_that_is_none_is_refused(self):
-        done = spectrum(MOVE, "--map", "order", "--joint-file", MOVE)
-        self.assertEqual(done.returncode, 3)
-        self.assertIn("expected schema \"ripplenotch/joint/1\"", done.stderr)
-        done = spectrum(MOVE, "--joint-file", "joint.json")
-        self.assertEqual(done.returncode, 2)
-        self.assertIn("belong to --map and --track", done.stderr)
+        ended(3, spectrum(MOVE, "--map", "order", "--joint-file", MOVE), "expected schema \"ripplenotch/joint/1\"")
+        ended(2, spectrum(MOVE, "--joint-file", "joint.json"), "belong to --map and --track")
 
     def test_requests_that_make_no_sense_are_refused(self):
         for words, part in ((["--resolution", "1"], "--map"), (["--map", "waterfall"], "campbell"),
@@ -93,6 +86,4 @@ class Maps(Case):
             done = spectrum(MOVE, *words)
             self.assertEqual((done.returncode, done.stdout), (2, ""), done.stderr)
             self.assertIn(part, done.stderr)
-        done = spectrum(str(DATA / "paper_rest.csv"), "--map", "campbell")
-        self.assertEqual(done.returncode, 3, done.stderr)
-        self.assertIn("does not move", done.stderr)
+        ended(3, spectrum(str(DATA / "paper_rest.csv"), "--map", "campbell"), "does not move")

@@ -6,7 +6,7 @@ import os
 import re
 import subprocess
 
-from commands import OF_A_LOG, TOOL, Case, asked_for_json
+from commands import OF_A_LOG, TOOL, Case, asked_for_json, ended
 from commands import TOOL, Case
 
 ESCAPE = "\x1b]0;x\x07"
@@ -37,8 +37,7 @@ class Streams(Case):
     def each(self, name, **streams):
         for words, code in self.RUNS:
             with self.subTest(name, words=words):
-                usual = self.run_with(words, capture_output=True)
-                self.assertEqual(usual.returncode, code, usual.stderr)
+                usual = ended(code, self.run_with(words, capture_output=True))
                 then = self.run_with(words, stdout=subprocess.PIPE, **streams)
                 self.assertEqual((then.returncode, then.stdout), (code, usual.stdout))
 
@@ -59,17 +58,13 @@ class Streams(Case):
         for words in (("filter", "log.csv", "--method", "lowpass,cutoff=13Hz,order=1", "-v", "-o", "out.csv", "--force"),):
             self.run_with(words, capture_output=True)
             usual = (self.folder / "out.csv").read_bytes()
-            then = self.run_with(words, preexec_fn=lambda: [os.close(stream) for stream in (0, 1, 2)])
-            self.assertEqual(then.returncode, 0)
+            ended(0, self.run_with(words, preexec_fn=lambda: [os.close(stream) for stream in (0, 1, 2)]))
             self.assertEqual((self.folder / "out.csv").read_bytes(), usual)
 
     def test_closed_input_and_output_are_errors_with_a_name(self):
-        done = self.run_with(("info", "log.csv"), stderr=subprocess.PIPE, preexec_fn=lambda: os.close(1))
-        self.assertEqual(done.returncode, 4)
-        self.assertIn(b"standard output: cannot write", done.stderr)
-        done = subprocess.run([TOOL, "info", "-"], cwd=self.folder, capture_output=True, preexec_fn=lambda: os.close(0))
-        self.assertEqual(done.returncode, 4)
-        self.assertIn(b"standard input: cannot read", done.stderr)
+        ended(4, self.run_with(("info", "log.csv"), stderr=subprocess.PIPE, preexec_fn=lambda: os.close(1)), b"standard output: cannot write")
+        ended(4, subprocess.run([TOOL, "info", "-"], cwd=self.folder, capture_output=True, preexec_fn=lambda: os.close(0)),
+              b"standard input: cannot read")
 
     def test_help_that_cannot_be_written_is_an_error(self):
         for words in (("--help",), ("--version",), ("info", "--help")):

@@ -4,7 +4,7 @@
 import json
 import math
 
-from commands import Case
+from commands import Case, ended
 from test_log_dialects import ROWS, lvm, table
 
 
@@ -20,8 +20,7 @@ def lvm_without_times(x_value=True, step="0.002", dimension="Time"):
 class Clocks(Case):
     def recording(self, content, *options):
         (self.folder / "log.csv").write_bytes(content)
-        done = self.run_tool("identify", "log.csv", "--json", "-q", *options)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        done = ended(0, self.run_tool("identify", "log.csv", "--json", "-q", *options))
         found = json.loads(done.stdout)
         return found["recording"], found["gear_ratio"]["value"]
 
@@ -70,6 +69,4 @@ class Counters(Clocks):
 
     def test_without_one_the_option_is_named(self):
         (self.folder / "log.csv").write_bytes(self.libfranka("time"))
-        done = self.run_tool("identify", "log.csv")
-        self.assertEqual(done.returncode, 3)
-        self.assertIn("--unit time=ms", done.stderr)
+        ended(3, self.run_tool("identify", "log.csv"), "--unit time=ms")

@@ -4,7 +4,7 @@
 import json
 import math
 
-from commands import ACCOUNTS, DATA, Case, asked_for_json
+from commands import ACCOUNTS, DATA, Case, asked_for_json, ended
 
 METHOD = ["--method", "tracking,gear-ratio=100,orders=1:2"]
 
@@ -219,8 +219,7 @@ class Words(TwoLogs):
         self.write("whole", [HEAD, *self.rows])
 
     def refused(self, code, *words, side="whole"):
-        done = self.run_in(side, *words)
-        self.assertEqual(done.returncode, code, done.stderr)
+        done = ended(code, self.run_in(side, *words))
         self.assertEqual(done.stdout, b"")
         message = done.stderr.decode()
         self.assertEqual(message.count("\n"), 1, message)

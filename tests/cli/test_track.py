@@ -7,7 +7,7 @@ import json
 import pathlib
 import unittest
 
-from commands import DATA, LOGS, Case, run
+from commands import DATA, LOGS, Case, ended, run
 
 MOVE = str(DATA / "paper_move_2s.csv")
 ORDERS = ["--orders", "1,2", "--gear-ratio", "100"]
@@ -20,8 +20,7 @@ def rows_of(text):
 
 class Track(Case):
     def track(self, *words, **more):
-        done = run("spectrum", "--track", *words, **more)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        done = ended(0, run("spectrum", "--track", *words, **more))
         return rows_of(done.stdout)
 
 
@@ -81,17 +80,14 @@ class Columns(Track):
     def test_without_position_amplitudes_stand_and_a_warning_says_what_phases_mean(self):
         lines = pathlib.Path(MOVE).read_text().splitlines()
         text = "\n".join(line.rsplit(",", 1)[0] for line in lines) + "\n"
-        done = run("spectrum", "--track", "-", *ORDERS, stdin=text)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertIn("count from the first sample", done.stderr)
+        done = ended(0, run("spectrum", "--track", "-", *ORDERS, stdin=text), "count from the first sample")
         for row in rows_of(done.stdout)[1]:
             self.assertAlmostEqual(row[2], 0.8, delta=0.03)
 
 
 class Json(Case):
     def test_the_verdict_and_the_columns_agree(self):
-        done = run("spectrum", "--track", MOVE, *ORDERS, "--json")
-        self.assertEqual(done.returncode, 0, done.stderr)
+        done = ended(0, run("spectrum", "--track", MOVE, *ORDERS, "--json"))
         result = json.loads(done.stdout)
         self.assertEqual(result["schema"], "ripplenotch/track/1")
         self.assertIn("order 1: 0.8 +/- 0.002 Nm zero to peak", result["verdict"])
@@ -103,12 +99,10 @@ class Json(Case):
         self.assertAlmostEqual(result["lines"][0]["greatest_nm"], max(measured), delta=1e-5)
 
     def test_a_joint_file_says_ratio_and_orders(self):
-        joint = run("identify", str(DATA / "paper_60deg_s.csv"), str(DATA / "paper_120deg_s.csv"), "--json")
-        self.assertEqual(joint.returncode, 0, joint.stderr)
+        joint = ended(0, run("identify", str(DATA / "paper_60deg_s.csv"), str(DATA / "paper_120deg_s.csv"), "--json"))
         path = self.folder / "joint.json"
         path.write_text(joint.stdout)
-        done = run("spectrum", "--track", MOVE, "--joint-file", str(path), "--json")
-        self.assertEqual(done.returncode, 0, done.stderr)
+        done = ended(0, run("spectrum", "--track", MOVE, "--joint-file", str(path), "--json"))
         self.assertEqual([line["order"] for line in json.loads(done.stdout)["lines"]], [1.0, 2.0])
 
 
@@ -118,8 +112,7 @@ class RealLogs(unittest.TestCase):
         log = LOGS / "gpl3" / "panda_gaz_j4.csv"
         if not log.is_file():
             self.skipTest(f"{log} is not there")
-        done = run("spectrum", "--track", str(log), "--orders", "1,2,4", "--gear-ratio", "120", "--json")
-        self.assertEqual(done.returncode, 0, done.stderr)
+        done = ended(0, run("spectrum", "--track", str(log), "--orders", "1,2,4", "--gear-ratio", "120", "--json"))
         first, second, fourth = (line["median_nm"] for line in json.loads(done.stdout)["lines"])
         self.assertTrue(0.08 < first < 0.25 and 0.2 < second < 0.5 and 0.1 < fourth < 0.4, f"{first} {second} {fourth}")
         self.assertGreater(second, 1.5 * first)
@@ -127,8 +120,7 @@ class RealLogs(unittest.TestCase):
 
 class Refusals(unittest.TestCase):
     def refused(self, code, words, *parts):
-        done = run("spectrum", "--track", *words)
-        self.assertEqual(done.returncode, code, done.stderr)
+        done = ended(code, run("spectrum", "--track", *words))
         self.assertEqual(done.stdout, "")
         for part in parts:
             self.assertIn(part, done.stderr)

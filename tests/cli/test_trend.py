@@ -9,7 +9,7 @@ import sys
 import unittest
 
 import commands
-from commands import SOURCE, TOOL, good, run, sanitized
+from commands import SOURCE, TOOL, ended, good, run, sanitized
 import fleet
 
 
@@ -23,8 +23,7 @@ def text_of(lines):
 
 class Case(commands.Case):
     def trend(self, lines, *words):
-        done = trend("-", "--json", *words, text=text_of(lines))
-        self.assertEqual(done.returncode, 0, done.stderr)
+        done = ended(0, trend("-", "--json", *words, text=text_of(lines)))
         return json.loads(done.stdout)
 
     def refused(self, lines, *words):
@@ -174,8 +173,7 @@ class Outputs(Case):
 
     def test_the_figure_has_a_course_for_each_alert(self):
         path = self.folder / "trend.figure.json"
-        done = trend("-", "--plot", path, text=text_of(self.lines))
-        self.assertEqual(done.returncode, 0, done.stderr)
+        ended(0, trend("-", "--plot", path, text=text_of(self.lines)))
         panels = json.loads(path.read_text())["panels"]
         self.assertEqual(len(panels), min(10, len(self.trend(self.lines)["alerts"])))
 

@@ -7,7 +7,7 @@ import math
 import re
 import unittest
 
-from commands import SOURCE, Case
+from commands import SOURCE, Case, ended
 
 CASES = [SOURCE.parent / "shared" / folder for folder in ("cases", "cases-4")]
 RATE, AMPLITUDE = 250.0, 0.8
@@ -90,8 +90,7 @@ class Units(Reading):
     def test_each_form_of_the_log(self):
         for name, text in FORMS.items():
             with self.subTest(form=name):
-                done = self.read(text, name="log" + ("." + name.split(".")[1] if "." in name else ".csv"))
-                self.assertEqual(done.returncode, 0, done.stderr)
+                done = ended(0, self.read(text, name="log" + ("." + name.split(".")[1] if "." in name else ".csv")))
                 self.assertAlmostEqual(self.amplitude(done), AMPLITUDE, delta=0.01)
 
     def test_forms_that_are_asked_about(self):
@@ -101,8 +100,7 @@ class Units(Reading):
                 said = done.stderr if done.returncode else json.dumps(json.loads(done.stdout)["doubts"])
                 self.assertTrue(done.returncode in (3, 5) or not json.loads(done.stdout)["conclusive"], name)
                 self.assertIn(asked, said)
-                done = self.read(text, *words)
-                self.assertEqual(done.returncode, 0, done.stderr)
+                done = ended(0, self.read(text, *words))
                 self.assertAlmostEqual(self.amplitude(done), AMPLITUDE, delta=0.01)
 
     @unittest.expectedFailure
@@ -142,8 +140,7 @@ class Names(Reading):
 
         for word, other in (("sm", "torque_2_Nm"), ("measured", "torque_2_Nm"), ("sensor", "torque_rne_2_Nm")):
             head = ["time_s", "velocity_2_deg_s", f"torque_{word}_2_Nm", "position_2_deg", other]
-            done = self.read(table(head, cell=extra))
-            self.assertEqual(done.returncode, 0, done.stderr)
+            done = ended(0, self.read(table(head, cell=extra)))
             self.assertAlmostEqual(self.amplitude(done), AMPLITUDE, delta=0.01)
         done = self.read(table(["time_s", "velocity_2_deg_s", "torque_foo_2_Nm", "position_2_deg", "torque_2_Nm"], cell=extra))
         self.assertEqual((done.returncode, "--columns torque=torque_foo_2_Nm" in done.stderr), (3, True), done.stderr)
@@ -165,8 +162,7 @@ class Names(Reading):
             ",".join([f"{0.01 * k:.2f}", *(f"{(k * c) % 97 / 97:.2f}" for c in range(1, len(names)))]) + "\n" for k in range(100))
         (self.folder / "wide.csv").write_text(text)
         self.assertIn("166 joints", self.run_tool("info", "wide.csv").stdout)
-        done = self.run_tool("identify", "wide.csv", "--joint", "j7")
-        self.assertEqual(done.returncode, 0, done.stderr)
+        ended(0, self.run_tool("identify", "wide.csv", "--joint", "j7"))
 
 
 def remedies(text):

@@ -4,7 +4,7 @@
 import re
 import unittest
 
-from commands import COMMANDS, SOURCE, run
+from commands import COMMANDS, SOURCE, ended, run
 from commands import SOURCE, run
 
 
@@ -113,18 +113,14 @@ class Pages(unittest.TestCase):
             self.assertIn("--no-such-option", done.stderr)
 
     def test_a_mistyped_option_is_answered_with_the_nearest(self):
-        done = run("design", "--gear-ration", "100")
-        self.assertEqual(done.returncode, 2)
-        self.assertIn("did you mean --gear-ratio?", done.stderr)
+        ended(2, run("design", "--gear-ration", "100"), "did you mean --gear-ratio?")
 
     def test_a_mistyped_name_of_any_list_is_answered_with_the_nearest(self):
         log = SOURCE / "data" / "paper_rest.csv"
         for words, nearest in ((("info", log, "--format", "cvs"), "csv"), (("filter", log, "--method", "swiching"), "switching"),
                                (("export", log, "--to", "c-heder"), "c-header"), (("diagnose", "--effect", "vicous-friction"), "viscous-friction"),
                                (("simulate", "--sample-rate", "1kHz", "--gear-ratio", "100", "--motion", "sien"), "sine")):
-            done = run(*map(str, words))
-            self.assertEqual(done.returncode, 2, done.stderr)
-            self.assertIn(f"(did you mean {nearest}?)", done.stderr)
+            ended(2, run(*map(str, words)), f"(did you mean {nearest}?)")
 
     def test_a_mistyped_option_before_a_command_is_answered_too(self):
         for words, message in ((("--vesrion",), "there is no option --vesrion before a command (did you mean --version?)"),
@@ -134,11 +130,7 @@ class Pages(unittest.TestCase):
             self.assertIn(message, done.stderr)
 
     def test_an_option_given_twice_is_named(self):
-        done = run("design", "--gear-ratio", "100", "--gear-ratio", "101")
-        self.assertEqual(done.returncode, 2)
-        self.assertIn("--gear-ratio is given more than once", done.stderr)
+        ended(2, run("design", "--gear-ratio", "100", "--gear-ratio", "101"), "--gear-ratio is given more than once")
 
     def test_a_mistyped_command_is_answered_with_the_nearest(self):
-        done = run("filtre")
-        self.assertEqual(done.returncode, 2)
-        self.assertIn("did you mean filter?", done.stderr)
+        ended(2, run("filtre"), "did you mean filter?")

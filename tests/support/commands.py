@@ -112,6 +112,14 @@ def good(*words, **more):
     return done
 
 
+def ended(code, done, *said):
+    """The same run, which has to have ended with this code and to have said each of these words on standard error."""
+    missing = [words for words in said if words not in done.stderr]
+    if done.returncode != code or missing:
+        raise AssertionError(f"{done.args}: exit code {done.returncode}, expected {code} and {missing}: {done.stderr}")
+    return done
+
+
 def new_folder(test):
     """A folder that goes when the test has ended, or with the last test of a class that is given."""
     folder = tempfile.TemporaryDirectory()
