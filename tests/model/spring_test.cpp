@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "ripplenotch/model/model.hpp"
-#include "ripplenotch/model/motions.hpp"
+#include "ripplenotch/model/motion.hpp"
 #include "support/catch.hpp"
 
 using namespace ripplenotch;
@@ -342,20 +342,6 @@ TEST_CASE("two steps are as one of their length, and a step of none changes noth
     }
 }
 
-TEST_CASE("moves from near ones are those of the formula, in whatever order they are asked for") {
-    for (const double damping : {0.001, 0.1, 0.7, 1.0, 2.0}) {
-        FreeMoves moves(damping);
-        for (int k = 0; k < 20'000; ++k) {
-            const double radians = std::fmod(7.123 * k, 25.0);
-            const FreeMove near = moves.within(radians), formula = free_move(damping, radians);
-            // Of rounding: the numbers are up to 1.
-            REQUIRE(std::abs(near.at_of_at - formula.at_of_at) < 2e-14);
-            REQUIRE(std::abs(near.at_of_moving - formula.at_of_moving) < 2e-14);
-            REQUIRE(std::abs(near.moving_of_moving - formula.moving_of_moving) < 2e-14);
-        }
-    }
-}
-
 // A drive that turns with the joint.
 
 namespace {
@@ -372,37 +358,19 @@ Motion motion_at(std::vector<double> time_s) {
 
 }  // namespace
 
-TEST_CASE("a drive turns back by what the mean speed of a step says, and knows the step's length") {
-    std::vector<double> time_s;
-    for (int k = 0; k < 300; ++k) time_s.push_back(1e-3 * (k / 3) + 1e-4 * (k % 3) + (k > 200 ? 0.5 : 0.0));
-    const Motion motion = motion_at(time_s);
-    const auto drive = turning_drive(motion, cycles_per_deg);
-    CHECK(drive->hz[0] == cycles_per_deg * motion.velocity_deg_s[0]);
-    // 0.1 ms, 0.8 ms, 0.5 s beside the usual 1 ms, though each is written with other last bits.
-    CHECK(drive->steps_s.size() == 4);
-    for (std::size_t k = 1; k < motion.size(); ++k) {
-        const double step_s = time_s[k] - time_s[k - 1];
-        const double hz = cycles_per_deg * 0.5 * (motion.velocity_deg_s[k - 1] + motion.velocity_deg_s[k]);
-        CHECK(drive->hz[k] == Approx(hz).epsilon(1e-15));
-        CHECK(std::abs(drive->steps_s[drive->step[k]] - step_s) <= 1e-12);
-        CHECK(std::abs(drive->cosine[k] - std::cos(2.0 * std::numbers::pi * hz * step_s)) < 1e-11);
-        CHECK(std::abs(drive->sine[k] + std::sin(2.0 * std::numbers::pi * hz * step_s)) < 1e-11);
-    }
-}
-
-TEST_CASE("stamps that stand still or go back are a usual step, and a gap of any length is a step") {
-    const auto drive = turning_drive(motion_at({0.0, 0.001, 0.001, 0.0005, 1e300}), cycles_per_deg);
-    CHECK(drive->step == std::vector<std::size_t>{0, 0, 0, 0, 1});
-    CHECK(drive->steps_s[1] == 1e300);
-}
-
-TEST_CASE("a drive that was asked for is kept, and another motion or another order gets its own") {
-    const Motion motion = motion_at({0.0, 0.001, 0.002});
-    Motion faster = motion;
-    faster.velocity_deg_s[1] += 1.0;
-    const auto first = turning_drive(motion, cycles_per_deg);
-    CHECK(turning_drive(Motion(motion), cycles_per_deg) == first);
-    CHECK(turning_drive(motion, 2.0 * cycles_per_deg)->hz[0] == 2.0 * first->hz[0]);
-    CHECK(turning_drive(faster, cycles_per_deg)->hz[1] > first->hz[1]);
-    CHECK(turning_drive(motion, cycles_per_deg)->hz == first->hz);
+TEST_CASE(
+    "stamps that stand still or go back are a usual step, and after a gap of any length all is steady") {
+    const Spring spring{40.0, 0.1};
+    Motion odd = motion_at({0.0, 0.001, 0.001, 0.0005, 1e9});
+    odd.velocity_deg_s[4] = 100.0;
+    const Motion plain = motion_at({0.0, 0.001, 0.002});
+    std::vector<std::complex<double>> found(odd.size()), usual(plain.size());
+    response_of(spring, odd, cycles_per_deg, found);
+    response_of(spring, plain, cycles_per_deg, usual);
+    CHECK(found[1] == usual[1]);
+    CHECK(std::isfinite(std::norm(found[2])));
+    CHECK(std::isfinite(std::norm(found[3])));
+    const double u =
+        cycles_per_deg * 0.5 * (odd.velocity_deg_s[3] + odd.velocity_deg_s[4]) / spring.frequency_hz;
+    CHECK(std::abs(found[4] - 1.0 / std::complex<double>(1.0 - u * u, 0.2 * u)) < 1e-12);
 }

@@ -7,7 +7,6 @@
 #include <cstddef>
 #include <numbers>
 #include <span>
-#include <unordered_map>
 #include <vector>
 
 #include "core/vectors/dot.hpp"
@@ -152,15 +151,6 @@ void first_order_lag(std::span<double> values, double time_constant) {
     for (std::size_t k = 1; k < values.size(); ++k) values[k] += kept * values[k - 1];
 }
 
-namespace {
-
-// Between two known moves, radians. At damping 2, the most that a spring may have, the first term that is
-// left out is then 1e-15 of the move.
-constexpr double spacing = 0.005;
-constexpr double longest_known = 20.0;  // chosen, not derived: bounds the memory
-
-}  // namespace
-
 FreeMove free_move(double damping, double radians) {
     const double square = damping * damping - 1.0;
     double even = 0.0, odd = 0.0;
@@ -182,98 +172,10 @@ FreeMove free_move(double damping, double radians) {
     return {even + damping * odd, odd, even - damping * odd};
 }
 
-FreeMoves::FreeMoves(double damping) : damping_(damping), at_of_at_{1.0, 0.0}, at_of_moving_{0.0, 1.0} {
-    // x'' + 2 damping x' + x = 0, power by power.
-    for (Series* series : {&at_of_at_, &at_of_moving_}) {
-        for (std::size_t n = 2; n < terms; ++n) {
-            const auto power = static_cast<double>(n);
-            (*series)[n] = -(2.0 * damping * (power - 1.0) * (*series)[n - 1] + (*series)[n - 2]) /
-                           (power * (power - 1.0));
-        }
-    }
-}
-
-FreeMove FreeMoves::shortly(double radians) const {
-    double at = 0.0, moving = 0.0;
-    for (std::size_t n = terms; n-- > 0;) {
-        at = at * radians + at_of_at_[n];
-        moving = moving * radians + at_of_moving_[n];
-    }
-    return {at, moving, at - 2.0 * damping_ * moving};
-}
-
-FreeMove FreeMoves::within(double radians) {
-    if (!(radians < longest_known)) return free_move(damping_, radians);
-    const auto place = static_cast<std::size_t>(radians / spacing + 0.5);
-    if (place >= known_.size()) known_.resize(place + 1);
-    const double known_radians = spacing * static_cast<double>(place);
-    if (!known_[place]) known_[place] = free_move(damping_, known_radians);
-    const FreeMove &most = *known_[place], rest = shortly(radians - known_radians);
-    return {most.at_of_at * rest.at_of_at - most.at_of_moving * rest.at_of_moving,
-            most.at_of_at * rest.at_of_moving + most.at_of_moving * rest.moving_of_moving,
-            most.moving_of_moving * rest.moving_of_moving - most.at_of_moving * rest.at_of_moving};
-}
-
 namespace {
 
 // Times are accurate to a few bits; steps that differ by less than this share of the usual one are one step.
 constexpr double same_step = 1e-9;
-
-void find_steps(const Motion& motion, TurningDrive& drive) {
-    const double usual_s = 1.0 / motion.sample_rate.value();
-    std::unordered_map<long long, std::size_t> known;
-    drive.steps_s.push_back(usual_s);
-    drive.step.assign(motion.size(), 0);
-    for (std::size_t k = 1; k < motion.size(); ++k) {
-        const double step_s = motion.time_s[k] - motion.time_s[k - 1];
-        const double beside = (step_s / usual_s - 1.0) / same_step;
-        if (!(step_s > 0.0) || std::abs(beside) < 0.5) continue;
-        // Largest exact integer: longer steps are one, in which all transients decay.
-        constexpr double most = 9e18;
-        const auto [found, is_new] =
-            known.try_emplace(std::llround(std::min(beside, most)), drive.steps_s.size());
-        if (is_new) drive.steps_s.push_back(step_s);
-        drive.step[k] = found->second;
-    }
-}
-
-TurningDrive found_drive(const Motion& motion, double cycles_per_deg) {
-    TurningDrive drive;
-    const std::size_t samples = motion.size();
-    drive.hz.resize(samples);
-    drive.cosine.resize(samples);
-    drive.sine.resize(samples);
-    std::vector<double> angle_deg(samples);
-    for (std::size_t k = 0; k < samples; ++k) {
-        const std::size_t before = k - std::min<std::size_t>(k, 1);
-        const double deg_s = 0.5 * (motion.velocity_deg_s[before] + motion.velocity_deg_s[k]);
-        drive.hz[k] = cycles_per_deg * deg_s;
-        angle_deg[k] = -360.0 * cycles_per_deg * deg_s * (motion.time_s[k] - motion.time_s[before]);
-    }
-    portable::cos_degrees(angle_deg, drive.cosine);
-    portable::sin_degrees(angle_deg, drive.sine);
-    find_steps(motion, drive);
-    return drive;
-}
-
-}  // namespace
-
-std::shared_ptr<const TurningDrive> turning_drive(const Motion& motion, double cycles_per_deg) {
-    struct Asked {
-        std::vector<double> time_s, velocity_deg_s;
-        double rate_hz = 0.0, cycles_per_deg = 0.0;
-        std::shared_ptr<const TurningDrive> drive;
-    };
-    thread_local Asked last;
-    if (last.drive == nullptr || last.cycles_per_deg != cycles_per_deg ||
-        last.rate_hz != motion.sample_rate.value() || last.velocity_deg_s != motion.velocity_deg_s ||
-        last.time_s != motion.time_s)
-        last = {motion.time_s, motion.velocity_deg_s, motion.sample_rate.value(), cycles_per_deg,
-                std::make_shared<const TurningDrive>(found_drive(motion, cycles_per_deg))};
-    return last.drive;
-}
-
-namespace {
 
 // Square of ringing that is no more than rounding.
 constexpr double died_away = 1e-36;
@@ -383,21 +285,35 @@ void pass_spring(const Spring& spring, Hertz sample_rate, std::span<double> valu
 void response_of(const Spring& spring, const Motion& motion, double cycles_per_deg,
                  std::span<std::complex<double>> response) {
     if (response.empty()) return;
-    const auto drive = turning_drive(motion, cycles_per_deg);
-    FreeMoves known(spring.damping);
-    std::vector<FreeMove> moves;
-    for (const double step_s : drive->steps_s)
-        moves.push_back(known.within(2.0 * std::numbers::pi * spring.frequency_hz * step_s));
-    Mass mass(spring.damping, drive->hz[0] / spring.frequency_hz);
+    // From sample to sample: frequency of the drive, negative where the joint turns back, and its turn,
+    // reversed.
+    const std::size_t samples = response.size();
+    std::vector<double> hz(samples), angle_deg(samples), cosine(samples), sine(samples);
+    for (std::size_t k = 0; k < samples; ++k) {
+        const std::size_t before = k - std::min<std::size_t>(k, 1);
+        const double deg_s = 0.5 * (motion.velocity_deg_s[before] + motion.velocity_deg_s[k]);
+        hz[k] = cycles_per_deg * deg_s;
+        angle_deg[k] = -360.0 * cycles_per_deg * deg_s * (motion.time_s[k] - motion.time_s[before]);
+    }
+    portable::cos_degrees(angle_deg, cosine);
+    portable::sin_degrees(angle_deg, sine);
+    const double usual_s = 1.0 / motion.sample_rate.value();
+    const auto move_within = [&](double step_s) {
+        return free_move(spring.damping, 2.0 * std::numbers::pi * spring.frequency_hz * step_s);
+    };
+    const FreeMove usual = move_within(usual_s);
+    Mass mass(spring.damping, hz[0] / spring.frequency_hz);
     const auto tell = [&](std::complex<double>& one) {
         const Phasor now = mass.response();
         one.real(now.real);
         one.imag(now.imaginary);
     };
     tell(response[0]);
-    for (std::size_t k = 1; k < response.size(); ++k) {
-        mass.go(moves[drive->step[k]], drive->hz[k] / spring.frequency_hz,
-                {drive->cosine[k], drive->sine[k]});
+    for (std::size_t k = 1; k < samples; ++k) {
+        // A step that is no step forward is a usual one.
+        const double step_s = motion.time_s[k] - motion.time_s[k - 1];
+        const bool is_usual = !(step_s > 0.0) || std::abs(step_s / usual_s - 1.0) < same_step;
+        mass.go(is_usual ? usual : move_within(step_s), hz[k] / spring.frequency_hz, {cosine[k], sine[k]});
         tell(response[k]);
     }
 }

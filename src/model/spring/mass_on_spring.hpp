@@ -4,13 +4,9 @@
 // response at the present frequency and the transients of earlier frequencies. Also the same mass driven by
 // any signal.
 
-#include <array>
 #include <complex>
 #include <cstddef>
-#include <memory>
-#include <optional>
 #include <span>
-#include <vector>
 
 #include "ripplenotch/model/effect.hpp"
 
@@ -40,42 +36,6 @@ struct FreeMove {
 
 /// Within so many radians of the undamped spring.
 [[nodiscard]] FreeMove free_move(double damping, double radians);
-
-/// Free moves over steps of many lengths, as an uneven clock has them: each from one that is near and known
-/// already, and the first terms of its series for the difference.
-class FreeMoves {
-  public:
-    explicit FreeMoves(double damping);
-
-    /// As free_move, to rounding.
-    [[nodiscard]] FreeMove within(double radians);
-
-  private:
-    static constexpr std::size_t terms = 6;    // by spacing (free_move.cpp): the truncation error is rounding
-    using Series = std::array<double, terms>;  ///< by power of the radians
-    [[nodiscard]] FreeMove shortly(double radians) const;
-
-    double damping_;
-    Series at_of_at_, at_of_moving_;
-    std::vector<std::optional<FreeMove>> known_;  ///< by place
-};
-
-// A phasor that turns with the joint, as input of the spring step by step.
-
-struct TurningDrive {
-    /// From sample to sample, the first of no meaning but that of `hz`, which is of the first sample.
-    std::vector<double> hz;            ///< mean of both samples; negative where the joint turns back
-    std::vector<double> cosine, sine;  ///< phasor of the drive's turn, reversed
-    std::vector<std::size_t> step;     ///< place in `steps_s`
-
-    /// Every length of a step once, the usual one first: a clock writes few. A step that is no step forward
-    /// is a usual one.
-    std::vector<double> steps_s;
-};
-
-/// A drive that turns `cycles_per_deg` times a degree of the joint. A search asks for hundreds of springs
-/// along one motion: the last drive of each thread is kept.
-[[nodiscard]] std::shared_ptr<const TurningDrive> turning_drive(const Motion& motion, double cycles_per_deg);
 
 struct Spring {
     double frequency_hz;  ///< natural frequency of the undamped mass
