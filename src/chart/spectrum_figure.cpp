@@ -278,7 +278,7 @@ Panel spectrum_panel(const Spectrum& spectrum) {
         thinned({"torque", Ink::blue, CurveStyle::line, spectrum.hz, spectrum.amplitude_nm}));
     panel.curves.push_back(thinned(
         {"noise floor", Ink::black, CurveStyle::dashed, spectrum.hz, where_known(spectrum.floor_nm)}));
-    for (std::size_t i = 0; i < std::min(spectrum.peaks.size(), most_named_lines); ++i) {
+    for (std::size_t i = 0; i < std::min(spectrum.peaks.size(), max_named_lines); ++i) {
         const SpectralPeak& peak = spectrum.peaks[i];
         panel.lines.push_back({fmt::format("{:.4g} Hz, {:.3g} Nm", peak.hz, peak.amplitude_nm),
                                NamedLine::Run::at_x, peak.hz, Ink::vermilion});
@@ -319,7 +319,7 @@ Figure order_spectrum_figure(const std::string& source, const Stack& stack, cons
     panel.curves.push_back(
         thinned({"noise floor", Ink::black, CurveStyle::dashed, order, where_known(std::move(floor_nm))}));
     for (const MotionLine& line : lines.lines) {
-        if (line.kind == LineKind::tone || panel.lines.size() == most_named_lines) continue;
+        if (line.kind == LineKind::tone || panel.lines.size() == max_named_lines) continue;
         panel.lines.push_back({fmt::format("order {:.5g}, {:.3g} Nm", line.order_output, line.amplitude_nm),
                                NamedLine::Run::at_x, line.order_output, Ink::vermilion});
     }

@@ -103,13 +103,13 @@ Figure map_figure(const std::string& source, const MapFit& fit) {
 namespace {
 
 constexpr double stretch_s = 0.5;
-constexpr std::size_t most_in_stretch = 4096, fewest_stretches = 3;
+constexpr std::size_t max_in_stretch = 4096, fewest_stretches = 3;
 
 }  // namespace
 
 void CloseUp::add(const CourseSample& sample) {
     const auto& [time_s, speed_deg_s, before_nm, after_nm] = sample;
-    const bool full = now_.time_s.size() == most_in_stretch;
+    const bool full = now_.time_s.size() == max_in_stretch;
     if (!now_.time_s.empty() && (full || time_s - now_.time_s.front() >= stretch_s)) end_stretch();
     if (!now_.time_s.empty()) {
         const double step = (before_nm - after_nm) - (now_.before_nm.back() - now_.after_nm.back());
@@ -192,7 +192,7 @@ Figure TorqueCourse::figure(const std::string& source, const std::string& method
 
 namespace {
 
-constexpr std::size_t most_ribbon_rows = 2000;
+constexpr std::size_t max_ribbon_rows = 2000;
 
 Ink track_ink(const TrackName& line) {
     if (line.order) return order_ink(*line.order);
@@ -255,7 +255,7 @@ void add_line(TrackPanels& panels, const TrackName& line, const std::vector<doub
         ribbon.high.push_back(amplitude_nm[i] + half_width_nm[i]);
     }
     // A ribbon of more rows than a picture has columns would be a blur.
-    if (x.size() <= most_ribbon_rows) {
+    if (x.size() <= max_ribbon_rows) {
         for (Ribbon& part : parts_of(ribbon, breaks)) panels.amplitude.ribbons.push_back(std::move(part));
     }
     Curve amplitude{line.words, ink, track_style(line, CurveStyle::line), x, amplitude_nm};

@@ -53,7 +53,7 @@ Figure trend_figure(const Trend& trend) {
     for (const JointTrend& joint : trend.joints) {
         for (const JointChange& change : joint.changes) {
             ++alerts;
-            if (shown == most_trend_courses || change.course.empty()) continue;
+            if (shown == max_trend_courses || change.course.empty()) continue;
             ++shown;
             figure.panels.push_back(course_panel(joint, change, origin_s));
         }

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 // Parses a command line and runs the command that it names.
-
 #include "cli/run.hpp"
 
 #include <fmt/format.h>
@@ -11,6 +10,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <functional>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <sstream>
@@ -184,10 +184,10 @@ void group_options(CLI::App& command, bool whole) {
     }
     if (!hidden) return;
     command.formatter(std::make_shared<ShortHelp>());
-    command.footer(fmt::format(
-        "How the log is read (--format, --joint, --columns, --unit, --scale, --side, --from, --to, ...): "
-        "{} {} {}\n\n{}",
-        tool_name, command.get_name(), whole_help, command.get_footer()));
+    command.footer(
+        fmt::format("How the log is read (--format, --joint, --columns, --unit, --scale, --side, --from, "
+                    "--to, ...): {} {} {}\n\n{}",
+                    tool_name, command.get_name(), whole_help, command.get_footer()));
 }
 
 // The options of all commands, or of those that the words name.
@@ -322,5 +322,16 @@ void parse_options(const std::string& of_command, CommandWords words,
     }
     for (const auto& check : implementation.after_parse) check();
 }
+
+namespace {
+constexpr const Command* const list[] = {
+#define COMMAND(name) &commands::name,
+#include "cli/commands.def"
+#undef COMMAND
+    nullptr,
+};
+}  // namespace
+
+std::span<const Command* const> all_commands() { return {list, std::size(list) - 1}; }
 
 }  // namespace ripplenotch

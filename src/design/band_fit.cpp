@@ -21,7 +21,7 @@ namespace {
 constexpr int points_a_side = 9;        // number of points in the search for the largest gain of a trial band
 constexpr double as_exact = 1e-9;       // share of a Q or a centre to which searches go
 constexpr double edge_as_exact = 1e-7;  // share of a band's edge, from the side on which it still holds
-constexpr int most_secants = 8;         // chosen, not derived: bisection follows
+constexpr int max_secants = 8;          // chosen, not derived: bisection follows
 // Chosen, not derived: checked by its bracket.
 constexpr double secant_as_exact = 1e-6, bracket_width = 1e-10;
 
@@ -45,22 +45,22 @@ double first_failure(double low, double high, const Holds& holds) {
     return high;
 }
 
-// Two Q close to each other, with the one of which the delay is more than `most_s` and with the other not.
+// Two Q close to each other, with the one of which the delay is more than `max_s` and with the other not.
 struct Bracket {
     double beyond, within;
 };
 
 // By secants against 1/Q, with which an analogue notch's delay goes.
 template <class Delay>
-Bracket bracket(const Delay& delay_at, double most_s, Bracket known, std::array<double, 2> delay_s) {
+Bracket bracket(const Delay& delay_at, double max_s, Bracket known, std::array<double, 2> delay_s) {
     const auto look = [&](double q) {
         const double found_s = delay_at(q);
-        (found_s <= most_s ? known.within : known.beyond) = q;
+        (found_s <= max_s ? known.within : known.beyond) = q;
         return found_s;
     };
     double before = 1.0 / known.beyond, here = 1.0 / known.within;
-    for (int step = 0; step < most_secants; ++step) {
-        const double next = here + (most_s - delay_s[1]) * (here - before) / (delay_s[1] - delay_s[0]);
+    for (int step = 0; step < max_secants; ++step) {
+        const double next = here + (max_s - delay_s[1]) * (here - before) / (delay_s[1] - delay_s[0]);
         const double q = 1.0 / next;
         if (!(q > known.beyond && q < known.within)) break;
         const bool close = std::abs(next - here) < secant_as_exact * next;
@@ -101,15 +101,15 @@ std::optional<Tuning> BandFit::tune(double center_deg_s, const QRule& rule) cons
         for (const double centre : centres) samples += delay_samples(centre, 1.0 / q);
         return samples / spec_.sample_rate.value();
     };
-    const double most_s = *rule.delay_s, at_low_s = delay_at(low), at_high_s = delay_at(high);
-    if (at_low_s <= most_s) return tuned(center_deg_s, low);
-    if (!(at_high_s <= most_s)) return std::nullopt;
+    const double max_s = *rule.delay_s, at_low_s = delay_at(low), at_high_s = delay_at(high);
+    if (at_low_s <= max_s) return tuned(center_deg_s, low);
+    if (!(at_high_s <= max_s)) return std::nullopt;
     // Bisection converges to one of the Qs that are equally exact. A few secant steps along the delay find it
     // sooner, so that most halves are known without an evaluation.
-    const Bracket known = bracket(delay_at, most_s, {low, high}, {at_low_s, at_high_s});
+    const Bracket known = bracket(delay_at, max_s, {low, high}, {at_low_s, at_high_s});
     while (high - low > as_exact * high) {
         const double middle = std::sqrt(low * high);
-        const bool within = middle >= known.within || (middle > known.beyond && delay_at(middle) <= most_s);
+        const bool within = middle >= known.within || (middle > known.beyond && delay_at(middle) <= max_s);
         (within ? high : low) = middle;
     }
     return tuned(center_deg_s, high);
@@ -156,26 +156,26 @@ double BandFit::worst_gain(const Tuning& tuning, double from_deg_s, double to_de
 }
 
 // Ends first: where a band does not hold, it does not hold there, mostly.
-bool BandFit::holds(const Tuning& tuning, double from_deg_s, double to_deg_s, double most_gain) const {
+bool BandFit::holds(const Tuning& tuning, double from_deg_s, double to_deg_s, double max_gain) const {
     for (int i = 0; i < points_a_side; ++i) {
         const int point = i % 2 == 0 ? i / 2 : points_a_side - 1 - i / 2;
-        if (std::sqrt(power(tuning, speed_in(from_deg_s, to_deg_s, point))) > most_gain) return false;
+        if (std::sqrt(power(tuning, speed_in(from_deg_s, to_deg_s, point))) > max_gain) return false;
     }
     return true;
 }
 
-std::optional<double> BandFit::reach(double from_deg_s, double end_deg_s, double most_gain,
+std::optional<double> BandFit::reach(double from_deg_s, double end_deg_s, double max_gain,
                                      const QRule& rule) const {
     const auto held = [&](double center, double from, double to) {
         const auto tuning = tune(center, rule);
-        return tuning && holds(*tuning, from, to, most_gain);
+        return tuning && holds(*tuning, from, to, max_gain);
     };
     if (!held(from_deg_s, from_deg_s, from_deg_s)) return std::nullopt;
     // A centre further up serves speeds further up, as far as the lower edge is still held.
     const double center =
         first_failure(from_deg_s, end_deg_s, [&](double at) { return held(at, from_deg_s, at); });
     const Tuning tuning = *tune(center, rule);
-    return first_failure(center, end_deg_s, [&](double to) { return holds(tuning, center, to, most_gain); });
+    return first_failure(center, end_deg_s, [&](double to) { return holds(tuning, center, to, max_gain); });
 }
 
 std::optional<Tuning> BandFit::balanced(double from_deg_s, double to_deg_s, const QRule& rule) const {
@@ -194,12 +194,12 @@ std::optional<Tuning> BandFit::balanced(double from_deg_s, double to_deg_s, cons
     return tune(high, rule);
 }
 
-std::optional<std::vector<double>> BandFit::edges(double from_deg_s, double to_deg_s, double most_gain,
+std::optional<std::vector<double>> BandFit::edges(double from_deg_s, double to_deg_s, double max_gain,
                                                   const QRule& rule, std::size_t most) const {
     std::vector<double> found = {from_deg_s};
     while (found.back() < to_deg_s) {
         if (found.size() > most) return std::nullopt;
-        const auto next = reach(found.back(), to_deg_s, most_gain, rule);
+        const auto next = reach(found.back(), to_deg_s, max_gain, rule);
         if (!next || !(*next > found.back() * (1.0 + 1e-9))) return std::nullopt;
         found.push_back(*next);
     }
@@ -208,8 +208,8 @@ std::optional<std::vector<double>> BandFit::edges(double from_deg_s, double to_d
 
 namespace {
 
-constexpr double most_db = 140.0, least_db = 0.1;  // chosen, not derived
-constexpr int settling_trials = 49;                // Q from widest to narrowest, 6 % apart
+constexpr double max_db = 140.0, least_db = 0.1;  // chosen, not derived
+constexpr int settling_trials = 49;               // Q from widest to narrowest, 6 % apart
 
 double gain_of(double attenuation_db) { return portable::pow(10.0, -attenuation_db / 20.0); }
 
@@ -250,7 +250,7 @@ QRule BandSearch::rule(std::optional<double> delay_s) const {
 }
 
 std::optional<std::size_t> BandSearch::bands(double attenuation_db, const QRule& rule) const {
-    const auto found = fit_.edges(from_, to_, gain_of(attenuation_db), rule, most_bands_ever);
+    const auto found = fit_.edges(from_, to_, gain_of(attenuation_db), rule, max_bands_ever);
     return found ? std::optional(found->size() - 1) : std::nullopt;
 }
 
@@ -261,9 +261,9 @@ std::optional<double> BandSearch::attenuation_db(std::size_t bands, const QRule&
     };
     double low = std::max(known_db, least_db), high = low + 1.0;
     if (known_db < least_db && !holds(low)) return std::nullopt;
-    while (high < most_db && holds(high)) {
+    while (high < max_db && holds(high)) {
         low = high;
-        high = std::min(low + 2.0 * (high - known_db), most_db);
+        high = std::min(low + 2.0 * (high - known_db), max_db);
     }
     while (high - low > 1e-3) {
         const double middle = 0.5 * (low + high);
@@ -284,9 +284,9 @@ std::size_t BandSearch::bands_worth_it(const QRule& rule) const {
         return is;
     };
     std::size_t low = 0, high = 1;  // the band after `low` is worth it, that after `high` is not
-    while (high < most_bands_ever && worth(high)) {
+    while (high < max_bands_ever && worth(high)) {
         low = high;
-        high = std::min(2 * high, most_bands_ever);
+        high = std::min(2 * high, max_bands_ever);
     }
     while (high - low > 1) {
         const std::size_t middle = (low + high) / 2;
@@ -314,7 +314,7 @@ BandSearch::Settling BandSearch::soonest() const {
 }
 
 CandidateTable BandSearch::table(double attenuation_db, const QRule& rule) const {
-    const auto edges = fit_.edges(from_, to_, gain_of(attenuation_db), rule, most_bands_ever);
+    const auto edges = fit_.edges(from_, to_, gain_of(attenuation_db), rule, max_bands_ever);
     if (!edges) throw std::logic_error("a band search was asked for a table that it had not found");
     std::vector<Band> bands;
     double from = from_;

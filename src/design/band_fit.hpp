@@ -41,21 +41,20 @@ class BandFit {
     /// The largest gain of the ripple over from..to and the interval of the gear ratio: of the line that is
     /// attenuated least.
     [[nodiscard]] double worst_gain(const Tuning& tuning, double from_deg_s, double to_deg_s) const;
-    /// Whether that is at most `most_gain`.
-    [[nodiscard]] bool holds(const Tuning& tuning, double from_deg_s, double to_deg_s,
-                             double most_gain) const;
+    /// Whether that is at most `max_gain`.
+    [[nodiscard]] bool holds(const Tuning& tuning, double from_deg_s, double to_deg_s, double max_gain) const;
     [[nodiscard]] double delay_s(const Tuning& tuning) const;
 
     /// Highest speed up to which a band from `from` can reach, `end` at most; empty when not even its own
     /// lower edge is held.
-    [[nodiscard]] std::optional<double> reach(double from_deg_s, double end_deg_s, double most_gain,
+    [[nodiscard]] std::optional<double> reach(double from_deg_s, double end_deg_s, double max_gain,
                                               const QRule& rule) const;
     /// The centre at which the band's two edges are attenuated alike.
     [[nodiscard]] std::optional<Tuning> balanced(double from_deg_s, double to_deg_s, const QRule& rule) const;
     /// Smallest number of bands by extending each as far as it goes; their edges, lowest first. Empty when it
     /// takes more than `most`, or some speed cannot be held at all.
     [[nodiscard]] std::optional<std::vector<double>> edges(double from_deg_s, double to_deg_s,
-                                                           double most_gain, const QRule& rule,
+                                                           double max_gain, const QRule& rule,
                                                            std::size_t most) const;
 
   private:
@@ -73,7 +72,7 @@ class BandFit {
 
 // The three-way trade of a designed table, attenuation, delay and number of bands: any two give the third.
 
-inline constexpr std::size_t most_bands_ever = 1000;  // chosen, not derived: bounds the time
+inline constexpr std::size_t max_bands_ever = 1000;   // chosen, not derived: bounds the time
 inline constexpr double gain_worth_a_band_db = 0.25;  // chosen, not derived
 /// Loss of attenuation by rounding of edges and Q; searches aim this much higher.
 inline constexpr double rounding_db = 0.002;
@@ -85,7 +84,7 @@ class BandSearch {
 
     [[nodiscard]] const BandFit& fit() const { return fit_; }
     [[nodiscard]] QRule rule(std::optional<double> delay_s) const;
-    /// Fewest bands; empty when no number (up to most_bands_ever) holds it.
+    /// Fewest bands; empty when no number (up to max_bands_ever) holds it.
     [[nodiscard]] std::optional<std::size_t> bands(double attenuation_db, const QRule& rule) const;
     /// Largest attenuation that so many bands hold; empty when they hold less than 0.1 dB. `known_db` may
     /// give an attenuation that they certainly hold, to begin from; the attenuation `held_db` is assumed to
@@ -101,7 +100,7 @@ class BandSearch {
     /// The notches at the lowest speed whose step response settles soonest.
     [[nodiscard]] Settling soonest() const;
     /// Delay at the lowest speed of the narrowest notches.
-    [[nodiscard]] double least_delay_s() const { return fit_.delay_s(*fit_.tune(from_, {narrowest_q, {}})); }
+    [[nodiscard]] double min_delay_s() const { return fit_.delay_s(*fit_.tune(from_, {narrowest_q, {}})); }
 
     /// The bands that hold `attenuation_db`, as a measured table.
     [[nodiscard]] CandidateTable table(double attenuation_db, const QRule& rule) const;

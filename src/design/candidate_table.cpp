@@ -67,8 +67,8 @@ std::vector<SpeedRegion> speed_regions(std::span<const Band> bands, OutsideRule 
 namespace {
 
 // About half a second each. A response is taken at 257 speeds of a band, of each line through each notch.
-constexpr double most_responses = 60000.0;  // lines times notches, over all bands
-constexpr double most_steps = 2e8;          // samples of a step response times notches, over all bands
+constexpr double max_responses = 60000.0;  // lines times notches, over all bands
+constexpr double most_steps = 2e8;         // samples of a step response times notches, over all bands
 
 }  // namespace
 
@@ -78,20 +78,20 @@ void TableWork::add(const Band& band, double settle_band_percent) {
         raise<UsageError>("{} notches in a band, expected at most {}; leave orders out", band.notches.size(),
                           most_orders);
     }
-    if (++bands_ > most_bands) raise<UsageError>("more than {} bands; make them wider", most_bands);
+    if (++bands_ > max_bands) raise<UsageError>("more than {} bands; make them wider", max_bands);
     responses_ += notches * notches;
-    if (responses_ > most_responses) {
+    if (responses_ > max_responses) {
         raise<UsageError>(
-            "bands 1 to {} have too many notches to be measured ({} in this one); make the bands "
-            "wider, or leave orders out",
+            "bands 1 to {} have too many notches to be measured ({} in this one); make the bands wider, or "
+            "leave orders out",
             bands_, band.notches.size());
     }
     const Cascade cascade = band.cascade();
     steps_ += notches * static_cast<double>(samples_to_settle(cascade, settle_band_percent / 100.0));
     if (steps_ > most_steps) {
         raise<UsageError>(
-            "bands 1 to {} settle too slowly to be measured together; make the bands wider, start "
-            "them higher, or lower the Q or the sample rate",
+            "bands 1 to {} settle too slowly to be measured together; make the bands wider, start them "
+            "higher, or lower the Q or the sample rate",
             bands_);
     }
 }
@@ -263,15 +263,15 @@ std::vector<std::pair<DegPerSec, DegPerSec>> bands_by_spacing(const SpeedSpan& s
     if (!(width > 0.0)) raise<UsageError>("band width {} deg/s is not above 0", shortest(width));
     const double exact = (b - a) / width;
     const double count = std::round(exact);
-    if (!(exact < static_cast<double>(most_bands))) {
+    if (!(exact < static_cast<double>(max_bands))) {
         raise<UsageError>("speed range {}:{}:{} makes more than {} bands", shortest(a), shortest(b),
-                          shortest(width), most_bands);
+                          shortest(width), max_bands);
     }
     if (count < 1.0 || std::abs(exact - count) > 1e-9 * exact) {
         const double upward = std::ceil(exact);
         raise<UsageError>(
-            "speed range {}:{}:{} deg/s does not divide into whole bands ({:.6g} of them); a width of "
-            "{:.6g} deg/s gives {:.0f}",
+            "speed range {}:{}:{} deg/s does not divide into whole bands ({:.6g} of them); a width of {:.6g} "
+            "deg/s gives {:.0f}",
             shortest(a), shortest(b), shortest(width), exact, (b - a) / upward, upward);
     }
     std::vector<std::pair<DegPerSec, DegPerSec>> bands;

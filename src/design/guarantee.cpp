@@ -52,8 +52,8 @@ void check_speeds(const TableSpec& spec, const DesignGoal& goal) {
         ripple_frequency(spec.orders.back(), spec.gear_ratio, DegPerSec(to * (1.0 + spec.ratio_error)));
     if (!(highest < 0.5 * spec.sample_rate)) {
         raise<UsageError>(
-            "{} reaches half the sample rate, {} Hz, at {} deg/s; end the speeds below, or leave the "
-            "order out",
+            "{} reaches half the sample rate, {} Hz, at {} deg/s; end the speeds below, or leave the order "
+            "out",
             order_in_words(spec.orders.back(), spec.gear_ratio), plain(0.5 * spec.sample_rate.value()),
             plain(to * 0.5 * spec.sample_rate.value() / highest.value()));
     }
@@ -87,7 +87,7 @@ std::string delay_text(double delay_s) { return fmt::format("{} ms", plain(1e3 *
     const double best = best_db(speed);
     if (best >= wanted) {
         refuse("{} {} dB takes more than {} bands; ask for less, or for fewer speeds", "--min-attenuation",
-               plain(wanted), most_bands_ever);
+               plain(wanted), max_bands_ever);
     }
     const std::string notches = fmt::format("notches of Q {}", plain(search.fit().tune(speed, rule)->q));
     const std::string within =
@@ -95,8 +95,8 @@ std::string delay_text(double delay_s) { return fmt::format("{} ms", plain(1e3 *
                                   : "";
     if (spec.ratio_error > 0.0) {
         refuse(
-            "{} {} dB cannot be held at {} deg/s{}: on a gear ratio that may be {} % off, "
-            "{} hold {:.1f} dB at most; measure the ratio better, or leave more delay",
+            "{} {} dB cannot be held at {} deg/s{}: on a gear ratio that may be {} % off, {} hold {:.1f} dB "
+            "at most; measure the ratio better, or leave more delay",
             "--min-attenuation", plain(wanted), plain(speed), within, plain(100.0 * spec.ratio_error),
             notches, best);
     }
@@ -115,17 +115,16 @@ struct Budget {
 Budget budget_of(const TableSpec& spec, const DesignGoal& goal, const BandSearch& search) {
     if (goal.q) return {std::nullopt, fmt::format("at Q {}", shortest(*goal.q))};
     if (goal.max_delay) {
-        const double limit = goal.max_delay->value(), least = search.least_delay_s();
+        const double limit = goal.max_delay->value(), least = search.min_delay_s();
         if (!search.fit().tune(goal.from.value(), search.rule(limit)))
             refuse_delay(spec, goal.from.value(), limit, least, plain(narrowest_q));
         return {limit, fmt::format("within {}", delay_text(limit))};
     }
     const auto soonest = search.soonest();
-    return {soonest.delay_s,
-            fmt::format("with notches that settle soonest at {} deg/s (Q {}, {:.0f} ms to {} %): wider ones "
-                        "lag more, narrower ones ring longer",
-                        plain(goal.from.value()), fmt::format("{:.2g}", soonest.q), 1e3 * soonest.settle_s,
-                        plain(spec.settle_band_percent))};
+    return {soonest.delay_s, fmt::format("with notches that settle soonest at {} deg/s (Q {}, {:.0f} ms to "
+                                         "{} %): wider ones lag more, narrower ones ring longer",
+                                         plain(goal.from.value()), fmt::format("{:.2g}", soonest.q),
+                                         1e3 * soonest.settle_s, plain(spec.settle_band_percent))};
 }
 
 void check_held(const CandidateTable& table, const DesignGoal& goal) {
@@ -165,10 +164,10 @@ DesignChoice choose_bands(const TableSpec& spec, const DesignGoal& goal) {
 }
 
 // The highest Q, so the least delay, with which a band holds the attenuation; 0 when none does.
-double highest_q(const BandFit& fit, double from, double to, double most_gain) {
+double highest_q(const BandFit& fit, double from, double to, double max_gain) {
     const auto held = [&](double q) {
         const QRule rule{q, std::nullopt};
-        return fit.worst_gain(*fit.balanced(from, to, rule), from, to) <= most_gain;
+        return fit.worst_gain(*fit.balanced(from, to, rule), from, to) <= max_gain;
     };
     double low = widest_q, high = narrowest_q;
     if (!held(low)) return 0.0;
@@ -191,8 +190,8 @@ Band fixed_band(const TableSpec& spec, const DesignGoal& goal, const BandFit& fi
             const Band widest = band_of(spec, number, from, to,
                                         *fit.balanced(from.value(), to.value(), {widest_q, std::nullopt}));
             refuse(
-                "{}: notches as wide as Q {} hold {:.1f} dB, less than {} {} dB; make the "
-                "band narrower, or leave the bands to the design",
+                "{}: notches as wide as Q {} hold {:.1f} dB, less than {} {} dB; make the band narrower, or "
+                "leave the bands to the design",
                 label, plain(widest_q), widest.least_attenuation_db(), "--min-attenuation", plain(wanted));
         }
     } else {

@@ -72,12 +72,12 @@ namespace {
 
 constexpr double longest_run = 5e7;  // samples; about half a second of work per section
 
-constexpr std::size_t samples_a_look = 32;        // chosen, not derived: each test costs
-constexpr double least_overshoot_percent = 1e-6;  // less is rounding
+constexpr std::size_t samples_a_look = 32;      // chosen, not derived: each test costs
+constexpr double min_overshoot_percent = 1e-6;  // less is rounding
 constexpr double for_rounding = 1.25;  // margin on the bound, which is good to nine digits where it is used
 // Share of the final value; in less the rounding of the run itself would show.
-constexpr double least_band = 1e-6;
-constexpr double most_cancelling = 1e6;  // chosen, not derived: ten of a double's digits remain
+constexpr double min_band = 1e-6;
+constexpr double max_cancelling = 1e6;  // chosen, not derived: ten of a double's digits remain
 
 /// Upper bound of the remaining change of a step response. It is target + sum of residue p^k over the poles
 /// p: with their magnitudes for residues and poles that is a bound which no later sample passes.
@@ -98,7 +98,7 @@ class Remainder {
             sum += mode.now;
             largest = std::max(largest, mode.first);
         }
-        const bool good = std::isfinite(sum) && largest <= most_cancelling * std::abs(target);
+        const bool good = std::isfinite(sum) && largest <= max_cancelling * std::abs(target);
         return good ? for_rounding * sum : std::numeric_limits<double>::infinity();
     }
 
@@ -137,8 +137,8 @@ std::size_t samples_to_settle(std::span<const Biquad> cascade, double remainder)
     const double count = radius < 1e-3 ? 0.0 : time_constants / -portable::log(radius);
     if (!(count < longest_run)) {
         raise<UsageError>(
-            "the filter needs {:.3g} samples to settle, too many to measure (limit {:.3g}); its Q is "
-            "too high or its cut-off too low for this sample rate",
+            "the filter needs {:.3g} samples to settle, too many to measure (limit {:.3g}); its Q is too "
+            "high or its cut-off too low for this sample rate",
             count, longest_run);
     }
     return static_cast<std::size_t>(count) + 8 * cascade.size() + 8;
@@ -160,11 +160,11 @@ StepFigures measure_step(std::span<const Biquad> cascade, Hertz sample_rate, dou
     double peak = 0.0;
     Remainder remainder(cascade);
     for (std::size_t k = 0; k < count; ++k) {
-        if (k > 0 && k % samples_a_look == 0 && band >= least_band * std::abs(target)) {
+        if (k > 0 && k % samples_a_look == 0 && band >= min_band * std::abs(target)) {
             remainder.pass_samples();
             const double rest = remainder.bound(target);
             const double matters =
-                std::max(peak - 1.0, 0.01 * least_overshoot_percent / 2.0) * std::abs(target);
+                std::max(peak - 1.0, 0.01 * min_overshoot_percent / 2.0) * std::abs(target);
             if (rest <= band && rest <= matters) break;
         }
         double y = 1.0;
@@ -174,7 +174,7 @@ StepFigures measure_step(std::span<const Biquad> cascade, Hertz sample_rate, dou
     }
     const double overshoot = 100.0 * (peak - 1.0);
     return {Seconds(static_cast<double>(settled) / sample_rate.value()),
-            overshoot > least_overshoot_percent ? overshoot : 0.0};
+            overshoot > min_overshoot_percent ? overshoot : 0.0};
 }
 
 namespace {
@@ -202,8 +202,7 @@ void check_notch(const NotchSpec& spec, Hertz sample_rate) {
     if (spec.width == WidthRule::digital && !(spec.center.value() / spec.q < half_rate)) {
         raise<UsageError>(
             "a digital notch at {} Hz with Q {} is {} Hz wide, not below half the sample rate, {} Hz; raise "
-            "Q or "
-            "use the analog width rule",
+            "Q or use the analog width rule",
             shortest(spec.center.value()), shortest(spec.q), shortest(spec.center.value() / spec.q),
             shortest(half_rate));
     }

@@ -231,8 +231,7 @@ const ExportBand& only_band(const FilterSet& filters, std::string_view target) {
     if (filters.by_speed()) {
         raise<UsageError>(
             "target {} holds one filter for all speeds, and this table has {}; choose a band with --band, "
-            "for "
-            "example --band {}, or a target that switches: {}",
+            "for example --band {}, or a target that switches: {}",
             target,
             filters.bands.size() == 1 ? "a band of speed" : fmt::format("{} bands", filters.bands.size()),
             filters.bands.back().number, fmt::join(targets_that(&Target::switches), ", "));

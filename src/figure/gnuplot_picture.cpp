@@ -10,10 +10,8 @@
 #include <string_view>
 #include <vector>
 
-#include "figure/gnuplot_script.hpp"
 #include "ripplenotch/core/visible_text.hpp"
 #include "ripplenotch/figure/figure.hpp"
-#include "ripplenotch/figure/gnuplot.hpp"
 #include "ripplenotch/figure/min_max.hpp"
 
 namespace ripplenotch {
@@ -231,7 +229,7 @@ std::string same_pdf(std::string pdf) {
 
 namespace {
 
-constexpr std::size_t most_cells = 400;  // cells of a map, each way: finer is not visible
+constexpr std::size_t max_cells = 400;  // cells of a map, each way: finer is not visible
 
 // Dark to light without turning back, so that it reads in grey and to every kind of eye.
 constexpr const char* palette =
@@ -293,8 +291,8 @@ class PanelScript {
             return;
         }
         script_.line(
-            "set key at screen {:.6f},{:.6f} left top vertical Left reverse maxrows {} samplen 2.4 "
-            "spacing 1.25 font ',12'",
+            "set key at screen {:.6f},{:.6f} left top vertical Left reverse maxrows {} samplen 2.4 spacing "
+            "1.25 font ',12'",
             x(box_.legend_x), y(box_.legend_y), box_.legend_rows);
     }
 
@@ -345,7 +343,7 @@ class PanelScript {
 
     void map(std::vector<std::string>& parts) {
         const auto pixels = [](double width, std::size_t cells) {
-            return std::min({static_cast<std::size_t>(width), most_cells, 4 * cells});
+            return std::min({static_cast<std::size_t>(width), max_cells, 4 * cells});
         };
         const HeatMap& whole = *panel_.map;
         const std::size_t columns = pixels(box_.right - box_.left, whole.x_edges.size() - 1);

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "figure/gnuplot_script.hpp"
-
 #include <fcntl.h>
 #include <poll.h>
 #include <spawn.h>
@@ -20,7 +18,7 @@
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/core/visible_text.hpp"
-#include "ripplenotch/figure/gnuplot.hpp"
+#include "ripplenotch/figure/figure.hpp"
 #include "ripplenotch/figure/min_max.hpp"
 
 extern char** environ;  // NOLINT: POSIX names it so

@@ -121,14 +121,14 @@ void Coordinates::add_term(std::size_t i) {
         const double start = guess(i, p);
         if (parameter.logarithmic) {
             list_.push_back({CoordinateKind::logarithm, i, p, 0, portable::log(start),
-                             portable::log(parameter.lower), portable::log(most_in(model_, effect, p)), 1e-5,
+                             portable::log(parameter.lower), portable::log(max_in(model_, effect, p)), 1e-5,
                              false});
             continue;
         }
         const bool linear = linear_term && parameter.linear;
         const double scale = std::max({std::abs(start), std::abs(parameter.start), 1e-3});
-        list_.push_back({CoordinateKind::plain, i, p, 0, start, least_in(model_, effect, p),
-                         most_in(model_, effect, p), linear ? scale : 1e-5 * scale, linear});
+        list_.push_back({CoordinateKind::plain, i, p, 0, start, min_in(model_, effect, p),
+                         max_in(model_, effect, p), linear ? scale : 1e-5 * scale, linear});
     }
 }
 
@@ -438,7 +438,7 @@ void descend(const Problem& problem, Search& search, bool only_linear, const Fit
     double damping = 1e-12;
     search.converged = false;
     const auto& list = problem.coordinates.list();
-    for (int i = 0; i < options.most_iterations && !search.converged; ++i) {
+    for (int i = 0; i < options.max_iterations && !search.converged; ++i) {
         const auto moving = free_to_move(problem, search.place, only_linear);
         if (moving.empty()) {
             search.converged = true;
@@ -486,7 +486,7 @@ Fit fit(const Model& model, const Motion& motion, std::span<const double> torque
     Search search{problem.at(std::move(start))};
     // Linear values are solved for the first guess of the others before those move.
     FitOptions briefly = options;
-    briefly.most_iterations = std::min(2, options.most_iterations);
+    briefly.max_iterations = std::min(2, options.max_iterations);
     descend(problem, search, true, briefly);
     const auto& list = problem.coordinates.list();
     if (!std::all_of(list.begin(), list.end(), [](const Coordinate& c) { return c.linear; }))

@@ -47,13 +47,13 @@ Term parse_term(std::string_view text) {
     return term;
 }
 
-double most_in(const Model& model, const Effect& effect, std::size_t parameter) {
+double max_in(const Model& model, const Effect& effect, std::size_t parameter) {
     const Parameter& described = effect.parameters[parameter];
     const bool is_step = effect.resists && described.name == "width_deg_s" && model.widest_step_deg_s > 0.0;
     return is_step ? std::clamp(model.widest_step_deg_s, described.start, described.upper) : described.upper;
 }
 
-double least_in(const Model& model, const Effect& effect, std::size_t parameter) {
+double min_in(const Model& model, const Effect& effect, std::size_t parameter) {
     const Parameter& described = effect.parameters[parameter];
     const bool has_size_alone = std::ranges::all_of(
         effect.parameters, [](const Parameter& one) { return one.linear || one.name == "width_deg_s"; });

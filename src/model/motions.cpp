@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "ripplenotch/model/motions.hpp"
+#include "ripplenotch/model/motion.hpp"
 
 #include <fmt/format.h>
 
@@ -92,8 +92,8 @@ double start_position_deg(std::string_view kind, const Settings& settings, const
     const double from_deg = settings.number("from");
     if (before && std::abs(from_deg - natural_deg) > joined_deg) {
         raise<UsageError>(
-            "motion {}: from={}deg, but the motion before it ends at {}deg; leave from= out, or move "
-            "there first",
+            "motion {}: from={}deg, but the motion before it ends at {}deg; leave from= out, or move there "
+            "first",
             kind, shortest(from_deg), shortest(natural_deg));
     }
     return from_deg;
@@ -329,10 +329,10 @@ const MotionKind fourier_motion{
              duration_key(), from_key()},
     .make = [](const Settings& settings, const Before& before) -> MotionPiece {
         const std::vector<double> speeds = settings.list("speeds");
-        constexpr std::size_t most_waves = 100;  // chosen, not derived: bounds the time
-        if (speeds.size() > most_waves)
+        constexpr std::size_t max_waves = 100;  // chosen, not derived: bounds the time
+        if (speeds.size() > max_waves)
             raise<UsageError>("motion fourier: speeds has {} entries, at most {} are taken", speeds.size(),
-                              most_waves);
+                              max_waves);
         const double from_deg = start_position_deg("fourier", settings, before);
         const double duration_s = settings.number("duration");
         return {Seconds(duration_s), [=](Seconds elapsed) {

@@ -9,7 +9,7 @@
 #include "ripplenotch/core/files.hpp"
 #include "ripplenotch/core/progress.hpp"
 #include "ripplenotch/core/visible_text.hpp"
-#include "ripplenotch/figure/gnuplot.hpp"
+#include "ripplenotch/figure/figure.hpp"
 #include "ripplenotch/page/page.hpp"
 
 namespace ripplenotch {

@@ -9,7 +9,6 @@
 
 #include "document/json/json.hpp"
 #include "figure/gnuplot_picture.hpp"
-#include "figure/gnuplot_script.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/core/visible_text.hpp"

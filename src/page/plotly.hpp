@@ -4,7 +4,6 @@
 
 #include "document/json/json.hpp"
 #include "figure/gnuplot_picture.hpp"
-#include "figure/gnuplot_script.hpp"
 #include "ripplenotch/figure/figure.hpp"
 
 namespace ripplenotch {

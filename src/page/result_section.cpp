@@ -24,11 +24,11 @@
 #include "ripplenotch/core/visible_text.hpp"
 #include "ripplenotch/diagnose/diagnosis.hpp"
 #include "ripplenotch/document/diagnosis_json.hpp"
+#include "ripplenotch/document/features_json.hpp"
 #include "ripplenotch/document/figure_json.hpp"
 #include "ripplenotch/document/identification_json.hpp"
 #include "ripplenotch/document/map_json.hpp"
 #include "ripplenotch/document/table_json.hpp"
-#include "ripplenotch/document/trend_json.hpp"
 #include "ripplenotch/figure/figure.hpp"
 #include "ripplenotch/page/page.hpp"
 

@@ -84,9 +84,9 @@ class PassingRows {
 // Means of so many consecutive rows each, as a trace of its own, at a rate that is as much lower.
 class PassingMeans {
   public:
-    /// Of as few rows as `most_means` allow.
-    PassingMeans(const LogFacts& facts, std::size_t most_means)
-        : in_mean_((facts.rows + most_means - 1) / most_means) {
+    /// Of as few rows as `max_means` allow.
+    PassingMeans(const LogFacts& facts, std::size_t max_means)
+        : in_mean_((facts.rows + max_means - 1) / max_means) {
         means_.sample_rate = Hertz(facts.sample_rate.value() / static_cast<double>(in_mean_));
     }
 
@@ -264,11 +264,11 @@ void state_uses(LogInfo& info) {
                          [](const JointInfo& a, const JointInfo& b) { return a.turns < b.turns; });
     const JointInfo none;
     const JointInfo& joint = most == info.joints.end() ? none : *most;
-    const std::string missing = !joint.torque_nm ? "no torque column; --columns torque=NAME names one"
-                                : !joint.speed_deg_s
-                                    ? "no velocity column; --columns velocity=NAME names one, "
-                                      "--constant-speed 60rpm states it"
-                                    : info.clock.refusal;
+    const std::string missing =
+        !joint.torque_nm ? "no torque column; --columns torque=NAME names one"
+        : !joint.speed_deg_s
+            ? "no velocity column; --columns velocity=NAME names one, --constant-speed 60rpm states it"
+            : info.clock.refusal;
     const std::string speeds = speeds_text(joint.stretches);
     const std::string of_joint = info.joints.size() > 1 ? fmt::format("joint {}: ", joint.joint) : "";
 
@@ -285,8 +285,8 @@ void state_uses(LogInfo& info) {
         const double speed = std::max(std::abs(joint.speed_deg_s->min), std::abs(joint.speed_deg_s->max));
         const std::string turns = fmt::format("{:.3g}", joint.turns);
         identify.reason = fmt::format(
-            "{}{} turn{} of the joint at up to {:.3g} deg/s; lines below {:.0f} cycles per turn stay "
-            "under half the {} rate at that speed",
+            "{}{} turn{} of the joint at up to {:.3g} deg/s; lines below {:.0f} cycles per turn stay under "
+            "half the {} rate at that speed",
             of_joint, turns, turns == "1" ? "" : "s", speed, 360.0 * top / std::max(speed, 1e-9),
             joint.recording.update_rate() < info.clock.nominal_rate ? "update" : "sample");
         if (!identify.possible)

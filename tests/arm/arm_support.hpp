@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "ripplenotch/arm/arm_dynamics.hpp"
+#include "ripplenotch/arm/arm_fit.hpp"
 #include "ripplenotch/arm/chain.hpp"
 
 namespace ripplenotch::test {

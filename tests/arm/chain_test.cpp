@@ -6,7 +6,6 @@
 #include <fstream>
 
 #include "arm_support.hpp"
-#include "ripplenotch/arm/joint_matching.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "support/catch.hpp"
 
@@ -109,14 +108,11 @@ TEST_CASE("one arm in Craig's table, URDF and MJCF is one arm", "[arm]") {
 
 TEST_CASE("a joint of an MJCF may sit anywhere in its body", "[arm]") {
     const std::string elbow = "<joint axis=\"0 1 0\"/></body></body></worldbody>";
-    const Chain beside = mjcf(
-        "<worldbody><body pos=\"0.5 0 0\"><joint name=\"a\" pos=\"-0.2 0 0\"/>"
-        "<body pos=\"0.3 0 0.1\">" +
-        elbow);
-    const Chain within = mjcf(
-        "<worldbody><body pos=\"0.3 0 0\"><joint name=\"a\"/>"
-        "<body pos=\"0.5 0 0.1\">" +
-        elbow);
+    const Chain beside =
+        mjcf("<worldbody><body pos=\"0.5 0 0\"><joint name=\"a\" pos=\"-0.2 0 0\"/><body pos=\"0.3 0 0.1\">" +
+             elbow);
+    const Chain within =
+        mjcf("<worldbody><body pos=\"0.3 0 0\"><joint name=\"a\"/><body pos=\"0.5 0 0.1\">" + elbow);
     CHECK(beside.joints[0].origin_m == within.joints[0].origin_m);
     for (std::size_t i = 0; i < 3; ++i)
         CHECK_THAT(beside.joints[1].origin_m[i], WithinAbs(within.joints[1].origin_m[i], 1e-15));
@@ -154,15 +150,13 @@ TEST_CASE("angles of roll, pitch and yaw go there and back", "[arm]") {
 TEST_CASE("what a URDF cannot mean is said with its place", "[arm][broken]") {
     const std::string turns = urdf_joint("a", "revolute", "base", "one", "<axis xyz=\"0 0 1\"/>");
     CHECK_THROWS_WITH(urdf(""), Contains("robot.urdf: no joint moves"));
-    CHECK_THROWS_WITH(
-        chain_of_urdf("robot.urdf.xacro", "<robot>\n<xacro:property name=\"x\"/></robot>", {}),
-        Contains("robot.urdf.xacro holds macros (xacro:property, line 2); expand it first: xacro "
-                 "robot.urdf.xacro > robot.urdf"));
-    CHECK_THROWS_WITH(
-        urdf(turns + urdf_joint("b", "revolute", "one", "left") +
-             urdf_joint("c", "prismatic", "one", "right")),
-        Contains("more than one end (left, right); state at which link with tip=left, or tip=one, "
-                 "before they part"));
+    CHECK_THROWS_WITH(chain_of_urdf("robot.urdf.xacro", "<robot>\n<xacro:property name=\"x\"/></robot>", {}),
+                      Contains("robot.urdf.xacro holds macros (xacro:property, line 2); expand it first: "
+                               "xacro robot.urdf.xacro > robot.urdf"));
+    CHECK_THROWS_WITH(urdf(turns + urdf_joint("b", "revolute", "one", "left") +
+                           urdf_joint("c", "prismatic", "one", "right")),
+                      Contains("more than one end (left, right); state at which link with tip=left, or "
+                               "tip=one, before they part"));
     CHECK(
         urdf(turns + urdf_joint("b", "revolute", "one", "left") + urdf_joint("c", "revolute", "one", "right"),
              "right")
@@ -243,10 +237,10 @@ TEST_CASE("what an MJCF cannot mean is said with its place", "[arm][broken]") {
                       Contains("has no direction"));
     CHECK_THROWS_WITH(mjcf("<worldbody><body><joint range=\"1\"/></body></worldbody>"),
                       Contains("expected 2 finite numbers"));
-    CHECK_THROWS_WITH(mjcf("<worldbody><body name=\"a\"><joint/><body name=\"l\"><joint "
-                           "name=\"x\"/></body><body name=\"r\"><joint name=\"y\"/>"
-                           "</body></body></worldbody>"),
-                      Contains("more than one end (l, r); state at which body"));
+    CHECK_THROWS_WITH(
+        mjcf("<worldbody><body name=\"a\"><joint/><body name=\"l\"><joint name=\"x\"/></body><body "
+             "name=\"r\"><joint name=\"y\"/></body></body></worldbody>"),
+        Contains("more than one end (l, r); state at which body"));
     CHECK_THROWS_WITH(chain_of_mjcf("r.xml", "<robot/>", {}), Contains("that is --arm urdf"));
 }
 
@@ -347,9 +341,8 @@ TEST_CASE("stated joints go before any rule, which finds the others", "[arm]") {
 TEST_CASE("a joint without a partner is named, with what the log has", "[arm]") {
     CHECK_THROWS_WITH(match({"panda_joint1", "panda_joint2", "panda_joint3"}, {"1", "3"}),
                       Contains("robot.urdf has the joint 'panda_joint2', and log.csv holds no position of it "
-                               "(its joints: 1, 3); "
-                               "name it with joints=panda_joint2:NAME, or keep it still in the model with "
-                               "joints=panda_joint2:=0deg"));
+                               "(its joints: 1, 3); name it with joints=panda_joint2:NAME, or keep it still "
+                               "in the model with joints=panda_joint2:=0deg"));
     // The same number twice is no answer.
     CHECK_THROWS_AS(match({"a1", "b1", "c"}, {"1", "2"}), UsageError);
 }

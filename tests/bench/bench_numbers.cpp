@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "benchmark.hpp"
-#include "core/vectors/dispatch.hpp"
+#include "core/vectors/lanes.hpp"
 #include "log/text/quick_rows.hpp"
 #include "ripplenotch/core/number.hpp"
 

@@ -5,7 +5,7 @@
 
 #include "core/matrices/least_squares.hpp"
 #include "core/rows/row_facts.hpp"
-#include "core/vectors/dispatch.hpp"
+#include "core/vectors/lanes.hpp"
 #include "support/catch.hpp"
 
 using namespace ripplenotch;

@@ -214,7 +214,7 @@ std::size_t taken(std::size_t notches, double center, std::string& refusal) {
 
 TEST_CASE("the work on a table is bounded in bands, in notches and in samples", "[design]") {
     std::string refusal;
-    CHECK(taken(1, 100.0, refusal) == most_bands);
+    CHECK(taken(1, 100.0, refusal) == max_bands);
     CHECK_THAT(refusal, Contains("more than 10000 bands"));
     CHECK(taken(most_orders + 1, 100.0, refusal) == 0);
     CHECK_THAT(refusal, Contains("65 notches in a band, expected at most 64"));
@@ -230,6 +230,6 @@ TEST_CASE("the work on a table is bounded in bands, in notches and in samples", 
 TEST_CASE("a table of ten thousand bands can be designed and read", "[design]") {
     TableWork work;
     const Band band = band_of(2, 12.5);  // a low centre, in every band
-    for (std::size_t i = 0; i < most_bands; ++i) work.add(band, 0.5);
+    for (std::size_t i = 0; i < max_bands; ++i) work.add(band, 0.5);
     CHECK_THROWS_AS(work.add(band, 0.5), UsageError);
 }

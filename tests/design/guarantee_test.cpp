@@ -272,19 +272,19 @@ TEST_CASE("the Q for a delay is the one that halving alone comes to, to the last
         return fit.delay_s(*fit.tune(center_deg_s, {q, std::nullopt}));
     };
     for (double center_deg_s = 3.0; center_deg_s < 800.0; center_deg_s *= 1.3) {
-        for (double most_s = 1e-4; most_s < 1.0; most_s *= 1.5) {
-            INFO(center_deg_s << " deg/s, " << most_s << " s");
-            const auto found = fit.tune(center_deg_s, {std::nullopt, most_s});
+        for (double max_s = 1e-4; max_s < 1.0; max_s *= 1.5) {
+            INFO(center_deg_s << " deg/s, " << max_s << " s");
+            const auto found = fit.tune(center_deg_s, {std::nullopt, max_s});
             double low = widest_q, high = narrowest_q;
-            if (delay_s(center_deg_s, low) <= most_s) {
+            if (delay_s(center_deg_s, low) <= max_s) {
                 high = low;
-            } else if (!(delay_s(center_deg_s, high) <= most_s)) {
+            } else if (!(delay_s(center_deg_s, high) <= max_s)) {
                 REQUIRE(!found);
                 continue;
             }
             while (high - low > 1e-9 * high) {
                 const double middle = std::sqrt(low * high);
-                (delay_s(center_deg_s, middle) <= most_s ? high : low) = middle;
+                (delay_s(center_deg_s, middle) <= max_s ? high : low) = middle;
             }
             REQUIRE(found);
             REQUIRE(found->q == high);

@@ -8,7 +8,7 @@
 
 #include "ripplenotch/core/trace.hpp"
 #include "ripplenotch/diagnose/diagnosis.hpp"
-#include "ripplenotch/model/motions.hpp"
+#include "ripplenotch/model/motion.hpp"
 #include "ripplenotch/model/noise.hpp"
 
 namespace ripplenotch::fixture {

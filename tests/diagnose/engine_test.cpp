@@ -11,7 +11,6 @@
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/model/motion.hpp"
-#include "ripplenotch/model/motions.hpp"
 #include "ripplenotch/model/noise.hpp"
 #include "support/catch.hpp"
 

@@ -12,7 +12,7 @@
 
 #include "ripplenotch/diagnose/setup.hpp"
 #include "ripplenotch/model/model.hpp"
-#include "ripplenotch/model/motions.hpp"
+#include "ripplenotch/model/motion.hpp"
 #include "ripplenotch/model/noise.hpp"
 
 namespace ripplenotch::fixture {

@@ -290,7 +290,7 @@ TEST_CASE("gravity that acts the other way is told from a torque that does", "[d
 TEST_CASE("cases: the delays of logs that were simulated with them", "[diagnose]") {
     struct Case {
         const char* name;
-        double delay_s, most_s;
+        double delay_s, max_s;
     };
     // A lag of first order of 10 ms is 9.0 ms where its phase bends.
     for (const Case& one : {Case{"delay", 0.006, 2e-4},
@@ -308,7 +308,7 @@ TEST_CASE("cases: the delays of logs that were simulated with them", "[diagnose]
         const SimulatedMotion simulation{simulated->trace.time_s, {}, {}, simulated->trace.torque_nm};
         const SimulationLag lag = lag_by_torque(log->trace.view(), simulation, GearRatio(100.0));
         CHECK(lag.identifiable);
-        CHECK_THAT(lag.delay_s, WithinAbs(one.delay_s, one.most_s));
+        CHECK_THAT(lag.delay_s, WithinAbs(one.delay_s, one.max_s));
         if (std::string_view(one.name) == "delay") CHECK(holds(lag.delay_95_s, 0.006));
     }
 }

@@ -38,21 +38,21 @@ TEST_CASE("what the door lets in is what the library reads", "[document]") {
 }
 
 TEST_CASE("limits hold exactly", "[document]") {
-    CHECK(refusal(repeated("[", most_json_depth) + repeated("]", most_json_depth)).empty());
-    CHECK_THAT(refusal(repeated("[", most_json_depth + 1) + repeated("]", most_json_depth + 1)),
+    CHECK(refusal(repeated("[", max_json_depth) + repeated("]", max_json_depth)).empty());
+    CHECK_THAT(refusal(repeated("[", max_json_depth + 1) + repeated("]", max_json_depth + 1)),
                Contains("x.json:1:25: read lists and objects more than 24 deep"));
-    const std::string values = "[" + repeated("1,", most_json_values - 2);
+    const std::string values = "[" + repeated("1,", max_json_values - 2);
     CHECK(refusal(values + "1]").empty());
     CHECK_THAT(refusal(values + "1,1]"), Contains("more than 1000000 values"));
     std::string members = "{";
-    for (std::size_t i = 0; i < most_json_members; ++i) members += fmt::format("\"{}\":1,", i);
+    for (std::size_t i = 0; i < max_json_members; ++i) members += fmt::format("\"{}\":1,", i);
     CHECK(refusal(members.substr(0, members.size() - 1) + "}").empty());
     CHECK_THAT(refusal(members + "\"x\":1}"), Contains("an object of more than 1000 members"));
     CHECK(refusal("[1e100, -1e100]").empty());
     CHECK_THAT(refusal("[1,\n  1.1e100]"),
                Contains("x.json:2:") && Contains("read 1.1e100, expected a number"));
     CHECK_THAT(refusal("[1e400]"), Contains("read 1e400, expected a number"));
-    CHECK_THAT(refusal("\"" + std::string(most_json_bytes, 'x') + "\""), Contains("bytes of JSON"));
+    CHECK_THAT(refusal("\"" + std::string(max_json_bytes, 'x') + "\""), Contains("bytes of JSON"));
 }
 
 TEST_CASE("a name stands once in an object, and as often as one likes in others", "[document]") {

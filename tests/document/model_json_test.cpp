@@ -114,15 +114,15 @@ TEST_CASE("beside a simulation a friction may be below 0, and nothing else may, 
         if (size.lower < -0.3 || size.upper <= 0.0) continue;
         CAPTURE(effect->name);
         CHECK_THROWS_AS(read_model_with_given(text(effect->name, size.name, false), "m.json"), DataError);
-        if (least_in({GearRatio(100.0), {}, true}, *effect, 0) >= 0.0) {
+        if (min_in({GearRatio(100.0), {}, true}, *effect, 0) >= 0.0) {
             CHECK_THROWS_AS(read_model_with_given(text(effect->name, size.name, true), "m.json"), DataError);
             continue;
         }
         const Model model = read_model_with_given(text(effect->name, size.name, true), "m.json").model;
         CHECK(model.terms.at(0).values.at(0) == -0.3);
-        CHECK(least_in(model, *effect, 0) == -size.upper);
+        CHECK(min_in(model, *effect, 0) == -size.upper);
         for (std::size_t p = 1; p < effect->parameters.size(); ++p)
-            CHECK(least_in(model, *effect, p) == effect->parameters[p].lower);
+            CHECK(min_in(model, *effect, p) == effect->parameters[p].lower);
     }
 }
 

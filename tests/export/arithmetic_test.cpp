@@ -13,7 +13,7 @@
 #include "export/text.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/export/filter_set.hpp"
-#include "ripplenotch/export/verify.hpp"
+#include "ripplenotch/export/target.hpp"
 #include "support/catch.hpp"
 
 using namespace ripplenotch;

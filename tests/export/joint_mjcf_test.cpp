@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "ripplenotch/core/error.hpp"
-#include "ripplenotch/model/motions.hpp"
+#include "ripplenotch/model/motion.hpp"
 #include "support/catch.hpp"
 
 using namespace ripplenotch;

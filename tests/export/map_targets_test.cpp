@@ -8,7 +8,7 @@
 #include <set>
 
 #include "ripplenotch/core/error.hpp"
-#include "ripplenotch/export/map_target.hpp"
+#include "ripplenotch/export/target.hpp"
 #include "support/catch.hpp"
 
 using namespace ripplenotch;

@@ -8,7 +8,6 @@
 #include "export/text.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/export/target.hpp"
-#include "ripplenotch/export/verify.hpp"
 #include "support/catch.hpp"
 #include "support/places.hpp"
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // The measurement of what was read back, on sections whose faults are known, and the bank that the C header
 // runs.
-#include "ripplenotch/export/verify.hpp"
+#include "ripplenotch/export/target.hpp"
 
 #include <cmath>
 #include <numbers>
 
-#include "export/run/switching_run.hpp"
+#include "export/code/switching_code.hpp"
 #include "export/text.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "support/catch.hpp"

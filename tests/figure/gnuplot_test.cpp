@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "ripplenotch/figure/gnuplot.hpp"
+#include "ripplenotch/figure/figure.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,6 @@
 #include <random>
 
 #include "figure/gnuplot_picture.hpp"
-#include "figure/gnuplot_script.hpp"
 #include "ripplenotch/core/visible_text.hpp"
 #include "support/catch.hpp"
 
@@ -126,8 +125,7 @@ TEST_CASE("a PDF keeps its length when clock and version go, since it counts its
 
 TEST_CASE("an SVG loses its version and its empty groups, and nothing else") {
     CHECK(same_svg("<a>\n<desc>Produced by GNUPLOT</desc>\n<g fill=\"none\" color=\"black\">\n</g>\n<g "
-                   "fill=\"none\" "
-                   "color=\"red\">\n<path/></g>\n<text>]]></text>\n</a>") ==
+                   "fill=\"none\" color=\"red\">\n<path/></g>\n<text>]]></text>\n</a>") ==
           "<a>\n\n<g fill=\"none\" color=\"red\">\n<path/></g>\n<text>]]&gt;</text>\n</a>");
     CHECK(same_svg("").empty());
 }

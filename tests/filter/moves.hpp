@@ -9,7 +9,7 @@
 
 #include "filter/tables.hpp"
 #include "ripplenotch/model/model.hpp"
-#include "ripplenotch/model/motions.hpp"
+#include "ripplenotch/model/motion.hpp"
 #include "ripplenotch/model/noise.hpp"
 
 namespace ripplenotch::testing {

@@ -2,7 +2,7 @@
 // Dates of logs, and the regression of a trend.
 #include <cmath>
 
-#include "fleet/trend/change_test.hpp"
+#include "fleet/trend/joint_history.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/fleet/features.hpp"
 #include "ripplenotch/model/noise.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Logs, text and arrays: read by vectors, by the plain parser, by the careful way and in small pieces, all
 // must give the same rows or the same words. A run compares two of them.
-#include "core/vectors/dispatch.hpp"
+#include "core/vectors/lanes.hpp"
 #include "fuzz/fuzz.hpp"
 #include "fuzz/reading.hpp"
 #include "log/text/quick_rows.hpp"

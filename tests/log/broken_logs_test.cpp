@@ -8,7 +8,7 @@
 #include <random>
 #include <string>
 
-#include "core/vectors/dispatch.hpp"
+#include "core/vectors/lanes.hpp"
 #include "fuzz/reading.hpp"
 #include "log/text/quick_rows.hpp"
 #include "log/unpack/unpacked_source.hpp"

@@ -67,9 +67,9 @@ TEST_CASE("effects have unique names in kebab-case, are found by them, and descr
     }
     CHECK_THROWS_WITH(
         find_effect("friction"),
-        Contains("coulomb-friction, asymmetric-friction, viscous-friction, "
-                 "asymmetric-viscous-friction, quadratic-viscous-friction, stribeck-friction, load-friction, "
-                 "position-dependent-friction"));
+        Contains(
+            "coulomb-friction, asymmetric-friction, viscous-friction, asymmetric-viscous-friction, "
+            "quadratic-viscous-friction, stribeck-friction, load-friction, position-dependent-friction"));
     CHECK_THROWS_WITH(find_effect("rippel"),
                       Contains("did you mean ripple?") && Contains("ripplenotch diagnose --effects"));
 }

@@ -11,7 +11,7 @@
 
 #include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/model/model.hpp"
-#include "ripplenotch/model/motions.hpp"
+#include "ripplenotch/model/motion.hpp"
 
 namespace ripplenotch::fixture {
 

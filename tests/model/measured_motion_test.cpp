@@ -6,10 +6,8 @@
 #include <random>
 
 #include "model/motion/local_motion.hpp"
-#include "model/motion/lost_rows.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/model/model.hpp"
-#include "ripplenotch/model/motions.hpp"
 #include "support/catch.hpp"
 
 using namespace ripplenotch;

@@ -8,7 +8,7 @@
 
 #include "effects_fixture.hpp"
 #include "ripplenotch/core/error.hpp"
-#include "ripplenotch/model/motions.hpp"
+#include "ripplenotch/model/motion.hpp"
 #include "ripplenotch/model/noise.hpp"
 #include "support/catch.hpp"
 

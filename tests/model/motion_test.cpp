@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "ripplenotch/model/motions.hpp"
+#include "ripplenotch/model/motion.hpp"
 
 #include <algorithm>
 #include <cmath>

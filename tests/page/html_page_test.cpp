@@ -6,7 +6,7 @@
 #include "ripplenotch/chart/table_figure.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/document/figure_json.hpp"
-#include "ripplenotch/figure/gnuplot.hpp"
+#include "ripplenotch/figure/figure.hpp"
 #include "ripplenotch/page/page.hpp"
 #include "support/catch.hpp"
 #include "support/skipped.hpp"

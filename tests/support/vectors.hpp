@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/vectors/dispatch.hpp"
+#include "core/vectors/lanes.hpp"
 
 namespace ripplenotch::testing {
 

@@ -19,10 +19,10 @@ struct ArmSetupLimits {
     /// Error on held-out fifths, geometric mean over the joints, with a hypothesis to that without: half the
     /// squares. Measured on arms of six joints: corrected gravity reduces the error to 0.05, no other
     /// direction or sign of a right one to less than 1.
-    double most_error = 0.7;
+    double max_error = 0.7;
     /// Friction that drives a joint counts where its rms is so much of the fit's error on held-out fifths:
     /// below, it is part of the residual.
-    double least_friction = 1.0;
+    double min_friction = 1.0;
 };
 
 /// Torques whose sign is reversed or whose unit is mNm: with that corrected the joints, which share the

@@ -24,7 +24,7 @@ namespace ripplenotch {
 [[nodiscard]] Figure motor_matrix_figure(const std::string& source, std::span<const Identification> joints);
 
 /// Lines that get their name in a spectrum, strongest first.
-inline constexpr std::size_t most_named_lines = 12;
+inline constexpr std::size_t max_named_lines = 12;
 
 /// Amplitude against frequency with the noise floor, lines named by frequency and amplitude.
 /// `smears_orders`: as Stretch::smears_orders.

@@ -24,7 +24,7 @@ class ByteSource {
     /// Throws FileError naming the path and the system's reason, UsageError when "-" is a terminal: nobody
     /// wants to type a log, and a tool that waits in silence looks broken.
     explicit ByteSource(const std::string& path);
-    /// A file that is open already, read from its start; hashed where inputs are (inputs_read.hpp).
+    /// A file that is open already, read from its start; hashed where inputs are (byte_source.hpp).
     explicit ByteSource(std::shared_ptr<const OpenFile> file);
     /// The same under another name for messages, and not hashed.
     ByteSource(std::shared_ptr<const OpenFile> file, std::string name);
@@ -45,7 +45,7 @@ class ByteSource {
     /// A regular file, which can be read at any place; else bytes come once.
     [[nodiscard]] bool by_place() const;
     /// The file that is by_place(), for readers that go back and forth in it. They pass read() by, so the
-    /// file is hashed when its hash is asked for, and refused if it is another by then (inputs_read.hpp).
+    /// file is hashed when its hash is asked for, and refused if it is another by then (byte_source.hpp).
     [[nodiscard]] int descriptor_by_place();
     /// For such readers, at their end: throws FileError if the file was written to since it was opened.
     void require_unchanged() const;

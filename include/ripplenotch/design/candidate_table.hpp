@@ -144,8 +144,8 @@ inline constexpr double full_below_rate = 0.45, none_above_rate = 0.48;
 
 // The cost of measuring the bands of a table, estimated beforehand, so that no table takes unreasonably long.
 
-constexpr std::size_t most_bands = 10000;  ///< chosen, not derived: docs/reliability.md
-constexpr std::size_t most_orders = 64;    ///< chosen, not derived: docs/reliability.md
+constexpr std::size_t max_bands = 10000;  ///< chosen, not derived: docs/reliability.md
+constexpr std::size_t most_orders = 64;   ///< chosen, not derived: docs/reliability.md
 
 /// Adds up the work of measure_band(). A table that can be designed can be read again: both use this check.
 class TableWork {

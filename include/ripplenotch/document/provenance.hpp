@@ -4,6 +4,7 @@
 // it.
 
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -26,5 +27,17 @@ struct Provenance {
     std::string command;  ///< the command line that reproduces it, without paths of its own making
     std::vector<Recording> recordings = {};  ///< the logs among the inputs
 };
+
+// The results of several joints of a log as one document.
+
+/// What a command prints of one joint with --json.
+struct JointDocument {
+    std::string joint, text;
+};
+
+/// ripplenotch/KIND/1: the head that they share, with the inputs of all, and `joints`, each a document as it
+/// is without its head, with the joint's name first.
+[[nodiscard]] std::string joint_documents_text(std::string_view kind,
+                                               std::span<const JointDocument> documents);
 
 }  // namespace ripplenotch

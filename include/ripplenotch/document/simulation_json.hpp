@@ -12,7 +12,7 @@
 #include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/core/quantity.hpp"
 #include "ripplenotch/document/provenance.hpp"
-#include "ripplenotch/export/verify.hpp"
+#include "ripplenotch/export/target.hpp"
 #include "ripplenotch/model/effect.hpp"
 #include "ripplenotch/model/model.hpp"
 

@@ -81,7 +81,7 @@ struct Trend {
 };
 
 /// Alerts whose course over all logs is shown: those of the joints that stand first.
-inline constexpr std::size_t most_trend_courses = 10;
+inline constexpr std::size_t max_trend_courses = 10;
 
 /// Fewest lines of a joint for a test.
 inline constexpr std::size_t fewest_trend_lines = 10;

@@ -40,7 +40,7 @@ struct FitOptions {
     const Model* first_guess = nullptr;
     /// Samples to leave out, 0 for those; torque_nm.size() entries or none.
     std::span<const unsigned char> use = {};
-    int most_iterations = 50;  ///< chosen, not derived
+    int max_iterations = 50;  ///< chosen, not derived
     /// Improvement of the sum of squares at which the search ends, relative.
     double settled = 1e-9;
     /// Samples in a stretch of the log, for errors from the pull of the residual in each stretch: correlated

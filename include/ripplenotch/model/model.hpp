@@ -69,9 +69,9 @@ struct Model {
 };
 
 /// The most that this parameter of an effect may be in a fit of the model.
-[[nodiscard]] double most_in(const Model& model, const Effect& effect, std::size_t parameter);
+[[nodiscard]] double max_in(const Model& model, const Effect& effect, std::size_t parameter);
 /// The least that this parameter of an effect may be in the model.
-[[nodiscard]] double least_in(const Model& model, const Effect& effect, std::size_t parameter);
+[[nodiscard]] double min_in(const Model& model, const Effect& effect, std::size_t parameter);
 
 /// Gear ratios that a model may have: above 0, at most this (no gear comes near it).
 inline constexpr GearRatio largest_gear_ratio{1e5};

@@ -15,7 +15,6 @@
 #include "ripplenotch/arm/arm_fit.hpp"
 #include "ripplenotch/arm/arm_setup.hpp"
 #include "ripplenotch/arm/chain.hpp"
-#include "ripplenotch/arm/joint_matching.hpp"
 #include "ripplenotch/diagnose/diagnosis.hpp"
 #include "ripplenotch/diagnose/setup.hpp"
 #include "ripplenotch/document/model_json.hpp"
@@ -87,7 +86,7 @@ class GivenArm {
   private:
     ArmSource option_;
     std::optional<Seconds> smoothing_;
-    std::size_t most_rows_;
+    std::size_t max_rows_;
     ArmReading reading_;
     std::map<std::string, ArmReading> others_;  ///< by path
     std::vector<JointTravel> travel_;

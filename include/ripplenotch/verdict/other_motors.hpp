@@ -3,14 +3,19 @@
 // The motors of a log's other joints, whose ripple may be in the torque of the one that is looked at.
 
 #include <cstddef>
+#include <cstdio>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "ripplenotch/analysis/identification.hpp"
+#include "ripplenotch/core/files.hpp"
 #include "ripplenotch/core/gear_account.hpp"
+#include "ripplenotch/design/ripple_map.hpp"
+#include "ripplenotch/filter/engine.hpp"
 #include "ripplenotch/filter/map_fit.hpp"
 #include "ripplenotch/log/log.hpp"
 
@@ -55,5 +60,26 @@ struct OtherMotors {
 /// `arm`.
 [[nodiscard]] OtherMotors motors_of(std::span<const JointLogs> arm, std::span<const Log> own,
                                     const GearOfJoint& gear_of);
+
+// The ripple that the motors of other joints put into a joint's torque, row by row.
+
+/// Predicted by maps from the motion of their own joints, which the log holds. It is computed in a pass of
+/// its own and kept in a temporary file, so that memory does not grow with the log.
+class OtherRipple final : public RowValues {
+  public:
+    /// Reads `log` by the options that the joint itself is read by. Throws DataError where the log has no
+    /// such joint, and what open_log throws.
+    OtherRipple(std::span<const RippleMap> maps, const Spool& log, const ReadOptions& options);
+    ~OtherRipple() override;
+    OtherRipple(const OtherRipple&) = delete;
+    OtherRipple& operator=(const OtherRipple&) = delete;
+
+    /// In Nm, of the next rows of the log.
+    std::span<const double> next(std::size_t count) override;
+
+  private:
+    std::FILE* file_;
+    std::vector<double> values_;
+};
 
 }  // namespace ripplenotch

@@ -91,9 +91,9 @@ std::optional<std::size_t> Chain::find(std::string_view name) const {
 
 void settle_chain(Chain& chain) {
     if (chain.joints.empty()) raise<DataError>("{}: no joint moves, revolute or prismatic", chain.source);
-    if (chain.size() > most_chain_joints) {
+    if (chain.size() > max_chain_joints) {
         raise<DataError>("{}: {} moving joints from base to tip, at most {} are understood", chain.source,
-                         chain.size(), most_chain_joints);
+                         chain.size(), max_chain_joints);
     }
     std::set<std::string> names;
     for (ChainJoint& joint : chain.joints) {

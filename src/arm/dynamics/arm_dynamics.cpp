@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "arm/dynamics/arm_dynamics.hpp"
+#include "arm/fit/arm_fit.hpp"
 
 #include <algorithm>
 #include <numbers>
 #include <random>
 
 #include "core/matrices/factorisations.hpp"
-#include "ripplenotch/arm/arm_dynamics.hpp"
+#include "ripplenotch/arm/arm_fit.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 

@@ -7,7 +7,6 @@
 #include <span>
 #include <vector>
 
-#include "arm/fit/ridge.hpp"
 #include "arm/fit/stated_arm.hpp"
 #include "core/matrices/factorisations.hpp"
 #include "core/matrices/linear_algebra.hpp"
@@ -62,7 +61,7 @@ namespace {
 using Eigen::Index;
 
 // Rows as logged only serve to select a window; more of them would not improve the selection.
-constexpr std::size_t most_judging_rows = 6000;
+constexpr std::size_t max_judging_rows = 6000;
 constexpr double rows_a_window = 4.0;
 // A short log has more rows a window, so that each fifth has some.
 constexpr std::size_t fewest_fit_rows = 100;
@@ -137,7 +136,7 @@ std::vector<FoldSums> logged_sums(ArmRows& rows, const TraceView& log,
                                   const std::vector<std::size_t>& centers) {
     std::vector<FoldSums> folds = empty_folds(rows.values());
     std::vector<double> row(rows.values());
-    const std::size_t step = centers.size() / most_judging_rows + 1;
+    const std::size_t step = centers.size() / max_judging_rows + 1;
     for (std::size_t c = 0; c < centers.size(); c += step) {
         rows.at(centers[c], row);
         folds[c * arm_folds / centers.size()].add(row, log.torque_nm[centers[c]]);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "arm/fit/ridge.hpp"
+#include "arm/fit/arm_fit.hpp"
 
 #include <cmath>
 

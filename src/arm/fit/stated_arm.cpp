@@ -6,7 +6,6 @@
 #include <numbers>
 
 #include "arm/fit/arm_fit.hpp"
-#include "arm/fit/ridge.hpp"
 #include "core/matrices/factorisations.hpp"
 #include "ripplenotch/arm/arm_fit.hpp"
 #include "ripplenotch/core/error.hpp"
@@ -97,7 +96,7 @@ using Eigen::Index;
 using Eigen::VectorXd;
 
 // Chosen, not derived: more than a rotor has, reflected through its gear.
-constexpr double most_rotor_kgm2 = 1.0;
+constexpr double max_rotor_kgm2 = 1.0;
 
 // Knowledge of values that belong together as knowledge of as many others that do not.
 // With precision = L L', z = L' x has the covariance 1. Scaled, or the smallest inertia would be lost in
@@ -189,7 +188,7 @@ GivenTerm arm_term(const Chain& chain, const ArmFit& fit, const ArmLog& log, std
         for (double& value : rotor) value *= unit;
         term.torque_nm.push_back(std::move(rotor));
         term.mean.push_back(0.0);
-        term.deviation.push_back(most_rotor_kgm2 / std::sqrt(fit.pull));
+        term.deviation.push_back(max_rotor_kgm2 / std::sqrt(fit.pull));
     }
     term.torque_nm = smooth_along(log.joints[joint].time_s, term.torque_nm, fit.smoothing);
     const double own_noise = own->smoothed_error_nm * std::sqrt(fit.weighed_rows);

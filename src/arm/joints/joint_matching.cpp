@@ -13,7 +13,7 @@
 
 #include "core/text/lower_case.hpp"
 #include "ripplenotch/arm/arm_fit.hpp"
-#include "ripplenotch/arm/joint_matching.hpp"
+#include "ripplenotch/arm/chain.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/spec.hpp"
 
@@ -58,7 +58,7 @@ std::vector<JointTravel> arm_travel(const Chain& chain, const ArmLog& log,
 std::vector<std::string> arm_warnings(const ArmFit& fit, const std::vector<JointTravel>& travel) {
     std::vector<std::string> still, warnings;
     for (const JointTravel& joint : travel)
-        if (joint.travel_deg < least_travel_deg) still.push_back(fmt::format("'{}'", joint.log));
+        if (joint.travel_deg < min_travel_deg) still.push_back(fmt::format("'{}'", joint.log));
     const std::string names = fmt::format("{}", fmt::join(still, ", "));
     if (static_cast<double>(fit.values_told) < few_told * static_cast<double>(fit.values_there)) {
         warnings.push_back(fmt::format(
@@ -69,7 +69,7 @@ std::vector<std::string> arm_warnings(const ArmFit& fit, const std::vector<Joint
     } else if (!still.empty()) {
         warnings.push_back(fmt::format(
             "arm: {} move{} less than {:g} deg; the inertia of {} cannot be identified separately", names,
-            still.size() == 1 ? "s" : "", least_travel_deg, still.size() == 1 ? "its link" : "their links"));
+            still.size() == 1 ? "s" : "", min_travel_deg, still.size() == 1 ? "its link" : "their links"));
     }
     return warnings;
 }
@@ -240,8 +240,8 @@ class Matcher {
         match.option += fmt::format("{}", fmt::join(pairs, "|"));
         if (rule == "by order") {
             match.warnings.push_back(
-                fmt::format("arm: joints of {} and of {} have nothing in common but their "
-                            "number and are paired in order: {}",
+                fmt::format("arm: joints of {} and of {} have nothing in common but their number and are "
+                            "paired in order: {}",
                             chain_.source, log_name_, fmt::join(pairs, ", ")));
         }
         for (std::size_t partner = 0; partner < log_.size(); ++partner) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Denavit-Hartenberg tables, axis strings, and the bytes of any description.
 
-#include "arm/readers/chain_text.hpp"
+#include "arm/readers/xml_tree.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -141,8 +141,8 @@ class DhTable {
             text.remove_prefix(std::min(end + 1, text.size()));
             if (line.empty() || line.front() == '#') continue;
             places_.empty() ? read_header(number, cells_of(line)) : read_row(number, cells_of(line));
-            if (rows.size() > most_chain_joints)
-                raise<DataError>("{}:{}: more than {} joints", source_, number, most_chain_joints);
+            if (rows.size() > max_chain_joints)
+                raise<DataError>("{}:{}: more than {} joints", source_, number, max_chain_joints);
         }
         if (places_.empty()) raise<DataError>("{}: empty, expected the header {}", source_, header());
     }
@@ -228,11 +228,11 @@ Chain chain_of_mdh(const std::string& source, std::string_view text) {
 
 Chain chain_of_axes(std::string_view word, double length_m) {
     constexpr std::string_view letters = "xyzXYZ";
-    Chain chain{.source = fmt::format("axes {}", word.substr(0, 2 * most_chain_joints)), .joints = {}};
+    Chain chain{.source = fmt::format("axes {}", word.substr(0, 2 * max_chain_joints)), .joints = {}};
     chain.lengths_are_guessed = true;
-    if (word.empty() || word.size() > most_chain_joints) {
+    if (word.empty() || word.size() > max_chain_joints) {
         raise<UsageError>("arm: axes, word: {} letters, expected one a joint, at most {}", word.size(),
-                          most_chain_joints);
+                          max_chain_joints);
     }
     for (const char letter : word) {
         const std::size_t place = letters.find(letter);

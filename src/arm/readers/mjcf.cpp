@@ -11,7 +11,6 @@
 #include <string>
 
 #include "arm/chain/chain.hpp"
-#include "arm/readers/chain_text.hpp"
 #include "arm/readers/xml_tree.hpp"
 #include "ripplenotch/arm/chain.hpp"
 #include "ripplenotch/core/error.hpp"

@@ -8,7 +8,6 @@
 #include <numbers>
 
 #include "arm/chain/chain.hpp"
-#include "arm/readers/chain_text.hpp"
 #include "arm/readers/xml_tree.hpp"
 #include "ripplenotch/arm/chain.hpp"
 #include "ripplenotch/core/error.hpp"
@@ -113,15 +112,13 @@ class Urdf {
         if (joint.type == "floating" || joint.type == "planar") {
             raise<UsageError>(
                 "arm: {}:{}: joint '{}' is {}; only revolute, continuous and prismatic joints are understood "
-                "on "
-                "the way to the tip",
+                "on the way to the tip",
                 source_, element.line, joint.name, joint.type);
         }
         if (const XmlElement* const mimic = element.child("mimic")) {
             raise<UsageError>(
                 "arm: {}:{}: joint '{}' follows another one (mimic {}), which is not understood; end the "
-                "chain "
-                "before it with tip={}",
+                "chain before it with tip={}",
                 source_, element.line, joint.name, mimic->attribute("joint").value_or(""),
                 end_of(element, joint.name, "parent"));
         }

@@ -11,7 +11,7 @@
 namespace ripplenotch {
 namespace {
 
-constexpr std::size_t deepest = 100, most_elements = 200'000;  // chosen, not derived: docs/reliability.md
+constexpr std::size_t deepest = 100, max_elements = 200'000;  // chosen, not derived: docs/reliability.md
 
 class Lines {
   public:
@@ -40,10 +40,10 @@ class Tree {
 
     XmlElement of(const pugi::xml_node& node, std::size_t depth) {
         XmlElement element{node.name(), lines_.of(node.offset_debug()), {}, {}};
-        if (depth > deepest || ++count_ > most_elements) {
+        if (depth > deepest || ++count_ > max_elements) {
             raise<DataError>("{}:{}: more than {}; this is no robot's description", source_, element.line,
                              depth > deepest ? fmt::format("{} elements within one another", deepest)
-                                             : fmt::format("{} elements", most_elements));
+                                             : fmt::format("{} elements", max_elements));
         }
         for (const pugi::xml_attribute& attribute : node.attributes())
             element.attributes.emplace_back(attribute.name(), attribute.value());

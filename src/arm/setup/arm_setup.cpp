@@ -12,7 +12,7 @@
 
 #include "arm/fit/arm_fit.hpp"
 #include "core/matrices/least_squares.hpp"
-#include "core/rows/uneven_rows.hpp"
+#include "core/rows/row_facts.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
@@ -86,7 +86,7 @@ class Readings {
     [[nodiscard]] std::optional<ReadArm> better(const ReadArm& now,
                                                 const std::vector<Reading>& others) const {
         std::optional<ReadArm> best;
-        double least = limits_.most_error * now.error;
+        double least = limits_.max_error * now.error;
         for (const Reading& other : others) {
             ReadArm one = read(other);
             if (one.error >= least) continue;
@@ -111,7 +111,7 @@ class Readings {
             squares += torque_nm * torque_nm;
             power += torque_nm * v_deg_s;
         }
-        const double least_nm = limits_.least_friction * own.smoothed_error_nm;
+        const double least_nm = limits_.min_friction * own.smoothed_error_nm;
         if (squares < least_nm * least_nm * static_cast<double>(log.size())) return 0;
         return power < 0.0 ? -1 : 1;
     }
@@ -217,12 +217,11 @@ std::vector<SetupFault> suspect_arm(const Chain& chain, const ArmLog& log, const
         if (auto fault = factor_fault(chain, stated, now, factor)) faults.push_back(*std::move(fault));
     if (const auto turned = readings.better(now, other_directions(now.reading))) {
         const std::string option = gravity_text(turned->reading.gravity_m_s2);
-        faults.push_back(
-            {SetupFaultKind::gravity_direction,
-             fmt::format("gravity acts along another axis of the base: with {} the error on held-out "
-                         "fifths of the log is {:.2g} of that with {}",
-                         option, turned->error / now.error, gravity_text(chain.gravity_m_s2)),
-             option, 1.0, now.explained, turned->explained});
+        faults.push_back({SetupFaultKind::gravity_direction,
+                          fmt::format("gravity acts along another axis of the base: with {} the error on "
+                                      "held-out fifths of the log is {:.2g} of that with {}",
+                                      option, turned->error / now.error, gravity_text(chain.gravity_m_s2)),
+                          option, 1.0, now.explained, turned->explained});
     }
     if (!faults.empty()) return faults;
     const auto better = readings.better(now, exchanged(chain, now));
@@ -230,16 +229,15 @@ std::vector<SetupFault> suspect_arm(const Chain& chain, const ArmLog& log, const
     std::vector<std::string> names;
     for (const std::size_t j : places)
         if (better->reading.torque[j] != j) names.push_back(chain.joints[j].name);
-    faults.push_back(
-        {SetupFaultKind::wrong_joint,
-         fmt::format("{} {} are exchanged in the log: the other way round the error on held-out fifths "
-                     "is {:.2g} of this",
-                     better->reading.motion == places ? "the torques of joints" : "joints",
-                     fmt::join(names, " and "), better->error / now.error),
-         {},
-         1.0,
-         now.explained,
-         better->explained});
+    faults.push_back({SetupFaultKind::wrong_joint,
+                      fmt::format("{} {} are exchanged in the log: the other way round the error on held-out "
+                                  "fifths is {:.2g} of this",
+                                  better->reading.motion == places ? "the torques of joints" : "joints",
+                                  fmt::join(names, " and "), better->error / now.error),
+                      {},
+                      1.0,
+                      now.explained,
+                      better->explained});
     return faults;
 }
 
@@ -353,8 +351,8 @@ std::optional<ArmLag> common_lag(const Chain& chain, const ArmLog& log, const Ar
     const double step_s = 0.5 * arm_smoothings.front().value();
     ArmLag lag;
     // A minimum far from the center is where the third power of the delay counts.
-    constexpr int most_looks = 3;
-    for (int look = 0; look < most_looks; ++look) {
+    constexpr int max_looks = 3;
+    for (int look = 0; look < max_looks; ++look) {
         const double center_s = lag.delay_s;
         const auto parabolas = parabolas_about(chain, log, fit, options, center_s, step_s);
         lag.joints.clear();

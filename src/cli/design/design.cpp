@@ -85,15 +85,15 @@ std::vector<std::pair<DegPerSec, DegPerSec>> bands_seen(const DesignRequest& req
     while (count > 0.0 && from + (count - 0.5) * width >= limit_deg_s) count -= 1.0;
     if (count < 1.0) {
         raise<UsageError>(
-            "{}: {} is not below half the sample rate, {} Hz, at {:.6g} deg/s, the slowest speed "
-            "seen; choose lower --orders or --speed",
+            "{}: {} is not below half the sample rate, {} Hz, at {:.6g} deg/s, the slowest speed seen; "
+            "choose lower --orders or --speed",
             joint.source, order_in_words(spec.orders.back(), spec.gear_ratio),
             shortest(0.5 * spec.sample_rate.value()), from + 0.5 * width);
     }
     if (count < wanted) {
         warn(request.common,
-             fmt::format("{}: lines were seen up to {:.6g} deg/s, but from {:.6g} deg/s on {} "
-                         "is not below half the sample rate; the bands end at {:.6g} deg/s",
+             fmt::format("{}: lines were seen up to {:.6g} deg/s, but from {:.6g} deg/s on {} is not below "
+                         "half the sample rate; the bands end at {:.6g} deg/s",
                          joint.source, to, limit_deg_s, order_in_words(spec.orders.back(), spec.gear_ratio),
                          from + count * width));
     }
@@ -116,8 +116,7 @@ std::vector<std::pair<DegPerSec, DegPerSec>> bands_of(const DesignRequest& reque
     if (!range.width) {
         raise<UsageError>(
             "--speed {} does not state how wide a band is; write FROM:TO:WIDTH, or state what the table has "
-            "to "
-            "hold with --min-attenuation or --max-delay",
+            "to hold with --min-attenuation or --max-delay",
             *request.speed);
     }
     return bands_by_spacing({range.from, range.to}, *range.width);
@@ -241,8 +240,7 @@ std::vector<std::string> violations_of(const DesignRequest& request, const Candi
             const double worst_db = band.worst_attenuation_db[i];
             if (worst_db >= *request.min_attenuation_db) continue;
             sentences.push_back(
-                fmt::format("{} attenuates {} by as little as {:.1f} dB, less than "
-                            "--min-attenuation {}dB",
+                fmt::format("{} attenuates {} by as little as {:.1f} dB, less than --min-attenuation {}dB",
                             label, order_in_words(band.notches[i].order, table.spec().gear_ratio), worst_db,
                             shortest(*request.min_attenuation_db)));
         }
@@ -310,10 +308,9 @@ std::function<ExitCode()> attach_design(Options& options) {
                  "bands of equal width in deg/s, e.g. 18:180:18; without WIDTH for a goal to divide");
     options.text("--bands", request->bands, "FROM:TO,...",
                  "bands one by one in deg/s, e.g. 18:36,36:60,60:100");
-    options.number(
-        "--min-attenuation", request->min_attenuation_db, Dimension::decibel,
-        "choose bands and Q that attenuate every order by this at every speed, e.g. 20dB; where both are "
-        "stated, exit code 1 when an order is attenuated less");
+    options.number("--min-attenuation", request->min_attenuation_db, Dimension::decibel,
+                   "choose bands and Q that attenuate every order by this at every speed, e.g. 20dB; where "
+                   "both are stated, exit code 1 when an order is attenuated less");
     options.number("--hysteresis", request->hysteresis, Dimension::speed,
                    "hysteresis: the filter leaves a band only when the speed is this far outside it "
                    "(default: three times the noise of the speed in JOINT, else 0)");

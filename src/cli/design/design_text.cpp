@@ -215,11 +215,11 @@ std::vector<std::string> band_row(const Band& band, const Extra& extra) {
 std::string delay_sentence(std::span<const Band> bands) {
     const auto by_delay = [](const Band& a, const Band& b) { return a.dc_delay < b.dc_delay; };
     const auto [least, most] = std::minmax_element(bands.begin(), bands.end(), by_delay);
-    const double least_ms = 1e3 * least->dc_delay.value(), most_ms = 1e3 * most->dc_delay.value();
-    if (bands.size() == 1) return fmt::format("The torque lags by {:.1f} ms.", least_ms);
-    if (most_ms - least_ms < 0.05) return fmt::format("The torque lags by {:.1f} ms in every band.", most_ms);
-    return fmt::format("The torque lags by {:.1f} ms (band {}) to {:.1f} ms (band {}).", least_ms,
-                       least->number, most_ms, most->number);
+    const double min_ms = 1e3 * least->dc_delay.value(), max_ms = 1e3 * most->dc_delay.value();
+    if (bands.size() == 1) return fmt::format("The torque lags by {:.1f} ms.", min_ms);
+    if (max_ms - min_ms < 0.05) return fmt::format("The torque lags by {:.1f} ms in every band.", max_ms);
+    return fmt::format("The torque lags by {:.1f} ms (band {}) to {:.1f} ms (band {}).", min_ms,
+                       least->number, max_ms, most->number);
 }
 
 }  // namespace
@@ -258,8 +258,8 @@ std::vector<std::string> alias_warnings(const CandidateTable& table) {
         if (ripple_frequency(highest, spec.gear_ratio, band.to) < 0.5 * spec.sample_rate) continue;
         const double limit = 180.0 * spec.sample_rate.value() / (highest.value() * spec.gear_ratio.value());
         warnings.push_back(
-            fmt::format("band {} ({}-{} deg/s): {} passes half the sample rate at {} deg/s and is "
-                        "seen at a lower frequency above that",
+            fmt::format("band {} ({}-{} deg/s): {} passes half the sample rate at {} deg/s and is seen at a "
+                        "lower frequency above that",
                         band.number, plain(band.from.value()), plain(band.to.value()),
                         order_in_words(highest, spec.gear_ratio), plain(limit)));
     }

@@ -10,8 +10,6 @@
 #include <vector>
 
 #include "cli/command.hpp"
-#include "cli/diagnose/diagnosis_text.hpp"
-#include "cli/diagnose/friction_table.hpp"
 #include "cli/diagnose/joint_diagnosis.hpp"
 #include "cli/options/verdict_options.hpp"
 #include "cli/talk.hpp"
@@ -190,17 +188,15 @@ ExitCode run_diagnose(const DiagnoseRequest& request, const std::string& command
 std::function<ExitCode()> attach_diagnose(Options& options) {
     const auto request = std::make_shared<DiagnoseRequest>();
     options.argument("LOG", request->path, false, "the measured log; - is standard input");
-    options.text(
-        "--model", request->model, "FILE",
-        "model.json of the joint; values left out are fitted; auto: gear ratio and ripple orders as identify "
-        "finds them in LOG");
+    options.text("--model", request->model, "FILE",
+                 "model.json of the joint; values left out are fitted; auto: gear ratio and ripple orders as "
+                 "identify finds them in LOG");
     attach_given(options, request->given);
     attach_gear(options, request->gear,
                 {.ratio = "motor turns per joint turn, instead of --model", .orders = "", .joint_file = ""});
-    options.flag(
-        "--friction-table", request->friction_table,
-        "LOG is a table of constant speeds and the torque that each took, without time: its Coulomb, "
-        "viscous and Stribeck friction; needs no --model");
+    options.flag("--friction-table", request->friction_table,
+                 "LOG is a table of constant speeds and the torque that each took, without time: its "
+                 "Coulomb, viscous and Stribeck friction; needs no --model");
     options.text("--validate", request->validate, "OTHER",
                  "another log, on which the improved model is checked");
     options.texts("--without", request->without, "NAME",
@@ -236,9 +232,8 @@ const Command commands::diagnose{
     .description =
         "Fits the model to the log, reports where they disagree, tries every effect of the catalogue, names "
         "and adds\nwhat is missing, and reports what no effect explains. --improved-model writes the model "
-        "with it; named\n.xml or .mjcf, for MuJoCo, with a list of what MuJoCo cannot "
-        "represent.\nExample: ripplenotch diagnose log.csv --model model.json --validate other.csv "
-        "--improved-model improved.json",
+        "with it; named\n.xml or .mjcf, for MuJoCo, with a list of what MuJoCo cannot represent.\nExample: "
+        "ripplenotch diagnose log.csv --model model.json --validate other.csv --improved-model improved.json",
     .attach = attach_diagnose,
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/diagnose/diagnosis_text.hpp"
+#include "cli/diagnose/joint_diagnosis.hpp"
 
 #include <fmt/format.h>
 
@@ -261,8 +261,7 @@ std::string lag_text(const ArmAccount& account) {
     const ArmLag& lag = *account.lag;
     std::string text = fmt::format(
         "  delay of the torque behind the motion, one for all joints: {:.3g} ms, 95 % interval {:.3g} to "
-        "{:.3g} "
-        "ms{}\n",
+        "{:.3g} ms{}\n",
         1e3 * lag.delay_s, 1e3 * lag.delay_95_s.low, 1e3 * lag.delay_95_s.high,
         account.lag_is_applied ? "; part of the model" : "; none is assumed");
     for (const JointLag& joint : lag.joints)
@@ -278,8 +277,7 @@ std::string arm_text(const ArmAccount& account) {
     if (account.values_are_stated)
         return fmt::format(
             "arm: {} joints of {} matched {} (-v shows them); its values are the model's, motion smoothed "
-            "over "
-            "{:g} s\n",
+            "over {:g} s\n",
             account.joints.size(), account.source, account.rule, account.smoothing.value());
     return fmt::format(
                "arm: {} joints of {} matched {} (-v shows them); {} of {} combinations of its masses "

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "cli/diagnose/friction_table.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "cli/diagnose/diagnosis_text.hpp"
+#include "cli/diagnose/joint_diagnosis.hpp"
 #include "cli/talk.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/visible_text.hpp"

@@ -12,7 +12,6 @@
 #include <string>
 #include <string_view>
 
-#include "cli/diagnose/diagnosis_text.hpp"
 #include "cli/options/verdict_options.hpp"
 #include "cli/talk.hpp"
 #include "core/rows/row_facts.hpp"
@@ -185,9 +184,9 @@ ModelOfLog identified_model(const DiagnoseRequest& request, ReadOptions reading)
         return {std::move(model), "identify"};
     }
     // Below it a line is of no gear, and may be the joint's own: gravity has order 1.
-    constexpr double least_order = 3.0;
+    constexpr double min_order = 3.0;
     for (const Line& line : joint.found.lines) {
-        if (line.kind != LineKind::order || line.order_output.value_or(0.0) < least_order) continue;
+        if (line.kind != LineKind::order || line.order_output.value_or(0.0) < min_order) continue;
         model.terms.push_back(
             parse_term(fmt::format("output-ripple,order={}", shortest(*line.order_output))));
     }
@@ -218,8 +217,7 @@ void check_model(const DiagnoseRequest& request) {
     if (request.model.empty() && !request.given.any())
         raise<UsageError>(
             "--model is missing: the model.json whose gap to the log is to be explained; --model auto makes "
-            "one "
-            "of the log itself, from what identify finds in it, and --improved-model FILE writes it with "
+            "one of the log itself, from what identify finds in it, and --improved-model FILE writes it with "
             "what was added");
     if (request.model.empty() && !request.gear.ratio)
         raise<UsageError>("--gear-ratio is missing; give it, or --model FILE, which states it");
@@ -274,7 +272,7 @@ namespace {
 
 // With all that is made of them, 256 MiB, also with an arm of seven joints, most of which is its columns
 // along the samples searched.
-constexpr std::size_t most_rows_diagnosed = std::size_t{1} << 17, most_rows_with_arm = 40'960;
+constexpr std::size_t max_rows_diagnosed = std::size_t{1} << 17, max_rows_with_arm = 40'960;
 
 std::string model_source(const std::string& model) { return model == "-" ? "standard input" : model; }
 
@@ -298,7 +296,7 @@ ModelWithGiven model_of(const DiagnoseRequest& request, const std::string& path,
 // What another program has simulated stands row by row against all of the log.
 std::size_t most_rows(const GivenOptions& options, const ModelWithGiven& model) {
     if (options.simulated || model.simulated) return all_rows;
-    return options.arm || model.arm ? most_rows_with_arm : most_rows_diagnosed;
+    return options.arm || model.arm ? max_rows_with_arm : max_rows_diagnosed;
 }
 
 Log read(const DiagnoseRequest& request, std::size_t most_rows, const ReadOptions& reading,
@@ -405,10 +403,9 @@ void advise_arm(JointDiagnosis& one) {
     if (!others_move(one) || !is_open) return;
     one.diagnosis.next.insert(
         one.diagnosis.next.begin(),
-        fmt::format(
-            "the log has {} joints, and where the others move, their weight and acceleration act on this "
-            "one: --arm takes their motion into account",
-            one.log.layout.joints.size()));
+        fmt::format("the log has {} joints, and where the others move, their weight and acceleration act on "
+                    "this one: --arm takes their motion into account",
+                    one.log.layout.joints.size()));
 }
 
 }  // namespace

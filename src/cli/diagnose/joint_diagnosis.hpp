@@ -7,8 +7,11 @@
 #include <string_view>
 #include <vector>
 
+#include "cli/command.hpp"
 #include "cli/options/joint_runs.hpp"
+#include "cli/options/options.hpp"
 #include "cli/options/plot_request.hpp"
+#include "ripplenotch/arm/arm_setup.hpp"
 #include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/diagnose/diagnosis.hpp"
 #include "ripplenotch/export/joint_mjcf.hpp"
@@ -81,5 +84,36 @@ struct JointDiagnosis {
 
 /// What was held and what was not, a line each.
 [[nodiscard]] std::string mjcf_text(const MjcfAccount& account);
+
+// A diagnosis as a story for people.
+
+// The end of the story: what was accepted, where the gap is, what to do next; and numbers as a story has
+// them.
+
+/// Four digits.
+[[nodiscard]] std::string short_number(double value);
+
+/// "torque_nm = 0.8 [0.7, 0.9]"
+[[nodiscard]] std::string value_text(const Term& term, const FittedValue& value);
+
+/// `explain`: all findings in full, and why each refused candidate was not named.
+[[nodiscard]] std::string diagnosis_story(const CommonOptions& common, const Diagnosis& diagnosis,
+                                          bool explain = false);
+
+/// "arm: 6 joints of ur10.urdf matched by number (-v shows them); 36 of 36 combinations ... 0.1 s", and what
+/// it leaves.
+[[nodiscard]] std::string arm_text(const ArmAccount& account);
+
+// diagnose of a table of constant speeds and friction torques.
+
+/// The rows of the request's log where it is a table and no log: --friction-table says so, or it has speed
+/// and torque, no time, no position and no stated rate, and fewer rows than a log must have. Empty for a log.
+/// Throws DataError where such a file has as many rows as a log, and nothing says which of both it is; for a
+/// table what the readers throw, and UsageError for options that a table has no use for.
+[[nodiscard]] std::optional<Log> friction_table_of(const DiagnoseRequest& request);
+
+/// Fits it and tells; -o takes the model.
+ExitCode run_friction_table(const DiagnoseRequest& request, const Log& table,
+                            const std::string& command_line);
 
 }  // namespace ripplenotch

@@ -32,7 +32,6 @@
 #include "ripplenotch/document/simulation_json.hpp"
 #include "ripplenotch/document/table_json.hpp"
 #include "ripplenotch/evaluate/contender.hpp"
-#include "ripplenotch/export/map_target.hpp"
 #include "ripplenotch/export/target.hpp"
 #include "ripplenotch/filter/engine.hpp"
 #include "ripplenotch/verdict/gear_choice.hpp"
@@ -226,10 +225,10 @@ RippleMap map_of_motor(const MapExport& request) {
     }
     if (!names.empty())
         warn(request.common,
-             fmt::format("{}: the ripple of the {} of {} in this torque is not exported with it; --motor-of "
-                         "exports it "
-                         "by itself, to be taken from this torque at the position and speed of that joint",
-                         request.map, all.others.size() == 1 ? "motor" : "motors", names));
+             fmt::format(
+                 "{}: the ripple of the {} of {} in this torque is not exported with it; --motor-of exports "
+                 "it by itself, to be taken from this torque at the position and speed of that joint",
+                 request.map, all.others.size() == 1 ? "motor" : "motors", names));
     return all;
 }
 
@@ -310,7 +309,7 @@ std::string export_report_to_text(const ExportReport& report) {
     return text;
 }
 
-constexpr std::size_t most_violations_said = 5;
+constexpr std::size_t max_violations_said = 5;
 
 struct ExportRequest {
     std::string table, to;
@@ -378,8 +377,8 @@ std::optional<std::string> left_to_caller(const Target& target, const FilterSet&
     if (target.runs_supervisor || !filters.by_speed()) return std::nullopt;
     if (design.hysteresis.value() == 0.0 && design.dwell_samples == 0) return std::nullopt;
     return fmt::format(
-        "target {} holds the filters alone: hysteresis={}deg/s and dwell={} samples are left to the "
-        "code that switches them",
+        "target {} holds the filters alone: hysteresis={}deg/s and dwell={} samples are left to the code "
+        "that switches them",
         target.name, shortest(design.hysteresis.value()), design.dwell_samples);
 }
 
@@ -393,12 +392,12 @@ void verify(const ExportRequest& request, const Target& target, const Settings& 
 }
 
 void say_violations(const ExportReport& report) {
-    for (std::size_t i = 0; i < std::min(report.violations.size(), most_violations_said); ++i) {
+    for (std::size_t i = 0; i < std::min(report.violations.size(), max_violations_said); ++i) {
         talk(fmt::format("ripplenotch export: {}", report.violations[i]));
     }
-    if (report.violations.size() > most_violations_said) {
+    if (report.violations.size() > max_violations_said) {
         talk(fmt::format("ripplenotch export: and {} more past a limit",
-                         report.violations.size() - most_violations_said));
+                         report.violations.size() - max_violations_said));
     }
 }
 
@@ -476,11 +475,10 @@ std::function<ExitCode()> attach_export(Options& options) {
                    "with --method: rate at which the filter will run");
     options.count("--band", request->band, 0, 1000000,
                   "only this band of the table, to run at every speed; 0 is the whole table");
-    options.number(
-        "--tolerance", request->tolerance_percent, Dimension::none,
-        "per cent, e.g. 0.1: exit code 1 when a centre has moved by more, or the gain error there or "
-        "at 0 Hz is larger; of code and maps, when their largest error is more of the largest output or "
-        "of the ripple");
+    options.number("--tolerance", request->tolerance_percent, Dimension::none,
+                   "per cent, e.g. 0.1: exit code 1 when a centre has moved by more, or the gain error there "
+                   "or at 0 Hz is larger; of code and maps, when their largest error is more of the largest "
+                   "output or of the ripple");
     attach_common(options, request->common, {});
     return [request, &options] { return run_export(*request, options.command_line()); };
 }
@@ -492,10 +490,8 @@ const Command commands::export_ = {
     .summary = "tables and filters to firmware and tools, re-read and re-measured",
     .description =
         "Writes a table of design, or one filter, in the form that a target takes: a C header, CMSIS-DSP, "
-        "SciPy, "
-        "MATLAB,\nROS, servo drives, JSON. The written file is read again, run in the target's arithmetic, "
-        "and "
-        "measured.\nripplenotch export table.json --to c-header -o notch.h --tolerance 0.1",
+        "SciPy, MATLAB,\nROS, servo drives, JSON. The written file is read again, run in the target's "
+        "arithmetic, and measured.\nripplenotch export table.json --to c-header -o notch.h --tolerance 0.1",
     .attach = attach_export,
 };
 

@@ -9,7 +9,6 @@
 #include "ripplenotch/core/spec.hpp"
 #include "ripplenotch/evaluate/contender.hpp"
 #include "ripplenotch/export/filter_set.hpp"
-#include "ripplenotch/export/map_target.hpp"
 #include "ripplenotch/export/target.hpp"
 
 namespace ripplenotch {

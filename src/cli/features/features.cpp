@@ -31,7 +31,7 @@ namespace {
 
 // All lines of one log; whatever is wrong with it is a line, too.
 
-constexpr std::size_t most_rows_looked_at = std::size_t{1} << 17U;
+constexpr std::size_t max_rows_looked_at = std::size_t{1} << 17U;
 constexpr double first_stamp_s = 946684800.0, last_stamp_s = 4102444800.0;  // of 2000 and 2100
 
 FeatureLine failed_line(FeatureLine line, const Error& error) {
@@ -79,7 +79,7 @@ void take_temperature(const std::string& path, const FeatureWork& work, FeatureL
         line.temperature_degc = work.temperature_degc, line.temperature_source = "--temperature";
     } else if (work.temperature_column) {
         const std::vector<double> degc =
-            read_column(path, *work.temperature_column, line.joint, work.read, most_rows_looked_at);
+            read_column(path, *work.temperature_column, line.joint, work.read, max_rows_looked_at);
         line.temperature_degc = std::accumulate(degc.begin(), degc.end(), 0.0) /
                                 static_cast<double>(std::max<std::size_t>(degc.size(), 1));
         line.temperature_source = "column " + *work.temperature_column;
@@ -113,7 +113,7 @@ std::vector<FeatureLine> feature_lines(const std::string& path, const FeatureWor
     head.version = version();
     std::vector<FeatureLine> lines;
     try {
-        std::vector<Log> logs = read_joints_in_part(path, work.read, most_rows_looked_at);
+        std::vector<Log> logs = read_joints_in_part(path, work.read, max_rows_looked_at);
         if (path != "-") head.sha256 = sha256_as_read(path);
         for (const Log& log : logs) {
             FeatureLine line = head;
@@ -232,9 +232,9 @@ const Command commands::features{
     .summary = "descriptors of each joint of a log in one line: ratio, ripple, friction, lost motion",
     .description =
         "A line for each log and joint with its descriptors and their intervals, for one log or for a "
-        "fleet.\nWhat a log does not determine is null, with the reason. A log that cannot be read is a "
-        "line with its error; exit code 3\nreports that there was one.\nExample: ripplenotch features "
-        "logs/*.csv --gear-ratio 100 --date-from-name '*_%Y-%m-%d.csv' -o all.ndjson",
+        "fleet.\nWhat a log does not determine is null, with the reason. A log that cannot be read is a line "
+        "with its error; exit code 3\nreports that there was one.\nExample: ripplenotch features logs/*.csv "
+        "--gear-ratio 100 --date-from-name '*_%Y-%m-%d.csv' -o all.ndjson",
     .attach = attach_features,
 };
 

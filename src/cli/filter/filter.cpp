@@ -27,7 +27,7 @@
 #include "ripplenotch/filter/engine.hpp"
 #include "ripplenotch/log/log.hpp"
 #include "ripplenotch/verdict/gear_choice.hpp"
-#include "ripplenotch/verdict/other_ripple.hpp"
+#include "ripplenotch/verdict/other_motors.hpp"
 #include "ripplenotch/verdict/readings.hpp"
 
 namespace ripplenotch {

@@ -127,17 +127,17 @@ std::string columns_table(const LogInfo& log, bool all) {
 
 // What is in a container beside the columns that were read.
 std::string contents_table(const LogInfo& log) {
-    constexpr std::size_t most_listed = 40;
+    constexpr std::size_t max_listed = 40;
     std::vector<std::vector<std::string>> rows = {{"in the file", "", "shape", "type", "unit", "Hz"}};
     const auto& contents = log.layout.contents;
-    for (std::size_t i = 0; i < std::min(contents.size(), most_listed); ++i) {
+    for (std::size_t i = 0; i < std::min(contents.size(), max_listed); ++i) {
         const ContentEntry& entry = contents[i];
         rows.push_back({entry.path, entry.read ? "read" : "", entry.shape, entry.type, entry.unit,
                         entry.rate_hz ? figure(*entry.rate_hz) : ""});
     }
     std::string text = '\n' + text_table(rows, "llllll");
-    if (contents.size() > most_listed)
-        text += fmt::format("and {} others; --json lists all\n", contents.size() - most_listed);
+    if (contents.size() > max_listed)
+        text += fmt::format("and {} others; --json lists all\n", contents.size() - max_listed);
     return text;
 }
 

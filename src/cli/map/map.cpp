@@ -123,8 +123,7 @@ std::string map_report(const MapFit& fit, const std::vector<std::string>& logs) 
             "\nripple = cosine cos(order {0} angle) + sine sin(order {0} angle), 95 % intervals\n", shaft);
         text += text_table(map_values(fit), "rlrrrrrr");
         text += fmt::format(
-            "\nseen: {:.3g} to {:.3g} deg/s, joint at {:.4g} to {:.4g} deg; beyond, the edge "
-            "holds\n",
+            "\nseen: {:.3g} to {:.3g} deg/s, joint at {:.4g} to {:.4g} deg; beyond, the edge holds\n",
             fit.map.speeds_deg_s.from, fit.map.speeds_deg_s.to, fit.map.positions_deg.from,
             fit.map.positions_deg.to);
     }
@@ -207,9 +206,9 @@ ExitCode run_map_once(const MapRequest& request, const std::string& command_line
         arm, logs, [&](const JointLogs& joint) { return gear_of_other(request, joint, provenance); });
     for (const std::string& joint : others.not_known)
         say(request.common,
-            fmt::format("joint {}: its gear ratio is not known, so its motor is not looked for in "
-                        "this torque",
-                        joint));
+            fmt::format(
+                "joint {}: its gear ratio is not known, so its motor is not looked for in this torque",
+                joint));
     for (const OtherMotor& other : others.motors)
         say(request.common, fmt::format("joint {}: {}", other.joint, gear_in_words(other.gear)));
     MapFit fit = map_readings(logs, *gear, request.zero, others);
@@ -311,9 +310,9 @@ const Command commands::map{
     .summary = "the ripple by motor angle, speed and direction, for a compensator without delay",
     .description =
         "Reads logs of one joint and fits the cosine and sine amplitude of each order, on both combs of a "
-        "harmonic\ndrive, as a function of speed and direction; the form is chosen by "
-        "cross-validation. The map\nis empty where no order follows the motor; the amplitude that would have "
-        "been found is stated.\n"
+        "harmonic\ndrive, as a function of speed and direction; the form is chosen by cross-validation. The "
+        "map\nis empty where no order follows the motor; the amplitude that would have been found is "
+        "stated.\n"
         "Example: ripplenotch map log.csv --gear-ratio 100 --orders 1,2 -o map.json",
     .attach = attach_map,
 };

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "cli/talk.hpp"
-#include "ripplenotch/document/joint_documents.hpp"
+#include "ripplenotch/document/provenance.hpp"
 #include "ripplenotch/verdict/gear_choice.hpp"
 
 namespace ripplenotch {

@@ -590,8 +590,8 @@ void attach_log_columns(Options& options, ReadOptions& log) {
             log.clock = one_of({"header", "log"}, text, "--clock");
         },
         "CLOCK",
-        "of recorded messages: header (their own stamps, the default where they have them) or log "
-        "(when they were recorded)");
+        "of recorded messages: header (their own stamps, the default where they have them) or log (when they "
+        "were recorded)");
     options.parsed(
         "--join",
         [&log](Text text) {

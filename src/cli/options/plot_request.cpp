@@ -12,7 +12,6 @@
 #include "ripplenotch/core/files.hpp"
 #include "ripplenotch/document/figure_json.hpp"
 #include "ripplenotch/figure/figure.hpp"
-#include "ripplenotch/figure/gnuplot.hpp"
 
 namespace ripplenotch {
 namespace {

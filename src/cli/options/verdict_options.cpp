@@ -8,9 +8,9 @@ namespace ripplenotch {
 namespace {
 
 constexpr std::string_view simulated_option_help =
-    "torque of your own simulation, as a known part of the model: a column of the log, tau_model, or "
-    "of another file, log,file=sim.csv,column=torque; scale=1 states that its size is right, delay=2ms how "
-    "much later it is";
+    "torque of your own simulation, as a known part of the model: a column of the log, tau_model, or of "
+    "another file, log,file=sim.csv,column=torque; scale=1 states that its size is right, delay=2ms how much "
+    "later it is";
 
 constexpr std::string_view arm_option_help =
     "rigid bodies of the whole arm: urdf,file=FILE[,tip=LINK], mjcf,file=FILE[,tip=BODY], mdh,file=FILE, "

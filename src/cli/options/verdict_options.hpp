@@ -18,8 +18,7 @@ struct GearHelp {
     std::string_view ratio = "motor turns per joint turn";
     std::string_view orders =
         "ripple lines in cycles per motor turn, or per turn of the joint, 200/turn,400/turn (default: where "
-        "a "
-        "gear ratio is known, 1,2)";
+        "a gear ratio is known, 1,2)";
     std::string_view joint_file = "joint.json of identify: gear ratio, orders and amplitudes from there";
 };
 

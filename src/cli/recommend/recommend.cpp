@@ -27,7 +27,6 @@
 #include "ripplenotch/design/ripple_map.hpp"
 #include "ripplenotch/document/comparison_json.hpp"
 #include "ripplenotch/evaluate/contender.hpp"
-#include "ripplenotch/export/map_target.hpp"
 #include "ripplenotch/export/target.hpp"
 #include "ripplenotch/log/log.hpp"
 #include "ripplenotch/verdict/readings.hpp"

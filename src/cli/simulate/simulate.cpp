@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 // ripplenotch simulate: a log from a joint model and a motion.
 
-#include "cli/simulate/simulate.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -27,7 +25,6 @@
 #include "ripplenotch/document/simulation_json.hpp"
 #include "ripplenotch/log/log.hpp"
 #include "ripplenotch/model/motion.hpp"
-#include "ripplenotch/model/motions.hpp"
 #include "ripplenotch/model/noise.hpp"
 #include "ripplenotch/verdict/gear_choice.hpp"
 #include "ripplenotch/verdict/given_terms.hpp"
@@ -35,6 +32,16 @@
 namespace ripplenotch {
 
 namespace {
+
+// The joint model that a command is given: a file, options, or a file with options on top.
+
+// --model, --gear-ratio, --inertia, --ripple, --effect.
+struct JointModelOptions {
+    std::optional<std::string> model;
+    GearOptions gear;  //< a ratio alone
+    std::optional<double> inertia_kgm2;
+    std::vector<std::string> ripples, effects;
+};
 
 // "1:0.8Nm:0deg" is order, amplitude, phase; the phase may be left out.
 Term parse_ripple(const std::string& text) {
@@ -50,8 +57,8 @@ Term parse_ripple(const std::string& text) {
         fmt::format("ripple,order={},amplitude_nm={},phase_deg={}", pieces[0], pieces[1], pieces[2]));
 }
 
-}  // namespace
-
+// With what is given beside the effects; only a command that has a log knows what to do with that, and
+// `takes_given` says so: otherwise it is refused. Throws UsageError, DataError, FileError.
 ModelWithGiven assemble_model(const JointModelOptions& options, bool takes_given) {
     ModelWithGiven whole;
     Model& model = whole.model;
@@ -79,8 +86,6 @@ ModelWithGiven assemble_model(const JointModelOptions& options, bool takes_given
     for (const std::string& effect : options.effects) model.terms.push_back(parse_term(effect));
     return whole;
 }
-
-namespace {
 
 // The gear of the assembled model, with what was typed or read as its source.
 GearAccount assembled_gear(const JointModelOptions& joint, const Model& model) {
@@ -132,7 +137,7 @@ struct Course {
 };
 
 // Up to this, an angle of thousands of degrees times 10^decimals is still a whole number that a double holds.
-constexpr double most_decimals = 12.0;
+constexpr double max_decimals = 12.0;
 
 // The double nearest to the decimal, so that its shortest text has no more decimals than asked for. No
 // negative zero.
@@ -229,10 +234,10 @@ void check_simulate(const SimulateOptions& options) {
     if (options.velocity_noise.value() < 0.0) {
         raise<UsageError>("--velocity-noise: {} deg/s is below 0", shortest(options.velocity_noise.value()));
     }
-    if (options.decimals && (*options.decimals < 0.0 || *options.decimals > most_decimals ||
+    if (options.decimals && (*options.decimals < 0.0 || *options.decimals > max_decimals ||
                              *options.decimals != std::floor(*options.decimals))) {
         raise<UsageError>("--decimals: {} is not a whole number from 0 to {}", shortest(*options.decimals),
-                          shortest(most_decimals));
+                          shortest(max_decimals));
     }
     if (options.common.json && options.common.output == "-") {
         raise<UsageError>("--json puts a summary on standard output; state where the log goes with -o FILE");
@@ -306,13 +311,12 @@ std::function<ExitCode()> attach_simulate(Options& options) {
     options.argument("LOG", o->log, false, "log whose measured motion is used instead of --motion");
     attach_joint_model(options, o->joint);
     options.text("--simulated", o->simulated, "SPEC",
-                 "with a LOG: torque of your own simulation as a part of the model, "
-                 "tau_model,scale=1 (a column) or log,file=sim.csv,column=torque,scale=1");
-    options.texts(
-        "--motion", o->motions, "NAME,KEY=VALUE,...",
-        fmt::format("how the joint moves: constant,speed=60deg/s,duration=5s; repeated ones follow one "
-                    "another; motions: {}",
-                    name_list(motion_kinds())));
+                 "with a LOG: torque of your own simulation as a part of the model, tau_model,scale=1 (a "
+                 "column) or log,file=sim.csv,column=torque,scale=1");
+    options.texts("--motion", o->motions, "NAME,KEY=VALUE,...",
+                  fmt::format("how the joint moves: constant,speed=60deg/s,duration=5s; repeated ones follow "
+                              "one another; motions: {}",
+                              name_list(motion_kinds())));
     options.number("--sample-rate", o->log_options.sample_rate, Dimension::frequency,
                    "samples per second; with a LOG, instead of its own time");
     options.number("--smoothing", o->smoothing, Dimension::time,

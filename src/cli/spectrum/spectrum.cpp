@@ -20,7 +20,6 @@
 #include "cli/options/options.hpp"
 #include "cli/options/plot_request.hpp"
 #include "cli/options/verdict_options.hpp"
-#include "cli/spectrum/track.hpp"
 #include "cli/talk.hpp"
 #include "ripplenotch/analysis/order_map.hpp"
 #include "ripplenotch/analysis/spectrum.hpp"
@@ -110,8 +109,8 @@ std::string frequency_peaks(const LogSpectrum& one) {
     text += line_table(s.peaks);
     if (one.stretch.smears_orders())
         text += fmt::format(
-            "The speed changes ({:.3g} deg/s, give or take {:.2g}, over the angle turned), so that "
-            "what turns with the\njoint is no line here: --domain order counts it by output turn.\n",
+            "The speed changes ({:.3g} deg/s, give or take {:.2g}, over the angle turned), so that what "
+            "turns with the\njoint is no line here: --domain order counts it by output turn.\n",
             one.stretch.turning_deg_s, one.stretch.turning_spread_deg_s);
     return text;
 }
@@ -471,8 +470,7 @@ const Command commands::spectrum{
         "Prints the lines that rise above the noise; with --bins, or -o FILE.csv, every bin as CSV "
         "(frequency_hz, amplitude_nm,\npsd_nm2_hz, floor_nm). Amplitudes are zero to peak in Nm, whatever "
         "the window and the length.\nWith --track: time_s, speed_deg_s, and per line amplitude, phase and "
-        "standard "
-        "error.\nExample: ripplenotch spectrum log.csv",
+        "standard error.\nExample: ripplenotch spectrum log.csv",
     .attach = attach_spectrum,
 };
 

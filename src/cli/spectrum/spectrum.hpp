@@ -1,17 +1,21 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+
 #include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "cli/command.hpp"
 #include "cli/options/options.hpp"
+#include "cli/options/plot_request.hpp"
 #include "ripplenotch/analysis/order_map.hpp"
 #include "ripplenotch/chart/spectrum_figure.hpp"
 #include "ripplenotch/core/trace.hpp"
 #include "ripplenotch/document/provenance.hpp"
 #include "ripplenotch/document/spectrum_json.hpp"
 #include "ripplenotch/log/log.hpp"
+#include "ripplenotch/verdict/gear_choice.hpp"
 
 namespace ripplenotch {
 
@@ -21,5 +25,29 @@ namespace ripplenotch {
 /// warnings are known, before anything is thrown that the spectrum has to say.
 [[nodiscard]] LogSpectrum streamed_spectrum(LogPasses& log, const SpectrumOptions& options,
                                             const std::function<void()>& tell);
+
+// spectrum --track: amplitude and phase of each order against time or speed.
+
+struct TrackRequest {
+    bool wanted = false;  ///< --track
+    std::string against = "time";
+    std::vector<double> output_orders, tones_hz;
+    std::optional<double> window_turns;
+    std::optional<Seconds> window;
+    // What the command shares with the spectra; set when the track is made.
+    CommonOptions common;
+    PlotRequest plot;
+    ReadOptions log;
+    std::string path;
+    GearOptions gear_options;
+    std::optional<DegPerSec> speed_step;
+};
+
+void attach_track(Options& options, TrackRequest& request);
+
+/// Throws UsageError where an option of the track is given without it.
+void check_track(const TrackRequest& request);
+
+ExitCode run_track(const TrackRequest& request, const std::string& command_line);
 
 }  // namespace ripplenotch

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/spectrum/track.hpp"
+#include "cli/spectrum/spectrum.hpp"
 
 #include <fmt/format.h>
 
@@ -45,8 +45,8 @@ std::vector<std::string> track_warnings(const TrackReport& report) {
     }
     if (tracks.rows_folded > 0) {
         warnings.push_back(
-            fmt::format("in {} rows a line lies above half the sample rate: its amplitude is what a "
-                        "low-pass before the sampling left of it",
+            fmt::format("in {} rows a line lies above half the sample rate: its amplitude is what a low-pass "
+                        "before the sampling left of it",
                         tracks.rows_folded));
     }
     return warnings;
@@ -75,8 +75,7 @@ std::optional<GearAccount> read_gear(const TrackRequest& request, Provenance& pr
     if (!gear && !other_lines) {
         raise<UsageError>(
             "nothing to track; give --gear-ratio, for example 100, --orders 200/turn, --joint-file "
-            "joint.json, "
-            "--output-orders, or --tones");
+            "joint.json, --output-orders, or --tones");
     }
     return gear;
 }

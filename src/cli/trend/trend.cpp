@@ -15,7 +15,6 @@
 #include "ripplenotch/core/files.hpp"
 #include "ripplenotch/core/progress.hpp"
 #include "ripplenotch/document/features_json.hpp"
-#include "ripplenotch/document/trend_json.hpp"
 #include "ripplenotch/fleet/trend.hpp"
 
 namespace ripplenotch {
@@ -24,7 +23,7 @@ namespace {
 
 // What changed, for people: the alerts, and what could not be looked at.
 
-constexpr std::size_t most_notes = 20;
+constexpr std::size_t max_notes = 20;
 using TrendRows = std::vector<std::vector<std::string>>;
 
 std::string size_of(const ChangedDescriptor& one) {
@@ -55,9 +54,9 @@ std::string notes_of(const Trend& trend) {
         for (const std::string& note : joint.notes)
             notes.push_back((joint.name().empty() ? "the joint" : joint.name()) + ": " + note);
     std::string text;
-    for (std::size_t i = 0; i < notes.size() && i < most_notes; ++i) text += "\n" + notes[i];
-    if (notes.size() > most_notes)
-        text += fmt::format("\nand {} more notes in --json", notes.size() - most_notes);
+    for (std::size_t i = 0; i < notes.size() && i < max_notes; ++i) text += "\n" + notes[i];
+    if (notes.size() > max_notes)
+        text += fmt::format("\nand {} more notes in --json", notes.size() - max_notes);
     return text.empty() ? text : text + "\n";
 }
 

@@ -110,7 +110,7 @@ namespace {
 
 constexpr mode_t rights = 0777, of_owner = 0600, of_everybody = 0666;
 constexpr std::size_t longest_name = 255 - 20;  // of most file systems, less what is added
-constexpr int most_tries = 100;
+constexpr int max_tries = 100;
 
 // The folder that a path is in: "." where it names none.
 std::string folder_of(const std::string& path) {
@@ -185,7 +185,7 @@ void TemporaryFile::open_with_name(const std::string& path, mode_t mode) {
         unfinished_ =
             std::make_unique<UnfinishedFile>(name_);  // before it is there: a signal may come at once
         descriptor_ = ::open(name_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, mode);
-        if (descriptor_ >= 0 || (errno == EEXIST && tries < most_tries)) continue;
+        if (descriptor_ >= 0 || (errno == EEXIST && tries < max_tries)) continue;
         const std::string why = system_reason();
         unfinished_.reset();
         name_.clear();
@@ -234,7 +234,7 @@ std::string TemporaryFile::linked(const std::string& to) const {
 // A nameless file cannot be renamed.
 std::string TemporaryFile::named_beside(const std::string& path) {
     std::string why;
-    for (int tries = 0; name_.empty() && tries < most_tries; ++tries) {
+    for (int tries = 0; name_.empty() && tries < max_tries; ++tries) {
         const std::string name = random_name(path);
         unfinished_ = std::make_unique<UnfinishedFile>(name);
         why = linked(name);
@@ -290,8 +290,7 @@ namespace {
 std::string* captured = nullptr;  ///< capture_output
 
 constexpr std::size_t page_group = std::size_t{1} << 16;
-constexpr std::uint64_t least_reserved = std::uint64_t{4}
-                                         << 20;  // what is written in a few pieces needs none
+constexpr std::uint64_t min_reserved = std::uint64_t{4} << 20;  // what is written in a few pieces needs none
 
 std::optional<struct stat> status_of(const std::string& path) {
     struct stat status {};
@@ -400,7 +399,7 @@ void ByteSink::write_waiting() {
 }
 
 void ByteSink::expect(std::uint64_t bytes) {
-    if (!file_ || bytes < least_reserved) return;
+    if (!file_ || bytes < min_reserved) return;
 #if defined(FALLOC_FL_KEEP_SIZE)
     if (::fallocate(descriptor_, FALLOC_FL_KEEP_SIZE, 0, static_cast<off_t>(bytes)) == 0) reserved_ = bytes;
 #endif

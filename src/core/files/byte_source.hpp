@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+
 #include <sys/stat.h>
 
 #include <string>
 #include <string_view>
+
+#include "ripplenotch/core/files.hpp"
 
 namespace ripplenotch {
 
@@ -54,5 +57,13 @@ class OpenFile {
     FileState state_;
     off_t begin_ = 0;
 };
+
+// Internal: the record of files read, which sources write and sha256_as_read() asks.
+
+/// Whether a source of this file hashes its bytes: as wanted, and not where the hash is known. Throws
+/// FileError when the file is not what it was when it was first opened.
+[[nodiscard]] bool to_be_hashed(const OpenFile& file, std::string_view name);
+/// The file was read to its end; or, with an empty hash, is read at places and hashed when somebody asks.
+void note_hash(const OpenFile& file, const std::string& sha256);
 
 }  // namespace ripplenotch

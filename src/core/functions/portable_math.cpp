@@ -10,7 +10,7 @@
 #include <limits>
 
 #include "core/functions/polynomials.hpp"
-#include "core/functions/powers_of_ten.hpp"
+#include "core/text/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch::portable {

@@ -8,6 +8,7 @@
 #include <cmath>
 
 namespace ripplenotch {
+
 namespace {
 
 // Three digits and a prefix: "12.3 MB/s", "950 rows/s".
@@ -76,5 +77,7 @@ std::string progress_line(std::string_view command, const Progress::State& state
     bar.resize(width, ' ');
     return fmt::format("{} [{}]{}", head, bar, tail);
 }
+
+std::string_view version() { return RIPPLENOTCH_VERSION; }
 
 }  // namespace ripplenotch

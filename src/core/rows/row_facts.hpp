@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <span>
+#include <vector>
 
 namespace ripplenotch {
 
@@ -39,5 +40,15 @@ struct RowChannels {
 /// Counts the repeats in `pairs` + 1 rows. Faster than `moving_deg_s` is moving.
 [[nodiscard]] RepeatCounts count_repeats(const RowChannels& rows, std::size_t pairs,
                                          double moving_deg_s) noexcept;
+
+// Series whose times are not regular.
+
+/// The median of the steps between times.
+[[nodiscard]] double usual_step_s(std::span<const double> time_s);
+
+/// Values at rising places, linear between known ones; constant beyond the ends. `known` rises, equal places
+/// are allowed.
+[[nodiscard]] std::vector<double> interpolate(std::span<const double> known, std::span<const double> values,
+                                              std::span<const double> places);
 
 }  // namespace ripplenotch

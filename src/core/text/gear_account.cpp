@@ -49,8 +49,7 @@ std::vector<Order> orders_under(const std::vector<StatedOrder>& stated, std::opt
         if (!ratio && !one.per_turn)
             raise<UsageError>(
                 "{}: {} counts by turns of the motor, which takes a gear ratio; give --gear-ratio, for "
-                "example "
-                "100, or count by turns of the joint: {}/turn",
+                "example 100, or count by turns of the joint: {}/turn",
                 what, shortest(one.value), shortest(100.0 * one.value));
         orders.emplace_back(one.per_turn && ratio ? one.value / ratio->value() : one.value);
     }

@@ -10,17 +10,16 @@
 #include <cmath>
 #include <cstring>
 
-#include "core/functions/powers_of_ten.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 
 std::string percent_text(double percent) {
-    constexpr double least_whole = 9.95,
-                     least_shown = 1e-4;  // below, a format of its own would have exponents
-    if (std::abs(percent) >= least_whole) return fmt::format("{:.0f}", percent);
-    if (std::abs(percent) < least_shown) return "0";
+    constexpr double min_whole = 9.95,
+                     min_shown = 1e-4;  // below, a format of its own would have exponents
+    if (std::abs(percent) >= min_whole) return fmt::format("{:.0f}", percent);
+    if (std::abs(percent) < min_shown) return "0";
     return fmt::format("{:.2g}", percent);
 }
 
@@ -61,7 +60,7 @@ void put_eight(char* into, std::uint64_t text) {
 
 __extension__ using Wide = unsigned __int128;
 
-constexpr int least_exponent = -13, most_exponent = 25;  // of two, in the number's magnitude
+constexpr int min_exponent = -13, max_exponent = 25;  // of two, in the number's magnitude
 constexpr int mantissa_bits = 52;
 constexpr std::uint64_t ten_to_16 = 10'000'000'000'000'000, ten_to_8 = 100'000'000;
 
@@ -75,10 +74,10 @@ struct Scale {
 };
 
 constexpr auto scales = [] {
-    std::array<Scale, most_exponent - least_exponent + 1> all;
-    for (int exponent = least_exponent; exponent <= most_exponent; ++exponent) {
+    std::array<Scale, max_exponent - min_exponent + 1> all;
+    for (int exponent = min_exponent; exponent <= max_exponent; ++exponent) {
         const int q = exponent - mantissa_bits;
-        Scale& scale = all[static_cast<std::size_t>(exponent - least_exponent)];
+        Scale& scale = all[static_cast<std::size_t>(exponent - min_exponent)];
         Wide ten_to_n = 1;
         for (; ten_to_n < Wide{1} << -q; ten_to_n *= 10) {
             ++scale.decimals;
@@ -138,7 +137,7 @@ char* put_usual_shortest(char* into, double value) {
     const std::uint64_t hidden_bit = std::uint64_t{1} << mantissa_bits;
     const std::uint64_t mantissa = bits & (hidden_bit - 1);
     const auto index = static_cast<std::size_t>((bits >> mantissa_bits) & 0x7FF) -
-                       static_cast<std::size_t>(1023 + least_exponent);
+                       static_cast<std::size_t>(1023 + min_exponent);
     // Below a power of two the interval is half as wide as above it.
     if (index >= scales.size() || mantissa == 0) return nullptr;
     const Scale& scale = scales[index];
@@ -161,12 +160,12 @@ char* put_usual_shortest(char* into, double value) {
 
 namespace {
 
-constexpr int most_decimals_scaled = 9;
+constexpr int max_decimals_scaled = 9;
 
 // magnitude * 10^decimals rounded to a whole number; false where that is not certain in spite of the
 // product's own rounding.
 bool scaled_surely(double magnitude, int decimals, std::uint64_t& scaled) {
-    if (decimals < 0 || decimals > most_decimals_scaled) return false;
+    if (decimals < 0 || decimals > max_decimals_scaled) return false;
     const double product = magnitude * powers_of_ten[static_cast<std::size_t>(decimals)];
     if (!(product < 1e15)) return false;
     const auto whole = static_cast<std::int64_t>(product);
@@ -286,9 +285,9 @@ std::string with_error(double value, double error) {
     if (!(error > 0.0) || !std::isfinite(error)) return fmt::format("{:.4g} +/- {:.2g}", value, error);
     const int decimals = decimals_of(error, error_digits);
     // Beyond these an exponent is read faster than zeros are counted.
-    constexpr int most_decimals = 7;
+    constexpr int max_decimals = 7;
     constexpr double largest_error = 100.0;
-    if (decimals <= most_decimals && error < largest_error)
+    if (decimals <= max_decimals && error < largest_error)
         return fmt::format("{} +/- {}", rounded(value, decimals), rounded(error, decimals));
     const double size = std::max(std::abs(value), error);
     const int digits = error_digits + static_cast<int>(std::floor(portable::log10(size)) -

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <array>
+#include <cstddef>
 
 namespace ripplenotch {
 
@@ -11,5 +13,12 @@ namespace ripplenotch {
 /// the formatting library's "{}": of all decimals between the halfway points to the neighbouring doubles one
 /// with the fewest digits, and of these the nearest.
 char* put_usual_shortest(char* into, double value);
+
+/// All that a double holds exactly.
+inline constexpr std::array<double, 23> powers_of_ten = [] {
+    std::array<double, 23> powers{1.0};
+    for (std::size_t n = 1; n < powers.size(); ++n) powers[n] = 10.0 * powers[n - 1];
+    return powers;
+}();
 
 }  // namespace ripplenotch

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "core/vectors/dispatch.hpp"
+#include "core/vectors/lanes.hpp"
 
 #include <atomic>
 #include <cstdlib>

@@ -18,9 +18,37 @@
 #include <cstddef>
 #include <type_traits>
 
-#include "core/vectors/dispatch.hpp"
+#define RIPPLENOTCH_INLINED inline __attribute__((always_inline))
+#if defined(__x86_64__) && defined(__GNUC__)
+#define RIPPLENOTCH_WIDE __attribute__((target("avx2")))
+#else
+#define RIPPLENOTCH_WIDE
+#endif
 
 namespace ripplenotch {
+
+// Which vectors may be used here, the one question, and what functions need that are built for them.
+//
+// Wide vectors are AVX2 on x86-64 and NEON on arm64, where every processor has it. Without them numbers go
+// two by two and characters one by one. Contraction is off for the whole build and no fused
+// operation is used, so the bytes of a result do not depend on the answer.
+
+/// True on processors with wide vectors, unless somebody holds NarrowVectors, or RIPPLENOTCH_VECTORS=none is
+/// in the environment.
+[[nodiscard]] bool wide_vectors() noexcept;
+
+/// While it lives, all is done as on a processor without wide vectors: tests hold every kernel to its plain
+/// form that way. What asks once, when it is made, goes on with the answer.
+class NarrowVectors {
+  public:
+    NarrowVectors() noexcept;
+    ~NarrowVectors();
+    NarrowVectors(const NarrowVectors&) = delete;
+    NarrowVectors& operator=(const NarrowVectors&) = delete;
+
+  private:
+    bool before_;
+};
 
 inline constexpr std::size_t lane_count = 4;
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "ripplenotch/core/number.hpp"
-#include "ripplenotch/model/detection.hpp"
+#include "ripplenotch/model/effect.hpp"
 
 namespace ripplenotch {
 namespace {

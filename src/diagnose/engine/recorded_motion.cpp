@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "core/functions/many_numbers.hpp"
-#include "core/rows/uneven_rows.hpp"
+#include "core/rows/row_facts.hpp"
 #include "core/vectors/dot.hpp"
 #include "diagnose/engine/gram.hpp"
 #include "ripplenotch/core/error.hpp"

@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "core/matrices/least_squares.hpp"
-#include "core/rows/uneven_rows.hpp"
+#include "core/rows/row_facts.hpp"
 #include "diagnose/engine/gram.hpp"
 #include "diagnose/engine/recorded_motion.hpp"
 #include "ripplenotch/core/portable_math.hpp"

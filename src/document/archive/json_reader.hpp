@@ -58,7 +58,7 @@ class JsonReader {
         list.clear();
         each(
             name, [&](JsonReader& entry) { describe_entry(entry, list.emplace_back()); },
-            mark_among(AtMost{most_entries}, marks...).entries);
+            mark_among(AtMost{max_entries}, marks...).entries);
     }
 
     template <class Value, class... Marks>
@@ -80,12 +80,12 @@ class JsonReader {
     [[nodiscard]] std::string text(std::string_view name);
     /// `unknown`: null is read as nan.
     [[nodiscard]] std::vector<double> numbers(std::string_view name, bool unknown = false);
-    [[nodiscard]] const Json& list(std::string_view name, std::size_t most = most_json_values);
+    [[nodiscard]] const Json& list(std::string_view name, std::size_t most = max_json_values);
     /// The object of this name; its finish() is the caller's.
     [[nodiscard]] JsonReader object(std::string_view name);
     /// Calls read(JsonReader&) with each object of a list of at most so many, and finishes each.
     template <class Read>
-    void each(std::string_view name, const Read& read_entry, std::size_t most = most_entries) {
+    void each(std::string_view name, const Read& read_entry, std::size_t most = max_entries) {
         const Json& objects = list(name, most);
         for (std::size_t i = 0; i < objects.size(); ++i) {
             JsonReader entry(objects[i], source_, path_of(fmt::format("{}[{}]", name, i)));
@@ -141,7 +141,7 @@ class JsonReader {
 
     template <class Entry, class... Marks>
     void read_list(std::string_view name, std::vector<Entry>& values, const Marks&... marks) {
-        const AtMost most = mark_among(AtMost{most_json_values}, marks...);
+        const AtMost most = mark_among(AtMost{max_json_values}, marks...);
         if constexpr (std::is_same_v<Entry, double>) {
             values = numbers(name, mark_among(Rounded{}, marks...).unknown);
         } else if constexpr (is_a<Entry, Quantity>) {

@@ -7,11 +7,13 @@
 #include "document/archive/json_reader.hpp"
 #include "document/archive/json_writer.hpp"
 #include "ripplenotch/analysis/ripple_estimate.hpp"
+#include "ripplenotch/arm/arm_fit.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/diagnose/diagnosis.hpp"
 #include "ripplenotch/evaluate/contender.hpp"
 #include "ripplenotch/evaluate/ledger.hpp"
+#include "ripplenotch/filter/map_fit.hpp"
 #include "ripplenotch/model/model.hpp"
 
 namespace ripplenotch {
@@ -55,7 +57,7 @@ void describe_term(Archive& archive, Is<Term> auto& term, const Model& model) {
         const Parameter& parameter = term.effect->parameters[p];
         archive(parameter.name, term.values[p], if_any);
         if constexpr (Archive::reading) {
-            const double least = least_in(model, *term.effect, p);
+            const double least = min_in(model, *term.effect, p);
             if (term.values[p] && !(least <= *term.values[p] && *term.values[p] <= parameter.upper))
                 raise<DataError>("{} is {}, expected a number between {} and {} {}",
                                  archive.where(parameter.name), shortest(*term.values[p]), shortest(least),
@@ -88,7 +90,7 @@ void describe(Archive& archive, Is<Model> auto& model) {
     if (is_known) archive("gear_ratio", model.gear_ratio, above_zero_up_to(largest_gear_ratio.value()));
     archive.each(
         "effects", model.terms, [&](Archive& entry, auto& term) { describe_term(entry, term, model); },
-        AtMost{most_effects});
+        AtMost{max_effects});
     if constexpr (Archive::reading) {
         for (const Term& term : model.terms)
             if (!is_known && needs_gear_ratio(*term.effect))
@@ -96,5 +98,14 @@ void describe(Archive& archive, Is<Model> auto& model) {
                                  archive.where("gear_ratio"), unknown_gear_ratio, term.effect->name);
     }
 }
+
+// The members `arm` and `ripple_map` of a model.json.
+
+void describe(JsonWriter& json, const StatedArm& arm);
+void describe(JsonWriter& json, const MapFit& fit);
+void describe(JsonReader& reader, MapFit& fit);
+
+/// Throws DataError as well for a joint that the chain has not, and for links of another number of joints.
+void describe(JsonReader& reader, StatedArm& arm);
 
 }  // namespace ripplenotch

@@ -98,8 +98,8 @@ class Builder : public nlohmann::json_sax<Json> {
     bool key(string_t& name) override {
         Level& level = levels_.back();
         const auto& members = level.value->get_ref<const Json::object_t&>();
-        if (members.size() == most_json_members)
-            return refuse(fmt::format("an object of more than {} members", most_json_members));
+        if (members.size() == max_json_members)
+            return refuse(fmt::format("an object of more than {} members", max_json_members));
         if (!is_new(level, members, name))
             return refuse(fmt::format("the name \"{}\" for a second time", name));
         level.name = std::move(name);
@@ -140,8 +140,8 @@ class Builder : public nlohmann::json_sax<Json> {
     }
 
     Json* add(Json value) {
-        if (++values_ > most_json_values) {
-            refuse(fmt::format("more than {} values", most_json_values));
+        if (++values_ > max_json_values) {
+            refuse(fmt::format("more than {} values", max_json_values));
             return nullptr;
         }
         if (levels_.empty()) return &(document = std::move(value));
@@ -155,8 +155,8 @@ class Builder : public nlohmann::json_sax<Json> {
     }
 
     bool open(Json value) {
-        if (levels_.size() == most_json_depth)
-            return refuse(fmt::format("lists and objects more than {} deep", most_json_depth));
+        if (levels_.size() == max_json_depth)
+            return refuse(fmt::format("lists and objects more than {} deep", max_json_depth));
         Json* const added = add(std::move(value));
         if (added != nullptr) levels_.push_back({added});
         return added != nullptr;
@@ -193,10 +193,10 @@ std::string opening_of(std::string_view text, std::size_t at) {
 }  // namespace
 
 Json read_json(std::string_view text, const std::string& source, std::string_view wanted) {
-    if (text.size() > most_json_bytes) {
+    if (text.size() > max_json_bytes) {
         raise<DataError>(
             "{}: read {} bytes of JSON, expected at most {}; draw its figure with --plot FILE.json", source,
-            text.size(), most_json_bytes);
+            text.size(), max_json_bytes);
     }
     Builder builder;
     const char* seen = text.data();

@@ -15,7 +15,7 @@ namespace ripplenotch {
 namespace {
 
 constexpr Limits panel_height{0.1, 10.0};  // against the others
-constexpr AtMost words{most_words};
+constexpr AtMost words{max_words};
 
 // Eight digits are more than any picture shows, and keep a figure of many points small. Null is a nan: a
 // break, an empty cell.
@@ -133,10 +133,10 @@ void describe(Archive& archive, Is<Panel> auto& panel) {
     archive("legend", panel.legend);
     archive("height", panel.height, panel_height);
     archive("map", panel.map);
-    archive("shades", panel.shades, AtMost{most_shades});
-    archive("ribbons", panel.ribbons, AtMost{most_curves});
-    archive("curves", panel.curves, AtMost{most_curves});
-    archive("lines", panel.lines, AtMost{most_curves});
+    archive("shades", panel.shades, AtMost{max_shades});
+    archive("ribbons", panel.ribbons, AtMost{max_curves});
+    archive("curves", panel.curves, AtMost{max_curves});
+    archive("lines", panel.lines, AtMost{max_curves});
 }
 
 template <class Archive>
@@ -148,7 +148,7 @@ void describe(Archive& archive, Is<Figure> auto& figure) {
         figure.columns = static_cast<int>(std::clamp(archive.number("columns"), 1.0, 4.0));
     else
         archive("columns", figure.columns);
-    archive("panels", figure.panels, AtMost{most_panels});
+    archive("panels", figure.panels, AtMost{max_panels});
 }
 
 std::string figure_text(const Figure& figure, const Provenance& provenance) {

@@ -7,7 +7,6 @@
 #include <filesystem>
 
 #include "core/matrices/least_squares.hpp"
-#include "document/fields/arm_fields.hpp"
 #include "document/fields/fields.hpp"
 #include "document/fields/result_fields.hpp"
 #include "ripplenotch/core/error.hpp"
@@ -17,7 +16,7 @@ namespace ripplenotch {
 
 namespace {
 
-constexpr std::size_t most_speeds = 64, most_map_orders = 64;
+constexpr std::size_t most_speeds = 64, max_map_orders = 64;
 
 // How many numbers a list may hold, which rise, the first from `least` on.
 struct Rising {
@@ -149,7 +148,7 @@ void describe_map(Archive& archive, auto& fit) {
         range("speed_deg_s", map.speeds_deg_s, lower_first);
         range("position_deg", map.positions_deg, lower_first);
     });
-    describe_rising(archive, "orders", map.orders, {1e-9, 0, most_map_orders});
+    describe_rising(archive, "orders", map.orders, {1e-9, 0, max_map_orders});
     archive("spread_nm", map.spread_nm);
     if constexpr (Archive::reading) {
         if (map.spread_nm.size() != map.orders.size())

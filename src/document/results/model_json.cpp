@@ -4,7 +4,6 @@
 #include <string_view>
 #include <utility>
 
-#include "document/fields/arm_fields.hpp"
 #include "document/fields/fields.hpp"
 #include "document/fields/result_fields.hpp"
 

@@ -22,8 +22,8 @@ void compare(const JsonReader& reader, std::string_view name, double stored, dou
              double tolerance) {
     if (std::abs(stored - computed) <= tolerance) return;
     raise<DataError>(
-        "{} is {}, but the table's own bands and notches give {}; run 'ripplenotch design' again instead "
-        "of editing the file",
+        "{} is {}, but the table's own bands and notches give {}; run 'ripplenotch design' again instead of "
+        "editing the file",
         reader.where(name), shortest(stored), shortest(computed));
 }
 
@@ -128,7 +128,7 @@ void describe_table(Archive& archive, auto& spec, auto&& bands, const DesignNote
     TableWork work;
     archive.each(
         "bands", bands, [&](Archive& entry, auto& band) { describe_band(entry, band, spec, work); },
-        AtMost{most_bands});
+        AtMost{max_bands});
     archive("below_first_band", spec.below, Names{outside_rule_name, OutsideRule::fade});
     archive("above_last_band", spec.above, Names{outside_rule_name, OutsideRule::fade});
 }

@@ -130,8 +130,8 @@ TrackingDesign in_unit(TrackingDesign design, const Settings& settings) {
 void refuse_units(const Settings& settings) {
     if (code_speed(settings, 2.0).per_deg_s != 1.0)
         raise<UsageError>(
-            "target c-header: the oscillator takes the motor's angle, not a speed; speed-unit and "
-            "speed-side are of tracking and of tables");
+            "target c-header: the oscillator takes the motor's angle, not a speed; speed-unit and speed-side "
+            "are of tracking and of tables");
 }
 
 }  // namespace

@@ -3,8 +3,6 @@
 
 #include <fmt/format.h>
 
-#include "export/run/switching_run.hpp"
-
 namespace ripplenotch {
 
 SwitchingCode::SwitchingCode(const Arithmetic& arithmetic, const FilterSet& filters)

@@ -111,13 +111,11 @@ std::vector<double> code_values(const OscillatorDesign& d) {
 }
 
 std::string step_of(const OscillatorDesign& d, const CodeStyle& style) {
-    std::string text =
-        filled(std::string(step_code),
-               {{"@parameters@", d.map ? ", @real@ speed_deg_s, @real@ joint_deg" : ""},
-                {"@more@",
-                 d.map ? " speed_deg_s and joint_deg: the joint's\n   velocity and position, where its map "
-                         "depends on them."
-                       : ""}});
+    std::string text = filled(std::string(step_code),
+                              {{"@parameters@", d.map ? ", @real@ speed_deg_s, @real@ joint_deg" : ""},
+                               {"@more@", d.map ? " speed_deg_s and joint_deg: the joint's\n   velocity and "
+                                                  "position, where its map depends on them."
+                                                : ""}});
     if (d.map) text += MapCode(*d.map, style).amplitudes_here();
     return text + oscillator_step_code(d) + "}\n";
 }
@@ -130,8 +128,8 @@ std::string oscillator_header(const OscillatorDesign& d, const CodeStyle& style)
     for (const auto& prior : d.priors)
         priors.insert(priors.end(), {prior.cosine, prior.sine, prior.deviation});
     std::string text = fmt::format(
-        "enum {{ @NAME@_ORDERS = {}, @NAME@_STATES = {}, @NAME@_COVARIANCES = {}, "
-        "@NAME@_MINUS_RIPPLE = {},\n       @NAME@_SAMPLE_RATE_HZ = {} }};\n",
+        "enum {{ @NAME@_ORDERS = {}, @NAME@_STATES = {}, @NAME@_COVARIANCES = {}, @NAME@_MINUS_RIPPLE = "
+        "{},\n       @NAME@_SAMPLE_RATE_HZ = {} }};\n",
         d.orders.size(), states, states * (states + 1) / 2, d.minus_ripple ? 1 : 0,
         std::lround(1.0 / d.step_s));
     text += style.array("orders", d.orders);
@@ -139,10 +137,8 @@ std::string oscillator_header(const OscillatorDesign& d, const CodeStyle& style)
     text += style.array("priors", priors);
     text +=
         "/* noise_nm is the unit of the state; seen_noise: variance of the sensor and of what a sample adds "
-        "to "
-        "the torque;\n   amplitude_noise: deviation that a turn adds; quarter_memory: 0.25 / memory in "
-        "turns; "
-        "in_noise: 1 / noise */\n";
+        "to the torque;\n   amplitude_noise: deviation that a turn adds; quarter_memory: 0.25 / memory in "
+        "turns; in_noise: 1 / noise */\n";
     text += style.constants(oscillator_names, code_values(d));
     text += turn_code(style.is_float);
     if (d.map) text += "\n/* the map that is subtracted first */\n" + MapCode(*d.map, style).definitions();
@@ -298,17 +294,14 @@ Real warped(Real center_hz, Real relative, Real sample_rate_hz) {
 
 std::string tracking_header(const TrackingDesign& d, const CodeStyle& style) {
     std::string text = fmt::format(
-        "enum {{ @NAME@_ORDERS = {}, @NAME@_NOTCHES = {}, @NAME@_PARKS = {}, "
-        "@NAME@_SAMPLE_RATE_HZ = {} }};\n",
+        "enum {{ @NAME@_ORDERS = {}, @NAME@_NOTCHES = {}, @NAME@_PARKS = {}, @NAME@_SAMPLE_RATE_HZ = {} "
+        "}};\n",
         d.orders.size(), d.spread.size(), d.parks ? 1 : 0, std::lround(d.sample_rate_hz));
     text +=
         style.array("orders", d.orders) + style.array("weights", d.weights) + style.array("spread", d.spread);
     text +=
         "/* gear_ratio: turns of the shaft by which the orders count per turn of the speed's, in the speed's "
-        "unit; "
-        "depth_gain: gain at the centre; "
-        "min_hz: "
-        "lowest centre */\n";
+        "unit; depth_gain: gain at the centre; min_hz: lowest centre */\n";
     std::vector<double> values;
     for (const auto value : tracking_values) values.push_back(d.*value);
     text += style.constants(tracking_names, values);

@@ -42,8 +42,7 @@ std::vector<std::string> flattened(const RippleMap& map, std::string_view target
     if (map.gear_ratio == no_ratio)
         raise<UsageError>(
             "target {} counts by turns of the motor, and the map states no gear ratio: make it with "
-            "--gear-ratio, "
-            "or use fourier or c-header",
+            "--gear-ratio, or use fourier or c-header",
             target);
     std::vector<std::string> warnings;
     const auto lost = [&](bool is, std::string_view what) {

@@ -9,7 +9,7 @@
 
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/spec.hpp"
-#include "ripplenotch/export/map_target.hpp"
+#include "ripplenotch/export/target.hpp"
 
 namespace ripplenotch {
 

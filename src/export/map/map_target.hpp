@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-#include "ripplenotch/export/map_target.hpp"
+#include "ripplenotch/export/target.hpp"
 
 namespace ripplenotch::map_target_list {
 

@@ -38,8 +38,7 @@ RippleMap as_coded(const RippleMap& map) {
     if (map.form.second_comb != 0)
         raise<UsageError>(
             "target c-header: the map's second comb counts by turns of the motor, and not all orders are "
-            "whole "
-            "there");
+            "whole there");
     for (Order& order : coded.orders) order = Order(to_digits(order.value() * map.gear_ratio.value(), 12));
     coded.gear_ratio = no_ratio;
     return coded;

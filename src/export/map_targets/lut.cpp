@@ -48,8 +48,7 @@ Written write(const RippleMap& map, const Settings& settings, std::span<const st
     const bool c = settings.text("form") == "c";
     const std::string what = fmt::format(
         "ripple in Nm at the joint, entry k at k / {} of a motor turn, linear between; the motor's angle is "
-        "0 "
-        "where the joint is at {} deg",
+        "0 where the joint is at {} deg",
         table.size(), shortest(map.zero_deg));
     warnings.push_back(fmt::format("interpolation is wrong by at most {:.2g} Nm",
                                    interpolation_bound_nm(flat, table.size())));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "export/run/switching_run.hpp"
+#include "export/code/switching_code.hpp"
 
 #include <algorithm>
 #include <array>
@@ -19,7 +19,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double full_scale = 2147483648.0;  // one more than the largest word
 constexpr std::int64_t largest_word = 2147483647;
 constexpr std::size_t samples_a_region = 6;
-constexpr std::size_t most_regions_visited = 24;
+constexpr std::size_t max_regions_visited = 24;
 
 template <class Real>
 struct Floating {
@@ -415,7 +415,7 @@ GoldenVector golden_vector(const FilterSet& filters, const LoadedFilters& loaded
     const Arithmetic arithmetic = loaded.bands.front().front().arithmetic;
     const auto regions = switching_regions(filters);
     std::vector<std::size_t> visits;
-    const std::size_t stride = (regions.size() + most_regions_visited - 1) / most_regions_visited;
+    const std::size_t stride = (regions.size() + max_regions_visited - 1) / max_regions_visited;
     for (std::size_t r = 0; r < regions.size(); r += stride) visits.push_back(r);
     if (visits.back() != regions.size() - 1) visits.push_back(regions.size() - 1);
     for (std::size_t up = visits.size(); up-- > 0;) visits.push_back(visits[up]);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "ripplenotch/export/verify.hpp"
+#include "ripplenotch/export/target.hpp"
 
 #include <fmt/format.h>
 
@@ -16,7 +16,7 @@
 #include "ripplenotch/design/candidate_table.hpp"
 #include "ripplenotch/design/notch.hpp"
 #include "ripplenotch/export/filter_set.hpp"
-#include "ripplenotch/export/verify.hpp"
+#include "ripplenotch/export/target.hpp"
 
 namespace ripplenotch {
 

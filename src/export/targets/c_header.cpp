@@ -8,7 +8,6 @@
 
 #include "export/code/method_code.hpp"
 #include "export/code/switching_code.hpp"
-#include "export/run/switching_run.hpp"
 #include "export/target.hpp"
 #include "export/text.hpp"
 #include "ripplenotch/core/error.hpp"
@@ -208,8 +207,8 @@ std::string about(const FilterSet& filters, const Arithmetic& arithmetic, const 
     if (!is_fixed(arithmetic.precision))
         return text + " * Literals are exact; the comment below each row has them in decimal.\n */\n";
     return text + fmt::format(
-                      " * {} Nm at full scale, a word's last place is {:.3g} Nm; {} bits of headroom; on "
-                      "the test vector rounding\n * makes {:.2g} Nm rms.\n */\n",
+                      " * {} Nm at full scale, a word's last place is {:.3g} Nm; {} bits of headroom; on the "
+                      "test vector rounding\n * makes {:.2g} Nm rms.\n */\n",
                       shortest(arithmetic.full_scale_nm), fixed_torque_nm(1, arithmetic),
                       arithmetic.headroom_bits, golden.rounding_rms_nm);
 }

@@ -86,8 +86,8 @@ Written json_write(const FilterSet& filters, const Settings&, std::span<const st
     }
     text +=
         "  \"sos_layout\": \"b0 b1 b2 1 a1 a2: y = b0 x + b1 x1 + b2 x2 - a1 y1 - a2 y2\",\n"
-        "  \"svf_layout\": \"a1 a2 a3 m0 m1 m2: v3 = x - s2, v1 = a1 s1 + a2 v3, v2 = s2 + a2 s1 + a3 v3, "
-        "s1 = 2 v1 - s1, s2 = 2 v2 - s2, y = m0 x + m1 v1 + m2 v2\",\n"
+        "  \"svf_layout\": \"a1 a2 a3 m0 m1 m2: v3 = x - s2, v1 = a1 s1 + a2 v3, v2 = s2 + a2 s1 + a3 v3, s1 "
+        "= 2 v1 - s1, s2 = 2 v2 - s2, y = m0 x + m1 v1 + m2 v2\",\n"
         "  \"bands\": [\n";
     text +=
         joined(filters.bands, ",\n", [&](const ExportBand& band) { return json_band_text(band, filters); });
@@ -179,9 +179,8 @@ LoadedFilters scipy_read(std::string_view bytes, const std::string& source, cons
     const std::size_t rows = filters.bands.size() * filters.sections_per_band();
     if (bytes.substr(0, header.size()) != header || bytes.size() != header.size() + 8 * row_length * rows) {
         raise<DataError>(
-            "{}: read {} bytes, expected a NumPy array of doubles of shape {} in {} bytes; write "
-            "the "
-            "file again with ripplenotch export",
+            "{}: read {} bytes, expected a NumPy array of doubles of shape {} in {} bytes; write the file "
+            "again with ripplenotch export",
             source, bytes.size(), shape_of(filters), header.size() + 8 * row_length * rows);
     }
     std::size_t at = header.size();
@@ -199,8 +198,8 @@ LoadedFilters scipy_read(std::string_view bytes, const std::string& source, cons
 
 std::string scipy_usage(const FilterSet& filters, const Settings&, const std::string& path) {
     return fmt::format(
-        "sos = numpy.load(\"{}\"){}; y, _ = scipy.signal.sosfilt(sos, x, zi=scipy.signal.sosfilt_zi(sos) "
-        "* x[0])",
+        "sos = numpy.load(\"{}\"){}; y, _ = scipy.signal.sosfilt(sos, x, zi=scipy.signal.sosfilt_zi(sos) * "
+        "x[0])",
         path, filters.by_speed() ? "[band]" : "");
 }
 

@@ -96,8 +96,7 @@ std::string cmsis_usage(const FilterSet&, const Settings& settings, const std::s
     const bool df1 = settings.text("form") == "df1";
     return fmt::format(
         "#include \"{1}\"   float32_t state[{3}_STATE_FLOATS]; arm_biquad_cascade_{2}_init_f32(&filter, "
-        "{3}_STAGES, "
-        "{0}_coefficients[band], state);",
+        "{3}_STAGES, {0}_coefficients[band], state);",
         name, path, df1 ? "df1" : "df2T", upper_case(name));
 }
 
@@ -194,13 +193,12 @@ namespace {
 
 // Whether the ranges of the drive's own parameters are kept.
 constexpr std::array<std::string_view, 2> limit_choices = {"firmware", "none"};
-constexpr std::array drive_keys = {Key{.name = "limits",
-                                       .kind = KeyKind::choice,
-                                       .default_text = "firmware",
-                                       .choices = limit_choices,
-                                       .help =
-                                           "firmware: refuse what its own parameters cannot hold; none: for "
-                                           "other firmware in this style"}};
+constexpr std::array drive_keys = {Key{
+    .name = "limits",
+    .kind = KeyKind::choice,
+    .default_text = "firmware",
+    .choices = limit_choices,
+    .help = "firmware: refuse what its own parameters cannot hold; none: for other firmware in this style"}};
 
 // Width over centre is 0.5 * 2^(code / 4), code 0 to 20: from Q 2 down to Q 1/16. Depth code d is a gain of d
 // per cent at the centre; 0 is a complete null.
@@ -217,8 +215,7 @@ int width_code(double q) {
     if (code < -0.1) {
         raise<UsageError>(
             "the drive cannot hold Q {}: its narrowest width code is 0, half the centre, and the sharpest Q "
-            "{:.1f}; "
-            "design with --q 2 or less, or filter outside the drive",
+            "{:.1f}; design with --q 2 or less, or filter outside the drive",
             shortest(q), sharpest_q);
     }
     if (code > 20.1) {
@@ -251,14 +248,14 @@ SharedShape shared_shape(const FilterSet& filters) {
             const NotchSpec& notch = *section.notch;
             if (notch.width == WidthRule::digital) {
                 raise<UsageError>(
-                    "target servo-drive makes the analogue prototype's Q, and these notches have the "
-                    "digital width rule; design them with width analog");
+                    "target servo-drive makes the analogue prototype's Q, and these notches have the digital "
+                    "width rule; design them with width analog");
             }
             if (!first) first = notch;
             if (notch.q != first->q || notch.depth_db != first->depth_db) {
                 raise<UsageError>(
-                    "target servo-drive has one width and one depth for all notches, and these differ: "
-                    "Q {} and {}; export json or c-header instead",
+                    "target servo-drive has one width and one depth for all notches, and these differ: Q {} "
+                    "and {}; export json or c-header instead",
                     shortest(first->q), shortest(notch.q));
             }
         }
@@ -288,8 +285,7 @@ Written drive_write(const FilterSet& filters, const Settings& settings,
             if (settings.text("limits") != "none" && !(center >= lowest_hz && center <= highest_hz)) {
                 raise<UsageError>(
                     "the drive's notch frequency of {} would be {:.4g}, and the firmware takes {} to {}; "
-                    "filter "
-                    "this line outside the drive, or use limits=none for other firmware in this style",
+                    "filter this line outside the drive, or use limits=none for other firmware in this style",
                     describe(band.sections[i]), center, shortest(lowest_hz), shortest(highest_hz));
             }
             const double whole = std::max(1.0, std::round(center));

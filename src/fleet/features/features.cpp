@@ -11,7 +11,7 @@
 #include <string_view>
 
 #include "core/matrices/least_squares.hpp"
-#include "fleet/features/joint_fit.hpp"
+#include "fleet/features/motion_facts.hpp"
 #include "ripplenotch/analysis/ripple_estimate.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
@@ -284,7 +284,7 @@ std::optional<NamePattern::Found> NamePattern::match(const std::string& name) co
 namespace {
 
 // Chosen, not derived: bounds the time of a log.
-constexpr std::size_t most_feature_samples = std::size_t{1} << 14U;
+constexpr std::size_t max_feature_samples = std::size_t{1} << 14U;
 constexpr std::size_t most_orders = 6;  // chosen, not derived: bounds the time of a log
 
 // The gear of the ripple: the stated one, else the one that was found.
@@ -301,7 +301,7 @@ Features features_of(const TraceView& log, const Identification& found,
                      const std::optional<GearAccount>& stated) {
     const Motion whole = motion_along(log);
     const std::vector<unsigned char> known = rows_of_known_motion(log, whole);
-    const FittedSamples samples = thinned(whole, log.torque_nm, known, most_feature_samples);
+    const FittedSamples samples = thinned(whole, log.torque_nm, known, max_feature_samples);
     MotionFacts facts = motion_facts(samples.motion, samples.torque_nm, log.has_position());
     facts.accelerations = accelerations_of(log, whole, known);
     std::optional<GearAccount> gear = gear_of_ripple(found, stated);

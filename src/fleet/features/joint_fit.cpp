@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fleet/features/joint_fit.hpp"
+#include "fleet/features/motion_facts.hpp"
 
 #include <fmt/format.h>
 
@@ -14,13 +14,13 @@ namespace ripplenotch {
 namespace {
 
 // Less, and the weight of a link is hardly distinguished from a zero error.
-constexpr double least_travel_deg = 20.0;
+constexpr double min_travel_deg = 20.0;
 constexpr double width_deg_s = 0.5;          // width of the step of friction where the joint reverses
 constexpr std::size_t fewest_samples = 200;  // as recording.fewest_samples of a diagnosis
 constexpr std::size_t stretches = 40;        // stretches of the log, for errors that are not white
 constexpr double widest_of_value = 0.5;      // an interval's half, of the value ...
 constexpr double widest_of_torque = 0.02;    // ... or, in torque, of all torque of the log
-constexpr double least_load = 0.1;           // share of inertia and weight in all torque
+constexpr double min_load = 0.1;             // share of inertia and weight in all torque
 constexpr std::size_t fewest_reversals = 2;  // a way there and back
 constexpr double way_of_start_deg = 1.0;     // chosen, not derived
 constexpr double seen_angles = 1.5;          // after a reversal, of the lost motion ...
@@ -28,9 +28,9 @@ constexpr std::size_t fewest_in_angle = 8;   // ... in which there are so many s
 constexpr double far_deviations = 10.0;      // in standard deviations: a residual that is no noise
 constexpr int linear_iterations = 3, iterations = 15;  // chosen, not derived
 
-FitOptions fit_options(std::size_t samples, int most_iterations) {
+FitOptions fit_options(std::size_t samples, int max_iterations) {
     FitOptions options;
-    options.most_iterations = most_iterations;
+    options.max_iterations = max_iterations;
     options.settled = 1e-6;
     options.error_stretch = std::max<std::size_t>(8, samples / stretches);
     return options;
@@ -62,7 +62,7 @@ JointFit::JointFit(const FittedSamples& samples, const MotionFacts& facts, std::
 // inertia and weight, and friction that reverses within an angle (Dahl). Outliers do not count.
 void JointFit::refine() {
     Model guess = fit_.model;
-    if (facts_.both_directions() && load_rms_nm().value_or(0.0) > least_load * facts_.mix.torque_rms_nm) {
+    if (facts_.both_directions() && load_rms_nm().value_or(0.0) > min_load * facts_.mix.torque_rms_nm) {
         const std::string friction = fmt::format("load-friction,exponent=1,width_deg_s={}", width_deg_s);
         guess.terms.push_back(parse_term(friction + ",torque_nm=0.01"));
         add_term(friction);
@@ -122,7 +122,7 @@ std::vector<unsigned char> JointFit::near_samples() const {
     std::vector<unsigned char> use = known_;
     for (std::size_t k = 0; k < use.size(); ++k)
         if (far > 0.0 && sizes[k] > far) use[k] = 0;
-    if (facts_.mix.travel_deg >= least_travel_deg) leave_out_start(motion_, way_of_start_deg, use);
+    if (facts_.mix.travel_deg >= min_travel_deg) leave_out_start(motion_, way_of_start_deg, use);
     return use;
 }
 
@@ -133,7 +133,7 @@ void JointFit::build() {
     add_term("offset");
     const bool moves = facts_.mix.moving_share > 0.0;
     if (moves && facts_.accelerations.known) add_term("inertia");
-    if (facts_.mix.travel_deg >= least_travel_deg) add_term("gravity");
+    if (facts_.mix.travel_deg >= min_travel_deg) add_term("gravity");
     if (facts_.both_directions()) {
         add_term(fmt::format("coulomb-friction,width_deg_s={}", width_deg_s));
         if (facts_.several_speeds()) add_term("viscous-friction");
@@ -224,11 +224,11 @@ void JointFit::inertia(Descriptor& one) const {
 }
 
 void JointFit::gravity(Descriptor& one) const {
-    const bool far = facts_.mix.travel_deg >= least_travel_deg;
+    const bool far = facts_.mix.travel_deg >= min_travel_deg;
     estimate(one, "gravity", "amplitude_nm", std::sqrt(0.5),
              far ? ""
                  : fmt::format("the joint travels {:.3g} deg, and a weight needs {:g}", facts_.mix.travel_deg,
-                               least_travel_deg));
+                               min_travel_deg));
 }
 
 void JointFit::sensor_zero(Descriptor& one) const { estimate(one, "offset", "torque_nm", 1.0, one_way()); }

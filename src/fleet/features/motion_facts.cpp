@@ -18,7 +18,7 @@ namespace {
 
 constexpr double jump_deviations = 8.0, jump_part = 0.02;  // chosen, not derived
 constexpr double least_over_noise = 5.0;                   // ratio to the noise of accelerations, rms
-constexpr double least_change = 1e-3;  // share of the speed within a window, or it is rounding
+constexpr double min_change = 1e-3;  // share of the speed within a window, or it is rounding
 
 double mean_square(const std::vector<double>& values) {
     const double size = rms(values);
@@ -47,7 +47,7 @@ double share_beside(std::vector<double> values, const std::vector<std::vector<do
 constexpr double moving_most_deg_s = 0.5, moving_part = 0.01;  // as a diagnosis counts
 constexpr std::size_t fewest_moving = 100;                     // chosen, not derived
 constexpr double least_share = 0.05;  // share of a direction, so that its friction is seen
-constexpr double least_speeds = 1.5;  // between slow and fast, so that viscous friction is seen
+constexpr double min_speeds = 1.5;    // between slow and fast, so that viscous friction is seen
 
 double at_share(const std::vector<double>& sorted, double share) {
     if (sorted.empty()) return 0.0;
@@ -78,13 +78,13 @@ std::size_t reversals_of(const Motion& motion, double moving_deg_s) {
 std::vector<unsigned char> rows_of_known_motion(const TraceView& log, const Motion& motion) {
     std::vector<double> speeds;
     for (const double speed : motion.velocity_deg_s) speeds.push_back(std::abs(speed));
-    const double most_deg_s =
+    const double max_deg_s =
         std::max(jump_deviations * usual_noise(log.velocity_deg_s), jump_part * median_in(speeds));
     std::vector<unsigned char> known(log.size(), 1);
     const double window_s = default_smoothing.value();
     std::size_t from = 0, until = 0;  // `until`: rows before it are settled
     for (std::size_t k = 0; k < log.size(); ++k) {
-        if (!(std::abs(log.velocity_deg_s[k] - motion.velocity_deg_s[k]) > most_deg_s)) continue;
+        if (!(std::abs(log.velocity_deg_s[k] - motion.velocity_deg_s[k]) > max_deg_s)) continue;
         while (log.time_s[k] - log.time_s[from] > window_s) ++from;
         until = std::max(until, from);
         while (until < log.size() && log.time_s[until] - log.time_s[k] <= window_s) known[until++] = 0;
@@ -110,7 +110,7 @@ Accelerations accelerations_of(const TraceView& log, const Motion& motion,
     const double whole = mean_square(acceleration);
     const double beside = share_beside(acceleration, {ones, direction, speed});
     const double alone = std::sqrt(whole * beside), along = std::sqrt(whole * std::max(0.0, 1.0 - beside));
-    const double rounding = least_change * rms(speed) / default_smoothing.value();
+    const double rounding = min_change * rms(speed) / default_smoothing.value();
     // The projection of noise on three columns, for accelerations that are correlated over a window.
     const double noise_along = noise * std::sqrt(3.0 * samples / count);
     Accelerations found;
@@ -125,7 +125,7 @@ bool MotionFacts::both_directions() const {
 }
 
 bool MotionFacts::several_speeds() const {
-    return mix.speed_p90_deg_s >= least_speeds * std::max(mix.speed_p10_deg_s, moving_deg_s);
+    return mix.speed_p90_deg_s >= min_speeds * std::max(mix.speed_p10_deg_s, moving_deg_s);
 }
 
 FittedSamples thinned(const Motion& motion, std::span<const double> torque_nm,
@@ -174,7 +174,7 @@ MotionFacts motion_facts(const Motion& motion, std::span<const double> torque_nm
 }
 
 std::size_t samples_after_reversals(const Motion& motion, std::span<const unsigned char> use,
-                                    double most_deg) {
+                                    double max_deg) {
     std::size_t seen = 0;
     double way_deg = 0.0;
     int before = 0;
@@ -188,7 +188,7 @@ std::size_t samples_after_reversals(const Motion& motion, std::span<const unsign
             way_deg = 0.0;
         }
         before = direction;
-        if (reversed && use[k] != 0 && way_deg < most_deg) ++seen;
+        if (reversed && use[k] != 0 && way_deg < max_deg) ++seen;
     }
     return seen;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fleet/trend/change_test.hpp"
+#include "fleet/trend/joint_history.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -39,8 +39,8 @@ void require_some_time(const std::vector<const FeatureLine*>& lines) {
                          fewest_trend_lines);
     if (dates.size() == 1)
         raise<DataError>(
-            "all {} logs are of {}; a trend needs logs of different days (--date-from-name of "
-            "'features' takes them from the names)",
+            "all {} logs are of {}; a trend needs logs of different days (--date-from-name of 'features' "
+            "takes them from the names)",
             logs.size(), *dates.begin());
 }
 

@@ -5,15 +5,15 @@
 #include <cmath>
 
 #include "core/matrices/least_squares.hpp"
-#include "fleet/trend/change_test.hpp"
+#include "fleet/trend/joint_history.hpp"
 #include "ripplenotch/core/number.hpp"
 
 namespace ripplenotch {
 namespace {
 
-constexpr std::size_t most_changes = 4;  // chosen, not derived
-constexpr double spent_at_once = 0.8;    // chosen, not derived: share of the remaining false alarms
-constexpr double least_t_squared = 9.0;  // limit for a descriptor that is listed with a change
+constexpr std::size_t max_changes = 4;  // chosen, not derived
+constexpr double spent_at_once = 0.8;   // chosen, not derived: share of the remaining false alarms
+constexpr double min_t_squared = 9.0;   // limit for a descriptor that is listed with a change
 
 // The same for a joint whatever else is in the fleet (Fowler, Noll and Vo).
 std::uint64_t seed_of(const JointHistory& history, std::uint64_t seed, std::size_t turn) {
@@ -48,7 +48,7 @@ JointChange told(const JointHistory& history, const std::vector<FoundChange>& kn
     std::stable_sort(parts.begin(), parts.end(),
                      [](const auto& a, const auto& b) { return a.first > b.first; });
     for (auto& [t_squared, part] : parts)
-        if (change.descriptors.empty() || t_squared >= least_t_squared)
+        if (change.descriptors.empty() || t_squared >= min_t_squared)
             change.descriptors.push_back(std::move(part));
     return change;
 }
@@ -117,7 +117,7 @@ std::vector<FoundChange> find_changes(const JointHistory& history, std::uint64_t
     std::vector<FoundChange> found;
     double left = std::min(0.5, false_alarms_per_joint_month * history.months());
     if (!(left > 0.0)) return found;
-    while (found.size() < most_changes) {
+    while (found.size() < max_changes) {
         const double limit = spent_at_once * left;
         left -= limit;
         const auto next = next_change(history, found, limit, seed_of(history, seed, found.size()));

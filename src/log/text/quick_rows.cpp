@@ -7,9 +7,9 @@
 #include <cstring>
 #include <utility>
 
-#include "core/functions/powers_of_ten.hpp"
+#include "core/text/number.hpp"
 #include "core/vectors/bytes.hpp"
-#include "core/vectors/dispatch.hpp"
+#include "core/vectors/lanes.hpp"
 #include "log/table_writer.hpp"
 #include "log/text/row_edges.hpp"
 #include "ripplenotch/core/number.hpp"

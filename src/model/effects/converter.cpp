@@ -8,7 +8,7 @@
 #include "model/effects.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
-#include "ripplenotch/model/detection.hpp"
+#include "ripplenotch/model/effect.hpp"
 #include "ripplenotch/model/noise.hpp"
 
 namespace ripplenotch {
@@ -48,7 +48,7 @@ constexpr std::size_t fewest_spikes = 3;
 // on from it.
 constexpr double far_deviations = 2.0;
 // More samples that stand out about one are a burst or a ringing.
-constexpr std::size_t most_out_together = 4;
+constexpr std::size_t max_out_together = 4;
 // Of its size: after a spike the torque is where it was, within this; after a step it is not.
 constexpr double returns_part = 0.4;
 // Of its size: a spike is farther than this from both sides; a slope is near to one of them.
@@ -105,7 +105,7 @@ class Outliers {
     Outliers(const LoggedTorque& log)
         : log_(log),
           torque_nm_(log.torque_nm),
-          least_nm_(std::max(log.noise_nm, spike_steps * log.step_nm)),
+          min_nm_(std::max(log.noise_nm, spike_steps * log.step_nm)),
           off_(from_neighbours()),
           typical_(typical_about(off_)) {}
 
@@ -118,14 +118,14 @@ class Outliers {
         std::size_t out = 0;
         for (std::size_t i = k >= 8 ? k - 8 : 0; i < std::min(k + 9, off_.size()); ++i)
             out += stands_out(i) ? 1U : 0U;
-        return out <= most_out_together && returns(k);
+        return out <= max_out_together && returns(k);
     }
     [[nodiscard]] double size_nm(std::size_t k) const { return std::abs(off_[k]); }
     [[nodiscard]] bool is_far(std::size_t k) const { return size_nm(k) > far_deviations * threshold(k); }
 
   private:
     [[nodiscard]] double threshold(std::size_t k) const {
-        return spike_deviations * std::max(typical_[k], least_nm_);
+        return spike_deviations * std::max(typical_[k], min_nm_);
     }
     [[nodiscard]] bool stands_out(std::size_t k) const { return size_nm(k) > threshold(k); }
 
@@ -179,7 +179,7 @@ class Outliers {
 
     const LoggedTorque& log_;
     std::span<const double> torque_nm_;
-    double least_nm_;
+    double min_nm_;
     std::vector<double> off_, typical_;
 };
 

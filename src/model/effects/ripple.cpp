@@ -6,7 +6,7 @@
 
 #include "core/functions/many_numbers.hpp"
 #include "model/effects.hpp"
-#include "model/motion/lost_rows.hpp"
+#include "model/motion/local_motion.hpp"
 #include "model/spring/mass_on_spring.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 

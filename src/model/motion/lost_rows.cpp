@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "model/motion/lost_rows.hpp"
+#include "model/motion/local_motion.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -16,14 +16,14 @@ namespace {
 
 // Standstill: speeds within so many standard deviations of their noise, for so many smoothing windows. A
 // joint that moves faster than the last of these is not at standstill, however noisy the log.
-constexpr double rest_deviations = 4.5, rest_windows = 3.0, most_at_rest_deg_s = 0.5;
+constexpr double rest_deviations = 4.5, rest_windows = 3.0, max_at_rest_deg_s = 0.5;
 
 // Position and speed show the same motion when they differ by no more than this multiple of the difference
 // expected from noise; estimated from the size that a fifth of the differences exceed, which kinks and gaps
 // do not change.
-constexpr double most_disagreement = 1.5, quantile = 0.8, deviations_at_quantile = 1.2816;
+constexpr double max_disagreement = 1.5, quantile = 0.8, deviations_at_quantile = 1.2816;
 // A position cannot be trusted more than this relative to a speed, or rounding would count.
-constexpr double least_noise_steps = 1e-3;
+constexpr double min_noise_steps = 1e-3;
 
 void check(const TraceView& log) {
     if (log.size() < LocalFit::fewest_samples) {
@@ -105,7 +105,7 @@ bool tell_the_same(const TraceView& log, Seconds smoothing, MotionNoise noise) {
     }
     const auto place = static_cast<std::ptrdiff_t>(quantile * static_cast<double>(differences.size() - 1));
     std::nth_element(differences.begin(), differences.begin() + place, differences.end());
-    return differences[static_cast<std::size_t>(place)] <= most_disagreement * deviations_at_quantile;
+    return differences[static_cast<std::size_t>(place)] <= max_disagreement * deviations_at_quantile;
 }
 
 // How far each signal is to be trusted. A position is of use where it has less noise than the speed's
@@ -116,7 +116,7 @@ MotionNoise noise_of(const TraceView& log, Seconds smoothing) {
     if (!log.has_position() || velocity_deg_s == 0.0) return alone;
     const double position_deg =
         std::max({sample_noise(log.position_deg), resolution(log.position_deg) / std::sqrt(12.0),
-                  least_noise_steps * velocity_deg_s / log.sample_rate.value()});
+                  min_noise_steps * velocity_deg_s / log.sample_rate.value()});
     const MotionNoise both{velocity_deg_s, position_deg};
     return tell_the_same(log, smoothing, both) ? both : alone;
 }
@@ -141,7 +141,7 @@ std::vector<double> still_speeds(const TraceView& log, Seconds smoothing, const 
         std::max(smoothing.value(), static_cast<double>(LocalFit::fewest_samples) / log.sample_rate.value());
     const double step_deg_s = both ? 2.0 * resolution(log.position_deg) / window_s : 0.0;
     for (double& error : error_deg_s)
-        error = std::min(std::max(scale * error, step_deg_s), most_at_rest_deg_s);
+        error = std::min(std::max(scale * error, step_deg_s), max_at_rest_deg_s);
     return error_deg_s;
 }
 

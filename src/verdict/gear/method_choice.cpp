@@ -200,8 +200,7 @@ void refuse_other_gear(const Contender& method, const GearAccount& measured) {
     if (std::abs(measured.ratio / *made_for - 1.0) <= std::max(same_ratio_share, doubt)) return;
     raise<UsageError>(
         "method {}: its filter is for gear ratio {:.6g}{}, and the ripple would be measured for {:.6g} ({}); "
-        "leave "
-        "one of them out{}",
+        "leave one of them out{}",
         method.method->name, made_for->value(),
         method.table ? fmt::format(" ({})", method.settings.text("table")) : "", measured.ratio.value(),
         measured.source, method.table ? ", or design a table for this gear" : "");

@@ -191,14 +191,14 @@ GivenArm::GivenArm(ArmSource option, const std::string& path, const ReadOptions&
                    std::optional<Seconds> smoothing, std::size_t most_rows)
     : option_(std::move(option)),
       smoothing_(smoothing),
-      most_rows_(most_rows),
+      max_rows_(most_rows),
       reading_(read_arm(path, options, most_rows, option_.chain, option_.stated)),
       travel_(arm_travel(option_.chain, reading_.view(), reading_.names)) {}
 
 const ArmReading& GivenArm::other(const std::string& path, const ReadOptions& options) {
     const auto known = others_.find(path);
     if (known != others_.end()) return known->second;
-    ArmReading other = read_arm(path, options, most_rows_, option_.chain, option_.stated);
+    ArmReading other = read_arm(path, options, max_rows_, option_.chain, option_.stated);
     (void)arm_travel(option_.chain, other.view(), other.names);
     return others_.emplace(path, std::move(other)).first->second;
 }

@@ -122,7 +122,7 @@ namespace {
 
 // The other joints of the log, of one of which the simulation may be.
 std::vector<Log> other_joints(const ReadOptions& reading, const GivenLog& log) {
-    constexpr std::size_t most_joints = 12;  // of an arm; a file of more is no log of one
+    constexpr std::size_t max_joints = 12;  // of an arm; a file of more is no log of one
     std::vector<Log> others;
     if (log.path == "-") return others;
     ReadOptions words = reading;
@@ -130,7 +130,7 @@ std::vector<Log> other_joints(const ReadOptions& reading, const GivenLog& log) {
     words.every_joint = true;
     const std::vector<std::string> joints = open_log(log.path, words)->layout().joints;
     words.every_joint = false;
-    if (joints.size() > most_joints) return others;
+    if (joints.size() > max_joints) return others;
     for (const std::string& joint : joints) {
         if (joint == log.log.trace.joint) continue;
         words.joint = joint;

@@ -158,8 +158,7 @@ SimulationSource::SimulationSource(std::string_view text, const std::optional<Si
     if (!own && position_ && !velocity_)
         raise<UsageError>(
             "--simulated: position={} needs velocity= too: a position is checked against the velocity that "
-            "it "
-            "is read with, and that of the log is another motion",
+            "it is read with, and that of the log is another motion",
             *position_);
     if (stated) {
         if (states(spec, "scale") || states(spec, "delay"))
