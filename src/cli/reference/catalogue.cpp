@@ -12,7 +12,6 @@
 #include "ripplenotch/core/progress.hpp"
 #include "ripplenotch/core/quantity.hpp"
 #include "ripplenotch/core/spec.hpp"
-#include "ripplenotch/export/map_target.hpp"
 #include "ripplenotch/export/target.hpp"
 #include "ripplenotch/filter/method.hpp"
 #include "ripplenotch/log/format.hpp"
