@@ -331,14 +331,16 @@ void settle_angle(Log& log) {
 
 // What is known when all rows are there.
 void finish(Log& log, const Account& account, const LogReader& reader, std::size_t joint) {
-    const Layout& layout = reader.layout();
-    const JointColumns chosen = layout.all_chosen()[joint];
+    const Layout& whole = reader.layout();
+    const Layout& layout = whole.each.empty() ? whole : whole.each[joint];
+    const std::size_t place = whole.each.empty() ? joint : 0;
+    const JointColumns chosen = layout.all_chosen()[place];
     log.layout = layout;
     log.trace.source = layout.source;
     log.trace.joint = chosen.joint;
     const auto period = wrap_period(log.trace.position_deg);
     if (period) Unwrapper(*period).apply(log.trace.position_deg);
-    log.recording = account.recording(layout, joint);
+    log.recording = account.recording(layout, place, joint);
     log.layout.chosen = chosen;
     log.layout.others.clear();
     log.trace.sample_rate = log.recording.clock.mean_rate;
@@ -444,6 +446,16 @@ std::optional<Log> read_log_if_short(const Spool& log, const ReadOptions& option
     return std::move(logs.front());
 }
 
+std::vector<Log> read_each_if_short(const Spool& log, const ReadOptions& options, std::size_t most_rows) {
+    if (!options.columns.empty() || options.hold_bad_values) return {};
+    ReadOptions each = options;
+    each.each_joint = true;
+    const auto reader = open_log(log.open(), each);
+    const std::size_t joints = reader->layout().each.size();
+    if (joints < 2) return {};
+    return read_all_joints(*reader, options, most_rows / joints);
+}
+
 AskedJoints asked_joints(const Spool& log, ReadOptions options) {
     options.needs_torque = false;
     options.constant_speed.reset();  // of the motor it needs a gear ratio, which the names do not
@@ -464,12 +476,14 @@ std::vector<Log> read_joints_in_part(const std::string& path, const ReadOptions&
         logs.push_back(in_part(spool, options, most_rows));
         return logs;
     }
+    const std::size_t each = most_rows == all_rows ? all_rows : most_rows * joints.names.size();
+    logs = read_each_if_short(*spool, options, each);
     ReadOptions one = options;
-    for (const std::string& joint : joints.names) {
-        one.joint = joint;
+    for (std::size_t j = logs.size(); j < joints.names.size(); ++j) {
+        one.joint = joints.names[j];
         logs.push_back(in_part(spool, one, most_rows));
-        logs.back().layout.left_out = joints.left_out;
     }
+    for (Log& log : logs) log.layout.left_out = joints.left_out;
     return logs;
 }
 

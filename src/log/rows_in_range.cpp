@@ -123,7 +123,7 @@ std::string range_in_words(const RowsOutside& outside) {
 ReadOptions options_of_whole(ReadOptions options) {
     if (!options.range.given()) return options;
     options.joint.reset();
-    options.every_joint = false;
+    options.every_joint = options.each_joint = false;
     options.needs_torque = false;
     return options;
 }

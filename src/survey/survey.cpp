@@ -194,15 +194,18 @@ Surveyed survey_joint(const std::shared_ptr<const Spool>& spool, const ReadOptio
 std::vector<Surveyed> survey_joints(const std::string& path, const ReadOptions& options,
                                     std::size_t most_rows) {
     const auto spool = std::make_shared<const Spool>(path);
-    std::vector<std::string> joints = asked_joints(*spool, options).names;
-    if (joints.empty()) joints.emplace_back();
     std::vector<Surveyed> all;
-    ReadOptions one = options;
-    for (const std::string& joint : joints) {
-        one.joint = joint.empty() ? std::nullopt : std::optional<std::string>(joint);
-        all.push_back(survey_joint(spool, one, most_rows));
-        JointInfo& info = all.back().info;
-        const Log& log = all.back().log;
+    for (Log& log : read_each_if_short(*spool, options, 4 * most_rows)) all.push_back(surveyed(std::move(log)));
+    if (all.empty()) {
+        std::vector<std::string> joints = asked_joints(*spool, options).names;
+        if (joints.empty()) joints.emplace_back();
+        ReadOptions one = options;
+        for (const std::string& joint : joints) {
+            one.joint = joint.empty() ? std::nullopt : std::optional<std::string>(joint);
+            all.push_back(survey_joint(spool, one, most_rows));
+        }
+    }
+    for (auto& [log, info] : all) {
         info.joint = log.layout.chosen.joint;
         if (log.position_range_deg)
             info.position_deg = Range{log.position_range_deg->first, log.position_range_deg->second};

@@ -121,6 +121,9 @@ struct ReadOptions {
     std::optional<std::string> joint;   ///< "j1", "j1,j3-j5", "all" (--joint); all when left out
     bool every_joint = false;           ///< read all of them that have a velocity and a torque, at once
     bool torque_of_each = true;         ///< with every_joint: false reads joints without a torque, too
+    /// Read all that are asked for at once, where there are several, and say of each what reading it alone
+    /// would (Layout::each).
+    bool each_joint = false;
     std::vector<std::string> columns;   ///< "time,velocity,torque" by place, or "torque=tau_J" by name
     std::map<std::string, std::string> units;   ///< role or column name -> unit
     std::map<std::string, ColumnScale> scales;  ///< role or column name -> what its numbers are in a unit
@@ -204,6 +207,14 @@ struct Layout {
     std::vector<Assumption> inferences;   ///< what the log does not say and a rule decided, with its reason
     std::shared_ptr<const RowsOutside>
         outside;  ///< where a range was asked for; counted while the log is read
+    std::vector<Layout> each;  ///< with ReadOptions::each_joint: of each joint alone, as all_chosen()
+
+    /// Does so with this one and with those of each joint.
+    template <class Change>
+    void change_all(const Change& change) {
+        change(*this);
+        for (Layout& one : each) change(one);
+    }
 
     /// All joints that are read.
     [[nodiscard]] std::vector<JointColumns> all_chosen() const {

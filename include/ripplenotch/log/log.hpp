@@ -105,6 +105,11 @@ inline constexpr std::size_t all_rows = std::numeric_limits<std::size_t>::max();
 /// read_log of a log with at most so many rows; nothing of a longer one.
 [[nodiscard]] std::optional<Log> read_log_if_short(const Spool& log, const ReadOptions& options,
                                                    std::size_t most_rows);
+/// Each of several joints that options.joint asks for, as read_log gives it, in one pass; none where there
+/// are fewer than two, where options state columns or hold bad values, and where all of them together have
+/// more than `most_rows`.
+[[nodiscard]] std::vector<Log> read_each_if_short(const Spool& log, const ReadOptions& options,
+                                                  std::size_t most_rows);
 /// Each joint that options.joint asks for, as read_log_in_part gives it.
 [[nodiscard]] std::vector<Log> read_joints_in_part(const std::string& path, const ReadOptions& options,
                                                    std::size_t most_rows = most_rows_held);

@@ -350,11 +350,11 @@ std::span<const RunPart> Account::add(const RowBlock& block) {
     return parts;
 }
 
-Recording Account::recording(const Layout& layout, std::size_t joint) const {
+Recording Account::recording(const Layout& layout, std::size_t place, std::size_t joint) const {
     Recording recording;
     recording.source = layout.source;
-    recording.joint = layout.all_chosen()[joint].joint;
-    const auto torque = layout.all_chosen()[joint].torque;
+    recording.joint = layout.all_chosen()[place].joint;
+    const auto torque = layout.all_chosen()[place].torque;
     if (torque && layout.columns[*torque].current) recording.torque_unit = "A";
     recording.clock = clock_.facts();
     recording.held = joints_[joint].held.held();

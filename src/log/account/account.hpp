@@ -94,8 +94,11 @@ class Account {
     [[nodiscard]] const Clock& clock() const { return clock_; }
     /// What the rows so far say of the angle; by joint, as Layout::all_chosen().
     [[nodiscard]] const AngleFacts& angle(std::size_t joint) const { return joints_[joint].angle.facts(); }
-    /// `layout` as it stands now.
-    [[nodiscard]] Recording recording(const Layout& layout, std::size_t joint) const;
+    /// `layout` as it stands now, in which the joint stands at `place`.
+    [[nodiscard]] Recording recording(const Layout& layout, std::size_t place, std::size_t joint) const;
+    [[nodiscard]] Recording recording(const Layout& layout, std::size_t joint) const {
+        return recording(layout, joint, joint);
+    }
 
   private:
     struct Joint {

@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <set>
+#include <span>
 
 #include "log/columns/column_name.hpp"
 #include "log/columns/infer_motion.hpp"
@@ -122,9 +123,18 @@ class Decision {
                                !options_.every_joint || options_.torque_of_each, incomplete_);
         for (const JointGroup& group : groups_) layout_.joints.push_back(group.name);
         take_asked();
+        if (options_.each_joint && layout_.asked.size() > 1) return each_alone();
         choose_joint();
+        settle();
+        return std::move(layout_);
+    }
+
+  private:
+    // Once the columns that are read are chosen.
+    void settle() {
         refuse_unscaled();
-        infer_motion(facts_, options_, motions_of(known(), groups_, stated_, options_, layout_), layout_);
+        infer_motion(facts_, options_, motions_of(known(), groups_, stated_, options_, layout_), evidence_,
+                     layout_);
         state_derived_velocity(layout_, facts_);
         take_constant_speed();
         state_symbols();
@@ -137,19 +147,46 @@ class Decision {
         }
         report_repeated_names();
         layout_.options = options_line(layout_, facts_, options_);
-        return std::move(layout_);
     }
 
-  private:
+    // What all joints share is decided once.
+    Layout each_alone() {
+        for (const JointGroup& group : groups_) give_roles(group, nullptr);
+        const Layout file = layout_;
+        const std::vector<bool> stated = stated_;
+        std::vector<Layout> each;
+        for (const std::string& joint : file.asked) {
+            layout_ = file;
+            layout_.asked = {joint};
+            layout_.left_out.clear();
+            stated_ = stated;
+            linear_.clear();
+            unscaled_.clear();
+            choose(*group_named(joint));
+            settle();
+            each.push_back(layout_);
+        }
+        Layout all = each.front();
+        all.asked = file.asked;
+        all.left_out = file.left_out;
+        for (const Layout& one : std::span(each).subspan(1)) {
+            all.others.push_back(one.chosen);
+            all.velocity_from_position = all.velocity_from_position || one.velocity_from_position;
+            for (const auto& column : {one.chosen.velocity, one.chosen.torque, one.chosen.position})
+                if (column) all.columns[*column] = one.columns[*column];
+        }
+        all.each = std::move(each);
+        return all;
+    }
+
     void name_columns() {
         if (facts_.names.empty())
             names_.resize(facts_.columns);
         else
             names_ = read_column_names(facts_.meanings(), facts_.units);
         for (std::size_t c = 0; c < facts_.columns; ++c) {
-            Column column;
-            column.name = facts_.names.empty() ? fmt::format("column {}", c + 1) : facts_.names[c];
-            layout_.columns.push_back(column);
+            layout_.columns.push_back(
+                named(facts_.names.empty() ? fmt::format("column {}", c + 1) : facts_.names[c]));
             if (names_[c].unit.empty() && facts_.names.empty() && !facts_.units.empty()) {
                 names_[c].unit = facts_.units[c];
                 names_[c].unit_is_sure = !facts_.units[c].empty();
@@ -213,8 +250,29 @@ class Decision {
                 "command takes several",
                 source_, layout_.asked.size(), fmt::join(layout_.asked, ", "), layout_.asked.front());
         }
-        if (group != nullptr) layout_.chosen = columns_of(*group);
-        for (const JointGroup& each : groups_) give_roles(each, group == &each ? &layout_.chosen : nullptr);
+        for (const JointGroup& each : groups_) give_roles(each, nullptr);
+        if (group != nullptr)
+            choose(*group);
+        else if (options_.needs_torque)
+            require_torque_and_velocity();
+    }
+
+    static Column named(const std::string& name) {
+        Column column;
+        column.name = name;
+        return column;
+    }
+
+    // Of a joint that is read, only the columns that are.
+    void choose(const JointGroup& group) {
+        for (const auto& [role, columns] : group.candidates) {
+            for (const std::size_t c : columns) {
+                layout_.columns[c] = named(layout_.columns[c].name);
+                stated_[c] = false;
+            }
+        }
+        layout_.chosen = columns_of(group);
+        give_roles(group, &layout_.chosen);
         if (options_.needs_torque) require_torque_and_velocity();
     }
 
@@ -536,6 +594,7 @@ class Decision {
     std::vector<ColumnName> names_;
     std::vector<bool> stated_;                     ///< by column: the log or an option says its unit
     std::vector<JointGroup> groups_, incomplete_;  ///< those that may be read, and those that lack something
+    MotionsSeen evidence_;
     std::exception_ptr refusal_;                   ///< the first of the caller
     std::vector<std::string> linear_;              ///< what is read in m, m/s and N where no lead is stated
     std::vector<std::pair<std::string, std::string>>

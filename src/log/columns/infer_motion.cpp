@@ -127,8 +127,8 @@ constexpr double never_meant = 4.6;  // dearer by more than two conventions brok
 class Inference {
   public:
     Inference(const ColumnFacts& facts, const ReadOptions& options, const std::vector<MotionColumns>& joints,
-              Layout& layout)
-        : facts_(facts), options_(options), joints_(joints), layout_(layout) {}
+              MotionsSeen& seen, Layout& layout)
+        : facts_(facts), options_(options), joints_(joints), seen_(seen), layout_(layout) {}
 
     void run() {
         if (joints_.empty()) return;
@@ -162,33 +162,50 @@ class Inference {
         }
     }
 
-    /// True when nothing is left to be asked of a longer sample.
-    bool measure(std::size_t bytes) {
-        std::vector<MotionPlace> places;
+    static MotionsSeen::Columns columns_of(const MotionColumns& joint) {
         const auto place = [](const std::optional<MotionColumn>& column) {
             return column ? std::optional<std::size_t>(column->column) : std::nullopt;
         };
+        return {place(joint.velocity), place(joint.position)};
+    }
+
+    /// Looks at those that nobody has looked at.
+    const MotionsSeen::Opening& look_at(std::size_t bytes) {
+        std::vector<MotionPlace> places;
+        MotionsSeen::Opening& opening = seen_.openings[bytes];
         for (const MotionColumns& joint : joints_)
-            places.push_back({place(joint.velocity), place(joint.position)});
+            if (const auto columns = columns_of(joint); opening.of.count(columns) == 0)
+                places.push_back({columns.first, columns.second});
+        if (places.empty()) return opening;
         MotionSample rows = facts_.motion_sample(layout_, places, bytes);
+        opening.whole = rows.whole;
         const double factor = layout_.chosen.time   ? layout_.columns[*layout_.chosen.time].factor
                               : layout_.stated_rate ? 1.0 / layout_.stated_rate->value()
                                                     : 1.0;
         for (double& time : rows.time) time *= factor;
+        for (std::size_t j = 0; j < places.size(); ++j) {
+            const MotionPlace& place = places[j];
+            if (place.velocity) {
+                const Column& column = layout_.columns[*place.velocity];
+                for (double& value : rows.joints[j].velocity) value += column.shift / column.factor;
+            }
+            opening.of[{place.velocity, place.position}] =
+                motion_evidence(rows.time, rows.joints[j].velocity, rows.joints[j].position);
+        }
+        return opening;
+    }
+
+    /// True when nothing is left to be asked of a longer sample.
+    bool measure(std::size_t bytes) {
+        const MotionsSeen::Opening& opening = look_at(bytes);
         bool scale = false;
         all_stated_ = true;
         evidence_ = {};
-        for (std::size_t j = 0; j < joints_.size(); ++j) {
-            const MotionColumns& joint = joints_[j];
+        for (const MotionColumns& joint : joints_) {
             for (const auto* column : {&joint.velocity, &joint.position})
                 all_stated_ =
                     all_stated_ && (!*column || ((*column)->unit_is_stated && !(*column)->named_motor));
-            if (joint.velocity) {
-                const Column& column = layout_.columns[joint.velocity->column];
-                for (double& value : rows.joints[j].velocity) value += column.shift / column.factor;
-            }
-            const MotionEvidence one =
-                motion_evidence(rows.time, rows.joints[j].velocity, rows.joints[j].position);
+            const MotionEvidence& one = opening.of.at(columns_of(joint));
             evidence_.fastest = std::max(evidence_.fastest, one.fastest);
             evidence_.farthest = std::max(evidence_.farthest, one.farthest);
             evidence_.velocity_counts = evidence_.velocity_counts || one.velocity_counts;
@@ -201,7 +218,7 @@ class Inference {
             }
         }
         const bool comparable = subject_->velocity && subject_->position;
-        return rows.whole || (all_stated_ && (scale || !comparable));
+        return opening.whole || (all_stated_ && (scale || !comparable));
     }
 
     /// Told by the user, for this joint or for all.
@@ -436,6 +453,7 @@ class Inference {
     const ColumnFacts& facts_;
     const ReadOptions& options_;
     const std::vector<MotionColumns>& joints_;
+    MotionsSeen& seen_;
     Layout& layout_;
     MotionEvidence evidence_;
     const MotionColumns* subject_ = nullptr;
@@ -446,8 +464,8 @@ class Inference {
 }  // namespace
 
 void infer_motion(const ColumnFacts& facts, const ReadOptions& options,
-                  const std::vector<MotionColumns>& joints, Layout& layout) {
-    Inference(facts, options, joints, layout).run();
+                  const std::vector<MotionColumns>& joints, MotionsSeen& seen, Layout& layout) {
+    Inference(facts, options, joints, seen, layout).run();
 }
 
 namespace {

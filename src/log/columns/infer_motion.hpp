@@ -4,9 +4,11 @@
 // position goes in the time of the velocity, and from what a joint can do. The one place that decides.
 
 #include <cstddef>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "log/columns/column_name.hpp"
@@ -56,9 +58,20 @@ struct MotionColumns {
                                                     const std::vector<bool>& unit_is_stated,
                                                     const ReadOptions& options, const Layout& layout);
 
+/// What was found out of motions, by the bytes of the opening that were looked at: the same joints are asked
+/// for again where each is read alone.
+struct MotionsSeen {
+    using Columns = std::pair<std::optional<std::size_t>, std::optional<std::size_t>>;
+    struct Opening {
+        std::map<Columns, MotionEvidence> of;
+        bool whole = false;  ///< as MotionSample::whole
+    };
+    std::map<std::size_t, Opening> openings;
+};
+
 /// Sets unit, factor and side of the velocity and position columns of all `joints` alike, and says in
 /// `layout` what was inferred, what stays assumed, and which other readings are as possible.
 void infer_motion(const ColumnFacts& facts, const ReadOptions& options,
-                  const std::vector<MotionColumns>& joints, Layout& layout);
+                  const std::vector<MotionColumns>& joints, MotionsSeen& seen, Layout& layout);
 
 }  // namespace ripplenotch

@@ -106,22 +106,23 @@ void ColumnReader::decide(const ReadOptions& options) {
         facts.names.empty() && options.columns.empty() && (facts.columns == 3 || facts.columns == 4);
     if (by_place) {
         with_default.columns = {"time", "velocity", "torque"};
-        with_default.every_joint = false;  // there is one
+        with_default.every_joint = with_default.each_joint = false;  // there is one
         if (facts.columns == 4) with_default.columns.emplace_back("position");
     }
     layout_ = decide_layout(columns().name(), log_.format, facts, with_default);
-    layout_.outside = columns().outside();
-    layout_.contents = log_.contents;
-    layout_.warnings.insert(layout_.warnings.begin(), log_.warnings.begin(), log_.warnings.end());
-    layout_.inferences.insert(layout_.inferences.end(), log_.inferences.begin(), log_.inferences.end());
-    if (by_place) {
-        layout_.warnings.insert(
-            layout_.warnings.begin(),
+    layout_.change_all([&](Layout& layout) {
+        layout.outside = columns().outside();
+        layout.contents = log_.contents;
+        layout.warnings.insert(layout.warnings.begin(), log_.warnings.begin(), log_.warnings.end());
+        layout.inferences.insert(layout.inferences.end(), log_.inferences.begin(), log_.inferences.end());
+        if (!by_place) return;
+        layout.warnings.insert(
+            layout.warnings.begin(),
             LogWarning{"columns by place", fmt::format("the {} names no columns: took time, velocity, "
                                                        "torque{} by place; --columns settles it",
                                                        log_.format == "npy" ? "array" : "layout",
                                                        facts.columns == 4 ? ", position" : "")});
-    }
+    });
     wanted_ = wanted_columns(layout_);
     // time_at() adds the fraction of a second.
     std::erase_if(wanted_, [](const WantedColumn& one) { return one.fraction; });

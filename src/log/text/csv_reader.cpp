@@ -61,10 +61,11 @@ CsvReader::CsvReader(TextOpening opening, const ReadOptions& options)
       source_ended_(opening.ended) {
     std::string first_bytes = std::move(opening.bytes);
     layout_ = decide_layout(source_->name(), "csv", facts_of(first_bytes), options);
-    layout_.outside = rows_outside(*source_);
-    if (dialect_.head_lines > 0) {
+    layout_.change_all([&](Layout& layout) {
+        layout.outside = rows_outside(*source_);
+        if (dialect_.head_lines == 0) return;
         const bool scope = !dialect_.scales.empty();
-        layout_.inferences.push_back(
+        layout.inferences.push_back(
             {fmt::format("the first {} lines", dialect_.head_lines),
              scope ? "the head of a TwinCAT Scope export, with its names and units"
                    : "a head, passed on and not read",
@@ -73,7 +74,7 @@ CsvReader::CsvReader(TextOpening opening, const ReadOptions& options)
                    : "they are no rows, and the names do not stand in the first of them",
              fmt::format("--skip-lines {}", dialect_.head_lines),
              {}});
-    }
+    });
     head_ = first_bytes.substr(0, dialect_.data_offset);
     ahead_ = std::move(first_bytes);
     ahead_at_ = dialect_.data_offset;
