@@ -233,6 +233,11 @@ class ColumnsInRange final : public Columns, public RowsInRange {
     [[nodiscard]] std::size_t row_bytes() const override { return base().row_bytes(); }
 
   private:
+    void chosen() override {
+        std::vector<bool> kept(info().size());
+        for (std::size_t c = 0; c < kept.size(); ++c) kept[c] = wanted(c);
+        whole_->keep(std::move(kept));
+    }
     /// The next of the log, as far as they are inside; false when there are none left.
     bool add_rows(NumberRows& into, std::string& bytes) {
         const std::size_t count = whole_->take(numbers_, bytes_);

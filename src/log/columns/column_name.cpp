@@ -746,19 +746,6 @@ std::vector<JointGroup> group_joints(const KnownColumns& known, bool joint_asked
         const auto rest = std::stable_partition(groups.begin(), groups.end(), complete);
         incomplete.assign(std::make_move_iterator(rest), std::make_move_iterator(groups.end()));
         groups.erase(rest, groups.end());
-        // "torque_sm_2" and "torque_2": which of them is the torque of joint 2 is asked.
-        std::erase_if(incomplete, [&](const JointGroup& other) {
-            if (other.has(Role::velocity) || other.has(Role::position)) return false;
-            const auto same = std::find_if(groups.begin(), groups.end(), [&](const JointGroup& group) {
-                return !group.key.empty() && other.key.ends_with("_" + group.key);
-            });
-            if (same == groups.end()) return false;
-            for (const auto& [role, columns] : other.candidates) {
-                auto& all = same->candidates[role];
-                all.insert(all.end(), columns.begin(), columns.end());
-            }
-            return true;
-        });
     }
     return groups;
 }

@@ -54,7 +54,10 @@ ColumnReader::ColumnReader(ColumnLog log, const ReadOptions& options)
     ReadOptions settled = options;
     if (!log_.asked.empty()) settled.columns = log_.asked;
     decide(settled);
-    if (!options.range.given()) keep_wanted();
+    std::vector<bool> kept(columns().info().size(), false);
+    for (const WantedColumn& one : wanted_) kept[one.column] = true;
+    // Of a range, the reader of the rows inside says what it wants.
+    if (!options.range.given() && !wanted_.empty()) keep(std::move(kept));
     at_once_ = std::max<std::size_t>(1, bytes_at_once / columns().row_bytes());
     held_.emplace(columns().name(), columns().info(), std::move(ahead_), std::move(ahead_bytes_));
 }
@@ -136,11 +139,10 @@ void ColumnReader::decide(const ReadOptions& options) {
     }
 }
 
-void ColumnReader::keep_wanted() {
-    std::vector<bool> kept(columns().info().size(), false);
-    for (const WantedColumn& one : wanted_) kept[one.column] = true;
-    if (layout_.time_fraction) kept[*layout_.time_fraction] = true;
-    if (!wanted_.empty()) log_.columns->keep(std::move(kept));
+void ColumnReader::keep(std::vector<bool> wanted) {
+    for (const auto& of_time : {layout_.chosen.time, layout_.time_fraction})
+        if (of_time) wanted[*of_time] = true;
+    log_.columns->keep(std::move(wanted));
 }
 
 double ColumnReader::time_at(const NumberRows& numbers, std::size_t row, const Layout& layout) const {

@@ -25,6 +25,8 @@ class ColumnReader final : public LogReader {
     bool fetch(RowBlock& block) override;
 
     [[nodiscard]] const Columns& columns() const { return *log_.columns; }
+    /// From here on only these columns are wanted, and those of the time.
+    void keep(std::vector<bool> wanted);
     /// All that is known but the columns, for a reader of some of their rows.
     [[nodiscard]] ColumnLog same_log(std::unique_ptr<Columns> columns) const;
     /// The next rows as they stand in the file, without a judgement; 0 at the end.
@@ -38,7 +40,6 @@ class ColumnReader final : public LogReader {
     void decide(const ReadOptions& options);
     [[nodiscard]] ColumnFacts column_facts();
     [[nodiscard]] std::vector<std::string> names() const;
-    void keep_wanted();
     void read_ahead(std::size_t rows);
     [[nodiscard]] double time_at(const NumberRows& numbers, std::size_t row, const Layout& layout) const;
     [[nodiscard]] MotionSample motion_sample(const Layout& layout,

@@ -160,6 +160,11 @@ class JoinedColumns final : public Columns {
         }
         return info;
     }
+    void chosen() override {
+        std::vector<bool> of_base(base_->info().size(), true);
+        for (std::size_t c = 1; c < of_base.size(); ++c) of_base[c] = wanted(c);
+        base_->keep(std::move(of_base));
+    }
     /// False where a side has no value.
     bool read_sides(std::int64_t time_ns) {
         const std::size_t before = values_.size();

@@ -128,12 +128,12 @@ std::size_t CsvReader::next_bytes(char* into, std::size_t size) {
 void CsvReader::plan_columns() {
     before_ = row_ = ParsedRow(1 + layout_.others.size());
     std::fill(before_.values.begin(), before_.values.end(), not_a_number);
-    wanted_ = wanted_columns(layout_);
-    factors_ = slot_factors(layout_, wanted_);
-    std::sort(wanted_.begin(), wanted_.end(),
+    std::vector<WantedColumn> wanted = wanted_columns(layout_);
+    std::vector<double> factors = slot_factors(layout_, wanted);
+    std::sort(wanted.begin(), wanted.end(),
               [](const auto& a, const auto& b) { return a.column < b.column; });
-    stamp_ = stamp_rule(layout_, dialect_.rules.decimal_mark);
-    quick_.emplace(RowPlan{dialect_.rules, dialect_.columns, wanted_, factors_, stamp_});
+    quick_.emplace(RowPlan{dialect_.rules, dialect_.columns, std::move(wanted), std::move(factors),
+                           stamp_rule(layout_, dialect_.rules.decimal_mark)});
 }
 
 bool CsvReader::next(RowBlock& block) {
@@ -288,14 +288,14 @@ void CsvReader::append_row(RowBlock& block, ParsedRow& row) {
         complain(1, time_backward({before, time, layout_.time_origin}));
     }
     if (layout_.chosen.time)
-        block.time_s.push_back(time * factors_[time_slot]);
+        block.time_s.push_back(time * quick_->plan().factors[time_slot]);
     else
         block.time_s.push_back(layout_.stated_rate ? static_cast<double>(rows_) / layout_.stated_rate->value()
                                                    : not_a_number);
     for (std::size_t j = 0; j < block.joints.size(); ++j) {
         const auto number = [&](RowSlot of_first) {
             const std::size_t slot = slot_of(of_first, j);
-            return row.values[slot] * factors_[slot];
+            return row.values[slot] * quick_->plan().factors[slot];
         };
         const JointColumns& columns = j == 0 ? layout_.chosen : layout_.others[j - 1];
         JointRows& joint = block.joints[j];
@@ -341,30 +341,16 @@ void CsvReader::parse_carefully(std::string_view line, RowBlock& block, ParsedRo
                              cut ? "the last line is cut off: remove it, e.g. with head -n -1"
                                  : "correct or remove the line"));
     }
-    row.values[time_slot] = nothing_yet;
-    for (const WantedColumn& wanted : wanted_) {
-        const Cell& cell = cells[wanted.column];
-        const double value = read_cell(line, cell, wanted, block);
-        if (wanted.fraction)
-            row.values[time_slot] += seconds_per_nanosecond * value;
-        else if (wanted.slot == time_slot)
-            row.values[time_slot] += value;
-        else
-            row.values[wanted.slot] = value;
-        if (is_torque(wanted.slot))
-            row.torques[joint_of(wanted.slot)] = {line.data() + cell.begin, line.data() + cell.end};
-    }
-    const Cell& last = cells.back();
-    row.content_end = line.data() + last.end + (last.quoted ? 1 : 0);
+    static_cast<void>(quick_->parser().parse_cells(
+        line, split_, row, [&](const Cell& cell, const WantedColumn& wanted, std::optional<double> number) {
+            return other_number(line, cell, wanted, number, block);
+        }));
 }
 
-double CsvReader::read_cell(std::string_view line, const Cell& cell, const WantedColumn& wanted,
-                            RowBlock& block) {
+double CsvReader::other_number(std::string_view line, const Cell& cell, const WantedColumn& wanted,
+                               std::optional<double> number, RowBlock& block) {
     const std::string_view text = cell.of(line);
     const std::size_t slot = wanted.slot;
-    const bool stamp = slot == time_slot && stamp_.careful && !wanted.fraction;
-    const auto number = stamp ? read_stamp(text, stamp_) : parse_number(text, dialect_.rules.decimal_mark);
-    if (number && is_reading(*number)) return *number;
     const std::string name = column_label(dialect_.names, wanted.column);
     // "NA", "null" and the like are texts; only what is empty or a nan of arithmetic counts as a missing
     // value.
@@ -387,7 +373,7 @@ double CsvReader::read_cell(std::string_view line, const Cell& cell, const Wante
         cell.begin + 1,
         fmt::format("read {} in {}, expected a {}; {}",
                     text.empty() ? std::string("nothing") : "'" + shown_cell(text) + "'", name,
-                    (stamp && stamp_.text) || (slot == time_slot && text.find(':') != std::string_view::npos)
+                    (slot == time_slot && !wanted.fraction && quick_->plan().stamp.text) || (slot == time_slot && text.find(':') != std::string_view::npos)
                         ? fmt::format("time of day or a date and time such as {}", stamp_forms)
                     : number && std::isfinite(*number) ? "number from -1e30 to 1e30"
                     : number                           ? "finite number"

@@ -57,7 +57,8 @@ class CsvReader : public LogReader {
     bool accept_line(RowBlock& block, std::size_t begin, std::size_t end);
     void refuse_controls(std::string_view line) const;
     void parse_carefully(std::string_view line, RowBlock& block, ParsedRow& row);
-    double read_cell(std::string_view line, const Cell& cell, const WantedColumn& wanted, RowBlock& block);
+    double other_number(std::string_view line, const Cell& cell, const WantedColumn& wanted,
+                        std::optional<double> number, RowBlock& block);
     void append_row(RowBlock& block, ParsedRow& row);
     [[nodiscard]] std::size_t line_in_file() const { return number_in_file(*source_, line_); }
     [[noreturn]] void complain(std::size_t column, const std::string& sentence) const;
@@ -79,9 +80,6 @@ class CsvReader : public LogReader {
     std::size_t rows_ = 0;
     std::size_t bytes_without_row_ = 0;
     std::optional<QuickRows> quick_;
-    std::vector<WantedColumn> wanted_;
-    std::vector<double> factors_;  ///< by slot
-    StampRule stamp_;
     ParsedRow before_, row_;  ///< as in the file; `before_` is the row before
     CellSplit split_;
 };

@@ -83,10 +83,36 @@ bool needs_care(char c) { return c == '"' || is_control(c); }
 
 }  // namespace
 
-bool RowParser::add_stamp(std::string_view text, bool fraction, double& time) const {
-    const auto number = fraction ? parse_number(text, rules_.decimal_mark) : read_stamp(text, stamp_);
-    if (!number || !is_reading(*number)) return false;
-    time += fraction ? seconds_per_nanosecond * *number : *number;
+std::optional<CellNumber> RowParser::number(std::string_view text, const WantedColumn& wanted) const {
+    if (!in_parts(wanted) || wanted.fraction) return rules_.number(text, wanted.column);
+    const auto time = read_stamp(text, stamp_);
+    return time ? std::optional(CellNumber{*time, text.size(), {}}) : std::nullopt;
+}
+
+void RowParser::add(double number, const WantedColumn& wanted, double& time) {
+    time += wanted.fraction ? seconds_per_nanosecond * number : number;
+}
+
+bool RowParser::parse_cells(std::string_view line, const CellSplit& split, ParsedRow& row,
+                            const Other& other) const {
+    row.values[time_slot] = nothing_yet;
+    for (const WantedColumn& wanted : wanted_) {
+        const Cell& cell = split.cells[wanted.column];
+        const auto read = number(cell.of(line), wanted);
+        std::optional<double> value = read ? std::optional(read->value) : std::nullopt;
+        if (!value || !is_reading(*value)) value = other(cell, wanted, value);
+        if (!value) return false;
+        if (wanted.slot == time_slot)
+            add(*value, wanted, row.values[time_slot]);
+        else
+            row.values[wanted.slot] = *value;
+        if (is_torque(wanted.slot)) {
+            const char* const begin = line.data() + cell.begin;
+            row.torques[joint_of(wanted.slot)] = {begin, read ? begin + read->size : line.data() + cell.end};
+        }
+    }
+    const Cell& last = split.cells.back();
+    row.content_end = line.data() + last.end + (last.quoted ? 1 : 0);
     return true;
 }
 
@@ -109,22 +135,20 @@ bool RowParser::parse(const char* at, const char* end, ParsedRow& row) const {
             while (!runs && at < end && *at == ' ' && delimiter != '\t') ++at;
             double& value = row.values[wanted->slot];
             ParsedRow::Place place{at, nullptr};
-            const bool stamp = stamp_.careful && wanted->slot == time_slot;
+            const bool stamp = in_parts(*wanted);
             const char* stop = stamp ? nullptr : read_short_decimal(at, end, rules_.decimal_mark, value);
             if (stop == nullptr || !at_cell_end(stop)) {
                 stop = at;
                 while (!at_cell_end(stop)) ++stop;
                 const char* content = stop;
                 while (content > at && is_blank(content[-1])) --content;
-                const std::string_view text(at, static_cast<std::size_t>(content - at));
-                if (stamp) {
-                    if (!add_stamp(text, wanted->fraction, value)) return false;
-                } else {
-                    const auto number = parse_number(text, rules_.decimal_mark);
-                    if (!number || !is_reading(*number)) return false;
-                    value = *number;
-                }
-                place.end = content;
+                const auto read = number({at, static_cast<std::size_t>(content - at)}, *wanted);
+                if (!read || !is_reading(read->value)) return false;
+                if (stamp)
+                    add(read->value, *wanted, value);
+                else
+                    value = read->value;
+                place.end = at + read->size;
             } else {
                 place.end = stop;
             }

@@ -3,6 +3,7 @@
 // Many well-formed rows of numbers at once, from any thread. Stops at the first row that it is not sure of.
 
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -85,8 +86,19 @@ class RowParser {
     /// without quotes. `row` has room for the slots that are wanted.
     [[nodiscard]] bool parse(const char* begin, const char* end, ParsedRow& row) const;
 
+    /// What stands for the number of a cell that holds none, or one that is no reading; may throw.
+    using Other = std::function<std::optional<double>(const Cell& cell, const WantedColumn& wanted,
+                                                      std::optional<double> number)>;
+    /// The careful way, of a line that is cut into as many cells as a row has; false where `other` gives none.
+    [[nodiscard]] bool parse_cells(std::string_view line, const CellSplit& split, ParsedRow& row,
+                                   const Other& other) const;
+
   private:
-    [[nodiscard]] bool add_stamp(std::string_view text, bool fraction, double& time) const;
+    [[nodiscard]] std::optional<CellNumber> number(std::string_view text, const WantedColumn& wanted) const;
+    [[nodiscard]] bool in_parts(const WantedColumn& wanted) const {
+        return stamp_.careful && wanted.slot == time_slot;
+    }
+    static void add(double number, const WantedColumn& wanted, double& time);
 
     CellRules rules_;
     std::size_t columns_;
@@ -135,6 +147,8 @@ class QuickRows {
     /// stopped: the beginning of a line, or the end. The numbers are those of RowParser, bit for bit.
     std::size_t read(RowBlock& block, std::size_t begin, double time_before) const;
 
+    [[nodiscard]] const RowPlan& plan() const { return plan_; }
+    [[nodiscard]] const RowParser& parser() const { return parser_; }
     /// One row, not appended.
     [[nodiscard]] bool parse(std::string_view line, ParsedRow& row) const {
         return !careful_ && parser_.parse(line.data(), line.data() + line.size(), row);

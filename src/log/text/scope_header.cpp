@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "log/columns/units.hpp"
-#include "log/text/text_header.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/quantity.hpp"
@@ -36,12 +35,7 @@ class Head {
         : bytes_(bytes), content_(content), delimiter_(delimiter) {}
 
     [[nodiscard]] std::vector<std::string> cells(std::size_t line) const {
-        const std::string_view text = content_[line].of(bytes_);
-        CellSplit split;
-        split_cells(text, delimiter_, split);
-        std::vector<std::string> cells;
-        for (const Cell& cell : split.cells) cells.push_back(as_utf8(cell_text(text, cell)));
-        return cells;
+        return cell_texts(content_[line].of(bytes_), delimiter_);
     }
 
     [[nodiscard]] bool is_names(std::size_t line) const {

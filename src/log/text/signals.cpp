@@ -33,10 +33,7 @@ bool Lines::next() {
 }
 
 std::vector<std::string> Lines::cells(char delimiter) const {
-    CellSplit split;
-    split_cells(line_, delimiter, split);
-    std::vector<std::string> texts;
-    for (const Cell& cell : split.cells) texts.push_back(cell_text(line_, cell));
+    std::vector<std::string> texts = cell_texts(line_, delimiter);
     while (texts.size() > 1 && texts.back().empty()) texts.pop_back();
     return texts;
 }

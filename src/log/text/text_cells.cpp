@@ -1,8 +1,84 @@
 // SPDX-License-Identifier: MIT
 #include "log/text/text_cells.hpp"
 
+#include <algorithm>
+#include <cctype>
+#include <utility>
+
+#include "log/columns/units.hpp"
+#include "ripplenotch/core/number.hpp"
+
 namespace ripplenotch {
 namespace {
+
+bool is_decimal_digit(char c) { return c >= '0' && c <= '9'; }
+
+// The minus sign as typesetters write it.
+constexpr std::string_view long_minus = "\xe2\x88\x92";
+
+/// Takes the text of a number off the front, as parse_number() reads it: without separators of thousands.
+std::string take_number(std::string_view& rest, char decimal_mark, std::size_t& groups) {
+    std::string plain;
+    const auto take_sign = [&] {
+        const std::size_t size = rest.starts_with(long_minus) ? long_minus.size()
+                                 : !rest.empty() && (rest.front() == '-' || rest.front() == '+') ? 1
+                                                                                               : 0;
+        if (size > 0) plain += rest.front() == '+' ? '+' : '-';
+        rest.remove_prefix(size);
+    };
+    const auto digit_at = [&](std::size_t at) { return at < rest.size() && is_decimal_digit(rest[at]); };
+    take_sign();
+    char separator = '\0';
+    for (bool marked = false; !rest.empty(); rest.remove_prefix(1)) {
+        const char c = rest.front();
+        const bool thousands = !marked && c != decimal_mark && std::string_view(",.' ").find(c) < 4 &&
+                               (separator == '\0' || separator == c) && !plain.empty() &&
+                               is_decimal_digit(plain.back()) && digit_at(1) && digit_at(2) && digit_at(3) &&
+                               !digit_at(4);
+        if (thousands) {
+            separator = c;
+            ++groups;
+        } else if (c == decimal_mark && !marked) {
+            marked = true;
+            groups += groups > 0 ? 1 : 0;
+            plain += '.';
+        } else if (is_decimal_digit(c)) {
+            plain += c;
+        } else {
+            break;
+        }
+    }
+    if (rest.empty() || std::string_view("eEdD").find(rest.front()) > 3) return plain;
+    const std::size_t sign = rest.substr(1).starts_with(long_minus) ? long_minus.size()
+                             : rest.size() > 1 && (rest[1] == '-' || rest[1] == '+') ? 1
+                                                                                     : 0;
+    if (!digit_at(1 + sign)) return plain;
+    rest.remove_prefix(1);
+    plain += 'e';
+    take_sign();
+    for (; digit_at(0); rest.remove_prefix(1)) plain += rest.front();
+    return plain;
+}
+
+// Bytes that are no UTF-8 are Latin-1: a degree sign, a micro sign, an umlaut.
+std::string as_utf8(const std::string& text) {
+    std::string converted;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const auto byte = static_cast<unsigned char>(text[i]);
+        const std::size_t more = byte < 0xC2 ? 0 : byte < 0xE0 ? 1 : byte < 0xF0 ? 2 : byte < 0xF5 ? 3 : 0;
+        bool whole = byte < 0x80 || more > 0;
+        for (std::size_t k = 1; whole && k <= more; ++k)
+            whole = i + k < text.size() && (static_cast<unsigned char>(text[i + k]) & 0xC0) == 0x80;
+        if (whole) {
+            converted += text.substr(i, more + 1);
+            i += more;
+        } else {
+            converted += static_cast<char>(0xC0 | (byte >> 6));
+            converted += static_cast<char>(0x80 | (byte & 0x3F));
+        }
+    }
+    return converted;
+}
 
 bool is_delimiter(char c, char delimiter) { return delimiter == ' ' ? is_blank(c) : c == delimiter; }
 
@@ -55,12 +131,36 @@ void split_cells(std::string_view line, char delimiter, CellSplit& into) {
     }
 }
 
-std::string cell_text(std::string_view line, const Cell& cell) {
-    std::string text(cell.of(line));
-    if (!cell.quoted) return text;
-    for (std::size_t at = text.find("\"\""); at != std::string::npos; at = text.find("\"\"", at + 1))
-        text.erase(at, 1);
-    return text;
+std::vector<std::string> cell_texts(std::string_view line, char delimiter) {
+    CellSplit split;
+    split_cells(line, delimiter, split);
+    std::vector<std::string> texts;
+    for (const Cell& cell : split.cells) {
+        std::string text(cell.of(line));
+        for (std::size_t at = text.find("\"\""); cell.quoted && at != std::string::npos;
+             at = text.find("\"\"", at + 1))
+            text.erase(at, 1);
+        texts.push_back(as_utf8(text));
+    }
+    return texts;
+}
+
+std::optional<CellNumber> cell_number(std::string_view cell, char decimal_mark) {
+    if (const auto plain = parse_number(cell, decimal_mark)) return CellNumber{*plain, cell.size(), {}};
+    std::string_view rest = cell;
+    std::size_t groups = 0;
+    const auto number = parse_number(take_number(rest, decimal_mark, groups));
+    if (!number || groups == 1) return std::nullopt;
+    const std::size_t size = cell.size() - rest.size();
+    while (!rest.empty() && is_blank(rest.front())) rest.remove_prefix(1);
+    if (!rest.empty() && !usual_unit(rest, Role::other) && !is_device_unit(rest)) return std::nullopt;
+    return CellNumber{*number, size, rest};
+}
+
+std::optional<CellNumber> CellRules::number(std::string_view cell, std::size_t column) const {
+    const auto number = cell_number(cell, decimal_mark);
+    const bool alike = number && number->unit == (units.empty() ? std::string_view() : units[column]);
+    return alike ? number : std::nullopt;
 }
 
 bool is_blank_line(std::string_view line) {

@@ -1,19 +1,35 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// One line of a text log, split into cells: the careful way, used for headers, samples, quoted rows and
-// messages. The quick way for plain rows of numbers is in row_parser.hpp; a test holds that both agree.
+// One line of a text log, split into cells, and the number that a cell holds: the careful way, used for
+// headers, samples, quoted rows and messages. The quick way for plain rows of numbers is in quick_rows.hpp; a
+// test holds that both agree.
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace ripplenotch {
 
+/// A number as programs and people write it: plain, with the exponent of Fortran (1.5D-03), with the minus of
+/// typesetters, with separators of thousands (1,234.5), with its unit behind it.
+struct CellNumber {
+    double value = 0.0;
+    std::size_t size = 0;   ///< bytes of the cell that are the number
+    std::string_view unit;  ///< "deg/s"; mostly empty
+};
+/// None where the cell holds something else. One separator of thousands alone is none: "1,234" may be 1.234.
+[[nodiscard]] std::optional<CellNumber> cell_number(std::string_view cell, char decimal_mark);
+
 /// What separates cells and marks decimals.
 struct CellRules {
     char delimiter = ',';  ///< ' ' means runs of blanks and tabs, also at both ends of a line
     char decimal_mark = '.';
+    std::vector<std::string> units = {};  ///< by column, where cells have theirs behind the number; else empty
+
+    /// cell_number() of a cell in this column; none where it has another unit than the column.
+    [[nodiscard]] std::optional<CellNumber> number(std::string_view cell, std::size_t column) const;
 };
 
 [[nodiscard]] inline bool is_blank(char c) { return c == ' ' || c == '\t'; }
@@ -32,8 +48,8 @@ struct CellSplit {
 };
 void split_cells(std::string_view line, char delimiter, CellSplit& into);
 
-/// The cell's text with doubled quotes undone.
-[[nodiscard]] std::string cell_text(std::string_view line, const Cell& cell);
+/// The texts of a line's cells in UTF-8, with doubled quotes undone.
+[[nodiscard]] std::vector<std::string> cell_texts(std::string_view line, char delimiter);
 
 /// Blank, or begins with # % or // after blanks.
 [[nodiscard]] bool is_blank_line(std::string_view line);

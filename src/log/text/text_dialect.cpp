@@ -92,7 +92,7 @@ Score score(std::string_view bytes, const TextLine& first, const std::vector<Tex
         const std::string_view line = rows[k].of(bytes);
         split_cells(line, rules.delimiter, split);
         for (const Cell& cell : split.cells) {
-            const bool number = parse_number(cell.of(line), rules.decimal_mark).has_value();
+            const bool number = cell_number(cell.of(line), rules.decimal_mark).has_value();
             ++cells;
             good += number || cell.begin == cell.end;
             numbers += number;
@@ -111,7 +111,7 @@ Score score(std::string_view bytes, const TextLine& first, const std::vector<Tex
 GuessedRules guess_rules(std::string_view bytes, const TextLine& first, const std::vector<TextLine>& rows,
                          const ReadOptions& options) {
     // In order of preference between equals. A comma that separates can mark decimals only inside quotes.
-    constexpr std::array candidates = {CellRules{'\t', '.'}, CellRules{';', '.'},  CellRules{',', '.'},
+    const std::array candidates = {CellRules{'\t', '.'}, CellRules{';', '.'},  CellRules{',', '.'},
                                        CellRules{' ', '.'},  CellRules{'\t', ','}, CellRules{';', ','},
                                        CellRules{' ', ','},  CellRules{',', ','}};
     const bool quotes = bytes.find('"') != std::string_view::npos;
@@ -190,6 +190,7 @@ void look_at_sample(std::string_view bytes, std::span<const TextLine> rows, Text
     dialect.stamp_forms.assign(dialect.columns, {});
     dialect.first_counts.assign(dialect.columns, 0);
     std::vector<std::vector<std::string_view>> texts(dialect.columns);
+    std::vector<std::set<std::string_view>> units(dialect.columns);
     CellSplit split;
     for (std::size_t k = 0; k < rows.size() && k < rows_sampled; ++k) {
         const std::string_view line = rows[k].of(bytes);
@@ -197,7 +198,7 @@ void look_at_sample(std::string_view bytes, std::span<const TextLine> rows, Text
         if (split.cells.size() != dialect.columns) continue;
         for (std::size_t c = 0; c < dialect.columns; ++c) {
             const std::string_view cell = split.cells[c].of(line);
-            const auto value = parse_number(cell, dialect.rules.decimal_mark);
+            std::optional<double> value = parse_number(cell, dialect.rules.decimal_mark);
             if (k == 0) dialect.has_lists |= list_in(cell).has_value();
             if (k == 0) std::from_chars(cell.data(), cell.data() + cell.size(), dialect.first_counts[c]);
             if (!value && (k == 0 || dialect.clock_texts[c])) {
@@ -205,8 +206,21 @@ void look_at_sample(std::string_view bytes, std::span<const TextLine> rows, Text
                 if (dialect.clock_texts[c]) texts[c].push_back(cell);
                 if (k == 0 && dialect.clock_texts[c]) dialect.first_counts[c] = 0;
             }
+            if (value) {
+                units[c].insert("");
+            } else if (const auto number = cell_number(cell, dialect.rules.decimal_mark)) {
+                value = number->value;
+                units[c].insert(number->unit);
+            }
             dialect.sample[c].push_back(value.value_or(std::numeric_limits<double>::quiet_NaN()));
         }
+    }
+    for (std::size_t c = 0; c < dialect.columns; ++c) {
+        if (dialect.clock_texts[c] || units[c].size() != 1 || units[c].count("") > 0) continue;
+        dialect.rules.units.resize(dialect.columns);
+        dialect.rules.units[c] = *units[c].begin();
+        dialect.units.resize(dialect.columns);
+        if (dialect.units[c].empty()) dialect.units[c] = dialect.rules.units[c];
     }
     for (std::size_t c = 0; c < dialect.columns; ++c) {
         if (!dialect.clock_texts[c] || texts[c].size() != dialect.sample[c].size()) continue;
@@ -448,9 +462,7 @@ TextRow::TextRow(const TextDialect& dialect, std::vector<WantedColumn> wanted, S
                  std::size_t joints, bool lenient)
     : rules_(dialect.rules),
       columns_(dialect.columns),
-      wanted_(by_column(std::move(wanted))),
-      stamp_(stamp),
-      parser_(rules_, columns_, wanted_, stamp_),
+      parser_(rules_, columns_, by_column(std::move(wanted)), stamp),
       lenient_(lenient),
       row_(joints) {}
 
@@ -466,23 +478,10 @@ std::string_view TextRow::cell(std::string_view line, std::size_t column) {
 // Quoted cells.
 bool TextRow::parse_carefully(std::string_view line) {
     split_cells(line, rules_.delimiter, split_);
-    if (split_.cells.size() != columns_) return false;
-    row_.values[time_slot] = nothing_yet;
-    for (const WantedColumn& wanted : wanted_) {
-        const std::string_view text = split_.cells[wanted.column].of(line);
-        const bool stamp = stamp_.careful && wanted.slot == time_slot && !wanted.fraction;
-        const auto number = stamp ? read_stamp(text, stamp_) : parse_number(text, rules_.decimal_mark);
-        if (!number || !is_reading(*number)) {
-            if (!lenient_) return false;
-            row_.values[wanted.slot] = std::numeric_limits<double>::quiet_NaN();
-        } else if (wanted.fraction)
-            row_.values[time_slot] += seconds_per_nanosecond * *number;
-        else if (wanted.slot == time_slot)
-            row_.values[time_slot] += *number;
-        else
-            row_.values[wanted.slot] = *number;
-    }
-    return true;
+    return split_.cells.size() == columns_ &&
+           parser_.parse_cells(line, split_, row_, [this](const auto&...) {
+               return lenient_ ? std::optional(std::numeric_limits<double>::quiet_NaN()) : std::nullopt;
+           });
 }
 
 MotionSample text_motion_sample(std::string_view bytes, const TextDialect& dialect, const Layout& layout,

@@ -106,8 +106,6 @@ class TextRow {
 
     CellRules rules_;
     std::size_t columns_;
-    std::vector<WantedColumn> wanted_;
-    StampRule stamp_;
     RowParser parser_;
     bool lenient_;
     ParsedRow row_;

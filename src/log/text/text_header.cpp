@@ -18,7 +18,7 @@ namespace ripplenotch {
 namespace {
 
 bool is_number(std::string_view text, char decimal_mark) {
-    return parse_number(text, decimal_mark).has_value();
+    return cell_number(text, decimal_mark).has_value();
 }
 
 enum class FirstLine { names, numbers, mixed };
@@ -38,33 +38,25 @@ FirstLine kind_of(std::string_view line, const CellSplit& split, char decimal_ma
     return numbers == 0 ? FirstLine::names : FirstLine::mixed;
 }
 
-// A row under the header in which every cell is a unit, a dash or nothing, and at least one is a unit.
-bool is_unit_row(std::string_view line, const CellSplit& split) {
-    bool any = false;
-    for (const Cell& cell : split.cells) {
-        std::string_view text = cell.of(line);
-        while (!text.empty() && (text.front() == '[' || text.front() == '(')) text.remove_prefix(1);
-        while (!text.empty() && (text.back() == ']' || text.back() == ')')) text.remove_suffix(1);
-        if (text.empty() || text == "-") continue;
-        const bool unit = usual_unit(as_utf8(std::string(text)), Role::other) || text == "nm";
-        if (!unit &&
-            std::any_of(text.begin(), text.end(), [](unsigned char c) { return std::isdigit(c) != 0; }))
-            return false;
-        any = any || unit;
-    }
-    return any;
-}
-
 std::string bare_unit(std::string text) {
     while (!text.empty() && (text.front() == '[' || text.front() == '(')) text.erase(0, 1);
     while (!text.empty() && (text.back() == ']' || text.back() == ')')) text.pop_back();
     return text == "-" ? "" : text;
 }
 
-std::vector<std::string> texts_of(std::string_view line, const CellSplit& split) {
-    std::vector<std::string> texts;
-    for (const Cell& cell : split.cells) texts.push_back(as_utf8(cell_text(line, cell)));
-    return texts;
+// A row under the header in which every cell is a unit, a dash or nothing, and at least one is a unit.
+bool is_unit_row(const std::vector<std::string>& cells) {
+    bool any = false;
+    for (const std::string& cell : cells) {
+        const std::string text = bare_unit(cell);
+        if (text.empty()) continue;
+        const bool unit = usual_unit(text, Role::other) || text == "nm";
+        if (!unit &&
+            std::any_of(text.begin(), text.end(), [](unsigned char c) { return std::isdigit(c) != 0; }))
+            return false;
+        any = any || unit;
+    }
+    return any;
 }
 
 // Where a column more would be added: before blanks that end a line of cells separated by blanks.
@@ -89,7 +81,7 @@ void try_comment_header(std::string_view bytes, const std::vector<TextLine>& com
         return;
     // A sentence has as many words as it likes; names are told by a quantity or a unit among them.
     dialect.has_header = dialect.header_in_comment = true;
-    dialect.names = texts_of(text, split);
+    dialect.names = cell_texts(text, dialect.rules.delimiter);
     dialect.header_end = content_end(bytes, line, dialect.rules.delimiter);
 }
 
@@ -115,17 +107,16 @@ std::size_t read_names(std::string_view bytes, const TextLines& lines, const std
     CellSplit split;
     split_cells(first.of(bytes), dialect.rules.delimiter, split);
     dialect.has_header = true;
-    dialect.names = texts_of(first.of(bytes), split);
+    dialect.names = cell_texts(first.of(bytes), dialect.rules.delimiter);
     dialect.quoted_names =
         std::all_of(split.cells.begin(), split.cells.end(), [](const Cell& c) { return c.quoted; });
     dialect.header_end = content_end(bytes, first, dialect.rules.delimiter);
     std::size_t taken = 1;
     if (lines.content.size() > 1) {
         const TextLine& second = lines.content[1];
-        split_cells(second.of(bytes), dialect.rules.delimiter, split);
-        if (is_unit_row(second.of(bytes), split)) {
-            for (const std::string& text : texts_of(second.of(bytes), split))
-                dialect.units.push_back(bare_unit(text));
+        const std::vector<std::string> units = cell_texts(second.of(bytes), dialect.rules.delimiter);
+        if (is_unit_row(units)) {
+            for (const std::string& unit : units) dialect.units.push_back(bare_unit(unit));
             dialect.unit_row_end = content_end(bytes, second, dialect.rules.delimiter);
             taken = 2;
         }
@@ -163,25 +154,6 @@ std::size_t read_names(std::string_view bytes, const TextLines& lines, const std
 
 }  // namespace
 
-std::string as_utf8(const std::string& text) {
-    std::string converted;
-    for (std::size_t i = 0; i < text.size(); ++i) {
-        const auto byte = static_cast<unsigned char>(text[i]);
-        const std::size_t more = byte < 0xC2 ? 0 : byte < 0xE0 ? 1 : byte < 0xF0 ? 2 : byte < 0xF5 ? 3 : 0;
-        bool whole = byte < 0x80 || more > 0;
-        for (std::size_t k = 1; whole && k <= more; ++k)
-            whole = i + k < text.size() && (static_cast<unsigned char>(text[i + k]) & 0xC0) == 0x80;
-        if (whole) {
-            converted += text.substr(i, more + 1);
-            i += more;
-        } else {
-            converted += static_cast<char>(0xC0 | (byte >> 6));
-            converted += static_cast<char>(0x80 | (byte & 0x3F));
-        }
-    }
-    return converted;
-}
-
 bool has_letters(std::string_view text) {
     return std::any_of(text.begin(), text.end(),
                        [](unsigned char c) { return std::isalpha(c) != 0 || c >= 0x80; });
@@ -218,19 +190,14 @@ class HeaderLines {
         : bytes_(bytes), content_(content), rules_(rules), columns_(columns) {}
 
     [[nodiscard]] std::vector<std::string> cells(std::size_t line) const {
-        const std::string_view text = content_[line].of(bytes_);
-        CellSplit split;
-        split_cells(text, rules_.delimiter, split);
-        std::vector<std::string> cells;
-        for (const Cell& cell : split.cells) cells.push_back(cell_text(text, cell));
-        return cells;
+        return cell_texts(content_[line].of(bytes_), rules_.delimiter);
     }
 
     /// As many cells as a row, numbers in most of them, words in few.
     [[nodiscard]] bool is_row(std::size_t line) const {
         const std::vector<std::string> texts = cells(line);
         const auto numbers = std::count_if(texts.begin(), texts.end(), [this](const std::string& text) {
-            return parse_number(text, rules_.decimal_mark).has_value() || clock_text(text).has_value();
+            return is_number(text, rules_.decimal_mark) || clock_text(text).has_value();
         });
         return texts.size() == columns_ && 2 * static_cast<std::size_t>(numbers) > columns_;
     }
@@ -250,7 +217,7 @@ class HeaderLines {
         const auto words = std::count_if(texts.begin(), texts.end(),
                                          [](const std::string& text) { return has_letters(text); });
         const auto numbers = std::count_if(texts.begin(), texts.end(), [this](const std::string& text) {
-            return parse_number(text, rules_.decimal_mark).has_value();
+            return is_number(text, rules_.decimal_mark);
         });
         return texts.size() + 1 >= columns_ && texts.size() <= columns_ + 1 && words > 0 && numbers == 0 &&
                2 * static_cast<std::size_t>(words) >= texts.size();

@@ -17,9 +17,6 @@ namespace ripplenotch {
 /// True when the text holds a letter, of whatever alphabet.
 [[nodiscard]] bool has_letters(std::string_view text);
 
-/// Bytes that are no UTF-8 are Latin-1: a degree sign, a micro sign, an umlaut.
-[[nodiscard]] std::string as_utf8(const std::string& text);
-
 /// Fills in the names, units and their places in `dialect`, whose rules and columns are known. Returns how
 /// many lines of content the header takes: 0 to 2. Throws DataError for a line of half names and half
 /// numbers, and for names that are not as many as the columns.
