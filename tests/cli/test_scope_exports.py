@@ -198,7 +198,7 @@ class WhatAnExportDoesNotSay(Case):
         lines[at] = "\t".join(row)
         done = self.info("\r\n".join(lines).encode())
         self.assertEqual((done.returncode, done.stdout), (3, ""))
-        self.assertIn(f"standard input:{at + 1}:{len(row[0]) + len(row[1]) + 3}: read 'broken' in 'MAIN.ActTorque' (column 3)", done.stderr)
+        self.assertIn(f"standard input:{at + 1}:{len(row[0]) + len(row[1]) + 3}: read 'broken' in 'MAIN.ActTorque'", done.stderr)
 
     def test_a_table_that_begins_with_name_by_chance_is_read_as_any(self):
         content = "Name,run 7\nOperator,lab\n\ntime_s,velocity_deg_s,torque_nm\n" + "".join(

@@ -103,7 +103,6 @@ class Units(Reading):
                 done = ended(0, self.read(text, *words))
                 self.assertAlmostEqual(self.amplitude(done), AMPLITUDE, delta=0.01)
 
-    @unittest.expectedFailure
     def test_a_unit_in_the_cells_of_a_speed(self):
         self.assertEqual(self.read(table(four(), cell=lambda c: [c[0], c[1] + " deg/s", *c[2:]])).returncode, 0)
 
@@ -119,15 +118,12 @@ class Units(Reading):
         text = "\n".join(json.dumps(dict(zip(four(), row))) for row in LOG)
         self.assertEqual(self.read(text, name="log.ndjson").returncode, 0)
 
-    @unittest.expectedFailure
     def test_the_exponent_of_fortran(self):
         self.assertEqual(self.read(table(four(), cell=lambda c: [f"{float(x):.9e}".replace("e", "D") for x in c])).returncode, 0)
 
-    @unittest.expectedFailure
     def test_a_minus_of_typesetters(self):
         self.assertEqual(self.read(table(four(), cell=lambda c: [x.replace("-", "\u2212") for x in c])).returncode, 0)
 
-    @unittest.expectedFailure
     def test_thousands_with_separators(self):
         self.assertEqual(self.read(table(four("torque_mNm"), torque=1e3, delimiter=";", cell=lambda c: [
             c[0], c[1], f"{float(c[2]):,.3f}", c[3]])).returncode, 0)

@@ -38,8 +38,10 @@ std::vector<std::string> Lines::cells(char delimiter) const {
     return texts;
 }
 
-void Lines::complain(const std::string& sentence) const {
-    raise<DataError>("{}:{}: {}", source_, number_, sentence);
+void Lines::complain(const std::string& sentence, std::string_view cell) const {
+    const bool inside = !cell.empty() && cell.data() >= line_.data() && cell.data() < line_.data() + line_.size();
+    raise<DataError>("{}:{}:{} {}", source_, number_,
+                     inside ? fmt::format("{}:", cell.data() - line_.data() + 1) : "", sentence);
 }
 
 std::optional<double> number_in(std::string_view text, char delimiter) {
@@ -88,8 +90,9 @@ void Signals::add(std::size_t signal, std::string_view time, std::string_view va
     const auto read = number_in(value, delimiter);
     if (!read)
         lines_.complain(
-            fmt::format("read '{}' as the value of '{}', expected a number; correct or remove the line",
-                        value, all[signal].name));
+            fmt::format("read '{}' in '{}', expected a number; correct or remove the line", value,
+                        all[signal].name),
+            value);
     Signal& one = all[signal];
     if (!one.values.empty() && *number < one.time.values.back())
         lines_.complain(

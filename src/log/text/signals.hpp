@@ -31,7 +31,8 @@ class Lines {
     [[nodiscard]] std::size_t cell_count() const { return split_.cells.size(); }
     [[nodiscard]] std::string_view line() const { return line_; }
     [[nodiscard]] std::size_t number() const { return number_; }
-    [[noreturn]] void complain(const std::string& sentence) const;
+    /// `cell`: of the line, whose place is told; or text of something else.
+    [[noreturn]] void complain(const std::string& sentence, std::string_view cell = {}) const;
 
   private:
     std::string_view bytes_, line_;

@@ -150,8 +150,12 @@ std::optional<CellNumber> cell_number(std::string_view cell, char decimal_mark) 
     std::string_view rest = cell;
     std::size_t groups = 0;
     const auto number = parse_number(take_number(rest, decimal_mark, groups));
-    if (!number || groups == 1) return std::nullopt;
+    if (!number || groups == 1) return std::nullopt;  // a decimal mark counts as a second one
     const std::size_t size = cell.size() - rest.size();
+    // "6064h" is a name: a unit stands behind a blank, or behind decimals.
+    if (!rest.empty() && !is_blank(rest.front()) &&
+        cell.substr(0, size).find(decimal_mark) == std::string_view::npos)
+        return std::nullopt;
     while (!rest.empty() && is_blank(rest.front())) rest.remove_prefix(1);
     if (!rest.empty() && !usual_unit(rest, Role::other) && !is_device_unit(rest)) return std::nullopt;
     return CellNumber{*number, size, rest};

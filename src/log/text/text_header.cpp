@@ -262,6 +262,8 @@ std::vector<std::string> read_units(const HeaderLines& lines, std::size_t first_
         std::vector<std::string> cells = lines.cells(line);
         if (cells.front() != "Y_Unit_Label") continue;
         cells.front().clear();
+        // Without X_Columns no times stand before the channels.
+        if (first_row == 0 || lines.cells(first_row - 1).front() != "X_Value") cells.erase(cells.begin());
         cells.resize(columns);
         return cells;
     }
