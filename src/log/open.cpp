@@ -14,7 +14,6 @@
 #include "log/clock/stamp.hpp"
 #include "log/columns/motion_reading.hpp"
 #include "log/formats.hpp"
-#include "log/read.hpp"
 #include "log/unpack/unpacked_source.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/files.hpp"
@@ -28,6 +27,73 @@ namespace ripplenotch {
 namespace {
 
 constexpr std::size_t most_bytes = std::size_t{8} << 20;
+
+// Files that people hand over by mistake, told by their first bytes, and what to do with them. A format that
+// is listed comes first, so that a file in this table can become one.
+struct Stranger {
+    std::string_view magic, what, remedy;
+};
+constexpr std::array strangers = {
+    Stranger{"MDF     ", "an MDF file",
+             "convert it: python3 -c \"import asammdf; asammdf.MDF('{}').export('csv', 'run.csv', "
+             "single_time_base=True)\""},
+    Stranger{"TDSm", "a TDMS file",
+             "convert it: python3 -c \"import nptdms; "
+             "nptdms.TdmsFile.read('{}').as_dataframe().to_csv('run.csv')\""},
+    Stranger{"PAR1", "a Parquet file",
+             "convert it: duckdb -c \"copy (from '{}') to 'run.csv' (format csv)\""},
+    Stranger{"#ROSBAG", "a ROS 1 bag", "convert it: rosbags-convert --src {} --dst run"},
+    Stranger{"BZh", "a bzip2 file", "unpack it: bzcat {} | ripplenotch ... -"},
+    Stranger{"\xfd"
+             "7zXZ",
+             "an xz file", "unpack it: xzcat {} | ripplenotch ... -"},
+    Stranger{"PK\x03\x04", "a ZIP archive (or .xlsx)",
+             "unpack it, or convert a workbook: libreoffice --headless --convert-to csv {}"},
+};
+
+bool is_plain_name(const std::string& name) {
+    constexpr std::string_view plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._/+-";
+    return !name.starts_with('-') && name.find_first_not_of(plain) == std::string::npos;
+}
+
+constexpr const LogFormat* const all_formats[] = {
+#define FORMAT(name) &formats::name,
+#include "log/formats/formats.def"
+#undef FORMAT
+};
+
+/// ".csv .npy": one for each format that is written.
+std::string written_extensions() {
+    return joined(log_formats(), " ", [](const LogFormat* format) {
+        return format->is_written() ? format->extensions.front() : "";
+    });
+}
+
+/// As `asked`, or by the extension; null where neither says it.
+const LogFormat* told_format(const std::string& path, std::optional<std::string_view> asked) {
+    if (asked) return &find_log_format(*asked);
+    const std::size_t dot = path.rfind('.');
+    const std::string extension = dot == std::string::npos ? "" : lower_case(path.substr(dot));
+    for (const LogFormat* format : log_formats()) {
+        const auto& known = format->extensions;
+        if (std::find(known.begin(), known.end(), extension) != known.end()) return format;
+    }
+    check_output_name(path, "a log", written_extensions());
+    return nullptr;
+}
+
+std::string first_bytes_of(ByteSource& source) {
+    std::string first_bytes;
+    first_bytes.resize(read_on(source, first_bytes, 0, first_bytes_size));
+    return first_bytes;
+}
+
+void require_built(const LogFormat& format, const std::string& source) {
+    if (format.lacks.empty()) return;
+    raise<UsageError>(
+        "{}: read a log in format {}, and this build was made without {}; install it and build again", source,
+        format.name, format.lacks);
+}
 
 }  // namespace
 
@@ -61,38 +127,6 @@ bool next_block(Opening& opening, LogReader& reader, RowBlock& block) {
     return true;
 }
 
-namespace {
-
-// Files that people hand over by mistake, told by their first bytes, and what to do with them. A format that
-// is listed comes first, so that a file in this table can become one.
-struct Stranger {
-    std::string_view magic, what, remedy;
-};
-constexpr std::array strangers = {
-    Stranger{"MDF     ", "an MDF file",
-             "convert it: python3 -c \"import asammdf; asammdf.MDF('{}').export('csv', 'run.csv', "
-             "single_time_base=True)\""},
-    Stranger{"TDSm", "a TDMS file",
-             "convert it: python3 -c \"import nptdms; "
-             "nptdms.TdmsFile.read('{}').as_dataframe().to_csv('run.csv')\""},
-    Stranger{"PAR1", "a Parquet file",
-             "convert it: duckdb -c \"copy (from '{}') to 'run.csv' (format csv)\""},
-    Stranger{"#ROSBAG", "a ROS 1 bag", "convert it: rosbags-convert --src {} --dst run"},
-    Stranger{"BZh", "a bzip2 file", "unpack it: bzcat {} | ripplenotch ... -"},
-    Stranger{"\xfd"
-             "7zXZ",
-             "an xz file", "unpack it: xzcat {} | ripplenotch ... -"},
-    Stranger{"PK\x03\x04", "a ZIP archive (or .xlsx)",
-             "unpack it, or convert a workbook: libreoffice --headless --convert-to csv {}"},
-};
-
-bool is_plain_name(const std::string& name) {
-    constexpr std::string_view plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._/+-";
-    return !name.starts_with('-') && name.find_first_not_of(plain) == std::string::npos;
-}
-
-}  // namespace
-
 const LogFormat& detect_format(std::string_view first_bytes, const std::string& source,
                                std::span<const LogFormat* const> formats) {
     std::vector<std::string_view> names;
@@ -110,16 +144,6 @@ const LogFormat& detect_format(std::string_view first_bytes, const std::string& 
     }
     return formats::csv;
 }
-
-namespace {
-
-constexpr const LogFormat* const all_formats[] = {
-#define FORMAT(name) &formats::name,
-#include "log/formats/formats.def"
-#undef FORMAT
-};
-
-}  // namespace
 
 std::span<const LogFormat* const> log_formats() { return all_formats; }
 
@@ -151,30 +175,6 @@ void require_written(const LogFormat& format, const std::string& output) {
                       output == "-" ? "standard output" : output, format.name, written_log_formats());
 }
 
-namespace {
-
-/// ".csv .npy": one for each format that is written.
-std::string written_extensions() {
-    return joined(log_formats(), " ", [](const LogFormat* format) {
-        return format->is_written() ? format->extensions.front() : "";
-    });
-}
-
-/// As `asked`, or by the extension; null where neither says it.
-const LogFormat* told_format(const std::string& path, std::optional<std::string_view> asked) {
-    if (asked) return &find_log_format(*asked);
-    const std::size_t dot = path.rfind('.');
-    const std::string extension = dot == std::string::npos ? "" : lower_case(path.substr(dot));
-    for (const LogFormat* format : log_formats()) {
-        const auto& known = format->extensions;
-        if (std::find(known.begin(), known.end(), extension) != known.end()) return format;
-    }
-    check_output_name(path, "a log", written_extensions());
-    return nullptr;
-}
-
-}  // namespace
-
 const LogFormat& output_format(const std::string& path, std::optional<std::string_view> asked) {
     return output_format(path, asked, formats::csv);
 }
@@ -186,22 +186,14 @@ const LogFormat& output_format(const std::string& path, std::optional<std::strin
     return told != nullptr ? *told : formats::csv;
 }
 
-namespace {
-
-std::string first_bytes_of(ByteSource& source) {
-    std::string first_bytes;
-    first_bytes.resize(read_on(source, first_bytes, 0, first_bytes_size));
-    return first_bytes;
+std::size_t read_on(ByteSource& source, std::string& bytes, std::size_t have, std::size_t size) {
+    constexpr std::size_t first_room = std::size_t{1} << 12;
+    for (std::size_t got = 1; have < size && got > 0; have += got) {
+        if (bytes.size() == have) bytes.resize(std::min(size, std::max(2 * have, first_room)));
+        got = source.read(bytes.data() + have, std::min(size, bytes.size()) - have);
+    }
+    return have;
 }
-
-void require_built(const LogFormat& format, const std::string& source) {
-    if (format.lacks.empty()) return;
-    raise<UsageError>(
-        "{}: read a log in format {}, and this build was made without {}; install it and build again", source,
-        format.name, format.lacks);
-}
-
-}  // namespace
 
 std::unique_ptr<LogReader> open_log(std::unique_ptr<ByteSource> source, const ReadOptions& options) {
     if (!options.constant_speeds.empty())

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <cstddef>
 #include <deque>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "ripplenotch/core/files.hpp"
 #include "ripplenotch/log/format.hpp"
 
 namespace ripplenotch {
@@ -35,5 +37,9 @@ inline constexpr std::size_t first_bytes_size = 512;
 /// Throws DataError, naming `source`, for files of other kinds that people hand over by mistake.
 [[nodiscard]] const LogFormat& detect_format(std::string_view first_bytes, const std::string& source,
                                              std::span<const LogFormat* const> formats = log_formats());
+
+/// Behind the first `have` of `bytes`, until there are `size` or the source ends; returns how many there are.
+/// The room grows with what comes: most logs are short of what is asked for.
+[[nodiscard]] std::size_t read_on(ByteSource& source, std::string& bytes, std::size_t have, std::size_t size);
 
 }  // namespace ripplenotch

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Whole logs in memory, with an account of them.
 
-#include "log/read.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,17 +10,9 @@
 
 #include "log/account/account.hpp"
 #include "log/clock/clock_check.hpp"
+#include "ripplenotch/log/log.hpp"
 
 namespace ripplenotch {
-
-std::size_t read_on(ByteSource& source, std::string& bytes, std::size_t have, std::size_t size) {
-    constexpr std::size_t first_room = std::size_t{1} << 12;
-    for (std::size_t got = 1; have < size && got > 0; have += got) {
-        if (bytes.size() == have) bytes.resize(std::min(size, std::max(2 * have, first_room)));
-        got = source.read(bytes.data() + have, std::min(size, bytes.size()) - have);
-    }
-    return have;
-}
 
 namespace {
 
@@ -117,10 +107,10 @@ class PieceTaker {
     std::size_t at_ = 0, piece_ = 0;
 };
 
-}  // namespace
-
+/// Pieces of a log with more than `most_rows`, nothing of a shorter one. See read_log_in_part. `joint`: by
+/// its place, where options.every_joint reads several.
 std::optional<Log> read_pieces(const std::shared_ptr<const Spool>& log, const ReadOptions& options,
-                               std::size_t most_rows, std::size_t joint) {
+                               std::size_t most_rows, std::size_t joint = 0) {
     LogPasses passes(log, options, joint);
     passes.keep_rows(most_bytes_kept);
     passes.first([](const TraceView&) {});
@@ -148,6 +138,104 @@ std::optional<Log> read_pieces(const std::shared_ptr<const Spool>& log, const Re
     part.position_range_deg = facts.position_range_deg;
     return part;
 }
+
+void append(std::vector<double>& to, std::span<const double> from) {
+    to.insert(to.end(), from.begin(), from.end());
+}
+
+void append(Trace& trace, const TraceView& rows, bool begins_run) {
+    if (begins_run && trace.size() > 0) trace.run_starts.push_back(trace.size());
+    append(trace.time_s, rows.time_s);
+    append(trace.velocity_deg_s, rows.velocity_deg_s);
+    append(trace.torque_nm, rows.torque_nm);
+    append(trace.position_deg, rows.position_deg);
+}
+
+// The position as it was logged has been looked at; from here on it is the joint's, or there is none. One
+// that is not, or runs the other way, is held against the clock as it was logged.
+void settle_angle(Log& log) {
+    JointsPosition joints;
+    const auto found = joints.of(log.recording.angle, log.trace.view());
+    std::vector<double> position(found.begin(), found.end());
+    const bool as_logged = position.empty() || log.recording.angle.verdict == AngleFacts::Verdict::reversed;
+    if (!as_logged) log.trace.position_deg = position;
+    MotionPieces motion(log.trace.size());
+    motion.add(log.trace.view());
+    const ClockCheck check = motion.check(log.trace.sample_rate);
+    log.clock_factor = check.factor;
+    log.recording.warnings = recording_warnings(log.recording, check.warning);
+    if (as_logged) log.trace.position_deg = std::move(position);
+}
+
+// What is known when all rows are there.
+void finish(Log& log, const Account& account, const LogReader& reader, std::size_t joint) {
+    const Layout& whole = reader.layout();
+    const Layout& layout = whole.each.empty() ? whole : whole.each[joint];
+    const std::size_t place = whole.each.empty() ? joint : 0;
+    const JointColumns chosen = layout.all_chosen()[place];
+    log.layout = layout;
+    log.trace.source = layout.source;
+    log.trace.joint = chosen.joint;
+    const auto period = wrap_period(log.trace.position_deg);
+    if (period) Unwrapper(*period).apply(log.trace.position_deg);
+    log.recording = account.recording(layout, place, joint);
+    log.layout.chosen = chosen;
+    log.layout.others.clear();
+    log.trace.sample_rate = log.recording.clock.mean_rate;
+    if (!log.trace.position_deg.empty()) {
+        const auto [low, high] =
+            std::minmax_element(log.trace.position_deg.begin(), log.trace.position_deg.end());
+        log.position_range_deg.emplace(*low, *high);
+    }
+    if (period) log.layout.warnings.push_back({"wrapped position", wrap_in_words(*period), true});
+    settle_angle(log);
+}
+
+// Empty where there are more than `most_rows`.
+std::vector<Log> read_all_joints(LogReader& reader, const ReadOptions& options, std::size_t most_rows) {
+    Opening opening = read_opening(reader);
+    Account account(reader.layout(), opening);
+    std::vector<Log> logs(reader.layout().all_chosen().size());
+    RowBlock block;
+    while (next_block(opening, reader, block)) {
+        for (const RunPart& part : account.add(block)) {
+            for (std::size_t j = 0; j < logs.size() && part.usable; ++j)
+                append(logs[j].trace, view_of(block, j, part.first, part.count), part.begins_run);
+        }
+        for (Log& log : logs) log.held_bad_values += block.held_bad_values;
+        if (logs.front().trace.size() > most_rows) return {};
+    }
+    if (options.needs_torque) account.clock().require();
+    for (std::size_t j = 0; j < logs.size(); ++j) finish(logs[j], account, reader, j);
+    return logs;
+}
+
+std::vector<Log> read_all_joints(LogReader& reader, const ReadOptions& options) {
+    return read_all_joints(reader, options, all_rows);
+}
+
+// By the size of the file and of its first rows. Where it is wrong, the log is read once more.
+bool looks_longer(const Spool& spool, const ReadOptions& options, std::size_t rows) {
+    constexpr double margin = 1.2;
+    auto source = spool.open();
+    const auto size = static_cast<double>(source->size());
+    const auto reader = open_log(std::move(source), options);
+    RowBlock block;
+    if (options.range.given() || !reader->next(block)) return false;
+    const double row = static_cast<double>(block.bytes.size()) / static_cast<double>(block.size());
+    return size > margin * static_cast<double>(rows) * row && row > 0.0;
+}
+
+Log in_part(const std::shared_ptr<const Spool>& spool, const ReadOptions& options, std::size_t most_rows) {
+    const bool all = most_rows == all_rows;
+    if (!all && looks_longer(*spool, options, most_rows)) {
+        if (auto pieces = read_pieces(spool, options, most_rows)) return std::move(*pieces);
+    }
+    if (auto whole = read_log_if_short(*spool, options, most_rows)) return std::move(*whole);
+    return read_pieces(spool, options, most_rows).value();
+}
+
+}  // namespace
 
 class LogPasses::Work {
   public:
@@ -298,106 +386,6 @@ const LogFacts& LogPasses::facts() const { return work_->facts; }
 const Layout& LogPasses::layout() const { return work_->layout; }
 
 const Recording& LogPasses::recording() const { return work_->recording; }
-
-namespace {
-
-void append(std::vector<double>& to, std::span<const double> from) {
-    to.insert(to.end(), from.begin(), from.end());
-}
-
-void append(Trace& trace, const TraceView& rows, bool begins_run) {
-    if (begins_run && trace.size() > 0) trace.run_starts.push_back(trace.size());
-    append(trace.time_s, rows.time_s);
-    append(trace.velocity_deg_s, rows.velocity_deg_s);
-    append(trace.torque_nm, rows.torque_nm);
-    append(trace.position_deg, rows.position_deg);
-}
-
-// The position as it was logged has been looked at; from here on it is the joint's, or there is none. One
-// that is not, or runs the other way, is held against the clock as it was logged.
-void settle_angle(Log& log) {
-    JointsPosition joints;
-    const auto found = joints.of(log.recording.angle, log.trace.view());
-    std::vector<double> position(found.begin(), found.end());
-    const bool as_logged = position.empty() || log.recording.angle.verdict == AngleFacts::Verdict::reversed;
-    if (!as_logged) log.trace.position_deg = position;
-    MotionPieces motion(log.trace.size());
-    motion.add(log.trace.view());
-    const ClockCheck check = motion.check(log.trace.sample_rate);
-    log.clock_factor = check.factor;
-    log.recording.warnings = recording_warnings(log.recording, check.warning);
-    if (as_logged) log.trace.position_deg = std::move(position);
-}
-
-// What is known when all rows are there.
-void finish(Log& log, const Account& account, const LogReader& reader, std::size_t joint) {
-    const Layout& whole = reader.layout();
-    const Layout& layout = whole.each.empty() ? whole : whole.each[joint];
-    const std::size_t place = whole.each.empty() ? joint : 0;
-    const JointColumns chosen = layout.all_chosen()[place];
-    log.layout = layout;
-    log.trace.source = layout.source;
-    log.trace.joint = chosen.joint;
-    const auto period = wrap_period(log.trace.position_deg);
-    if (period) Unwrapper(*period).apply(log.trace.position_deg);
-    log.recording = account.recording(layout, place, joint);
-    log.layout.chosen = chosen;
-    log.layout.others.clear();
-    log.trace.sample_rate = log.recording.clock.mean_rate;
-    if (!log.trace.position_deg.empty()) {
-        const auto [low, high] =
-            std::minmax_element(log.trace.position_deg.begin(), log.trace.position_deg.end());
-        log.position_range_deg.emplace(*low, *high);
-    }
-    if (period) log.layout.warnings.push_back({"wrapped position", wrap_in_words(*period), true});
-    settle_angle(log);
-}
-
-// Empty where there are more than `most_rows`.
-std::vector<Log> read_all_joints(LogReader& reader, const ReadOptions& options, std::size_t most_rows) {
-    Opening opening = read_opening(reader);
-    Account account(reader.layout(), opening);
-    std::vector<Log> logs(reader.layout().all_chosen().size());
-    RowBlock block;
-    while (next_block(opening, reader, block)) {
-        for (const RunPart& part : account.add(block)) {
-            for (std::size_t j = 0; j < logs.size() && part.usable; ++j)
-                append(logs[j].trace, view_of(block, j, part.first, part.count), part.begins_run);
-        }
-        for (Log& log : logs) log.held_bad_values += block.held_bad_values;
-        if (logs.front().trace.size() > most_rows) return {};
-    }
-    if (options.needs_torque) account.clock().require();
-    for (std::size_t j = 0; j < logs.size(); ++j) finish(logs[j], account, reader, j);
-    return logs;
-}
-
-std::vector<Log> read_all_joints(LogReader& reader, const ReadOptions& options) {
-    return read_all_joints(reader, options, all_rows);
-}
-
-// By the size of the file and of its first rows. Where it is wrong, the log is read once more.
-bool looks_longer(const Spool& spool, const ReadOptions& options, std::size_t rows) {
-    constexpr double margin = 1.2;
-    auto source = spool.open();
-    const auto size = static_cast<double>(source->size());
-    const auto reader = open_log(std::move(source), options);
-    RowBlock block;
-    if (options.range.given() || !reader->next(block)) return false;
-    const double row = static_cast<double>(block.bytes.size()) / static_cast<double>(block.size());
-    return size > margin * static_cast<double>(rows) * row && row > 0.0;
-}
-
-Log in_part(const std::shared_ptr<const Spool>& spool, const ReadOptions& options, std::size_t most_rows) {
-    const bool all = most_rows == all_rows;
-    if (!all && looks_longer(*spool, options, most_rows)) {
-        if (auto pieces = read_pieces(spool, options, most_rows)) return std::move(*pieces);
-    }
-    if (auto whole = read_log_if_short(*spool, options, most_rows)) return std::move(*whole);
-    return read_pieces(spool, options, most_rows).value();
-}
-
-}  // namespace
 
 Log read_log(LogReader& reader, const ReadOptions& options) {
     return std::move(read_all_joints(reader, options).front());

@@ -5,7 +5,6 @@
 
 #include "fuzz/fuzz.hpp"
 #include "log/open.hpp"
-#include "log/read.hpp"
 #include "log/unpack/unpacked_source.hpp"
 
 using namespace ripplenotch;

@@ -38,7 +38,7 @@ SEES = {
 # Third-party header -> the files that may include it.
 DOORS = {
     r"fftw3": {"src/analysis/spectrum/fourier.cpp"},
-    r"nlohmann/": {"src/document/json/json.hpp", "src/log/messages/json_message.cpp"},
+    r"nlohmann/": {"src/document/json/json.hpp", "src/log/formats/json.cpp"},
     r"CLI/": {"src/cli/options/options_implementation.hpp"},
     r"fast_float/": {"src/core/text/number.cpp"},
     r"nettle/": {"src/core/files/sha256.cpp"},
@@ -48,8 +48,8 @@ DOORS = {
     r"zlib\.h": {"src/log/unpack/unpackers.cpp"},
     r"zstd\.h": {"src/log/unpack/unpackers.cpp"},
     r"lz4": {"src/log/unpack/unpackers.cpp"},
-    r"hdf5\.h": {"src/log/containers/hdf5.cpp"},
-    r"sqlite3": {"src/log/messages/rosbag2_messages.cpp"},
+    r"hdf5\.h": {"src/log/formats/hdf5.cpp"},
+    r"sqlite3": {"src/log/formats/rosbag2.cpp"},
     r"pybind11": {"src/python/module.cpp"},
     r"Eigen/": {"src/core/matrices/linear_algebra.hpp"},
 }

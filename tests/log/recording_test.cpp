@@ -6,7 +6,7 @@
 #include <numbers>
 #include <random>
 
-#include "log/account/held_samples.hpp"
+#include "log/account/account.hpp"
 #include "log_support.hpp"
 #include "support/catch.hpp"
 

@@ -93,6 +93,22 @@ constexpr double alike_share = 0.6;    ///< of the pieces have to be near the me
 constexpr double alike_within = 0.5;   ///< ... by this share of it
 constexpr double farthest_factor = 2.0;  ///< a clock may be wrong by as much
 
+// By hand: fewer repeated rows are lost messages; a sample that is written twice gives half.
+constexpr double repeated_by_rule = 0.4;
+
+std::string update_rate_text(const Recording& recording) {
+    const Hertz rate = recording.update_rate();
+    if (!(rate < recording.clock.nominal_rate)) return "";
+    return fmt::format(
+        "; the signals are updated at {:.4g} Hz and written at {:.4g} Hz: nothing above {:.4g} Hz is "
+        "measured",
+        rate.value(), recording.clock.nominal_rate.value(), 0.5 * rate.value());
+}
+
+bool has_values(const std::vector<double>& values) {
+    return !values.empty() && std::isfinite(values.front());
+}
+
 }  // namespace
 
 AngleFacts::Source AngleFacts::source() const {
@@ -252,22 +268,6 @@ void JointAngle::conclude() {
     if (found.verdict != facts_.verdict) facts_.contradicted = {rows_, rows_ - skipped_};
 }
 
-namespace {
-
-// By hand: fewer repeated rows are lost messages; a sample that is written twice gives half.
-constexpr double repeated_by_rule = 0.4;
-
-std::string update_rate_text(const Recording& recording) {
-    const Hertz rate = recording.update_rate();
-    if (!(rate < recording.clock.nominal_rate)) return "";
-    return fmt::format(
-        "; the signals are updated at {:.4g} Hz and written at {:.4g} Hz: nothing above {:.4g} Hz is "
-        "measured",
-        rate.value(), recording.clock.nominal_rate.value(), 0.5 * rate.value());
-}
-
-}  // namespace
-
 Hertz Recording::update_rate() const {
     const auto held_share =
         static_cast<double>(held.count) / static_cast<double>(std::max<std::size_t>(held.moving, 1));
@@ -296,14 +296,6 @@ std::vector<LogWarning> recording_warnings(const Recording& recording, const std
         warnings.push_back({"clock against motion", clock_check, true});
     return warnings;
 }
-
-namespace {
-
-bool has_values(const std::vector<double>& values) {
-    return !values.empty() && std::isfinite(values.front());
-}
-
-}  // namespace
 
 TraceView view_of(const RowBlock& block, std::size_t joint, std::size_t first, std::size_t count) {
     const JointRows& rows = block.joints[joint];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "log/account/held_samples.hpp"
+#include "log/account/account.hpp"
 
 #include <algorithm>
 #include <cmath>

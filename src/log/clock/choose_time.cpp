@@ -129,40 +129,6 @@ void find_unit(const ColumnFacts& facts, const ClockOpening& opening, Layout& la
     (column.unit_assumed ? layout.assumptions : layout.inferences).push_back(std::move(read));
 }
 
-}  // namespace
-
-void settle_clock(const ColumnFacts& facts, bool unit_is_stated, Layout& layout) {
-    if (!layout.chosen.time) return;
-    Column& column = layout.columns[*layout.chosen.time];
-    const ClockOpening opening = opening_of(facts, *layout.chosen.time, layout.time_is_steps);
-    layout.time_as_text = !facts.clock_texts.empty() && facts.clock_texts[*layout.chosen.time];
-    if (layout.time_as_text) layout.stamp_form = facts.stamp_forms[*layout.chosen.time];
-    if (!unit_is_stated && !layout.time_as_text && !layout.time_fraction && opening.step > 0.0)
-        find_unit(facts, opening, layout);
-    set_origin(facts, opening, layout);
-    const std::string label = column_label(facts.names, *layout.chosen.time);
-    if (layout.time_as_text && layout.stamp_form.either_order && layout.stamp_form.other_s != 0)
-        layout.inferences.push_back({fmt::format("dates in {}", label),
-                                     layout.stamp_form.day_first ? "day/month/year" : "month/day/year",
-                                     "no field says which; only the day depends on it",
-                                     "dates as 2024-05-01",
-                                     {}});
-    if (layout.time_as_text && layout.stamp_form.milliseconds)
-        layout.inferences.push_back({fmt::format("digits behind the seconds in {}", label),
-                                     "milliseconds",
-                                     "as decimals they would run backward",
-                                     "--sample-rate",
-                                     {}});
-    if (layout.time_as_text || layout.time_fraction) {
-        column.unit = "s";
-        column.factor = 1.0;
-        column.unit_assumed = false;
-        return;
-    }
-}
-
-namespace {
-
 struct Round {
     double length = 0.0;  ///< in the unit of the column
     const char* words = "";
@@ -191,25 +157,6 @@ const Round* round_of(const TimeStep& step) {
     }
     return nullptr;
 }
-
-}  // namespace
-
-std::string time_backward(const TimeStep& step) {
-    const std::string seen = fmt::format("read the time {} after {}, ", shown_time(step.read, step.origin),
-                                         shown_time(step.before, step.origin));
-    if (const Round* round = round_of(step)) {
-        return seen +
-               fmt::format(
-                   "expected time to run forward; it falls as {} does that begins anew (at {}): take the "
-                   "rows before with --to, or count rows with --sample-rate",
-                   round->words, shortest(round->length));
-    }
-    return seen +
-           "expected time to run forward; sort or split the log, or use --sample-rate if the clock is of no "
-           "use";
-}
-
-namespace {
 
 std::vector<double> finite_values(const ColumnFacts& facts, std::size_t column) {
     std::vector<double> values;
@@ -374,6 +321,51 @@ bool use_step_of_head(const ColumnFacts& facts, const Clocks& clocks, Layout& la
 }
 
 }  // namespace
+
+void settle_clock(const ColumnFacts& facts, bool unit_is_stated, Layout& layout) {
+    if (!layout.chosen.time) return;
+    Column& column = layout.columns[*layout.chosen.time];
+    const ClockOpening opening = opening_of(facts, *layout.chosen.time, layout.time_is_steps);
+    layout.time_as_text = !facts.clock_texts.empty() && facts.clock_texts[*layout.chosen.time];
+    if (layout.time_as_text) layout.stamp_form = facts.stamp_forms[*layout.chosen.time];
+    if (!unit_is_stated && !layout.time_as_text && !layout.time_fraction && opening.step > 0.0)
+        find_unit(facts, opening, layout);
+    set_origin(facts, opening, layout);
+    const std::string label = column_label(facts.names, *layout.chosen.time);
+    if (layout.time_as_text && layout.stamp_form.either_order && layout.stamp_form.other_s != 0)
+        layout.inferences.push_back({fmt::format("dates in {}", label),
+                                     layout.stamp_form.day_first ? "day/month/year" : "month/day/year",
+                                     "no field says which; only the day depends on it",
+                                     "dates as 2024-05-01",
+                                     {}});
+    if (layout.time_as_text && layout.stamp_form.milliseconds)
+        layout.inferences.push_back({fmt::format("digits behind the seconds in {}", label),
+                                     "milliseconds",
+                                     "as decimals they would run backward",
+                                     "--sample-rate",
+                                     {}});
+    if (layout.time_as_text || layout.time_fraction) {
+        column.unit = "s";
+        column.factor = 1.0;
+        column.unit_assumed = false;
+        return;
+    }
+}
+
+std::string time_backward(const TimeStep& step) {
+    const std::string seen = fmt::format("read the time {} after {}, ", shown_time(step.read, step.origin),
+                                         shown_time(step.before, step.origin));
+    if (const Round* round = round_of(step)) {
+        return seen +
+               fmt::format(
+                   "expected time to run forward; it falls as {} does that begins anew (at {}): take the "
+                   "rows before with --to, or count rows with --sample-rate",
+                   round->words, shortest(round->length));
+    }
+    return seen +
+           "expected time to run forward; sort or split the log, or use --sample-rate if the clock is of no "
+           "use";
+}
 
 bool varies(const std::vector<double>& values) {
     double first = std::numeric_limits<double>::quiet_NaN();

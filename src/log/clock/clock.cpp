@@ -28,6 +28,27 @@ double median_step(const std::vector<double>& time_s) {
     return median_in(steps);
 }
 
+constexpr std::size_t scouted_rows = 512;  ///< that tell how the opening begins
+constexpr double alike_steps = 1.25;       // by hand: as a factor
+// Times of more rows than these in one say too little of when each was taken: with five, ripple of 11 to 33
+// Hz in 1 kHz rows was told with eleven false lines beside it, with four its amplitudes were up to 8 % low.
+constexpr double most_rows_a_time = 4.5;
+
+// By hand: of times of arrival a long step stands alone among short ones so often.
+constexpr double most_lone_gaps = 1.0 / 40.0;
+
+// Rows a burst, where rows come in bursts; else 0.
+double burst_rows(std::span<const double> time_s, double limit_s) {
+    std::size_t alone = 0;
+    const auto is_long = [&](std::size_t k) { return time_s[k] - time_s[k - 1] > limit_s; };
+    for (std::size_t k = 2; k + 1 < time_s.size(); ++k)
+        alone += is_long(k) && !is_long(k - 1) && !is_long(k + 1);
+    const auto rows = static_cast<double>(time_s.size());
+    return static_cast<double>(alone) > most_lone_gaps * rows ? rows / static_cast<double>(alone) : 0.0;
+}
+
+bool longer(const Gap& a, const Gap& b) { return a.to_s - a.from_s > b.to_s - b.from_s; }
+
 }  // namespace
 
 void Clock::end_window() {
@@ -103,31 +124,6 @@ void Clock::change_rate() {
     restart_ = true;
     odd_windows_ = 0;
 }
-
-namespace {
-
-constexpr std::size_t scouted_rows = 512;  ///< that tell how the opening begins
-constexpr double alike_steps = 1.25;       // by hand: as a factor
-// Times of more rows than these in one say too little of when each was taken: with five, ripple of 11 to 33
-// Hz in 1 kHz rows was told with eleven false lines beside it, with four its amplitudes were up to 8 % low.
-constexpr double most_rows_a_time = 4.5;
-
-// By hand: of times of arrival a long step stands alone among short ones so often.
-constexpr double most_lone_gaps = 1.0 / 40.0;
-
-// Rows a burst, where rows come in bursts; else 0.
-double burst_rows(std::span<const double> time_s, double limit_s) {
-    std::size_t alone = 0;
-    const auto is_long = [&](std::size_t k) { return time_s[k] - time_s[k - 1] > limit_s; };
-    for (std::size_t k = 2; k + 1 < time_s.size(); ++k)
-        alone += is_long(k) && !is_long(k - 1) && !is_long(k + 1);
-    const auto rows = static_cast<double>(time_s.size());
-    return static_cast<double>(alone) > most_lone_gaps * rows ? rows / static_cast<double>(alone) : 0.0;
-}
-
-bool longer(const Gap& a, const Gap& b) { return a.to_s - a.from_s > b.to_s - b.from_s; }
-
-}  // namespace
 
 Clock::Clock(std::string source, std::span<const double> opening_s, std::optional<Hertz> stated,
              double gap_steps)

@@ -54,14 +54,6 @@ struct SumUp {
     }
 };
 
-}  // namespace
-
-StepSums sum_up_steps(std::span<const double> time_s, double usual_s) noexcept {
-    return in_lanes<SumUp>(time_s, usual_s);
-}
-
-namespace {
-
 constexpr double nominal_tolerance = 0.001;  // by hand
 // Steps cluster at their median when so many are this near, and their mean stays nearer still: rounded stamps
 // of another rate (4.4 ms as 4 or 5 ms) are near it too, but to one side.
@@ -104,48 +96,6 @@ double furthest_from_even(std::span<const double> time_s, double mean_s, double 
     return furthest;
 }
 
-}  // namespace
-
-Hertz nominal_rate(Hertz measured) {
-    const double rate = measured.value();
-    if (!(rate > 0.0) || !std::isfinite(rate)) return measured;
-    if (const double round_rate = two_digits(rate); near(rate, round_rate)) return Hertz(round_rate);
-    if (const double period = two_digits(1.0 / rate); near(rate, 1.0 / period)) {
-        const double by_period = 1.0 / period;
-        // 1 / 0.008 is 125 but for rounding.
-        return Hertz(std::abs(by_period - std::round(by_period)) < 1e-9 * by_period ? std::round(by_period)
-                                                                                    : by_period);
-    }
-    return measured;
-}
-
-RateEstimate estimate_rate(std::span<const double> time_s, double gap_steps) {
-    std::vector<double> advancing;
-    for (std::size_t k = 1; k < time_s.size(); ++k) {
-        if (time_s[k] > time_s[k - 1]) advancing.push_back(time_s[k] - time_s[k - 1]);
-    }
-    if (advancing.empty()) return {};
-    RateEstimate rate;
-    rate.step_s = median_in(advancing);
-    const double limit_s = gap_steps * rate.step_s;
-    double duration = 0.0;
-    std::size_t gaps = 0;
-    for (const double step : advancing) {
-        gaps += step > limit_s;
-        duration += step > limit_s ? 0.0 : step;
-    }
-    const double steps = static_cast<double>(time_s.size() - 1);
-    const double mean_s = duration / (steps - static_cast<double>(gaps));
-    rate.mean = Hertz(1.0 / mean_s);
-    const bool repeats = steps - static_cast<double>(advancing.size()) > few_repeats * steps;
-    const bool lost = !repeats && cluster(advancing, rate.step_s) &&
-                      furthest_from_even(time_s, mean_s, limit_s) > even_steps * rate.step_s;
-    rate.nominal = nominal_rate(lost ? Hertz(1.0 / rate.step_s) : rate.mean);
-    return rate;
-}
-
-namespace {
-
 std::string gaps_in_words(const ClockFacts& clock) {
     const Gap& longest = clock.longest_gap;
     return fmt::format("{} {} in the time, the longest of {:.4g} s after {:.9g} s; each starts a new run",
@@ -168,34 +118,6 @@ std::string changes_in_words(const ClockFacts& clock) {
         "its own",
         changes, clock.rows_left_out, clock.nominal_rate.value());
 }
-
-}  // namespace
-
-std::vector<LogWarning> clock_warnings(const ClockFacts& clock) {
-    std::vector<LogWarning> warnings;
-    if (clock.gap_count > 0) warnings.push_back({"gaps", gaps_in_words(clock)});
-    if (!clock.rate_changes.empty()) warnings.push_back({"changes of rate", changes_in_words(clock)});
-    if (clock.repeated_times > 0) {
-        warnings.push_back(
-            {"repeated times",
-             fmt::format("{} rows ({} %) repeat the time of the row before: the clock is coarser than the "
-                         "rows, or rows "
-                         "were doubled",
-                         clock.repeated_times,
-                         percent_text(100.0 * static_cast<double>(clock.repeated_times) /
-                                      static_cast<double>(clock.rows)))});
-    }
-    const double mean = clock.mean_rate.value(), nominal = clock.nominal_rate.value();
-    if (nominal > 0.0 && std::abs(mean / nominal - 1.0) > rate_worth_a_word) {
-        warnings.push_back(
-            {"mean rate", fmt::format("mean rate {:.6g} Hz, typical step {:.6g} ms ({:.6g} Hz): samples are "
-                                      "missing or delayed; filters are designed for {:.6g} Hz",
-                                      mean, 1e3 / nominal, nominal, nominal)});
-    }
-    return warnings;
-}
-
-namespace {
 
 constexpr std::size_t most_pieces_checked = 64;  // many enough for a median, long enough to average noise
 constexpr std::size_t shortest_piece = 4;        // rows
@@ -344,6 +266,72 @@ std::string explain(double factor, Hertz sample_rate) {
 }
 
 }  // namespace
+
+StepSums sum_up_steps(std::span<const double> time_s, double usual_s) noexcept {
+    return in_lanes<SumUp>(time_s, usual_s);
+}
+
+Hertz nominal_rate(Hertz measured) {
+    const double rate = measured.value();
+    if (!(rate > 0.0) || !std::isfinite(rate)) return measured;
+    if (const double round_rate = two_digits(rate); near(rate, round_rate)) return Hertz(round_rate);
+    if (const double period = two_digits(1.0 / rate); near(rate, 1.0 / period)) {
+        const double by_period = 1.0 / period;
+        // 1 / 0.008 is 125 but for rounding.
+        return Hertz(std::abs(by_period - std::round(by_period)) < 1e-9 * by_period ? std::round(by_period)
+                                                                                    : by_period);
+    }
+    return measured;
+}
+
+RateEstimate estimate_rate(std::span<const double> time_s, double gap_steps) {
+    std::vector<double> advancing;
+    for (std::size_t k = 1; k < time_s.size(); ++k) {
+        if (time_s[k] > time_s[k - 1]) advancing.push_back(time_s[k] - time_s[k - 1]);
+    }
+    if (advancing.empty()) return {};
+    RateEstimate rate;
+    rate.step_s = median_in(advancing);
+    const double limit_s = gap_steps * rate.step_s;
+    double duration = 0.0;
+    std::size_t gaps = 0;
+    for (const double step : advancing) {
+        gaps += step > limit_s;
+        duration += step > limit_s ? 0.0 : step;
+    }
+    const double steps = static_cast<double>(time_s.size() - 1);
+    const double mean_s = duration / (steps - static_cast<double>(gaps));
+    rate.mean = Hertz(1.0 / mean_s);
+    const bool repeats = steps - static_cast<double>(advancing.size()) > few_repeats * steps;
+    const bool lost = !repeats && cluster(advancing, rate.step_s) &&
+                      furthest_from_even(time_s, mean_s, limit_s) > even_steps * rate.step_s;
+    rate.nominal = nominal_rate(lost ? Hertz(1.0 / rate.step_s) : rate.mean);
+    return rate;
+}
+
+std::vector<LogWarning> clock_warnings(const ClockFacts& clock) {
+    std::vector<LogWarning> warnings;
+    if (clock.gap_count > 0) warnings.push_back({"gaps", gaps_in_words(clock)});
+    if (!clock.rate_changes.empty()) warnings.push_back({"changes of rate", changes_in_words(clock)});
+    if (clock.repeated_times > 0) {
+        warnings.push_back(
+            {"repeated times",
+             fmt::format("{} rows ({} %) repeat the time of the row before: the clock is coarser than the "
+                         "rows, or rows "
+                         "were doubled",
+                         clock.repeated_times,
+                         percent_text(100.0 * static_cast<double>(clock.repeated_times) /
+                                      static_cast<double>(clock.rows)))});
+    }
+    const double mean = clock.mean_rate.value(), nominal = clock.nominal_rate.value();
+    if (nominal > 0.0 && std::abs(mean / nominal - 1.0) > rate_worth_a_word) {
+        warnings.push_back(
+            {"mean rate", fmt::format("mean rate {:.6g} Hz, typical step {:.6g} ms ({:.6g} Hz): samples are "
+                                      "missing or delayed; filters are designed for {:.6g} Hz",
+                                      mean, 1e3 / nominal, nominal, nominal)});
+    }
+    return warnings;
+}
 
 std::string factor_in_words(double factor) {
     const std::string start = start_of(factor);

@@ -98,10 +98,6 @@ std::optional<std::int64_t> read_zone(std::string_view& text) {
     return west ? -offset : offset;
 }
 
-}  // namespace
-
-namespace {
-
 /// "0.002 sec", "12 ms": durations as MATLAB writes them.
 std::optional<ClockTime> with_unit(std::string_view text) {
     const std::size_t digits = text.find_last_of("0123456789.") + 1;
@@ -114,6 +110,70 @@ std::optional<ClockTime> with_unit(std::string_view text) {
     if (!(std::abs(seconds) < longest)) return std::nullopt;
     return ClockTime{
         static_cast<std::int64_t>(std::floor(seconds)), seconds - std::floor(seconds), false, {}};
+}
+
+// Times as people type them, read, and put on the time axis of a log.
+
+constexpr std::int64_t day_s = 86400;
+
+std::optional<std::int64_t> whole_number(std::string_view text) {
+    constexpr std::size_t most_digits = 9;  // of nanoseconds, and what an int holds
+    if (text.empty() || text.size() > most_digits) return std::nullopt;
+    std::int64_t value = 0;
+    for (const char c : text) {
+        if (std::isdigit(static_cast<unsigned char>(c)) == 0) return std::nullopt;
+        value = 10 * value + (c - '0');
+    }
+    return value;
+}
+
+/// "05" to "59".
+std::optional<std::int64_t> sixtieths(std::string_view text) {
+    const auto value = text.size() == 2 ? whole_number(text) : std::nullopt;
+    return value && *value < 60 ? value : std::nullopt;
+}
+
+/// "12:30", "1:02:30.5", "90:00.25"; empty for what is none.
+std::optional<TimePoint> sexagesimal(std::string_view text) {
+    TimePoint point;
+    point.text = text;
+    const std::size_t dot = std::min(text.find('.'), text.size());
+    if (dot < text.size()) {
+        if (!whole_number(text.substr(dot + 1, 9))) return std::nullopt;
+        const auto fraction = parse_number("0" + std::string(text.substr(dot)));
+        if (!fraction) return std::nullopt;
+        point.fraction_s = *fraction;
+        text = text.substr(0, dot);
+    }
+    const std::size_t last = text.rfind(':'), first = text.find(':');
+    if (last == std::string_view::npos) return std::nullopt;
+    const bool hours = first != last;
+    const auto lead = whole_number(text.substr(0, first));
+    const auto middle =
+        hours ? sixtieths(text.substr(first + 1, last - first - 1)) : std::optional<std::int64_t>(0);
+    const auto end = sixtieths(text.substr(last + 1));
+    if (!lead || !middle || !end) return std::nullopt;
+    point.form = hours ? TimePoint::Form::hours : TimePoint::Form::two_fields;
+    point.whole_s = (hours ? 3600 : 60) * *lead + 60 * *middle + *end;
+    return point;
+}
+
+std::int64_t of_day(const TimePoint& point, std::string_view label) {
+    const bool fields = point.form == TimePoint::Form::two_fields;
+    if (fields && point.fraction_s > 0.0)
+        raise<UsageError>("{} {}: the log's times are times of day; write HH:MM:SS, or seconds as 90s", label,
+                          point.text);
+    const std::int64_t time_s = fields ? 60 * point.whole_s : point.whole_s;
+    if (time_s > day_s)
+        raise<UsageError>("{} {}: the log's times are times of day, which end at 24:00", label, point.text);
+    return time_s;
+}
+
+/// The midnight before `first`, of its day as it was written where it is a date.
+std::int64_t midnight_s(const ClockTime& first) {
+    if (!first.dated) return 0;
+    const std::int64_t zone = first.zone_s.value_or(0), local = first.whole_s + zone;
+    return local - (local % day_s + day_s) % day_s - zone;
 }
 
 }  // namespace
@@ -181,74 +241,6 @@ std::optional<double> read_stamp(std::string_view text, const StampRule& rule) {
         fraction = parse_number("0." + std::string(text.substr(digits + 1))).value_or(0.0);
     return since(whole, rule.origin) + fraction;
 }
-
-namespace {
-
-// Times as people type them, read, and put on the time axis of a log.
-
-constexpr std::int64_t day_s = 86400;
-
-std::optional<std::int64_t> whole_number(std::string_view text) {
-    constexpr std::size_t most_digits = 9;  // of nanoseconds, and what an int holds
-    if (text.empty() || text.size() > most_digits) return std::nullopt;
-    std::int64_t value = 0;
-    for (const char c : text) {
-        if (std::isdigit(static_cast<unsigned char>(c)) == 0) return std::nullopt;
-        value = 10 * value + (c - '0');
-    }
-    return value;
-}
-
-/// "05" to "59".
-std::optional<std::int64_t> sixtieths(std::string_view text) {
-    const auto value = text.size() == 2 ? whole_number(text) : std::nullopt;
-    return value && *value < 60 ? value : std::nullopt;
-}
-
-/// "12:30", "1:02:30.5", "90:00.25"; empty for what is none.
-std::optional<TimePoint> sexagesimal(std::string_view text) {
-    TimePoint point;
-    point.text = text;
-    const std::size_t dot = std::min(text.find('.'), text.size());
-    if (dot < text.size()) {
-        if (!whole_number(text.substr(dot + 1, 9))) return std::nullopt;
-        const auto fraction = parse_number("0" + std::string(text.substr(dot)));
-        if (!fraction) return std::nullopt;
-        point.fraction_s = *fraction;
-        text = text.substr(0, dot);
-    }
-    const std::size_t last = text.rfind(':'), first = text.find(':');
-    if (last == std::string_view::npos) return std::nullopt;
-    const bool hours = first != last;
-    const auto lead = whole_number(text.substr(0, first));
-    const auto middle =
-        hours ? sixtieths(text.substr(first + 1, last - first - 1)) : std::optional<std::int64_t>(0);
-    const auto end = sixtieths(text.substr(last + 1));
-    if (!lead || !middle || !end) return std::nullopt;
-    point.form = hours ? TimePoint::Form::hours : TimePoint::Form::two_fields;
-    point.whole_s = (hours ? 3600 : 60) * *lead + 60 * *middle + *end;
-    return point;
-}
-
-std::int64_t of_day(const TimePoint& point, std::string_view label) {
-    const bool fields = point.form == TimePoint::Form::two_fields;
-    if (fields && point.fraction_s > 0.0)
-        raise<UsageError>("{} {}: the log's times are times of day; write HH:MM:SS, or seconds as 90s", label,
-                          point.text);
-    const std::int64_t time_s = fields ? 60 * point.whole_s : point.whole_s;
-    if (time_s > day_s)
-        raise<UsageError>("{} {}: the log's times are times of day, which end at 24:00", label, point.text);
-    return time_s;
-}
-
-/// The midnight before `first`, of its day as it was written where it is a date.
-std::int64_t midnight_s(const ClockTime& first) {
-    if (!first.dated) return 0;
-    const std::int64_t zone = first.zone_s.value_or(0), local = first.whole_s + zone;
-    return local - (local % day_s + day_s) % day_s - zone;
-}
-
-}  // namespace
 
 TimePoint parse_time_point(std::string_view text, std::string_view label) {
     // With slashes and the year at the end, people mean either order.

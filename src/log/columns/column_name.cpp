@@ -304,6 +304,204 @@ bool is_clock_name(const std::vector<Word>& left) {
     });
 }
 
+/// "v" of "v", "v_3", "v3", "v[3]".
+std::string_view without_number(std::string_view name) {
+    if (name.ends_with(']')) name.remove_suffix(1);
+    while (!name.empty() && is_digits(name.substr(name.size() - 1))) name.remove_suffix(1);
+    while (!name.empty() && (name.back() == '_' || name.back() == '[' || name.back() == ' '))
+        name.remove_suffix(1);
+    return name;
+}
+
+// A speed in m/s, or a unit in brackets, is that of a linear axis; then so are "pos_m" and "force_N".
+void read_linear_axis(const std::vector<std::string>& names, std::vector<ColumnName>& columns) {
+    const bool linear = std::any_of(columns.begin(), columns.end(), [](const ColumnName& column) {
+        const auto usual = usual_unit(column.unit, column.role);
+        return column.role != Role::torque && usual && is_linear_unit(column.role, *usual);
+    });
+    if (!linear) return;
+    for (std::size_t c = 0; c < names.size(); ++c) {
+        ColumnName read = read_column_name(names[c], true);
+        if (read.unit.empty())
+            std::tie(read.unit, read.unit_is_sure) = std::tie(columns[c].unit, columns[c].unit_is_sure);
+        columns[c] = std::move(read);
+    }
+}
+
+// ".joint.states.j1.velocity." of "/joint_states/j1/velocity"
+std::string in_words(std::string_view name) {
+    std::string words = ".";
+    for (const char c : lower_case(name)) {
+        if (std::isalnum(static_cast<unsigned char>(c)) != 0)
+            words += c;
+        else if (words.back() != '.')
+            words += '.';
+    }
+    if (words.back() != '.') words += '.';
+    return words;
+}
+
+// Whether `word` is the next one at `at`, perhaps with a number glued to it.
+bool word_at(std::string_view words, std::size_t at, std::string_view word) {
+    if (words.substr(at, word.size()) != word) return false;
+    const std::size_t end = words.find_first_not_of("0123456789", at + word.size());
+    return end != std::string_view::npos && words[end] == '.';
+}
+
+// All words of the pattern, in this order, others between them allowed: a joint's name stands there.
+bool follows(std::string_view words, std::string_view pattern) {
+    if (pattern.starts_with('=')) return words.substr(1, words.size() - 2) == pattern.substr(1);
+    std::size_t at = 0;
+    while (!pattern.empty()) {
+        const std::string_view word = pattern.substr(0, pattern.find('.'));
+        pattern.remove_prefix(std::min(pattern.size(), word.size() + 1));
+        while (at != std::string_view::npos && !word_at(words, at + 1, word)) at = words.find('.', at + 1);
+        if (at == std::string_view::npos) return false;
+        at = words.find('.', at + 1);
+    }
+    return true;
+}
+
+const std::vector<Convention>& all_conventions() {
+    static const std::vector<Convention> table = conventions();
+    return table;
+}
+
+void follow_conventions(const std::vector<std::string>& names, std::vector<ColumnName>& columns) {
+    std::vector<std::string> words;
+    for (const std::string& name : names) words.push_back(in_words(name));
+    for (const Convention& known : all_conventions()) {
+        const auto fits = [&](const std::string& of_column) {
+            bool any = false;
+            for_each_word(known.names,
+                          [&](std::string_view pattern) { any = any || follows(of_column, pattern); });
+            return any;
+        };
+        if (!known.beside.empty() && std::none_of(words.begin(), words.end(), [&](const std::string& other) {
+                return follows(other, known.beside);
+            }))
+            continue;
+        for (std::size_t c = 0; c < columns.size(); ++c)
+            if (fits(words[c])) columns[c].conventions.push_back(&known);
+    }
+}
+
+// Columns named one by one belong to a named joint only when their names agree on it.
+std::string joint_of_forced(const KnownColumns& known) {
+    const auto torque = known.forced.column_of(Role::torque);
+    auto motion = known.forced.column_of(Role::velocity);
+    if (!motion) motion = known.forced.column_of(Role::position);
+    if (known.forced.by_place || !torque || !motion) return "";
+    const std::string& joint = known.names[*torque].joint;
+    return joint_key(joint) == joint_key(known.names[*motion].joint) ? joint : "";
+}
+
+// Torque and motion are named by --columns: the other columns of these roles tell nothing, nor do joints that
+// have nothing else.
+void drop_unasked(const KnownColumns& known, bool joint_asked, std::vector<JointGroup>& groups) {
+    const auto& forced = known.forced;
+    const auto torque = forced.column_of(Role::torque);
+    const bool moves = forced.column_of(Role::velocity) || forced.column_of(Role::position);
+    if (forced.by_place || !torque || !moves) return;
+    const std::string of_torque = joint_key(known.names[*torque].joint);
+    const auto is_unasked = [&](const JointGroup& group) {
+        return group.key != of_torque &&
+               std::all_of(motion_roles.begin(), motion_roles.end(),
+                           [&](Role role) { return forced.column_of(role) || !group.has(role); });
+    };
+    if (joint_asked && std::all_of(groups.begin(), groups.end(), is_unasked) &&
+        !joint_of_forced(known).empty())
+        groups.clear();
+    if (joint_asked) return;
+    groups.erase(std::remove_if(groups.begin(), groups.end(), is_unasked), groups.end());
+    const bool distinct = std::any_of(groups.begin(), groups.end(),
+                                      [&](const JointGroup& group) { return group.key == of_torque; });
+    if (groups.size() > 1 && !distinct) groups.clear();
+}
+
+std::vector<JointGroup> collect_groups(const KnownColumns& known, bool merge) {
+    std::vector<JointGroup> groups;
+    std::map<std::string, std::size_t> places;
+    for (const bool reference : {false, true}) {
+        for (std::size_t c = 0; c < known.facts.columns; ++c) {
+            const ColumnName& name = known.names[c];
+            if (known.forced.roles[c] || name.reference != reference) continue;
+            if (name.role == Role::other || name.role == Role::time) continue;
+            const std::string key = merge ? "" : joint_key(name.joint);
+            if (places.count(key) == 0) {
+                if (reference && !groups.empty()) continue;  // a wish alone does not make a joint
+                places[key] = groups.size();
+                groups.push_back({key, merge ? "" : name.joint, {}});
+            }
+            groups[places[key]].candidates[name.role].push_back(c);
+        }
+    }
+    return groups;
+}
+
+[[noreturn]] void refuse_tie(const KnownColumns& known, Role role, const std::vector<std::size_t>& best) {
+    std::vector<std::string> labels, choices;
+    for (const std::size_t c : best) {
+        labels.push_back(column_label(known.facts.names, c));
+        const std::string& name = known.facts.names[c];
+        const bool plain = name.find_first_of(" ,=()[]'\"&;") == std::string::npos &&
+                           std::count(known.facts.names.begin(), known.facts.names.end(), name) == 1;
+        choices.push_back(
+            fmt::format("--columns {}={}", role_name(role), plain ? name : std::to_string(c + 1)));
+    }
+    raise<DataError>("{}: {} could each be the {}; use {}", known.source, fmt::join(labels, " and "),
+                     role_name(role), fmt::join(choices, " or "));
+}
+
+/// The columns of one role whose joints are numbers.
+struct Numbering {
+    std::size_t lowest = 0, highest = 0, first_column = 0, columns = 0;
+};
+
+/// Number behind the letters of a joint's key, "left_3".
+std::optional<std::size_t> number_of(std::string_view key) {
+    const std::size_t letters = key.find_last_not_of("0123456789");
+    key.remove_prefix(letters == std::string_view::npos ? 0 : letters + 1);
+    constexpr std::size_t most_digits = 4;
+    if (key.empty() || key.size() > most_digits) return std::nullopt;
+    std::size_t number = 0;
+    for (const char c : key) number = 10 * number + static_cast<std::size_t>(c - '0');
+    return number;
+}
+
+// One of them has what the other has not, at both ends; of single columns, another number.
+bool differ(const Numbering& a, const Numbering& b) {
+    if (a.columns == 1 && b.columns == 1) return a.lowest != b.lowest;
+    const auto shifted = [](const Numbering& from_0, const Numbering& from_1) {
+        return from_0.lowest == 0 && from_1.lowest == 1 && from_1.highest > from_0.highest;
+    };
+    return shifted(a, b) || shifted(b, a);
+}
+
+/// "sm_2", of which there is a torque alone, is another torque of joint 2; "sensor" of the one joint that has
+/// no name.
+void share_torques(std::vector<JointGroup>& groups) {
+    const auto moves = [](const JointGroup& group) {
+        return group.has(Role::velocity) || group.has(Role::position);
+    };
+    const auto still = std::stable_partition(groups.begin(), groups.end(), moves);
+    std::map<std::string, JointGroup*> moving;
+    for (auto group = groups.begin(); group != still; ++group) moving[group->key] = &*group;
+    const auto shared = [&](const JointGroup& group) {
+        auto owner = moving.size() == 1 ? moving.find("") : moving.end();
+        for (std::size_t cut = group.key.find('_'); cut != std::string::npos;
+             cut = group.key.find('_', cut + 1))
+            if (const auto named = moving.find(joint_key(group.key.substr(cut + 1))); named != moving.end())
+                owner = named;
+        if (owner == moving.end()) return false;
+        std::vector<std::size_t>& torques = owner->second->candidates[Role::torque];
+        const auto& more = group.candidates.at(Role::torque);
+        torques.insert(torques.end(), more.begin(), more.end());
+        return true;
+    };
+    groups.erase(std::remove_if(still, groups.end(), shared), groups.end());
+}
+
 }  // namespace
 
 bool is_known_word(std::string_view text) {
@@ -395,92 +593,6 @@ ColumnName read_column_name(std::string_view name, bool linear_axis) {
     return column;
 }
 
-namespace {
-
-/// "v" of "v", "v_3", "v3", "v[3]".
-std::string_view without_number(std::string_view name) {
-    if (name.ends_with(']')) name.remove_suffix(1);
-    while (!name.empty() && is_digits(name.substr(name.size() - 1))) name.remove_suffix(1);
-    while (!name.empty() && (name.back() == '_' || name.back() == '[' || name.back() == ' '))
-        name.remove_suffix(1);
-    return name;
-}
-
-// A speed in m/s, or a unit in brackets, is that of a linear axis; then so are "pos_m" and "force_N".
-void read_linear_axis(const std::vector<std::string>& names, std::vector<ColumnName>& columns) {
-    const bool linear = std::any_of(columns.begin(), columns.end(), [](const ColumnName& column) {
-        const auto usual = usual_unit(column.unit, column.role);
-        return column.role != Role::torque && usual && is_linear_unit(column.role, *usual);
-    });
-    if (!linear) return;
-    for (std::size_t c = 0; c < names.size(); ++c) {
-        ColumnName read = read_column_name(names[c], true);
-        if (read.unit.empty())
-            std::tie(read.unit, read.unit_is_sure) = std::tie(columns[c].unit, columns[c].unit_is_sure);
-        columns[c] = std::move(read);
-    }
-}
-
-// ".joint.states.j1.velocity." of "/joint_states/j1/velocity"
-std::string in_words(std::string_view name) {
-    std::string words = ".";
-    for (const char c : lower_case(name)) {
-        if (std::isalnum(static_cast<unsigned char>(c)) != 0)
-            words += c;
-        else if (words.back() != '.')
-            words += '.';
-    }
-    if (words.back() != '.') words += '.';
-    return words;
-}
-
-// Whether `word` is the next one at `at`, perhaps with a number glued to it.
-bool word_at(std::string_view words, std::size_t at, std::string_view word) {
-    if (words.substr(at, word.size()) != word) return false;
-    const std::size_t end = words.find_first_not_of("0123456789", at + word.size());
-    return end != std::string_view::npos && words[end] == '.';
-}
-
-// All words of the pattern, in this order, others between them allowed: a joint's name stands there.
-bool follows(std::string_view words, std::string_view pattern) {
-    if (pattern.starts_with('=')) return words.substr(1, words.size() - 2) == pattern.substr(1);
-    std::size_t at = 0;
-    while (!pattern.empty()) {
-        const std::string_view word = pattern.substr(0, pattern.find('.'));
-        pattern.remove_prefix(std::min(pattern.size(), word.size() + 1));
-        while (at != std::string_view::npos && !word_at(words, at + 1, word)) at = words.find('.', at + 1);
-        if (at == std::string_view::npos) return false;
-        at = words.find('.', at + 1);
-    }
-    return true;
-}
-
-const std::vector<Convention>& all_conventions() {
-    static const std::vector<Convention> table = conventions();
-    return table;
-}
-
-void follow_conventions(const std::vector<std::string>& names, std::vector<ColumnName>& columns) {
-    std::vector<std::string> words;
-    for (const std::string& name : names) words.push_back(in_words(name));
-    for (const Convention& known : all_conventions()) {
-        const auto fits = [&](const std::string& of_column) {
-            bool any = false;
-            for_each_word(known.names,
-                          [&](std::string_view pattern) { any = any || follows(of_column, pattern); });
-            return any;
-        };
-        if (!known.beside.empty() && std::none_of(words.begin(), words.end(), [&](const std::string& other) {
-                return follows(other, known.beside);
-            }))
-            continue;
-        for (std::size_t c = 0; c < columns.size(); ++c)
-            if (fits(words[c])) columns[c].conventions.push_back(&known);
-    }
-}
-
-}  // namespace
-
 std::vector<Convention> conventions() {
     std::vector<Convention> found;
     for (const NameLine& line : name_lines)
@@ -549,130 +661,6 @@ std::string joint_key(std::string_view joint) {
     }
     return key;
 }
-
-namespace {
-
-// Columns named one by one belong to a named joint only when their names agree on it.
-std::string joint_of_forced(const KnownColumns& known) {
-    const auto torque = known.forced.column_of(Role::torque);
-    auto motion = known.forced.column_of(Role::velocity);
-    if (!motion) motion = known.forced.column_of(Role::position);
-    if (known.forced.by_place || !torque || !motion) return "";
-    const std::string& joint = known.names[*torque].joint;
-    return joint_key(joint) == joint_key(known.names[*motion].joint) ? joint : "";
-}
-
-// Torque and motion are named by --columns: the other columns of these roles tell nothing, nor do joints that
-// have nothing else.
-void drop_unasked(const KnownColumns& known, bool joint_asked, std::vector<JointGroup>& groups) {
-    const auto& forced = known.forced;
-    const auto torque = forced.column_of(Role::torque);
-    const bool moves = forced.column_of(Role::velocity) || forced.column_of(Role::position);
-    if (forced.by_place || !torque || !moves) return;
-    const std::string of_torque = joint_key(known.names[*torque].joint);
-    const auto is_unasked = [&](const JointGroup& group) {
-        return group.key != of_torque &&
-               std::all_of(motion_roles.begin(), motion_roles.end(),
-                           [&](Role role) { return forced.column_of(role) || !group.has(role); });
-    };
-    if (joint_asked && std::all_of(groups.begin(), groups.end(), is_unasked) &&
-        !joint_of_forced(known).empty())
-        groups.clear();
-    if (joint_asked) return;
-    groups.erase(std::remove_if(groups.begin(), groups.end(), is_unasked), groups.end());
-    const bool distinct = std::any_of(groups.begin(), groups.end(),
-                                      [&](const JointGroup& group) { return group.key == of_torque; });
-    if (groups.size() > 1 && !distinct) groups.clear();
-}
-
-std::vector<JointGroup> collect_groups(const KnownColumns& known, bool merge) {
-    std::vector<JointGroup> groups;
-    std::map<std::string, std::size_t> places;
-    for (const bool reference : {false, true}) {
-        for (std::size_t c = 0; c < known.facts.columns; ++c) {
-            const ColumnName& name = known.names[c];
-            if (known.forced.roles[c] || name.reference != reference) continue;
-            if (name.role == Role::other || name.role == Role::time) continue;
-            const std::string key = merge ? "" : joint_key(name.joint);
-            if (places.count(key) == 0) {
-                if (reference && !groups.empty()) continue;  // a wish alone does not make a joint
-                places[key] = groups.size();
-                groups.push_back({key, merge ? "" : name.joint, {}});
-            }
-            groups[places[key]].candidates[name.role].push_back(c);
-        }
-    }
-    return groups;
-}
-
-[[noreturn]] void refuse_tie(const KnownColumns& known, Role role, const std::vector<std::size_t>& best) {
-    std::vector<std::string> labels, choices;
-    for (const std::size_t c : best) {
-        labels.push_back(column_label(known.facts.names, c));
-        const std::string& name = known.facts.names[c];
-        const bool plain = name.find_first_of(" ,=()[]'\"&;") == std::string::npos &&
-                           std::count(known.facts.names.begin(), known.facts.names.end(), name) == 1;
-        choices.push_back(
-            fmt::format("--columns {}={}", role_name(role), plain ? name : std::to_string(c + 1)));
-    }
-    raise<DataError>("{}: {} could each be the {}; use {}", known.source, fmt::join(labels, " and "),
-                     role_name(role), fmt::join(choices, " or "));
-}
-
-}  // namespace
-
-namespace {
-
-/// The columns of one role whose joints are numbers.
-struct Numbering {
-    std::size_t lowest = 0, highest = 0, first_column = 0, columns = 0;
-};
-
-/// Number behind the letters of a joint's key, "left_3".
-std::optional<std::size_t> number_of(std::string_view key) {
-    const std::size_t letters = key.find_last_not_of("0123456789");
-    key.remove_prefix(letters == std::string_view::npos ? 0 : letters + 1);
-    constexpr std::size_t most_digits = 4;
-    if (key.empty() || key.size() > most_digits) return std::nullopt;
-    std::size_t number = 0;
-    for (const char c : key) number = 10 * number + static_cast<std::size_t>(c - '0');
-    return number;
-}
-
-// One of them has what the other has not, at both ends; of single columns, another number.
-bool differ(const Numbering& a, const Numbering& b) {
-    if (a.columns == 1 && b.columns == 1) return a.lowest != b.lowest;
-    const auto shifted = [](const Numbering& from_0, const Numbering& from_1) {
-        return from_0.lowest == 0 && from_1.lowest == 1 && from_1.highest > from_0.highest;
-    };
-    return shifted(a, b) || shifted(b, a);
-}
-
-/// "sm_2", of which there is a torque alone, is another torque of joint 2; "sensor" of the one joint that has
-/// no name.
-void share_torques(std::vector<JointGroup>& groups) {
-    const auto moves = [](const JointGroup& group) {
-        return group.has(Role::velocity) || group.has(Role::position);
-    };
-    const auto still = std::stable_partition(groups.begin(), groups.end(), moves);
-    std::map<std::string, JointGroup*> moving;
-    for (auto group = groups.begin(); group != still; ++group) moving[group->key] = &*group;
-    const auto shared = [&](const JointGroup& group) {
-        auto owner = moving.size() == 1 ? moving.find("") : moving.end();
-        for (std::size_t cut = group.key.find('_'); cut != std::string::npos;
-             cut = group.key.find('_', cut + 1))
-            if (const auto named = moving.find(joint_key(group.key.substr(cut + 1))); named != moving.end())
-                owner = named;
-        if (owner == moving.end()) return false;
-        std::vector<std::size_t>& torques = owner->second->candidates[Role::torque];
-        const auto& more = group.candidates.at(Role::torque);
-        torques.insert(torques.end(), more.begin(), more.end());
-        return true;
-    };
-    groups.erase(std::remove_if(still, groups.end(), shared), groups.end());
-}
-
-}  // namespace
 
 std::string mixed_numberings(const KnownColumns& known) {
     const auto& forced = known.forced;

@@ -88,14 +88,6 @@ struct KnownColumns {
 /// are not one joint's; empty otherwise, and where --columns says what belongs together.
 [[nodiscard]] std::string mixed_numberings(const KnownColumns& known);
 
-/// Why this column was taken for nothing: one clause. `joints`: those that may be read; `incomplete`: the
-/// others.
-[[nodiscard]] std::string why_unused(const KnownColumns& known, std::size_t column,
-                                     const std::vector<JointGroup>& joints,
-                                     const std::vector<JointGroup>& incomplete);
-/// What a joint that cannot be read lacks: "it has no torque".
-[[nodiscard]] std::string what_is_missing(const JointGroup& joint);
-
 /// The one column for a role, empty when there is none. Throws DataError where several are equally good.
 [[nodiscard]] std::optional<std::size_t> choose_column(const KnownColumns& known, const JointGroup& group,
                                                        Role role, std::vector<LogWarning>& warnings);

@@ -90,34 +90,6 @@ std::optional<double> scale_of(const Moves& moves) {
     return std::abs(middle);
 }
 
-}  // namespace
-
-MotionEvidence motion_evidence(const std::vector<double>& time_s, const std::vector<double>& velocity,
-                               const std::vector<double>& position) {
-    std::vector<double> t, v, q;
-    for (std::size_t i = 0; i < std::max(velocity.size(), position.size()); ++i) {
-        const bool good = (time_s.empty() || std::isfinite(time_s[i])) &&
-                          (velocity.empty() || std::isfinite(velocity[i])) &&
-                          (position.empty() || std::isfinite(position[i]));
-        if (!good) continue;
-        if (!time_s.empty()) t.push_back(time_s[i]);
-        if (!velocity.empty()) v.push_back(velocity[i]);
-        if (!position.empty()) q.push_back(position[i]);
-    }
-    MotionEvidence evidence;
-    evidence.velocity_counts = counts_only(v);
-    evidence.position_counts = counts_only(q);
-    evidence.farthest = nearly_largest(q);
-    evidence.wrap = wrap_period(q);
-    if (evidence.wrap) Unwrapper(*evidence.wrap).apply(q);
-    evidence.fastest = nearly_largest(velocity.empty() && !t.empty() ? slopes(t, q) : v);
-    if (t.size() < 2 || v.empty() || q.empty()) return evidence;
-    evidence.scale = scale_of(moves_of(t, v, q));
-    return evidence;
-}
-
-namespace {
-
 // 1667 rpm, eight times the fastest joint behind a gear and twice a direct drive of an arm; 20000 rpm of a
 // motor, before the gear.
 constexpr double no_joint_deg_s = 10000.0, no_motor_deg_s = 120000.0;
@@ -461,15 +433,6 @@ class Inference {
     MotionReading best_;
 };
 
-}  // namespace
-
-void infer_motion(const ColumnFacts& facts, const ReadOptions& options,
-                  const std::vector<MotionColumns>& joints, MotionsSeen& seen, Layout& layout) {
-    Inference(facts, options, joints, seen, layout).run();
-}
-
-namespace {
-
 // Which columns of a file are a joint's motion, and what is known of their units before any value is looked
 // at.
 
@@ -487,6 +450,35 @@ std::optional<std::size_t> only_column(const KnownColumns& known, const JointGro
 }
 
 }  // namespace
+
+MotionEvidence motion_evidence(const std::vector<double>& time_s, const std::vector<double>& velocity,
+                               const std::vector<double>& position) {
+    std::vector<double> t, v, q;
+    for (std::size_t i = 0; i < std::max(velocity.size(), position.size()); ++i) {
+        const bool good = (time_s.empty() || std::isfinite(time_s[i])) &&
+                          (velocity.empty() || std::isfinite(velocity[i])) &&
+                          (position.empty() || std::isfinite(position[i]));
+        if (!good) continue;
+        if (!time_s.empty()) t.push_back(time_s[i]);
+        if (!velocity.empty()) v.push_back(velocity[i]);
+        if (!position.empty()) q.push_back(position[i]);
+    }
+    MotionEvidence evidence;
+    evidence.velocity_counts = counts_only(v);
+    evidence.position_counts = counts_only(q);
+    evidence.farthest = nearly_largest(q);
+    evidence.wrap = wrap_period(q);
+    if (evidence.wrap) Unwrapper(*evidence.wrap).apply(q);
+    evidence.fastest = nearly_largest(velocity.empty() && !t.empty() ? slopes(t, q) : v);
+    if (t.size() < 2 || v.empty() || q.empty()) return evidence;
+    evidence.scale = scale_of(moves_of(t, v, q));
+    return evidence;
+}
+
+void infer_motion(const ColumnFacts& facts, const ReadOptions& options,
+                  const std::vector<MotionColumns>& joints, MotionsSeen& seen, Layout& layout) {
+    Inference(facts, options, joints, seen, layout).run();
+}
 
 std::vector<MotionColumns> motions_of(const KnownColumns& known, const std::vector<JointGroup>& groups,
                                       const std::vector<bool>& unit_is_stated, const ReadOptions& options,

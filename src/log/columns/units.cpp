@@ -124,6 +124,92 @@ std::string_view without_padding(std::string_view text) {
     return text;
 }
 
+Dimension linear_dimension_of(Role role) {
+    return role == Role::velocity   ? Dimension::linear_speed
+           : role == Role::torque   ? Dimension::force
+           : role == Role::position ? Dimension::length
+                                    : Dimension::none;
+}
+
+// One sentence for all units that nobody stated.
+void say_assumed_units(Layout& layout, const ColumnFacts& facts) {
+    std::vector<std::string> taken, asked;
+    std::vector<std::optional<std::size_t>> columns = {layout.chosen.time};
+    for (const JointColumns& joint : layout.all_chosen())
+        columns.insert(columns.end(), {joint.velocity, joint.torque, joint.position});
+    for (const auto& column : columns) {
+        if (!column || !layout.columns[*column].unit_assumed) continue;
+        const Column& c = layout.columns[*column];
+        taken.push_back(fmt::format("{} as {}", column_label(facts.names, *column), c.unit));
+        asked.push_back(fmt::format("--unit {}={}", role_name(c.role), c.unit));
+    }
+    for (const JointColumns& joint : layout.all_chosen()) {
+        if (!joint.torque || !layout.columns[*joint.torque].unit_assumed) continue;
+        const Column& torque = layout.columns[*joint.torque];
+        layout.assumptions.push_back({fmt::format("unit of {}", column_label(facts.names, *joint.torque)),
+                                      torque.unit,
+                                      "not stated in the log",
+                                      fmt::format("--unit torque={}", torque.unit),
+                                      {}});
+    }
+    if (!taken.empty()) {
+        layout.warnings.push_back({"assumed units",
+                                   fmt::format("no unit is stated for what is read: took {}; {} settles it",
+                                               fmt::join(taken, ", "), fmt::join(asked, " ")),
+                                   true});
+    }
+}
+
+void say_torque_constant(Layout& layout, const ColumnFacts& facts, const ReadOptions& options) {
+    const auto torque = layout.chosen.torque;
+    if (!torque) return;
+    const bool current = is_current_unit(layout.columns[*torque].unit);
+    if (current && !options.nm_per_ampere) {
+        layout.warnings.push_back(
+            {"motor current",
+             fmt::format("{} is a motor current: 1 A is taken as 1 Nm, so every torque is in "
+                         "amperes; --kt gives the joint's torque constant in Nm/A",
+                         column_label(facts.names, *torque)),
+             true});
+    }
+    if (options.lead_m) {
+        bool linear = false;
+        for (const JointColumns& joint : layout.all_chosen()) {
+            for (const auto& column : {joint.velocity, joint.torque, joint.position})
+                linear = linear || (column && is_linear_unit(layout.columns[*column].role,
+                                                             layout.columns[*column].unit));
+        }
+        if (linear)
+            layout.inferences.push_back(
+                {"linear axis",
+                 "angles, speeds and torques of its screw",
+                 fmt::format("one turn is {} mm (--lead)", shortest(1e3 * *options.lead_m)),
+                 "",
+                 {}});
+        else
+            layout.warnings.push_back(
+                {"--lead", "--lead has no effect: nothing that is read is in m, m/s or N", true});
+    }
+    if (!current && options.nm_per_ampere) {
+        layout.warnings.push_back(
+            {"--kt",
+             fmt::format("--kt has no effect: {} is in {}", column_label(facts.names, *torque),
+                         layout.columns[*torque].unit),
+             true});
+    }
+}
+
+void require_used(const Layout& layout, std::string_view option, const std::string& key) {
+    for (const Role role : {Role::time, Role::velocity, Role::torque, Role::position}) {
+        if (key == role_name(role)) return;
+    }
+    for (const Column& column : layout.columns) {
+        if (column.name == key) return;
+    }
+    raise<UsageError>("{}: '{}' is neither a role (time, velocity, torque, position) nor a column of {}",
+                      option, key, layout.source);
+}
+
 }  // namespace
 
 Dimension dimension_of(Role role) {
@@ -143,17 +229,6 @@ Dimension dimension_of(Role role) {
 }
 
 bool is_current_unit(std::string_view unit) { return unit_factor(Dimension::current, unit).has_value(); }
-
-namespace {
-
-Dimension linear_dimension_of(Role role) {
-    return role == Role::velocity   ? Dimension::linear_speed
-           : role == Role::torque   ? Dimension::force
-           : role == Role::position ? Dimension::length
-                                    : Dimension::none;
-}
-
-}  // namespace
 
 bool is_linear_unit(Role role, std::string_view unit) {
     const Dimension dimension = linear_dimension_of(role);
@@ -243,89 +318,6 @@ NameAndUnit split_unit(std::string_view column_name, Role role, bool linear_axis
     }
     return {std::string(whole), "", false};
 }
-
-namespace {
-
-// One sentence for all units that nobody stated.
-void say_assumed_units(Layout& layout, const ColumnFacts& facts) {
-    std::vector<std::string> taken, asked;
-    std::vector<std::optional<std::size_t>> columns = {layout.chosen.time};
-    for (const JointColumns& joint : layout.all_chosen())
-        columns.insert(columns.end(), {joint.velocity, joint.torque, joint.position});
-    for (const auto& column : columns) {
-        if (!column || !layout.columns[*column].unit_assumed) continue;
-        const Column& c = layout.columns[*column];
-        taken.push_back(fmt::format("{} as {}", column_label(facts.names, *column), c.unit));
-        asked.push_back(fmt::format("--unit {}={}", role_name(c.role), c.unit));
-    }
-    for (const JointColumns& joint : layout.all_chosen()) {
-        if (!joint.torque || !layout.columns[*joint.torque].unit_assumed) continue;
-        const Column& torque = layout.columns[*joint.torque];
-        layout.assumptions.push_back({fmt::format("unit of {}", column_label(facts.names, *joint.torque)),
-                                      torque.unit,
-                                      "not stated in the log",
-                                      fmt::format("--unit torque={}", torque.unit),
-                                      {}});
-    }
-    if (!taken.empty()) {
-        layout.warnings.push_back({"assumed units",
-                                   fmt::format("no unit is stated for what is read: took {}; {} settles it",
-                                               fmt::join(taken, ", "), fmt::join(asked, " ")),
-                                   true});
-    }
-}
-
-void say_torque_constant(Layout& layout, const ColumnFacts& facts, const ReadOptions& options) {
-    const auto torque = layout.chosen.torque;
-    if (!torque) return;
-    const bool current = is_current_unit(layout.columns[*torque].unit);
-    if (current && !options.nm_per_ampere) {
-        layout.warnings.push_back(
-            {"motor current",
-             fmt::format("{} is a motor current: 1 A is taken as 1 Nm, so every torque is in "
-                         "amperes; --kt gives the joint's torque constant in Nm/A",
-                         column_label(facts.names, *torque)),
-             true});
-    }
-    if (options.lead_m) {
-        bool linear = false;
-        for (const JointColumns& joint : layout.all_chosen()) {
-            for (const auto& column : {joint.velocity, joint.torque, joint.position})
-                linear = linear || (column && is_linear_unit(layout.columns[*column].role,
-                                                             layout.columns[*column].unit));
-        }
-        if (linear)
-            layout.inferences.push_back(
-                {"linear axis",
-                 "angles, speeds and torques of its screw",
-                 fmt::format("one turn is {} mm (--lead)", shortest(1e3 * *options.lead_m)),
-                 "",
-                 {}});
-        else
-            layout.warnings.push_back(
-                {"--lead", "--lead has no effect: nothing that is read is in m, m/s or N", true});
-    }
-    if (!current && options.nm_per_ampere) {
-        layout.warnings.push_back(
-            {"--kt",
-             fmt::format("--kt has no effect: {} is in {}", column_label(facts.names, *torque),
-                         layout.columns[*torque].unit),
-             true});
-    }
-}
-
-void require_used(const Layout& layout, std::string_view option, const std::string& key) {
-    for (const Role role : {Role::time, Role::velocity, Role::torque, Role::position}) {
-        if (key == role_name(role)) return;
-    }
-    for (const Column& column : layout.columns) {
-        if (column.name == key) return;
-    }
-    raise<UsageError>("{}: '{}' is neither a role (time, velocity, torque, position) nor a column of {}",
-                      option, key, layout.source);
-}
-
-}  // namespace
 
 std::optional<std::string> asked_unit(const ReadOptions& options, const std::string& name, Role role) {
     for (const std::string& key : {name, std::string(role_name(role))}) {

@@ -12,7 +12,7 @@
 
 #include "log/columns/column_name.hpp"
 #include "log/npy/npy_writer.hpp"
-#include "log/read.hpp"
+#include "log/open.hpp"
 #include "ripplenotch/core/error.hpp"
 
 namespace ripplenotch {
@@ -142,30 +142,6 @@ class UnpackedPart final : public StoredBytes {
     TemporaryBytes bytes_;
 };
 
-}  // namespace
-
-void require_checksum(StoredBytes& bytes, std::uint64_t offset, std::uint64_t size, std::uint32_t checksum) {
-    std::optional<std::uint32_t> sum = 0;
-    for (std::uint64_t done = 0; done < size && sum; done += stored_piece) {
-        const auto length = static_cast<std::size_t>(std::min<std::uint64_t>(stored_piece, size - done));
-        sum = crc32_of(bytes.text_at(offset + done, length), *sum);
-    }
-    if (sum && *sum != checksum) complain_of_sum(bytes.name(), *sum, checksum);
-}
-
-std::shared_ptr<StoredBytes> store_bytes(std::unique_ptr<ByteSource> source, std::string first_bytes) {
-    if (source->by_place()) return std::make_shared<FileBytes>(std::move(source));
-    return std::make_shared<KeptBytes>(*source, std::move(first_bytes));
-}
-
-std::shared_ptr<StoredBytes> unpack_part(std::shared_ptr<StoredBytes> packed, std::uint64_t offset,
-                                         std::uint64_t size, Deflate kind, std::uint64_t most,
-                                         std::optional<std::uint32_t> checksum) {
-    return std::make_shared<UnpackedPart>(std::move(packed), offset, size, kind, most, checksum);
-}
-
-namespace {
-
 constexpr std::uint64_t most_columns = 64;
 constexpr std::size_t gathered_at_once = std::size_t{1} << 18;
 
@@ -197,6 +173,26 @@ class StridedCursor final : public ColumnCursor {
 };
 
 }  // namespace
+
+void require_checksum(StoredBytes& bytes, std::uint64_t offset, std::uint64_t size, std::uint32_t checksum) {
+    std::optional<std::uint32_t> sum = 0;
+    for (std::uint64_t done = 0; done < size && sum; done += stored_piece) {
+        const auto length = static_cast<std::size_t>(std::min<std::uint64_t>(stored_piece, size - done));
+        sum = crc32_of(bytes.text_at(offset + done, length), *sum);
+    }
+    if (sum && *sum != checksum) complain_of_sum(bytes.name(), *sum, checksum);
+}
+
+std::shared_ptr<StoredBytes> store_bytes(std::unique_ptr<ByteSource> source, std::string first_bytes) {
+    if (source->by_place()) return std::make_shared<FileBytes>(std::move(source));
+    return std::make_shared<KeptBytes>(*source, std::move(first_bytes));
+}
+
+std::shared_ptr<StoredBytes> unpack_part(std::shared_ptr<StoredBytes> packed, std::uint64_t offset,
+                                         std::uint64_t size, Deflate kind, std::uint64_t most,
+                                         std::optional<std::uint32_t> checksum) {
+    return std::make_shared<UnpackedPart>(std::move(packed), offset, size, kind, most, checksum);
+}
 
 std::unique_ptr<ColumnCursor> strided_cursor(std::shared_ptr<StoredBytes> bytes, std::uint64_t start,
                                              std::uint64_t stride, NpyField type) {
@@ -230,6 +226,26 @@ int names_tell(const std::vector<std::string>& names) {
 std::string type_name(const NpyField& type) {
     const std::string_view kind = type.kind == 'f' ? "float" : type.kind == 'i' ? "int" : "uint";
     return fmt::format("{}{}{}", kind, 8 * type.size, type.big_endian ? ", big-endian" : "");
+}
+
+std::string matlab_object_text(const std::string& name, const std::string& class_name) {
+    const std::string save = "save('run.mat', 't', 'tau')";
+    if (class_name == "timeseries")
+        return fmt::format("an object of class timeseries; in MATLAB: t = {0}.Time; tau = {0}.Data; {1}",
+                           name, save);
+    if (class_name == "table" || class_name == "timetable") {
+        const bool timed = class_name == "timetable";
+        return fmt::format(
+            "an object of class {}; in MATLAB: s = table2struct({}, 'ToScalar', true); save('run.mat', "
+            "'-struct', 's')",
+            class_name, timed ? fmt::format("timetable2table({})", name) : name);
+    }
+    if (class_name.starts_with("Simulink."))
+        return fmt::format(
+            "an object of class {0}; in MATLAB, for each signal: x = {1}.get('tau').Values; t = x.Time; tau "
+            "= x.Data; {2}",
+            class_name, class_name == "Simulink.SimulationOutput" ? name + ".logsout" : name, save);
+    return fmt::format("an object of class {}; in MATLAB, save its numbers as vectors: {}", class_name, save);
 }
 
 }  // namespace ripplenotch

@@ -120,4 +120,7 @@ enum class PathStyle {
 /// "f8" as people say it: "float64".
 [[nodiscard]] std::string type_name(const NpyField& type);
 
+/// Of an object that only MATLAB opens: its class, and the lines of MATLAB that save its numbers.
+[[nodiscard]] std::string matlab_object_text(const std::string& name, const std::string& class_name);
+
 }  // namespace ripplenotch

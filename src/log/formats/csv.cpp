@@ -9,7 +9,6 @@
 #include "log/table_writer.hpp"
 #include "log/text/csv_reader.hpp"
 #include "log/text/csv_writer.hpp"
-#include "log/text/long_table.hpp"
 #include "log/text/own_clocks.hpp"
 #include "log/text/text_dialect.hpp"
 #include "ripplenotch/core/number.hpp"

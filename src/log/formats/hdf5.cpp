@@ -1,15 +1,537 @@
 // SPDX-License-Identifier: MIT
-// HDF5 files, and MAT files of version 7.3, which are such.
+// HDF5 files, and MAT files of version 7.3, which are such, by libhdf5.
 
-#include <array>
+#include <memory>
+#include <optional>
+#include <string_view>
+#include <vector>
 
-#include "log/containers/hdf5.hpp"
+#include "core/files/byte_sink.hpp"
+#include "log/containers/stored_array.hpp"
 #include "log/formats.hpp"
+#include "log/table_writer.hpp"
+#include "ripplenotch/core/error.hpp"
 
 namespace ripplenotch {
 namespace {
 
-constexpr std::array<std::string_view, 2> extensions = {".h5", ".hdf5"};
+struct Hdf5Contents {
+    std::vector<StoredArray> arrays;  ///< datasets of one dimension or two, members of compound types
+    std::vector<ContentEntry>
+        others;  ///< "outside of the file, not followed", "packed by a filter that is not here"
+};
+
+}  // namespace
+}  // namespace ripplenotch
+
+#if defined(RIPPLENOTCH_HAS_HDF5)
+
+#define H5_USE_110_API
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <hdf5.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cerrno>
+#include <exception>
+#include <string>
+
+#include "core/files/byte_source.hpp"
+
+namespace ripplenotch {
+
+namespace {
+
+// libhdf5's objects, closed when they go. The one door to the library.
+// The names of version 1.10, which later ones keep.
+
+/// A number of libhdf5, negative where there is none.
+class Hdf5Handle {
+  public:
+    using Close = herr_t (*)(hid_t);
+    Hdf5Handle() = default;
+    Hdf5Handle(hid_t id, Close close) : id_(id), close_(close) {}
+    ~Hdf5Handle() {
+        if (id_ >= 0) close_(id_);
+    }
+    Hdf5Handle(Hdf5Handle&& other) noexcept
+        : id_(std::exchange(other.id_, -1)), close_(std::exchange(other.close_, nullptr)) {}
+    Hdf5Handle& operator=(Hdf5Handle&& other) noexcept {
+        std::swap(id_, other.id_);
+        std::swap(close_, other.close_);
+        return *this;
+    }
+    Hdf5Handle(const Hdf5Handle&) = delete;
+    Hdf5Handle& operator=(const Hdf5Handle&) = delete;
+    [[nodiscard]] hid_t id() const { return id_; }
+    [[nodiscard]] bool good() const { return id_ >= 0; }
+
+  private:
+    hid_t id_ = -1;
+    Close close_ = nullptr;
+};
+
+// Files for libhdf5, which opens by name only.
+
+/// A new file that nobody sees, for the library to write and us to read.
+struct Hdf5Scratch {
+    Hdf5Handle file;
+    std::unique_ptr<TemporaryFile> bytes;
+};
+
+constexpr std::uint64_t piece_size = std::uint64_t{1} << 20;
+
+std::string place_of_copies() { return temporary_folder() + "/ripplenotch-hdf5"; }
+
+// Without locks, which many network file systems refuse: a file that changes while it is read is noticed
+// without them.
+Hdf5Handle access_of_files() {
+    Hdf5Handle access(::H5Pcreate(H5P_FILE_ACCESS), ::H5Pclose);
+#if H5_VERSION_GE(1, 10, 7)
+    ::H5Pset_file_locking(access.id(), false, true);
+#endif
+    return access;
+}
+
+void write_all_to(int descriptor, std::string_view bytes) {
+    while (!bytes.empty()) {
+        const ssize_t taken = ::write(descriptor, bytes.data(), bytes.size());
+        if (taken < 0 && errno == EINTR) continue;
+        if (taken < 0) {
+            raise<FileError>("cannot write to a temporary file: {}; TMPDIR=FOLDER names another place",
+                             system_reason());
+        }
+        bytes.remove_prefix(static_cast<std::size_t>(taken));
+    }
+}
+
+// Reads them where they lie; what came through a pipe has a name for the moment of opening. Not good() where
+// the library cannot open it. Throws FileError.
+Hdf5Handle open_hdf5(StoredBytes& bytes) {
+    const Hdf5Handle access = access_of_files();
+    std::string name = bytes.openable();
+    std::optional<TemporaryFile> copy;
+    if (name.empty()) {
+        copy.emplace(place_of_copies(), std::nullopt);
+        for (std::uint64_t at = 0; at < bytes.size(); at += piece_size) {
+            const auto size = std::min(piece_size, bytes.size() - at);
+            write_all_to(copy->descriptor(), bytes.text_at(at, static_cast<std::size_t>(size)));
+        }
+        name = copy->name_for_a_moment(place_of_copies());
+    }
+    return {::H5Fopen(name.c_str(), H5F_ACC_RDONLY, access.id()), ::H5Fclose};
+}
+
+// Throws FileError.
+Hdf5Scratch create_hdf5() {
+    const Hdf5Handle access = access_of_files();
+    Hdf5Scratch scratch{{}, std::make_unique<TemporaryFile>(place_of_copies(), std::nullopt)};
+    const std::string& name = scratch.bytes->name_for_a_moment(place_of_copies());
+    scratch.file = Hdf5Handle(::H5Fcreate(name.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id()), ::H5Fclose);
+    if (!scratch.file.good())
+        raise<FileError>("cannot write to a temporary file; check the temporary folder");
+    scratch.bytes->forget_name();
+    return scratch;
+}
+
+// Numbers of an HDF5 dataset, a column at a time.
+
+/// The file that datasets are read from.
+struct Hdf5File {
+    std::shared_ptr<StoredBytes> bytes;
+    Hdf5Handle file;
+};
+
+/// Numbers in memory, and how they are asked for.
+struct Hdf5Memory {
+    NpyField field;
+    std::shared_ptr<Hdf5Handle> type;  ///< one number, an array of them, or a record of one member
+    std::size_t count = 1;             ///< numbers that come for each row
+};
+
+hid_t hdf5_native(const NpyField& field) {
+    if (field.kind == 'f') return field.size == 4 ? H5T_NATIVE_FLOAT : H5T_NATIVE_DOUBLE;
+    const bool is_signed = field.kind == 'i';
+    switch (field.size) {
+        case 1:
+            return is_signed ? H5T_NATIVE_INT8 : H5T_NATIVE_UINT8;
+        case 2:
+            return is_signed ? H5T_NATIVE_INT16 : H5T_NATIVE_UINT16;
+        case 4:
+            return is_signed ? H5T_NATIVE_INT32 : H5T_NATIVE_UINT32;
+        default:
+            return is_signed ? H5T_NATIVE_INT64 : H5T_NATIVE_UINT64;
+    }
+}
+
+// A number of the file as the processor has it; none for text, references, and what is wider than 8 bytes.
+std::optional<NpyField> hdf5_number(hid_t type) {
+    const H5T_class_t kind = ::H5Tget_class(type);
+    const std::size_t size = ::H5Tget_size(type);
+    if ((kind != H5T_INTEGER && kind != H5T_FLOAT) || size == 0 || size > 8) return std::nullopt;
+    NpyField field;
+    field.big_endian = std::endian::native == std::endian::big;
+    field.kind = kind == H5T_FLOAT ? 'f' : ::H5Tget_sign(type) == H5T_SGN_NONE ? 'u' : 'i';
+    field.size = kind == H5T_FLOAT ? (size <= 4 ? 4 : 8) : std::bit_ceil(size);
+    return field;
+}
+
+/// A column of a dataset of one dimension or two, or one number of an array in every row.
+class DatasetCursor final : public ColumnCursor {
+  public:
+    DatasetCursor(std::shared_ptr<Hdf5File> file, std::shared_ptr<Hdf5Handle> dataset, Hdf5Memory memory,
+                  std::size_t dimensions, std::size_t time_dimension, std::size_t column)
+        : file_(std::move(file)),
+          dataset_(std::move(dataset)),
+          memory_(std::move(memory)),
+          dimensions_(dimensions),
+          time_dimension_(time_dimension),
+          column_(column) {}
+    void read(std::size_t rows, ColumnNumbers& into) override {
+        std::vector<hsize_t> start(dimensions_, 0), count(dimensions_, 1);
+        start[time_dimension_] = at_;
+        count[time_dimension_] = rows;
+        if (memory_.count == 1 && dimensions_ == 2) start[1 - time_dimension_] = column_;
+        const Hdf5Handle space(::H5Dget_space(dataset_->id()), ::H5Sclose);
+        const hsize_t length = rows;
+        const Hdf5Handle memory_space(::H5Screate_simple(1, &length, nullptr), ::H5Sclose);
+        ::H5Sselect_hyperslab(space.id(), H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr);
+        const std::size_t size = memory_.field.size;
+        read_.resize(rows * memory_.count * size);
+        if (::H5Dread(dataset_->id(), memory_.type->id(), memory_space.id(), space.id(), H5P_DEFAULT,
+                      read_.data()) < 0) {
+            raise<DataError>(
+                "{}: read row {} of {}, expected {} rows of numbers; the file is cut off or damaged",
+                file_->bytes->name(), at_ + 1, path(), rows);
+        }
+        const std::size_t picked = memory_.count > 1 ? column_ * size : 0;
+        load_column(read_.data() + picked, memory_.count * size, memory_.field, rows, into);
+        at_ += rows;
+    }
+
+  private:
+    std::string path() const {
+        std::string name(
+            static_cast<std::size_t>(std::max<ssize_t>(0, ::H5Iget_name(dataset_->id(), nullptr, 0))) + 1,
+            '\0');
+        ::H5Iget_name(dataset_->id(), name.data(), name.size());
+        name.pop_back();
+        return name;
+    }
+    std::shared_ptr<Hdf5File> file_;
+    std::shared_ptr<Hdf5Handle> dataset_;
+    Hdf5Memory memory_;
+    std::size_t dimensions_, time_dimension_, column_;
+    std::uint64_t at_ = 0;
+    std::string read_;
+};
+
+constexpr std::size_t rows_of_a_chunk = 16384;  // rows
+
+/// A new file with a dataset of float64 for each column. The library goes back and forth in what it writes,
+/// so that the file waits under no name until it is whole.
+class Hdf5TableWriter final : public TableWriter {
+  public:
+    Hdf5TableWriter(ByteSink& sink, const WriteOptions& /*options*/) : sink_(sink) {}
+    void begin(std::span<const std::string> names) override {
+        ::H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+        names_.assign(names.begin(), names.end());
+        waiting_.resize(names_.size());
+        scratch_ = create_hdf5();
+    }
+    // A chunk at a time, wherever the caller cuts: so the bytes are alike.
+    void rows(std::span<const std::span<const double>> columns) override {
+        for (std::size_t c = 0; c < columns.size(); ++c)
+            waiting_[c].insert(waiting_[c].end(), columns[c].begin(), columns[c].end());
+        while (waiting_.front().size() >= rows_of_a_chunk) write(rows_of_a_chunk);
+    }
+    void end() override {
+        write(waiting_.front().size());
+        datasets_.clear();
+        require(::H5Fflush(scratch_.file.id(), H5F_SCOPE_LOCAL) >= 0);
+        scratch_.file = {};
+        std::vector<char> piece(std::size_t{1} << 20);
+        for (off_t at = 0;;) {
+            const ssize_t got = ::pread(scratch_.bytes->descriptor(), piece.data(), piece.size(), at);
+            if (got < 0 && errno == EINTR) continue;
+            if (got < 0) raise<FileError>("cannot read a temporary file back: {}", system_reason());
+            if (got == 0) break;
+            sink_.write({piece.data(), static_cast<std::size_t>(got)});
+            at += got;
+        }
+    }
+
+  private:
+    static void require(bool written) {
+        if (!written)
+            raise<FileError>("cannot write to a temporary file; check the space in the temporary folder");
+    }
+    void write(hsize_t count) {
+        if (datasets_.empty()) make_datasets(std::max<hsize_t>(1, count));
+        if (count == 0) return;
+        const hsize_t first = rows_;
+        rows_ += count;
+        const Hdf5Handle memory(::H5Screate_simple(1, &count, nullptr), ::H5Sclose);
+        for (std::size_t c = 0; c < datasets_.size(); ++c) {
+            require(::H5Dset_extent(datasets_[c].id(), &rows_) >= 0);
+            const Hdf5Handle place(::H5Dget_space(datasets_[c].id()), ::H5Sclose);
+            ::H5Sselect_hyperslab(place.id(), H5S_SELECT_SET, &first, nullptr, &count, nullptr);
+            require(::H5Dwrite(datasets_[c].id(), H5T_NATIVE_DOUBLE, memory.id(), place.id(), H5P_DEFAULT,
+                               waiting_[c].data()) >= 0);
+            waiting_[c].erase(waiting_[c].begin(), waiting_[c].begin() + static_cast<std::ptrdiff_t>(count));
+        }
+    }
+    // Without the hour, so that the same numbers are the same bytes.
+    void make_datasets(hsize_t chunk) {
+        const hsize_t none = 0, unlimited = H5S_UNLIMITED;
+        const Hdf5Handle creation(::H5Pcreate(H5P_DATASET_CREATE), ::H5Pclose),
+            space(::H5Screate_simple(1, &none, &unlimited), ::H5Sclose);
+        ::H5Pset_chunk(creation.id(), 1, &chunk);
+        ::H5Pset_obj_track_times(creation.id(), false);
+        for (std::string name : names_) {
+            std::replace(name.begin(), name.end(), '/', '_');
+            datasets_.emplace_back(::H5Dcreate2(scratch_.file.id(), name.c_str(), H5T_IEEE_F64LE, space.id(),
+                                                H5P_DEFAULT, creation.id(), H5P_DEFAULT),
+                                   ::H5Dclose);
+            require(datasets_.back().good());
+        }
+    }
+
+    ByteSink& sink_;
+    std::vector<std::string> names_;
+    std::vector<std::vector<double>> waiting_;  ///< by column: rows of a chunk that is not full
+    Hdf5Scratch scratch_;
+    std::vector<Hdf5Handle> datasets_;  ///< closed before the file
+    hsize_t rows_ = 0;
+};
+
+constexpr std::size_t largest_hdf5_chunk = std::size_t{1} << 28, usual_cache = std::size_t{1} << 22,
+                      largest_cache = std::size_t{1} << 25;
+constexpr std::size_t most_hdf5_things = 100000;
+
+std::string text_attribute(hid_t object, const char* name) {
+    if (::H5Aexists(object, name) <= 0) return {};
+    const Hdf5Handle attribute(::H5Aopen(object, name, H5P_DEFAULT), ::H5Aclose);
+    const Hdf5Handle type(::H5Aget_type(attribute.id()), ::H5Tclose),
+        space(::H5Aget_space(attribute.id()), ::H5Sclose);
+    if (::H5Tget_class(type.id()) != H5T_STRING || ::H5Sget_simple_extent_npoints(space.id()) != 1) return {};
+    if (::H5Tis_variable_str(type.id()) > 0) {
+        char* text = nullptr;
+        if (::H5Aread(attribute.id(), type.id(), &text) < 0 || text == nullptr) return {};
+        const std::string copy = text;
+        ::H5free_memory(text);
+        return copy;
+    }
+    std::string text(::H5Tget_size(type.id()), '\0');
+    if (text.size() > 4096 || ::H5Aread(attribute.id(), type.id(), text.data()) < 0) return {};
+    return text.substr(0, text.find_last_not_of(std::string_view("\0 ", 2)) + 1).c_str();
+}
+
+/// Links and numbers that lie in other files are never followed, and no filter is loaded. With `matlab`,
+/// paths are as MATLAB writes them ("log.q_dot") and text, cells and objects are left out.
+class Hdf5Walk {
+  public:
+    Hdf5Walk(const std::shared_ptr<StoredBytes>& bytes, bool matlab)
+        : matlab_(matlab), file_(std::make_shared<Hdf5File>()) {
+        ::H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+        ::H5PLset_loading_state(0);  // a file must not say which code is run
+        file_->bytes = bytes;
+        file_->file = open_hdf5(*bytes);
+        if (!file_->file.good())
+            raise<DataError>(
+                "{}: read an HDF5 file that libhdf5 cannot open, expected a whole one; the file is cut off, "
+                "damaged, or "
+                "still being written",
+                bytes->name());
+        const herr_t walked = ::H5Lvisit(file_->file.id(), H5_INDEX_NAME, H5_ITER_INC, visit, this);
+        if (failure_) std::rethrow_exception(failure_);
+        if (walked < 0)
+            raise<DataError>(
+                "{}: read a part of the list of datasets, expected all of it; the file is damaged",
+                bytes->name());
+    }
+    Hdf5Contents found;
+
+  private:
+    static herr_t visit(hid_t group, const char* name, const H5L_info_t* info, void* walk) {
+        auto& self = *static_cast<Hdf5Walk*>(walk);
+        try {
+            self.take_link(group, name, *info);
+            return 0;
+        } catch (...) {  // libhdf5 is C
+            self.failure_ = std::current_exception();
+            return -1;
+        }
+    }
+    void take_link(hid_t group, const std::string& name, const H5L_info_t& info) {
+        if (++things_ > most_hdf5_things)
+            raise<DataError>("{}: read more than 100000 links, expected a log", file_->bytes->name());
+        if (matlab_ && name.starts_with('#')) return;  // what cells and objects are made of
+        if (info.type == H5L_TYPE_EXTERNAL)
+            return add_other(name, "", "a link to another file, not followed");
+        if (info.type != H5L_TYPE_HARD) return;
+        const Hdf5Handle object(::H5Oopen(group, name.c_str(), H5P_DEFAULT), ::H5Oclose);
+        if (object.good() && ::H5Iget_type(object.id()) == H5I_DATASET) take_dataset(group, name);
+    }
+    void take_dataset(hid_t group, const std::string& name) {
+        const Hdf5Handle plain(::H5Dopen2(group, name.c_str(), H5P_DEFAULT), ::H5Dclose);
+        const Hdf5Handle layout(::H5Dget_create_plist(plain.id()), ::H5Pclose),
+            space(::H5Dget_space(plain.id()), ::H5Sclose);
+        std::array<hsize_t, H5S_MAX_RANK> sides{};
+        const int rank = ::H5Sget_simple_extent_dims(space.id(), sides.data(), nullptr);
+        std::vector<std::uint64_t> dimensions(sides.begin(), sides.begin() + std::max(rank, 0));
+        const std::string words = fmt::format("{}", fmt::join(dimensions, " x "));
+        const std::string matlab_class = text_attribute(plain.id(), "MATLAB_class");
+        if (matlab_ &&
+            (matlab_class.empty() || matlab_class == "char" || ::H5Aexists(plain.id(), "MATLAB_empty") > 0))
+            return;
+        if (matlab_ && ::H5Aexists(plain.id(), "MATLAB_object_decode") > 0)
+            return add_other(name, "", matlab_object_text(name, matlab_class));
+        if (matlab_ &&
+            (matlab_class == "cell" || matlab_class == "logical" || matlab_class == "function_handle"))
+            return add_other(name, words, matlab_class);
+        if (::H5Pget_layout(layout.id()) == H5D_VIRTUAL || ::H5Pget_external_count(layout.id()) > 0)
+            return add_other(name, words, "numbers outside of the file, not followed");
+        if (::H5Pget_layout(layout.id()) == H5D_CHUNKED && ::H5Pall_filters_avail(layout.id()) <= 0)
+            return add_other(name, words, "packed by a filter that is not here");
+        const Hdf5Handle type(::H5Dget_type(plain.id()), ::H5Tclose);
+        if (chunk_bytes(layout.id(), type.id(), dimensions.size()) > largest_hdf5_chunk)
+            return add_other(name, words, "in chunks of more than 256 MiB");
+        const auto shape = shape_over_time(dimensions);
+        const bool compound = ::H5Tget_class(type.id()) == H5T_COMPOUND;
+        if (!shape || shape->rows < 2 || (compound && !shape->vector)) {
+            if (hdf5_number(type.id())) add_other(name, words, "numbers");
+            return;
+        }
+        if (is_hollow(plain.id(), type.id(), *shape))
+            return add_other(name, words, "numbers that are not in the file");
+        const auto dataset = reopened(group, name, chunk_bytes(layout.id(), type.id(), dimensions.size()));
+        const std::string unit = unit_of(plain.id());
+        if (compound) return take_members(name, *shape, dataset, type.id(), dimensions);
+        if (const auto field = hdf5_number(type.id())) {
+            Hdf5Memory memory{*field,
+                              std::make_shared<Hdf5Handle>(::H5Tcopy(hdf5_native(*field)), ::H5Tclose), 1};
+            add_array(path_of(name), *shape, dataset, memory, dimensions, unit);
+        } else {
+            add_other(name, words, ::H5Tget_class(type.id()) == H5T_STRING ? "text" : "no numbers");
+        }
+    }
+    void take_members(const std::string& name, const ArrayShape& shape,
+                      const std::shared_ptr<Hdf5Handle>& dataset, hid_t type,
+                      const std::vector<std::uint64_t>& dimensions) {
+        const int members = ::H5Tget_nmembers(type);
+        for (int m = 0; m < members; ++m) {
+            char* const raw = ::H5Tget_member_name(type, static_cast<unsigned>(m));
+            const std::string member = raw;
+            ::H5free_memory(raw);
+            const Hdf5Handle own(::H5Tget_member_type(type, static_cast<unsigned>(m)), ::H5Tclose);
+            const bool array = ::H5Tget_class(own.id()) == H5T_ARRAY;
+            const Hdf5Handle base(array ? ::H5Tget_super(own.id()) : ::H5Tcopy(own.id()), ::H5Tclose);
+            const auto field = hdf5_number(base.id());
+            hsize_t count = 1;
+            if (!field || (array && (::H5Tget_array_ndims(own.id()) != 1 ||
+                                     ::H5Tget_array_dims2(own.id(), &count) < 0 || count > 64)))
+                continue;
+            const Hdf5Handle inner(
+                array ? ::H5Tarray_create2(hdf5_native(*field), 1, &count) : ::H5Tcopy(hdf5_native(*field)),
+                ::H5Tclose);
+            Hdf5Memory memory{
+                *field,
+                std::make_shared<Hdf5Handle>(::H5Tcreate(H5T_COMPOUND, field->size * count), ::H5Tclose),
+                count};
+            ::H5Tinsert(memory.type->id(), member.c_str(), 0, inner.id());
+            ArrayShape own_shape = shape;
+            own_shape.columns = count;
+            own_shape.vector = !array;
+            own_shape.time_is_first = true;
+            add_array(path_of(name) + "." + member, own_shape, dataset, memory, dimensions, "");
+        }
+    }
+    void add_array(const std::string& path, ArrayShape shape, const std::shared_ptr<Hdf5Handle>& dataset,
+                   const Hdf5Memory& memory, const std::vector<std::uint64_t>& dimensions,
+                   const std::string& unit) {
+        const auto longest = std::max_element(dimensions.begin(), dimensions.end());
+        const auto time_dimension = static_cast<std::size_t>(longest - dimensions.begin());
+        StoredArray array{path, shape, memory.field, unit, {}, ""};
+        array.open = [file = file_, dataset, memory, rank = dimensions.size(),
+                      time_dimension](std::size_t column) {
+            return std::make_unique<DatasetCursor>(file, dataset, memory, rank, time_dimension, column);
+        };
+        // MATLAB counts dimensions from the other end.
+        if (matlab_) array.shape.time_is_first = !array.shape.time_is_first;
+        found.arrays.push_back(std::move(array));
+    }
+    // What was never written reads as zeros without end.
+    static bool is_hollow(hid_t dataset, hid_t type, const ArrayShape& shape) {
+        constexpr double unasked = 64e6, most_for_one = 2000.0;
+        const double bytes = static_cast<double>(shape.rows) * static_cast<double>(shape.columns) *
+                             static_cast<double>(::H5Tget_size(type));
+        return bytes > unasked && bytes > most_for_one * static_cast<double>(::H5Dget_storage_size(dataset));
+    }
+    // With room for a chunk that is longer than usual, or it is unpacked anew for every column.
+    static std::shared_ptr<Hdf5Handle> reopened(hid_t group, const std::string& name, std::size_t chunk) {
+        const Hdf5Handle access(::H5Pcreate(H5P_DATASET_ACCESS), ::H5Pclose);
+        ::H5Pset_chunk_cache(access.id(), 521, std::clamp(2 * chunk, usual_cache, largest_cache), 1.0);
+        return std::make_shared<Hdf5Handle>(::H5Dopen2(group, name.c_str(), access.id()), ::H5Dclose);
+    }
+    static std::size_t chunk_bytes(hid_t layout, hid_t type, std::size_t rank) {
+        if (::H5Pget_layout(layout) != H5D_CHUNKED) return 0;
+        std::array<hsize_t, H5S_MAX_RANK> sides{};
+        std::size_t bytes = ::H5Tget_size(type);
+        if (::H5Pget_chunk(layout, static_cast<int>(rank), sides.data()) < 0) return 0;
+        for (std::size_t i = 0; i < rank; ++i)
+            bytes = bytes > largest_hdf5_chunk ? bytes : bytes * static_cast<std::size_t>(sides[i]);
+        return bytes;
+    }
+    static std::string unit_of(hid_t dataset) {
+        for (const char* const name : {"units", "unit", "Units", "Unit"}) {
+            if (std::string unit = text_attribute(dataset, name); !unit.empty()) return unit;
+        }
+        return {};
+    }
+    std::string path_of(const std::string& name) const {
+        if (!matlab_) return "/" + name;
+        std::string path = name;
+        std::replace(path.begin(), path.end(), '/', '.');
+        return path;
+    }
+    void add_other(const std::string& name, const std::string& shape, const std::string& what) {
+        found.others.push_back({path_of(name), shape, what, "", {}, false});
+    }
+
+    bool matlab_;
+    std::shared_ptr<Hdf5File> file_;
+    std::size_t things_ = 0;
+    std::exception_ptr failure_;
+};
+
+Hdf5Contents find_hdf5_arrays(const std::shared_ptr<StoredBytes>& file, bool matlab) {
+    return std::move(Hdf5Walk(file, matlab).found);
+}
+
+}  // namespace
+}  // namespace ripplenotch
+
+#else
+
+namespace ripplenotch {
+namespace {
+
+Hdf5Contents find_hdf5_arrays(const std::shared_ptr<StoredBytes>& file, bool /*matlab*/) {
+    raise<UsageError>("{}: this build was made without libhdf5; install it and build again", file->name());
+}
+
+}  // namespace
+}  // namespace ripplenotch
+#endif
+
+namespace ripplenotch {
+namespace {
+
+constexpr std::array<std::string_view, 2> hdf5_extensions = {".h5", ".hdf5"};
 constexpr std::string_view magic = "\x89HDF\r\n\x1a\n", matlab_head = "MATLAB 7.3";
 
 // MATLAB puts a head of text in front.
@@ -23,22 +545,11 @@ ColumnLog make_hdf5(std::unique_ptr<ByteSource> source, std::string first_bytes,
                              found.others, options);
 }
 
-#if defined(RIPPLENOTCH_HAS_HDF5)
-std::unique_ptr<LogWriter> convert(std::unique_ptr<ByteSink> sink, const LogReader& reader,
-                                   const WriteOptions& options) {
-    return convert_rows(std::move(sink), reader, options, make_hdf5_table);
-}
-
-void write_columns(ByteSink& sink, std::span<const NumberColumn> columns) {
-    write_table(sink, columns, make_hdf5_table);
-}
-#endif
-
 }  // namespace
 
 const LogFormat formats::hdf5 {
     .name = "hdf5", .summary = "HDF5 files, and MATLAB's of version 7.3: datasets by path",
-    .extensions = extensions, .binary = true,
+    .extensions = hdf5_extensions, .binary = true,
     .lacks =
 #if defined(RIPPLENOTCH_HAS_HDF5)
         {},
@@ -47,7 +558,7 @@ const LogFormat formats::hdf5 {
 #endif
     .sniff = sniff, .open = open_as_columns<make_hdf5>,
 #if defined(RIPPLENOTCH_HAS_HDF5)
-    .convert = convert, .write_columns = write_columns,
+    .convert = convert_with<Hdf5TableWriter>, .write_columns = write_columns_with<Hdf5TableWriter>,
 #endif
 };
 

@@ -7,8 +7,6 @@
 
 #include <algorithm>
 
-#include "log/messages/json_message.hpp"
-#include "log/messages/ros_schema.hpp"
 #include "ripplenotch/core/error.hpp"
 
 namespace ripplenotch {
@@ -25,17 +23,6 @@ std::string refusal_of(const MessageChannel& channel) {
         return "not defined in the recording";
     return {};
 }
-
-}  // namespace
-
-MessageLayout lay_out_message(const MessageChannel& channel, std::string_view first) {
-    if (channel.encoding == "json") return lay_out_json(first);
-    const std::string_view schema =
-        channel.schema.empty() ? known_ros_schema(channel.type) : std::string_view(channel.schema);
-    return lay_out_cdr(parse_ros_schema(schema, channel.type), first);
-}
-
-namespace {
 
 /// The clock, then the leaves but for the one that is it.
 [[nodiscard]] std::vector<std::size_t> leaves_beside_clock(const MessageLayout& layout, bool header_clock) {
@@ -343,6 +330,13 @@ class TopicChoice {
 };
 
 }  // namespace
+
+MessageLayout lay_out_message(const MessageChannel& channel, std::string_view first) {
+    if (channel.encoding == "json") return lay_out_json(first);
+    const std::string_view schema =
+        channel.schema.empty() ? known_ros_schema(channel.type) : std::string_view(channel.schema);
+    return lay_out_cdr(schema, channel.type, first);
+}
 
 ColumnLog columns_of_messages(const OpenMessages& open, const std::string& format,
                               const ReadOptions& options) {

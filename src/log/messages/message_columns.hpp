@@ -48,9 +48,6 @@ class MessageSource {
     [[nodiscard]] virtual const std::string& name() const = 0;
 };
 
-[[nodiscard]] std::unique_ptr<MessageSource> open_mcap(std::shared_ptr<StoredBytes> file);
-[[nodiscard]] std::unique_ptr<MessageSource> open_rosbag2(std::shared_ptr<StoredBytes> file);
-
 /// The same recording from its beginning, as often as it is asked for.
 using OpenMessages = std::function<std::unique_ptr<MessageSource>()>;
 
@@ -97,6 +94,15 @@ struct MessageLayout {
     std::vector<MessageLeaf> leaves;
     MessageProgram program;
 };
+
+/// lay_out_message() of messages in CDR, whose type `name` is defined first in `schema`.
+[[nodiscard]] MessageLayout lay_out_cdr(std::string_view schema, const std::string& name,
+                                        std::string_view message);
+/// The definition of a common type, for recordings that carry none; empty where it is not known here.
+[[nodiscard]] std::string_view known_ros_schema(std::string_view type);
+/// lay_out_message() of messages in JSON, an object each. Whether a schema says more about them makes no
+/// difference: numbers say that they are. They are 64-bit floats, but for whole ones beyond 2^53.
+[[nodiscard]] MessageLayout lay_out_json(std::string_view first);
 
 /// Lays the messages of a channel out by its first: lists of numbers have the lengths that they have in it,
 /// and keep them. Lists longer than 64 and what is empty give no leaves. Throws DataError, without a source's

@@ -37,8 +37,4 @@ class RecordColumns final : public Columns {
     std::size_t rows_ = 0;
 };
 
-/// A .npy file.
-[[nodiscard]] ColumnLog make_npy(std::unique_ptr<ByteSource> source, std::string first_bytes,
-                                 const ReadOptions& options);
-
 }  // namespace ripplenotch

@@ -79,57 +79,6 @@ double load_unscaled(const char* record, const NpyField& field) {
     }
 }
 
-}  // namespace
-
-double load_field(const char* record, const NpyField& field) {
-    const double number = load_unscaled(record, field);
-    return field.scaled() ? number * field.scale + field.shift : number;
-}
-
-std::int64_t load_count(const char* record, const NpyField& field) {
-    return load_word<std::int64_t>(record + field.offset, field.big_endian);
-}
-
-void store_float(char* record, const NpyField& field, double value) {
-    if (field.size == 4) {
-        store_word(record + field.offset, field.big_endian, static_cast<float>(value));
-    } else {
-        store_word(record + field.offset, field.big_endian, value);
-    }
-}
-
-void load_column(const char* records, std::size_t record_size, const NpyField& field, std::size_t rows,
-                 ColumnNumbers& into) {
-    const std::size_t before = into.values.size();
-    into.values.resize(before + rows);
-    const std::span<double> values = std::span(into.values).subspan(before);
-    if (field.kind == 'f' && is_native(field) && !field.scaled()) {
-        const char* const first = records + field.offset;
-        field.size == 4 ? load_native<float>(first, record_size, values)
-                        : load_native<double>(first, record_size, values);
-        return;
-    }
-    for (std::size_t row = 0; row < rows; ++row, records += record_size) {
-        values[row] = load_field(records, field);
-        if (field.whole()) into.counts.push_back(load_count(records, field));
-    }
-}
-
-void store_column(char* records, std::size_t record_size, const NpyField& field, const StoredColumn& column) {
-    const auto [values, as_written, factor] = column;
-    // What most logs are, without a question for each value.
-    const bool plain = field.size == 8 && is_native(field) && factor == 1.0;
-    for (std::size_t i = 0; i < values.size(); ++i, records += record_size) {
-        if (!as_written.empty() && values[i] == as_written[i]) continue;
-        if (plain)
-            std::memcpy(records + field.offset, &values[i], sizeof(double));
-        else
-            store_float(records, field, values[i] / factor);
-    }
-}
-
-namespace {
-
 constexpr std::uint64_t most_signals = 64, fewest_times = 32;  // of an array with one row a signal
 constexpr std::size_t most_npy_fields = 100000;
 constexpr std::uint64_t most_npy_rows = std::uint64_t{1} << 62;
@@ -353,6 +302,53 @@ class HeaderText {
 };
 
 }  // namespace
+
+double load_field(const char* record, const NpyField& field) {
+    const double number = load_unscaled(record, field);
+    return field.scaled() ? number * field.scale + field.shift : number;
+}
+
+std::int64_t load_count(const char* record, const NpyField& field) {
+    return load_word<std::int64_t>(record + field.offset, field.big_endian);
+}
+
+void store_float(char* record, const NpyField& field, double value) {
+    if (field.size == 4) {
+        store_word(record + field.offset, field.big_endian, static_cast<float>(value));
+    } else {
+        store_word(record + field.offset, field.big_endian, value);
+    }
+}
+
+void load_column(const char* records, std::size_t record_size, const NpyField& field, std::size_t rows,
+                 ColumnNumbers& into) {
+    const std::size_t before = into.values.size();
+    into.values.resize(before + rows);
+    const std::span<double> values = std::span(into.values).subspan(before);
+    if (field.kind == 'f' && is_native(field) && !field.scaled()) {
+        const char* const first = records + field.offset;
+        field.size == 4 ? load_native<float>(first, record_size, values)
+                        : load_native<double>(first, record_size, values);
+        return;
+    }
+    for (std::size_t row = 0; row < rows; ++row, records += record_size) {
+        values[row] = load_field(records, field);
+        if (field.whole()) into.counts.push_back(load_count(records, field));
+    }
+}
+
+void store_column(char* records, std::size_t record_size, const NpyField& field, const StoredColumn& column) {
+    const auto [values, as_written, factor] = column;
+    // What most logs are, without a question for each value.
+    const bool plain = field.size == 8 && is_native(field) && factor == 1.0;
+    for (std::size_t i = 0; i < values.size(); ++i, records += record_size) {
+        if (!as_written.empty() && values[i] == as_written[i]) continue;
+        if (plain)
+            std::memcpy(records + field.offset, &values[i], sizeof(double));
+        else
+            store_float(records, field, values[i] / factor);
+    }
+}
 
 std::size_t npy_header_size(std::string_view bytes) {
     if (bytes.size() < 12 || bytes.substr(0, npy_magic.size()) != npy_magic) return 0;

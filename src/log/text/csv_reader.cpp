@@ -8,7 +8,7 @@
 #include <cstring>
 
 #include "log/clock/choose_time.hpp"
-#include "log/read.hpp"
+#include "log/open.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/trace.hpp"
@@ -28,6 +28,13 @@ bool read_up_to(ByteSource& source, std::string& bytes, std::size_t size) {
 
 std::size_t line_ends(std::string_view bytes) {
     return static_cast<std::size_t>(std::count(bytes.begin(), bytes.end(), '\n'));
+}
+
+// The careful way through a row of a text log, for what the quick ways are not sure of: quoted and empty
+// cells, junk, rows that are cut off. It finds the place and the words for what is wrong.
+
+std::string shown_cell(std::string_view text) {
+    return text.size() <= 40 ? std::string(text) : std::string(text.substr(0, 37)) + "...";
 }
 
 }  // namespace
@@ -130,8 +137,7 @@ void CsvReader::plan_columns() {
     std::fill(before_.values.begin(), before_.values.end(), not_a_number);
     std::vector<WantedColumn> wanted = wanted_columns(layout_);
     std::vector<double> factors = slot_factors(layout_, wanted);
-    std::sort(wanted.begin(), wanted.end(),
-              [](const auto& a, const auto& b) { return a.column < b.column; });
+    std::sort(wanted.begin(), wanted.end(), [](const auto& a, const auto& b) { return a.column < b.column; });
     quick_.emplace(RowPlan{dialect_.rules, dialect_.columns, std::move(wanted), std::move(factors),
                            stamp_rule(layout_, dialect_.rules.decimal_mark)});
 }
@@ -307,17 +313,6 @@ void CsvReader::append_row(RowBlock& block, ParsedRow& row) {
     ++rows_;
 }
 
-namespace {
-
-// The careful way through a row of a text log, for what the quick ways are not sure of: quoted and empty
-// cells, junk, rows that are cut off. It finds the place and the words for what is wrong.
-
-std::string shown_cell(std::string_view text) {
-    return text.size() <= 40 ? std::string(text) : std::string(text.substr(0, 37)) + "...";
-}
-
-}  // namespace
-
 void CsvReader::refuse_controls(std::string_view line) const {
     const auto* const found = std::find_if(line.begin(), line.end(), is_control);
     if (found == line.end()) return;
@@ -369,16 +364,16 @@ double CsvReader::other_number(std::string_view line, const Cell& cell, const Wa
         remedy = fmt::format("correct the line, or use --decimal {}",
                              dialect_.rules.decimal_mark == '.' ? ',' : '.');
     }
-    complain(
-        cell.begin + 1,
-        fmt::format("read {} in {}, expected a {}; {}",
-                    text.empty() ? std::string("nothing") : "'" + shown_cell(text) + "'", name,
-                    (slot == time_slot && !wanted.fraction && quick_->plan().stamp.text) || (slot == time_slot && text.find(':') != std::string_view::npos)
-                        ? fmt::format("time of day or a date and time such as {}", stamp_forms)
-                    : number && std::isfinite(*number) ? "number from -1e30 to 1e30"
-                    : number                           ? "finite number"
-                                                       : "number",
-                    remedy));
+    complain(cell.begin + 1,
+             fmt::format("read {} in {}, expected a {}; {}",
+                         text.empty() ? std::string("nothing") : "'" + shown_cell(text) + "'", name,
+                         (slot == time_slot && !wanted.fraction && quick_->plan().stamp.text) ||
+                                 (slot == time_slot && text.find(':') != std::string_view::npos)
+                             ? fmt::format("time of day or a date and time such as {}", stamp_forms)
+                         : number && std::isfinite(*number) ? "number from -1e30 to 1e30"
+                         : number                           ? "finite number"
+                                                            : "number",
+                         remedy));
 }
 
 void CsvReader::complain(std::size_t column, const std::string& sentence) const {

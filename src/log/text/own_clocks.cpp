@@ -4,24 +4,416 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cctype>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
+#include <map>
 #include <optional>
 #include <set>
+#include <string>
 #include <string_view>
+#include <tuple>
 #include <utility>
 #include <vector>
 
+#include "core/text/lower_case.hpp"
+#include "log/clock/stamp.hpp"
+#include "log/columns/column_name.hpp"
 #include "log/columns/units.hpp"
+#include "log/numbers/columns.hpp"
+#include "log/open.hpp"
 #include "log/rows_in_range.hpp"
 #include "log/text/csv_reader.hpp"
-#include "log/text/signals.hpp"
+#include "log/text/text_cells.hpp"
 #include "log/text/text_dialect.hpp"
+#include "log/text/text_header.hpp"
+#include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/trace.hpp"
 
 namespace ripplenotch {
+
 namespace {
+
+/// Lines with their numbers, cut into cells; blank ones and comments are passed over.
+class Lines {
+  public:
+    /// From the byte `at`, in front of which there are `number` lines.
+    Lines(std::string_view bytes, std::string source, std::size_t at = 0, std::size_t number = 0)
+        : bytes_(bytes), source_(std::move(source)), at_(at), number_(number) {}
+    bool next();
+    [[nodiscard]] std::vector<std::string> cells(char delimiter) const;
+    void split(char delimiter) { split_cells(line_, delimiter, split_); }
+    /// Of the line that was split; empty behind the end of a short one.
+    [[nodiscard]] std::string_view cell(std::size_t column) const {
+        return column < split_.cells.size() ? split_.cells[column].of(line_) : std::string_view();
+    }
+    [[nodiscard]] std::size_t cell_count() const { return split_.cells.size(); }
+    [[nodiscard]] std::string_view line() const { return line_; }
+    [[nodiscard]] std::size_t number() const { return number_; }
+    /// `cell`: of the line, whose place is told; or text of something else.
+    [[noreturn]] void complain(const std::string& sentence, std::string_view cell = {}) const;
+
+  private:
+    std::string_view bytes_, line_;
+    std::string source_;
+    std::size_t at_ = 0, number_ = 0;
+    CellSplit split_;
+};
+
+/// One number over time.
+struct Signal {
+    std::string name, read_as, unit;  ///< as ColumnInfo has them
+    ColumnNumbers time;               ///< its counts are those of whole numbers
+    std::vector<double> values;
+};
+
+/// Signals that are read from lines.
+class Signals {
+  public:
+    Signals(const Lines& lines, std::string time_name, StampForm form = {})
+        : lines_(lines), time_name_(std::move(time_name)), form_(form) {}
+    std::vector<Signal> all;
+
+    /// The one of this name, which is added where there is none.
+    std::size_t index_of(const std::string& name, const std::string& unit);
+    /// Cells of numbers with either decimal mark, or of dates and times of day.
+    void add(std::size_t signal, std::string_view time, std::string_view value, char delimiter);
+    /// "time [s]" where the times are dates or times of day.
+    [[nodiscard]] std::string time_name() const { return origin_s_ ? "time [s]" : time_name_; }
+    /// In columns: those with the times of the signal `base` with it, the others joined to them. `clock`: how
+    /// the column of times is called.
+    [[nodiscard]] ColumnLog columns(const std::string& source, ColumnInfo clock, std::size_t base,
+                                    const ReadOptions& options);
+
+  private:
+    [[nodiscard]] double ns_per_unit(const ColumnInfo& clock) const;
+
+    const Lines& lines_;
+    std::string time_name_;
+    StampForm form_;
+    std::map<std::string, std::size_t> places_;
+    std::optional<std::int64_t> origin_s_;
+    bool all_whole_ = true;  ///< the times
+};
+
+constexpr std::size_t most_names = 4096;
+
+bool Lines::next() {
+    while (at_ < bytes_.size()) {
+        const std::size_t end = std::min(bytes_.find('\n', at_), bytes_.size());
+        line_ = line_content(bytes_.substr(at_, end - at_));
+        at_ = end + 1;
+        if (number_++ == 0 && line_.starts_with("\xef\xbb\xbf")) line_.remove_prefix(3);
+        if (!is_blank_line(line_) && !is_comment_line(line_)) return true;
+    }
+    return false;
+}
+
+std::vector<std::string> Lines::cells(char delimiter) const {
+    std::vector<std::string> texts = cell_texts(line_, delimiter);
+    while (texts.size() > 1 && texts.back().empty()) texts.pop_back();
+    return texts;
+}
+
+void Lines::complain(const std::string& sentence, std::string_view cell) const {
+    const bool inside =
+        !cell.empty() && cell.data() >= line_.data() && cell.data() < line_.data() + line_.size();
+    raise<DataError>("{}:{}:{} {}", source_, number_,
+                     inside ? fmt::format("{}:", cell.data() - line_.data() + 1) : "", sentence);
+}
+
+// A number, with a comma for its decimals where that separates no cells.
+std::optional<double> number_in(std::string_view text, char delimiter) {
+    auto number = parse_number(text);
+    if (!number && delimiter != ',') number = parse_number(text, ',');
+    return number;
+}
+
+std::size_t Signals::index_of(const std::string& name, const std::string& unit) {
+    const auto [found, added] = places_.try_emplace(name, all.size());
+    if (added && all.size() == most_names)
+        lines_.complain("read more than 4096 signals, expected the name of one in each row");
+    if (added) all.push_back({name, "", unit, {}, {}});
+    return found->second;
+}
+
+void Signals::add(std::size_t signal, std::string_view time, std::string_view value, char delimiter) {
+    auto number = number_in(time, delimiter);
+    if (!number) {
+        const auto stamp = clock_text(time, form_);
+        if (!stamp)
+            lines_.complain(fmt::format(
+                "read '{}' in '{}', expected a number, or a time such as {}; correct or remove the line",
+                time, time_name_, stamp_forms));
+        if (!origin_s_) origin_s_ = stamp->whole_s;
+        number = since(stamp->whole_s, *origin_s_) + stamp->fraction_s;
+    }
+    const auto read = number_in(value, delimiter);
+    if (!read)
+        lines_.complain(fmt::format("read '{}' in '{}', expected a number; correct or remove the line", value,
+                                    all[signal].name),
+                        value);
+    Signal& one = all[signal];
+    if (!one.values.empty() && *number < one.time.values.back())
+        lines_.complain(
+            fmt::format("read the time {} of '{}' after {}, expected time to run forward; sort "
+                        "the log",
+                        time, one.name, shortest(one.time.values.back())));
+    std::int64_t count = 0;
+    const char* const end = time.data() + time.size();
+    const auto whole = std::from_chars(time.data(), end, count);
+    all_whole_ = all_whole_ && whole.ec == std::errc() && whole.ptr == end;
+    one.time.values.push_back(*number);
+    one.time.counts.push_back(count);
+    one.values.push_back(*read);
+}
+
+// As the clock says, else so that the longest time fits.
+double Signals::ns_per_unit(const ColumnInfo& clock) const {
+    constexpr double most_ns = 9e18, seconds = 1e9;
+    const std::string written = clock.unit.empty() ? split_unit(clock.path).unit : clock.unit;
+    if (const auto unit = written.empty() ? std::nullopt : usual_unit(written, Role::time))
+        return seconds * role_factor(Role::time, *unit).value_or(1.0);
+    double longest = 1.0;
+    for (const Signal& signal : all)
+        for (const double time : {signal.time.values.front(), signal.time.values.back()})
+            longest = std::max(longest, std::abs(time));
+    double unit_ns = seconds;
+    while (unit_ns > 1.0 && unit_ns * longest > most_ns) unit_ns /= 10.0;
+    return unit_ns;
+}
+
+ColumnLog Signals::columns(const std::string& source, ColumnInfo clock, std::size_t base,
+                           const ReadOptions& options) {
+    clock.whole = all_whole_;
+    const double unit_ns = ns_per_unit(clock);
+    std::vector<ColumnInfo> info = {clock};
+    NumberRows numbers = {all[base].time};
+    std::vector<SideColumn> sides;
+    for (Signal& signal : all) {
+        const ColumnInfo own{signal.name, signal.read_as, signal.unit, false, true};
+        ColumnNumbers values{std::move(signal.values), {}};
+        if (signal.time.values == numbers[0].values) {
+            info.push_back(own);
+            numbers.push_back(std::move(values));
+        } else {
+            sides.push_back(
+                {std::make_unique<HeldColumns>(source, std::vector{clock, own},
+                                               NumberRows{std::move(signal.time), std::move(values)}),
+                 1, unit_ns, "value"});
+        }
+    }
+    ColumnLog log;
+    log.format = "csv";
+    log.columns = std::make_unique<HeldColumns>(source, std::move(info), std::move(numbers));
+    if (!sides.empty()) join_columns(log, unit_ns, std::move(sides), options);
+    return log;
+}
+
+using Words = std::span<const std::string_view>;
+constexpr std::array<std::string_view, 10> signal_words = {
+    "signal", "variable", "name", "channel", "topic", "key", "parameter", "field", "series", "signalname"};
+// In addition: whose signal it is.
+constexpr std::array<std::string_view, 6> owner_words = {"joint", "axis",  "actuator",
+                                                         "motor", "robot", "device"};
+constexpr std::array<std::string_view, 7> value_words = {"value", "values", "data",   "wert",
+                                                         "werte", "y",      "reading"};
+constexpr std::array<std::string_view, 5> name_keys = {"variable", "name", "variablename", "symbol",
+                                                       "symbolname"};
+
+bool is_one_of(Words words, std::string_view text) {
+    const std::string lower = lower_case(text);
+    return std::find(words.begin(), words.end(), lower) != words.end();
+}
+
+/// Which columns of a tidy table are what, by its header.
+struct LongHeader {
+    char delimiter = ',';
+    std::size_t cells = 0, time = 0, value = 0;
+    std::vector<std::size_t> signal;  ///< the columns that make its name together
+    std::optional<std::size_t> unit;
+    bool others = false;  ///< there are columns of something else
+    std::string time_name;
+};
+
+std::optional<LongHeader> long_header(std::string_view line) {
+    for (const char delimiter : {',', ';', '\t'}) {
+        Lines one(line, "");
+        if (!one.next()) return std::nullopt;
+        const std::vector<std::string> cells = one.cells(delimiter);
+        std::optional<std::size_t> time, value, unit;
+        std::vector<std::size_t> signal;
+        bool named = false;
+        for (std::size_t c = 0; c < cells.size(); ++c) {
+            const ColumnName name = read_column_name(cells[c]);
+            if (!time && name.role == Role::time) time = c;
+            const bool names = is_one_of(signal_words, cells[c]);
+            named = named || names;
+            if (names || is_one_of(owner_words, cells[c])) signal.push_back(c);
+            if (!value && is_one_of(value_words, cells[c])) value = c;
+            if (!unit && is_one_of(std::array<std::string_view, 2>{"unit", "units"}, cells[c])) unit = c;
+        }
+        if (time && named && value)
+            return LongHeader{delimiter,
+                              cells.size(),
+                              *time,
+                              *value,
+                              signal,
+                              unit,
+                              cells.size() > signal.size() + 2 + (unit ? 1 : 0),
+                              cells[*time]};
+    }
+    return std::nullopt;
+}
+
+/// Two numbers, or a time and a number.
+std::optional<std::array<std::string, 2>> pair_in(const Lines& lines) {
+    for (const char delimiter : {';', '\t', ',', ' '}) {
+        std::vector<std::string> cells = lines.cells(delimiter);
+        if (cells.size() != 2) continue;
+        const auto reads = [&](const std::string& cell) { return number_in(cell, delimiter).has_value(); };
+        if ((reads(cells[0]) || clock_text(cells[0])) && reads(cells[1]))
+            return std::array{cells[0], cells[1]};
+    }
+    return std::nullopt;
+}
+
+std::string first_line_of(std::string_view bytes) {
+    Lines lines(bytes, "");
+    return lines.next() ? std::string(lines.line()) : std::string();
+}
+
+/// "Variable;PLC_PRG.rPosition": what a block is called, by a key before it or by the line alone. Columns of
+/// times and values name nothing.
+std::string name_in_head(const std::vector<std::vector<std::string>>& head, std::string& time_name) {
+    std::string name;
+    bool by_key = false;
+    for (const std::vector<std::string>& cells : head) {
+        if (cells.size() >= 2 && read_column_name(cells[0]).role == Role::time) {
+            time_name = cells[0];
+            if (name.empty() && !is_one_of(value_words, cells[1])) name = cells[1];
+            continue;
+        }
+        std::string key = lower_case(cells[0]);
+        std::erase_if(key, [](unsigned char c) { return std::isalpha(c) == 0; });
+        if (cells.size() >= 2 && is_one_of(name_keys, key)) {
+            name = cells[1];
+            by_key = true;
+        } else if (!by_key && cells.size() == 1 && has_letters(cells[0]) &&
+                   !is_one_of(value_words, cells[0])) {
+            name = cells[0];
+            while (!name.empty() && (name.back() == ':' || name.back() == ' ')) name.pop_back();
+        }
+    }
+    return name;
+}
+
+std::vector<std::string> head_cells(const Lines& lines) {
+    for (const char delimiter : {';', '\t', ','}) {
+        auto cells = lines.cells(delimiter);
+        if (cells.size() > 1) return cells;
+    }
+    return {std::string(lines.line())};
+}
+
+/// The signal whose times are those of the rows: the torque, else the one with the most.
+std::size_t base_of(const std::vector<Signal>& signals, const ReadOptions& options) {
+    const auto rank = [&](const Signal& signal) {
+        const ColumnName name = read_column_name(signal.name);
+        const bool asked = std::find(options.columns.begin(), options.columns.end(),
+                                     "torque=" + signal.name) != options.columns.end();
+        return std::tuple(asked, name.role == Role::torque && !name.reference, signal.values.size());
+    };
+    std::size_t base = 0;
+    for (std::size_t s = 1; s < signals.size(); ++s)
+        if (rank(signals[s]) > rank(signals[base])) base = s;
+    return base;
+}
+
+ColumnLog as_columns(const std::string& source, Signals signals, const std::string& time_name,
+                     const std::string& shape, const ReadOptions& options) {
+    const std::size_t count = signals.all.size();
+    const ColumnInfo clock{time_name.empty() ? "time" : time_name, "", "", false, true};
+    ColumnLog log = signals.columns(source, clock, base_of(signals.all, options), options);
+    log.inferences.push_back({"shape", fmt::format("{} signals as columns", count), shape, "", {}});
+    return log;
+}
+
+std::string whole_text(ByteSource& source, std::string bytes) {
+    std::size_t have = bytes.size();
+    for (std::size_t size = std::max<std::size_t>(2 * have, 1 << 20);; size *= 2) {
+        have = read_on(source, bytes, have, size);
+        if (have < size) break;
+    }
+    bytes.resize(have);
+    return bytes;
+}
+
+ColumnLog tidy_columns(const std::string& source, std::string_view bytes, const LongHeader& header,
+                       const ReadOptions& options) {
+    Lines lines(bytes, source);
+    lines.next();
+    Signals signals(lines, header.time_name);
+    while (lines.next()) {
+        const std::vector<std::string> cells = lines.cells(header.delimiter);
+        if (cells.size() <= std::max({header.time, header.signal.back(), header.value}) ||
+            cells.size() > header.cells)
+            lines.complain(fmt::format("read {} cells, expected {}; correct or remove the line", cells.size(),
+                                       header.cells));
+        const std::string unit = header.unit && *header.unit < cells.size() ? cells[*header.unit] : "";
+        std::string name;
+        for (const std::size_t part : header.signal) name += (name.empty() ? "" : ".") + cells[part];
+        const std::size_t signal = signals.index_of(name, unit);
+        const std::size_t before = signals.all[signal].values.size();
+        signals.add(signal, cells[header.time], cells[header.value], header.delimiter);
+        const std::vector<double>& times = signals.all[signal].time.values;
+        if (header.others && before > 0 && times[before] == times[before - 1])
+            lines.complain(
+                fmt::format("read a second value of '{}' at the time {}, expected one; leave one value of "
+                            "each other column, and remove it",
+                            name, cells[header.time]));
+    }
+    const std::string time_name = signals.time_name();
+    return as_columns(source, std::move(signals), time_name, "a row holds the value of one signal", options);
+}
+
+bool has_blocks(std::string_view bytes) {
+    Lines lines(bytes, "");
+    std::size_t blocks = 0;
+    for (bool row = false; blocks < 2 && lines.next();) {
+        const bool was = std::exchange(row, pair_in(lines).has_value());
+        blocks += row && !was ? 1 : 0;
+    }
+    return blocks > 1;
+}
+
+ColumnLog block_columns(const std::string& source, std::string_view bytes, const ReadOptions& options) {
+    Lines lines(bytes, source);
+    Signals signals(lines, "time");
+    std::vector<std::vector<std::string>> head;
+    std::optional<std::size_t> block;
+    std::string time_name;
+    while (lines.next()) {
+        const auto pair = pair_in(lines);
+        if (!pair) {
+            if (block) head.clear();
+            block.reset();
+            head.push_back(head_cells(lines));
+            continue;
+        }
+        if (!block) {
+            std::string name = name_in_head(head, time_name);
+            if (name.empty()) name = fmt::format("signal {}", signals.all.size() + 1);
+            block = signals.index_of(name, "");
+        }
+        signals.add(*block, (*pair)[0], (*pair)[1], ';');
+    }
+    if (signals.time_name() != "time" || time_name.empty()) time_name = signals.time_name();
+    return as_columns(source, std::move(signals), time_name, "a block of rows holds one variable", options);
+}
 
 Lines rows_of(const std::string& source, std::string_view text, const TextDialect& dialect) {
     return {text, source, dialect.data_offset, dialect.data_line - 1};
@@ -220,6 +612,56 @@ class ListTable {
 };
 
 }  // namespace
+
+std::optional<std::vector<double>> list_in(std::string_view cell) {
+    const bool square = cell.starts_with('[') && cell.ends_with(']');
+    if (cell.size() < 3 || !(square || (cell.starts_with('(') && cell.ends_with(')')))) return std::nullopt;
+    std::string_view rest = cell.substr(1, cell.size() - 2);
+    std::vector<double> numbers;
+    while (true) {
+        constexpr std::string_view between = " \t,;";
+        rest.remove_prefix(std::min(rest.find_first_not_of(between), rest.size()));
+        if (rest.empty()) break;
+        const std::size_t end = std::min(rest.find_first_of(between), rest.size());
+        const auto number = parse_number(rest.substr(0, end));
+        if (!number) return std::nullopt;
+        numbers.push_back(*number);
+        rest.remove_prefix(end);
+    }
+    return numbers.empty() ? std::nullopt : std::optional(std::move(numbers));
+}
+
+// Of a trace, the first lines hold a head of two lines and more, and rows of a time and a value, which no
+// line over them names.
+bool may_be_long(std::string_view first_bytes) {
+    if (long_header(first_line_of(first_bytes))) return true;
+    Lines lines(first_bytes, "");
+    std::vector<std::vector<std::string>> head;
+    bool row = false;
+    while (!row && lines.next()) {
+        row = pair_in(lines).has_value();
+        if (!row) head.push_back(head_cells(lines));
+    }
+    if (!row || head.empty()) return false;
+    const std::vector<std::string>& last = head.back();
+    if (last.size() == 2 && read_column_name(last[0]).role == Role::time)
+        return head.size() > 1 && is_one_of(value_words, last[1]);
+    std::string ignored;
+    return std::any_of(head.begin(), head.end(),
+                       [](const auto& cells) { return cells.size() == 1 || cells.size() == 2; }) &&
+           last.size() == 1 && !name_in_head(head, ignored).empty() && lines.next() && pair_in(lines);
+}
+
+std::unique_ptr<LogReader> open_long(std::unique_ptr<ByteSource> source, std::string first_bytes,
+                                     const ReadOptions& options) {
+    const std::string name = source->name();
+    std::string bytes = whole_text(*source, std::move(first_bytes));
+    if (const auto header = long_header(first_line_of(bytes)))
+        return read_columns(tidy_columns(name, bytes, *header, options), options);
+    if (has_blocks(bytes)) return read_columns(block_columns(name, bytes, options), options);
+    auto held = std::make_unique<ByteSource>(name, std::make_shared<const std::string>(std::move(bytes)));
+    return open_table(std::move(held), "", options);
+}
 
 std::unique_ptr<LogReader> open_table(std::unique_ptr<ByteSource> source, std::string first_bytes,
                                       const ReadOptions& options) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include "log/text/scope_header.hpp"
+// The head of a TwinCAT Scope export.
+#include "log/text/text_header.hpp"
 
 #include <algorithm>
 #include <array>

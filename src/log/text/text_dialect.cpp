@@ -13,8 +13,7 @@
 #include "log/clock/stamp.hpp"
 #include "log/columns/column_name.hpp"
 #include "log/rows_in_range.hpp"
-#include "log/text/scope_header.hpp"
-#include "log/text/signals.hpp"
+#include "log/text/own_clocks.hpp"
 #include "log/text/text_header.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
@@ -112,8 +111,8 @@ GuessedRules guess_rules(std::string_view bytes, const TextLine& first, const st
                          const ReadOptions& options) {
     // In order of preference between equals. A comma that separates can mark decimals only inside quotes.
     const std::array candidates = {CellRules{'\t', '.'}, CellRules{';', '.'},  CellRules{',', '.'},
-                                       CellRules{' ', '.'},  CellRules{'\t', ','}, CellRules{';', ','},
-                                       CellRules{' ', ','},  CellRules{',', ','}};
+                                   CellRules{' ', '.'},  CellRules{'\t', ','}, CellRules{';', ','},
+                                   CellRules{' ', ','},  CellRules{',', ','}};
     const bool quotes = bytes.find('"') != std::string_view::npos;
     Score best;
     const auto consider = [&](CellRules rules) {
@@ -280,29 +279,6 @@ void take_scope_header(const ScopeHeader& scope, std::vector<TextLine>& content,
     content.erase(content.begin(), content.begin() + static_cast<std::ptrdiff_t>(scope.first_row));
 }
 
-}  // namespace
-
-std::string delimiter_name(char delimiter) {
-    if (delimiter == '\t') return "tab";
-    if (delimiter == ' ') return "space";
-    return std::string(1, delimiter);
-}
-
-TextPlace place_of(std::string_view bytes, std::size_t offset) {
-    TextPlace place;
-    for (std::size_t i = 0; i < offset && i < bytes.size(); ++i) {
-        if (bytes[i] == '\n') {
-            ++place.line;
-            place.column = 1;
-        } else {
-            ++place.column;
-        }
-    }
-    return place;
-}
-
-namespace {
-
 // "LabVIEW Measurement", and below it "Separator" and its name.
 std::optional<char> labview_delimiter(std::string_view bytes, const std::vector<TextLine>& content) {
     if (!content.front().of(bytes).starts_with("LabVIEW Measurement")) return std::nullopt;
@@ -313,45 +289,6 @@ std::optional<char> labview_delimiter(std::string_view bytes, const std::vector<
     }
     return std::nullopt;
 }
-
-}  // namespace
-
-TextDialect sniff_text(std::string_view bytes, bool whole, const ByteSource& source,
-                       const ReadOptions& options) {
-    TextLines lines = opening_lines(bytes, whole, source, options.skip_lines);
-    TextDialect dialect;
-    ReadOptions known = options;
-    if (!known.delimiter) known.delimiter = lines.delimiter;
-    if (!known.delimiter) known.delimiter = labview_delimiter(bytes, lines.content);
-    std::optional<ScopeHeader> scope;
-    if (options.header.value_or(true)) scope = scope_header(bytes, lines.content, source.name());
-    if (scope) take_scope_header(*scope, lines.content, known, dialect);
-    const GuessedRules rules = rules_of(bytes, lines.content, source, known);
-    dialect.rules = rules.rules;
-    dialect.columns = rules.columns;
-    std::size_t row = 0;
-    if (scope) {
-        dialect.columns = dialect.names.size();
-    } else {
-        const Preamble preamble = find_preamble(bytes, lines.content, dialect.rules, dialect.columns);
-        dialect.row_step_s = preamble.row_step_s;
-        if (preamble.lines > 0) dialect.head_lines = lines.content[preamble.lines].number - 1;
-        lines.content.erase(lines.content.begin(),
-                            lines.content.begin() + static_cast<std::ptrdiff_t>(preamble.lines));
-        row = read_header(bytes, lines, source.name(), options, dialect);
-        if (dialect.units.empty()) dialect.units = preamble.units;
-    }
-    if (row >= lines.content.size()) refuse_header_only(lines.content.front(), source.name());
-    dialect.data_offset = lines.content[row].begin;
-    dialect.data_line = lines.content[row].number;
-    look_at_sample(bytes, std::span(lines.content).subspan(row), dialect);
-    if (!scope) take_repeated_clocks(dialect);
-    const std::set<std::size_t> clocks(dialect.clock_of.begin(), dialect.clock_of.end());
-    dialect.own_clocks = clocks.size() > 1 || (has_own_rows(dialect) && !options.hold_bad_values);
-    return dialect;
-}
-
-namespace {
 
 constexpr std::size_t shortest_usual_line = 16, most_usual_lines = 4000;  // for room to begin with
 constexpr std::string_view utf8_mark = "\xef\xbb\xbf";
@@ -407,7 +344,67 @@ std::optional<char> stated_delimiter(std::string_view line) {
                                                             : std::nullopt;
 }
 
+std::vector<WantedColumn> by_column(std::vector<WantedColumn> wanted) {
+    std::sort(wanted.begin(), wanted.end(),
+              [](const WantedColumn& a, const WantedColumn& b) { return a.column < b.column; });
+    return wanted;
+}
+
 }  // namespace
+
+std::string delimiter_name(char delimiter) {
+    if (delimiter == '\t') return "tab";
+    if (delimiter == ' ') return "space";
+    return std::string(1, delimiter);
+}
+
+TextPlace place_of(std::string_view bytes, std::size_t offset) {
+    TextPlace place;
+    for (std::size_t i = 0; i < offset && i < bytes.size(); ++i) {
+        if (bytes[i] == '\n') {
+            ++place.line;
+            place.column = 1;
+        } else {
+            ++place.column;
+        }
+    }
+    return place;
+}
+
+TextDialect sniff_text(std::string_view bytes, bool whole, const ByteSource& source,
+                       const ReadOptions& options) {
+    TextLines lines = opening_lines(bytes, whole, source, options.skip_lines);
+    TextDialect dialect;
+    ReadOptions known = options;
+    if (!known.delimiter) known.delimiter = lines.delimiter;
+    if (!known.delimiter) known.delimiter = labview_delimiter(bytes, lines.content);
+    std::optional<ScopeHeader> scope;
+    if (options.header.value_or(true)) scope = scope_header(bytes, lines.content, source.name());
+    if (scope) take_scope_header(*scope, lines.content, known, dialect);
+    const GuessedRules rules = rules_of(bytes, lines.content, source, known);
+    dialect.rules = rules.rules;
+    dialect.columns = rules.columns;
+    std::size_t row = 0;
+    if (scope) {
+        dialect.columns = dialect.names.size();
+    } else {
+        const Preamble preamble = find_preamble(bytes, lines.content, dialect.rules, dialect.columns);
+        dialect.row_step_s = preamble.row_step_s;
+        if (preamble.lines > 0) dialect.head_lines = lines.content[preamble.lines].number - 1;
+        lines.content.erase(lines.content.begin(),
+                            lines.content.begin() + static_cast<std::ptrdiff_t>(preamble.lines));
+        row = read_header(bytes, lines, source.name(), options, dialect);
+        if (dialect.units.empty()) dialect.units = preamble.units;
+    }
+    if (row >= lines.content.size()) refuse_header_only(lines.content.front(), source.name());
+    dialect.data_offset = lines.content[row].begin;
+    dialect.data_line = lines.content[row].number;
+    look_at_sample(bytes, std::span(lines.content).subspan(row), dialect);
+    if (!scope) take_repeated_clocks(dialect);
+    const std::set<std::size_t> clocks(dialect.clock_of.begin(), dialect.clock_of.end());
+    dialect.own_clocks = clocks.size() > 1 || (has_own_rows(dialect) && !options.hold_bad_values);
+    return dialect;
+}
 
 TextLines opening_lines(std::string_view bytes, bool whole, const ByteSource& source,
                         std::size_t skip_lines) {
@@ -448,16 +445,6 @@ TextLines opening_lines(std::string_view bytes, bool whole, const ByteSource& so
     return opening;
 }
 
-namespace {
-
-std::vector<WantedColumn> by_column(std::vector<WantedColumn> wanted) {
-    std::sort(wanted.begin(), wanted.end(),
-              [](const WantedColumn& a, const WantedColumn& b) { return a.column < b.column; });
-    return wanted;
-}
-
-}  // namespace
-
 TextRow::TextRow(const TextDialect& dialect, std::vector<WantedColumn> wanted, StampRule stamp,
                  std::size_t joints, bool lenient)
     : rules_(dialect.rules),
@@ -478,10 +465,9 @@ std::string_view TextRow::cell(std::string_view line, std::size_t column) {
 // Quoted cells.
 bool TextRow::parse_carefully(std::string_view line) {
     split_cells(line, rules_.delimiter, split_);
-    return split_.cells.size() == columns_ &&
-           parser_.parse_cells(line, split_, row_, [this](const auto&...) {
-               return lenient_ ? std::optional(std::numeric_limits<double>::quiet_NaN()) : std::nullopt;
-           });
+    return split_.cells.size() == columns_ && parser_.parse_cells(line, split_, row_, [this](const auto&...) {
+        return lenient_ ? std::optional(std::numeric_limits<double>::quiet_NaN()) : std::nullopt;
+    });
 }
 
 MotionSample text_motion_sample(std::string_view bytes, const TextDialect& dialect, const Layout& layout,

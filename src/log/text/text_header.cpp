@@ -152,35 +152,6 @@ std::size_t read_names(std::string_view bytes, const TextLines& lines, const std
     return taken;
 }
 
-}  // namespace
-
-bool has_letters(std::string_view text) {
-    return std::any_of(text.begin(), text.end(),
-                       [](unsigned char c) { return std::isalpha(c) != 0 || c >= 0x80; });
-}
-
-std::size_t read_header(std::string_view bytes, const TextLines& lines, const std::string& source,
-                        const ReadOptions& options, TextDialect& dialect) {
-    const TextLine& first = lines.content.front();
-    CellSplit split;
-    split_cells(first.of(bytes), dialect.rules.delimiter, split);
-    const FirstLine kind = kind_of(first.of(bytes), split, dialect.rules.decimal_mark);
-    const bool wanted = options.header.value_or(kind != FirstLine::numbers);
-    if (wanted && kind == FirstLine::mixed && !options.header && lines.content.size() > 1 &&
-        is_half_names(first.of(bytes), lines.content[1].of(bytes), dialect.rules)) {
-        raise<DataError>(
-            "{}:{}:1: read '{}', half names and half numbers, expected a header or a row; correct the line, "
-            "or use --no-header",
-            source, first.number, first.of(bytes).substr(0, 60));
-    }
-    if (wanted && (kind == FirstLine::names || options.header.value_or(false)))
-        return read_names(bytes, lines, source, dialect);
-    if (!options.header.has_value()) try_comment_header(bytes, lines.comments, dialect);
-    return 0;
-}
-
-namespace {
-
 constexpr std::size_t rows_in_a_row = 3;  // so many rows make a table
 
 class HeaderLines {
@@ -270,29 +241,6 @@ std::vector<std::string> read_units(const HeaderLines& lines, std::size_t first_
     return {};
 }
 
-}  // namespace
-
-Preamble find_preamble(std::string_view bytes, const std::vector<TextLine>& content, const CellRules& rules,
-                       std::size_t columns) {
-    const HeaderLines lines(bytes, content, rules, columns);
-    Preamble found;
-    if (lines.cells(0).size() == columns) return found;
-    found.first_row = lines.first_row();
-    const bool names_then_rows = lines.may_be_names(0) && found.first_row <= 2;
-    if (found.first_row == 0 || found.first_row == content.size() || names_then_rows) return {};
-    found.row_step_s = read_step(lines, found.first_row, rules.decimal_mark);
-    found.units = read_units(lines, found.first_row, columns);
-    found.lines = found.first_row;
-    const std::size_t above = found.first_row - 1;
-    if (above > 0 && lines.is_units(above) && lines.may_be_names(above - 1))
-        found.lines = above - 1;
-    else if (lines.may_be_names(above))
-        found.lines = above;
-    return found;
-}
-
-namespace {
-
 // The option line that would force a reading, ready to paste: what was decided, in the words the user would
 // have used.
 
@@ -313,6 +261,50 @@ std::string quoted(const std::string& word) {
 }
 
 }  // namespace
+
+bool has_letters(std::string_view text) {
+    return std::any_of(text.begin(), text.end(),
+                       [](unsigned char c) { return std::isalpha(c) != 0 || c >= 0x80; });
+}
+
+std::size_t read_header(std::string_view bytes, const TextLines& lines, const std::string& source,
+                        const ReadOptions& options, TextDialect& dialect) {
+    const TextLine& first = lines.content.front();
+    CellSplit split;
+    split_cells(first.of(bytes), dialect.rules.delimiter, split);
+    const FirstLine kind = kind_of(first.of(bytes), split, dialect.rules.decimal_mark);
+    const bool wanted = options.header.value_or(kind != FirstLine::numbers);
+    if (wanted && kind == FirstLine::mixed && !options.header && lines.content.size() > 1 &&
+        is_half_names(first.of(bytes), lines.content[1].of(bytes), dialect.rules)) {
+        raise<DataError>(
+            "{}:{}:1: read '{}', half names and half numbers, expected a header or a row; correct the line, "
+            "or use --no-header",
+            source, first.number, first.of(bytes).substr(0, 60));
+    }
+    if (wanted && (kind == FirstLine::names || options.header.value_or(false)))
+        return read_names(bytes, lines, source, dialect);
+    if (!options.header.has_value()) try_comment_header(bytes, lines.comments, dialect);
+    return 0;
+}
+
+Preamble find_preamble(std::string_view bytes, const std::vector<TextLine>& content, const CellRules& rules,
+                       std::size_t columns) {
+    const HeaderLines lines(bytes, content, rules, columns);
+    Preamble found;
+    if (lines.cells(0).size() == columns) return found;
+    found.first_row = lines.first_row();
+    const bool names_then_rows = lines.may_be_names(0) && found.first_row <= 2;
+    if (found.first_row == 0 || found.first_row == content.size() || names_then_rows) return {};
+    found.row_step_s = read_step(lines, found.first_row, rules.decimal_mark);
+    found.units = read_units(lines, found.first_row, columns);
+    found.lines = found.first_row;
+    const std::size_t above = found.first_row - 1;
+    if (above > 0 && lines.is_units(above) && lines.may_be_names(above - 1))
+        found.lines = above - 1;
+    else if (lines.may_be_names(above))
+        found.lines = above;
+    return found;
+}
 
 std::string options_line(const Layout& layout, const ColumnFacts& facts, const ReadOptions& options) {
     std::vector<std::string> words = {"--format " + layout.format};
