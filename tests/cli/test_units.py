@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Never a unit by default: each spelling of a unit and each form of one log is read right, or asked about with a remedy
-that works; nothing is wrong with exit code 0. What is not read yet is an expected failure, listed by name."""
+that works; nothing is wrong with exit code 0."""
 
 import json
 import math
@@ -103,8 +103,30 @@ class Units(Reading):
                 done = ended(0, self.read(text, *words))
                 self.assertAlmostEqual(self.amplitude(done), AMPLITUDE, delta=0.01)
 
-    def test_a_unit_in_the_cells_of_a_speed(self):
-        self.assertEqual(self.read(table(four(), cell=lambda c: [c[0], c[1] + " deg/s", *c[2:]])).returncode, 0)
+    def right(self, text):
+        done = self.read(text)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertAlmostEqual(self.amplitude(done), AMPLITUDE, delta=0.01)
+
+    def test_a_unit_in_the_cells(self):
+        self.right(table(four(), cell=lambda c: [c[0], c[1] + " deg/s", *c[2:]]))
+        self.right(table(["time_s", "velocity", "torque", "position"], torque=1e3, cell=lambda c: [
+            c[0], c[1] + " deg/s", f"{float(c[2]):.3f}mNm", c[3] + " deg"]))
+
+    def test_a_cell_in_another_unit_than_its_column_is_refused(self):
+        rows = table(four("torque"), cell=lambda c: [c[0], c[1], c[2] + " Nm", c[3]]).split("\n")
+        rows[1900] = rows[1900].replace("Nm", "mNm")
+        done = self.read("\n".join(rows))
+        self.assertEqual((done.returncode, done.stdout), (3, ""))
+        self.assertIn("log.csv:1901:", done.stderr)
+
+    def test_a_unit_in_the_cells_of_a_torque_stays_there(self):
+        (self.folder / "log.csv").write_text(table(four("torque"), cell=lambda c: [c[0], c[1], c[2] + " Nm", c[3]]))
+        done = self.run_tool("filter", "log.csv", "--method", "lowpass,cutoff=20Hz", "-o", "out.csv", "-q")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        written = (self.folder / "out.csv").read_text().splitlines()
+        self.assertEqual(len(written), ROWS + 1)
+        self.assertTrue(all(row.split(",")[2].endswith(" Nm") for row in written[1:]), written[1])
 
     def test_lists_in_one_cell(self):
         self.assertEqual(self.read(table(["time_s", "positions", "velocities", "torques"], delimiter=";", cell=lambda c: [
@@ -119,14 +141,13 @@ class Units(Reading):
         self.assertEqual(self.read(text, name="log.ndjson").returncode, 0)
 
     def test_the_exponent_of_fortran(self):
-        self.assertEqual(self.read(table(four(), cell=lambda c: [f"{float(x):.9e}".replace("e", "D") for x in c])).returncode, 0)
+        self.right(table(four(), cell=lambda c: [f"{float(x):.9e}".replace("e", "D") for x in c]))
 
     def test_a_minus_of_typesetters(self):
-        self.assertEqual(self.read(table(four(), cell=lambda c: [x.replace("-", "\u2212") for x in c])).returncode, 0)
+        self.right(table(four(), cell=lambda c: [x.replace("-", "\u2212") for x in c]))
 
     def test_thousands_with_separators(self):
-        self.assertEqual(self.read(table(four("torque_mNm"), torque=1e3, delimiter=";", cell=lambda c: [
-            c[0], c[1], f"{float(c[2]):,.3f}", c[3]])).returncode, 0)
+        self.right(table(four("torque_mNm"), torque=1e3, delimiter=";", cell=lambda c: [c[0], c[1], f"{float(c[2]):,.3f}", c[3]]))
 
 
 class Names(Reading):

@@ -136,6 +136,36 @@ TEST_CASE("joints read at once are the joints read one by one", "[log]") {
     CHECK(all[0].trace.run_starts.size() == 1);
 }
 
+TEST_CASE("what is said of several joints read in one pass is what is said of each alone", "[log]") {
+    const TemporaryPath path;
+    std::ofstream(path.string()) << rows();
+    const Spool log(path.string());
+    const auto each = read_each_if_short(log, {}, all_rows);
+    REQUIRE(each.size() == 2);
+    for (const Log& joint : each) {
+        ReadOptions alone;
+        alone.joint = joint.trace.joint;
+        const Log one = read_log(path.string(), alone);
+        CHECK(joint.layout.chosen.torque == one.layout.chosen.torque);
+        CHECK(joint.layout.others.empty());
+        CHECK(joint.layout.joints == one.layout.joints);
+        CHECK(joint.layout.options == one.layout.options);
+        CHECK(joint.layout.warnings == one.layout.warnings);
+        CHECK(joint.recording.warnings == one.recording.warnings);
+        CHECK(joint.trace.position_deg == one.trace.position_deg);
+        CHECK(joint.trace.velocity_deg_s == one.trace.velocity_deg_s);
+        for (std::size_t c = 0; c < one.layout.columns.size(); ++c) {
+            CHECK(joint.layout.columns[c].role == one.layout.columns[c].role);
+            CHECK(joint.layout.columns[c].factor == one.layout.columns[c].factor);
+            CHECK(joint.layout.columns[c].unused == one.layout.columns[c].unused);
+        }
+    }
+    ReadOptions alone;
+    alone.joint = each[0].trace.joint;
+    CHECK(read_each_if_short(log, alone, all_rows).empty());
+    CHECK(read_each_if_short(log, {}, 5999).empty());
+}
+
 TEST_CASE("a joint without a torque is read where its motion is enough", "[log]") {
     const TemporaryPath path;
     std::ofstream(path.string()) << rows();
