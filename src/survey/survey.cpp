@@ -195,7 +195,8 @@ std::vector<Surveyed> survey_joints(const std::string& path, const ReadOptions& 
                                     std::size_t most_rows) {
     const auto spool = std::make_shared<const Spool>(path);
     std::vector<Surveyed> all;
-    for (Log& log : read_each_if_short(*spool, options, 4 * most_rows)) all.push_back(surveyed(std::move(log)));
+    for (Log& log : read_each_if_short(*spool, options, 4 * most_rows))
+        all.push_back(surveyed(std::move(log)));
     if (all.empty()) {
         std::vector<std::string> joints = asked_joints(*spool, options).names;
         if (joints.empty()) joints.emplace_back();

@@ -533,8 +533,7 @@ TEST_CASE("a table of one value a row and a trace of one block a variable are lo
         }
     }
     const std::string broken = tidy("time_ms,signal,value") + "40,torque,soon\n";
-    CHECK_THAT(complaint(broken),
-               Contains("log.csv:10: read 'soon' in 'torque', expected a number"));
+    CHECK_THAT(complaint(broken), Contains("log.csv:10: read 'soon' in 'torque', expected a number"));
     const std::string backward = tidy("time_ms,signal,value") + "20,torque,1\n";
     CHECK_THAT(complaint(backward), Contains("log.csv:10: read the time 20 of 'torque' after 30"));
 }

@@ -124,8 +124,8 @@ struct ReadOptions {
     /// Read all that are asked for at once, where there are several, and say of each what reading it alone
     /// would (Layout::each).
     bool each_joint = false;
-    std::vector<std::string> columns;   ///< "time,velocity,torque" by place, or "torque=tau_J" by name
-    std::map<std::string, std::string> units;   ///< role or column name -> unit
+    std::vector<std::string> columns;          ///< "time,velocity,torque" by place, or "torque=tau_J" by name
+    std::map<std::string, std::string> units;  ///< role or column name -> unit
     std::map<std::string, ColumnScale> scales;  ///< role or column name -> what its numbers are in a unit
     std::optional<Hertz> sample_rate;           ///< for logs without time; overrides the log's own time
     std::optional<DegPerSec> constant_speed;    ///< of a log that holds no motion (--constant-speed)
@@ -206,7 +206,7 @@ struct Layout {
     std::vector<Assumption> assumptions;  ///< what no rule decided
     std::vector<Assumption> inferences;   ///< what the log does not say and a rule decided, with its reason
     std::shared_ptr<const RowsOutside>
-        outside;  ///< where a range was asked for; counted while the log is read
+        outside;               ///< where a range was asked for; counted while the log is read
     std::vector<Layout> each;  ///< with ReadOptions::each_joint: of each joint alone, as all_chosen()
 
     /// Does so with this one and with those of each joint.

@@ -89,7 +89,8 @@ class RowParser {
     /// What stands for the number of a cell that holds none, or one that is no reading; may throw.
     using Other = std::function<std::optional<double>(const Cell& cell, const WantedColumn& wanted,
                                                       std::optional<double> number)>;
-    /// The careful way, of a line that is cut into as many cells as a row has; false where `other` gives none.
+    /// The careful way, of a line that is cut into as many cells as a row has; false where `other` gives
+    /// none.
     [[nodiscard]] bool parse_cells(std::string_view line, const CellSplit& split, ParsedRow& row,
                                    const Other& other) const;
 

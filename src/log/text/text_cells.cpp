@@ -22,7 +22,7 @@ std::string take_number(std::string_view& rest, char decimal_mark, std::size_t& 
     const auto take_sign = [&] {
         const std::size_t size = rest.starts_with(long_minus) ? long_minus.size()
                                  : !rest.empty() && (rest.front() == '-' || rest.front() == '+') ? 1
-                                                                                               : 0;
+                                                                                                 : 0;
         if (size > 0) plain += rest.front() == '+' ? '+' : '-';
         rest.remove_prefix(size);
     };
@@ -49,7 +49,7 @@ std::string take_number(std::string_view& rest, char decimal_mark, std::size_t& 
         }
     }
     if (rest.empty() || std::string_view("eEdD").find(rest.front()) > 3) return plain;
-    const std::size_t sign = rest.substr(1).starts_with(long_minus) ? long_minus.size()
+    const std::size_t sign = rest.substr(1).starts_with(long_minus)                  ? long_minus.size()
                              : rest.size() > 1 && (rest[1] == '-' || rest[1] == '+') ? 1
                                                                                      : 0;
     if (!digit_at(1 + sign)) return plain;

@@ -26,7 +26,8 @@ struct CellNumber {
 struct CellRules {
     char delimiter = ',';  ///< ' ' means runs of blanks and tabs, also at both ends of a line
     char decimal_mark = '.';
-    std::vector<std::string> units = {};  ///< by column, where cells have theirs behind the number; else empty
+    std::vector<std::string> units =
+        {};  ///< by column, where cells have theirs behind the number; else empty
 
     /// cell_number() of a cell in this column; none where it has another unit than the column.
     [[nodiscard]] std::optional<CellNumber> number(std::string_view cell, std::size_t column) const;
