@@ -170,7 +170,6 @@ class Inference {
     /// True when nothing is left to be asked of a longer sample.
     bool measure(std::size_t bytes) {
         const MotionsSeen::Opening& opening = look_at(bytes);
-        bool scale = false;
         all_stated_ = true;
         evidence_ = {};
         for (const MotionColumns& joint : joints_) {
@@ -183,14 +182,13 @@ class Inference {
             evidence_.velocity_counts = evidence_.velocity_counts || one.velocity_counts;
             evidence_.position_counts = evidence_.position_counts || one.position_counts;
             if (!evidence_.wrap) evidence_.wrap = one.wrap;
-            if (one.scale && (!scale || joint.chosen)) {
+            if (one.scale && (!evidence_.scale || joint.chosen)) {
                 evidence_.scale = one.scale;
                 subject_ = &joint;
-                scale = true;
             }
         }
         const bool comparable = subject_->velocity && subject_->position;
-        return opening.whole || (all_stated_ && (scale || !comparable));
+        return opening.whole || (all_stated_ && (evidence_.scale || !comparable));
     }
 
     /// Told by the user, for this joint or for all.
