@@ -189,7 +189,7 @@ void look_at_sample(std::string_view bytes, std::span<const TextLine> rows, Text
     dialect.stamp_forms.assign(dialect.columns, {});
     dialect.first_counts.assign(dialect.columns, 0);
     std::vector<std::vector<std::string_view>> texts(dialect.columns);
-    std::vector<std::set<std::string_view>> units(dialect.columns);
+    std::vector<std::string> units(dialect.columns);  // behind the numbers of the first row
     CellSplit split;
     for (std::size_t k = 0; k < rows.size() && k < rows_sampled; ++k) {
         const std::string_view line = rows[k].of(bytes);
@@ -205,21 +205,18 @@ void look_at_sample(std::string_view bytes, std::span<const TextLine> rows, Text
                 if (dialect.clock_texts[c]) texts[c].push_back(cell);
                 if (k == 0 && dialect.clock_texts[c]) dialect.first_counts[c] = 0;
             }
-            if (value) {
-                units[c].insert("");
-            } else if (const auto number = cell_number(cell, dialect.rules.decimal_mark)) {
-                value = number->value;
-                units[c].insert(number->unit);
-            }
+            const auto number = value ? std::nullopt : cell_number(cell, dialect.rules.decimal_mark);
+            if (number && k == 0 && !dialect.clock_texts[c]) units[c] = number->unit;
+            if (number && number->unit == units[c]) value = number->value;
             dialect.sample[c].push_back(value.value_or(std::numeric_limits<double>::quiet_NaN()));
         }
     }
     for (std::size_t c = 0; c < dialect.columns; ++c) {
-        if (dialect.clock_texts[c] || units[c].size() != 1 || units[c].count("") > 0) continue;
+        if (units[c].empty()) continue;
         dialect.rules.units.resize(dialect.columns);
-        dialect.rules.units[c] = *units[c].begin();
+        dialect.rules.units[c] = units[c];
         dialect.units.resize(dialect.columns);
-        if (dialect.units[c].empty()) dialect.units[c] = dialect.rules.units[c];
+        if (dialect.units[c].empty()) dialect.units[c] = units[c];
     }
     for (std::size_t c = 0; c < dialect.columns; ++c) {
         if (!dialect.clock_texts[c] || texts[c].size() != dialect.sample[c].size()) continue;
