@@ -70,15 +70,12 @@ class OtherRipple final : public RowValues {
     /// Reads `log` by the options that the joint itself is read by. Throws DataError where the log has no
     /// such joint, and what open_log throws.
     OtherRipple(std::span<const RippleMap> maps, const Spool& log, const ReadOptions& options);
-    ~OtherRipple() override;
-    OtherRipple(const OtherRipple&) = delete;
-    OtherRipple& operator=(const OtherRipple&) = delete;
 
     /// In Nm, of the next rows of the log.
     std::span<const double> next(std::size_t count) override;
 
   private:
-    std::FILE* file_;
+    std::unique_ptr<std::FILE, int (*)(std::FILE*)> file_;
     std::vector<double> values_;
 };
 

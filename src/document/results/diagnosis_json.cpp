@@ -66,6 +66,14 @@ void describe_parameters(Archive& archive, auto& term, auto& fitted) {
     });
 }
 
+// An effect with its values, of which none was fitted.
+template <class Archive>
+void describe_stated(Archive& archive, auto& term) {
+    std::vector<FittedValue> none;
+    describe_effect(archive, term.effect);
+    describe_parameters(archive, term, none);
+}
+
 }  // namespace
 
 auto ends_of(Is<Span> auto& span) { return std::tie(span.from, span.to); }
@@ -77,11 +85,8 @@ void describe(auto& archive, Is<Evidence> auto& evidence) {
     archive("explained_share", evidence.explained_share, six_or_unknown);
 }
 
-template <class Archive>
-void describe(Archive& archive, Is<RivalFinding> auto& rival) {
-    std::vector<FittedValue> none;
-    describe_effect(archive, rival.term.effect);
-    describe_parameters(archive, rival.term, none);
+void describe(auto& archive, Is<RivalFinding> auto& rival) {
+    describe_stated(archive, rival.term);
     archive("margin", rival.margin, six_or_unknown);
 }
 
@@ -112,16 +117,12 @@ void describe(auto& archive, Is<AcceptedFinding> auto& one) {
 }
 
 void describe(auto& archive, Is<RefusedCandidate> auto& one) {
-    std::vector<FittedValue> none;
-    describe_effect(archive, one.term.effect);
-    describe_parameters(archive, one.term, none);
+    describe_stated(archive, one.term);
     archive("reason", one.reason);
 }
 
 void describe(auto& archive, Is<Fault> auto& fault) {
-    std::vector<FittedValue> none;
-    describe_effect(archive, fault.term.effect);
-    describe_parameters(archive, fault.term, none);
+    describe_stated(archive, fault.term);
     archive("samples", fault.samples);
     archive("time_s", fault.time_s, six);
     archive("words", fault.words);

@@ -168,41 +168,36 @@ class SumOfJoints final : public LogWriter {
 }  // namespace
 
 OtherRipple::OtherRipple(std::span<const RippleMap> maps, const Spool& log, const ReadOptions& options)
-    : file_(::fdopen(
-          TemporaryFile(temporary_folder() + "/ripplenotch-ripple", std::nullopt).release_without_name(),
-          "w+b")) {
+    : file_(
+          ::fdopen(
+              TemporaryFile(temporary_folder() + "/ripplenotch-ripple", std::nullopt).release_without_name(),
+              "w+b"),
+          &std::fclose) {
     if (file_ == nullptr)
         raise<FileError>("cannot make a temporary file for the other joints' ripple: {}",
                          std::strerror(errno));
-    try {
-        require_joints(maps, log, options);
-        LogStream stream(open_log(log.open(), reading_of(maps, options)));
-        std::vector<std::unique_ptr<CausalFilter>> filters;
-        std::vector<JointRun> runs;
-        for (const JointColumns& joint : stream.reader().layout().all_chosen()) {
-            const auto map = std::find_if(maps.begin(), maps.end(),
-                                          [&](const RippleMap& one) { return one.joint == joint.joint; });
-            filters.push_back(map_prediction(*map, stream.design_rate()));
-            runs.push_back({filters.back().get()});
-        }
-        if (runs.size() != maps.size())
-            raise<DataError>(
-                "{}: the map also holds ripple of the motors of {}, and not all of them have a motion",
-                stream.reader().layout().source, names_of(maps));
-        SumOfJoints sum(file_);
-        static_cast<void>(stream.run(runs, &sum));
-    } catch (...) {
-        std::fclose(file_);
-        throw;
+    require_joints(maps, log, options);
+    LogStream stream(open_log(log.open(), reading_of(maps, options)));
+    std::vector<std::unique_ptr<CausalFilter>> filters;
+    std::vector<JointRun> runs;
+    for (const JointColumns& joint : stream.reader().layout().all_chosen()) {
+        const auto map = std::find_if(maps.begin(), maps.end(),
+                                      [&](const RippleMap& one) { return one.joint == joint.joint; });
+        filters.push_back(map_prediction(*map, stream.design_rate()));
+        runs.push_back({filters.back().get()});
     }
-    std::rewind(file_);
+    if (runs.size() != maps.size())
+        raise<DataError>(
+            "{}: the map also holds ripple of the motors of {}, and not all of them have a motion",
+            stream.reader().layout().source, names_of(maps));
+    SumOfJoints sum(file_.get());
+    static_cast<void>(stream.run(runs, &sum));
+    std::rewind(file_.get());
 }
-
-OtherRipple::~OtherRipple() { std::fclose(file_); }
 
 std::span<const double> OtherRipple::next(std::size_t count) {
     values_.resize(count);
-    if (std::fread(values_.data(), sizeof(double), count, file_) != count)
+    if (std::fread(values_.data(), sizeof(double), count, file_.get()) != count)
         raise<DataError>(
             "the log has grown since its other joints were read; read a copy that nobody writes to");
     return values_;
