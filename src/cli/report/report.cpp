@@ -78,7 +78,7 @@ ExitCode run_report(const ReportRequest& request, const Options& options) {
     for (const std::string& path : request.results) {
         // A log may be longer than the memory; what commands wrote is not.
         std::string text = path == "-" ? read_all(path) : beginning_of(path);
-        if (is_log(text)) {
+        if (!path.ends_with(".json") && is_log(text)) {
             logs.push_back({path, path == "-" ? std::move(text) : "",
                             options.given("--format", "--hold-bad-values"),
                             options.given("--gear-ratio", "--joint-file"),
