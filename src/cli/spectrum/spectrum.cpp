@@ -294,7 +294,7 @@ Result order_result(const SpectrumRequest& request, const TraceView& trace, cons
     MotionLinesOptions options;
     options.false_alarm = request.false_alarm;
     OrderSpectrum result{
-        stack_sweeps(cut_sweeps({&trace, 1}, options.sweeps).pieces, Axis::angle, options.stack),
+        stack_sweeps(cut_sweeps({&trace, 1}, options.sweeps).pieces, Axis::angle, {}),
         find_motion_lines({&trace, 1}, options), doubt};
     if (result.lines.sweeps == 0) {
         raise<DataError>(
