@@ -18,6 +18,7 @@ struct MotionLine {
     double amplitude_nm = 0.0;                      ///< zero to peak, rms over sweeps, noise subtracted
     double floor_nm = 0.0;                          ///< amplitude of noise alone, rms over sweeps
     double snr = 0.0;                               ///< amplitude_nm / floor_nm
+    double false_alarm = 1.0;                       ///< chance that noise alone gives as much anywhere
     /// Phase in cos(order * output angle + phase), when the sweeps agree on it.
     std::optional<double> phase_deg;
     std::vector<AmplitudeAtSpeed> by_speed;  ///< per sweep
@@ -40,7 +41,7 @@ struct MotionLines {
     std::size_t sweeps_left_out = 0;
     double turns = 0.0;  ///< output turns that the sweeps cover
     double resolution_orders = 0.0;
-    double lowest_order = 0.0, highest_order = 0.0;  ///< between which lines of an order were looked for
+    double lowest_order = 0.0, highest_order = 0.0;   ///< between which lines of an order were looked for
     std::optional<SearchedOrders> searched;           ///< empty where no sweep allows a search
     double slowest_deg_s = 0.0, fastest_deg_s = 0.0;  ///< mean |speed| of the sweeps
     bool absolute_angle = false;

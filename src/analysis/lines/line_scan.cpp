@@ -23,8 +23,7 @@ constexpr double top_of_rate = 0.4;  // of the sample rate: an anti-alias filter
 constexpr double corner_s = 0.01;    // chosen, not derived: corners of the motion are no sharper in a torque
 constexpr double step_cells = 0.3;   // of the sums, in 1 / longest sweep
 constexpr double wide_cells = 20.0, near_cells = 5.0;
-// Of the places; resonances are humps of frequency, and any machine has some. Chosen, not derived.
-constexpr double humps_of_angle = 0.05, humps_of_time = 0.5;
+constexpr double humps_share = 0.05;    // of the places: chosen, not derived
 constexpr double highest_hump = 4.6;    // ln 100
 constexpr double own_cells = 1.5;       // to either side of a line, its own width, are no noise
 constexpr double again_evidence = 4.6;  // -ln 0.01: what sweeps other than the best one must reach
@@ -426,8 +425,8 @@ LineScan::Humps LineScan::humps_of(std::span<Noise* const> noises,
         if (!(sum > 0.0)) continue;
         humps.rise[k] = sum / weights;
         humps.variance[k] = 1.0 / weights;
-        const double share = axis_ == Axis::angle ? humps_of_angle : humps_of_time;
-        const double odds = share / (1.0 - share) / highest_hump * std::sqrt(full_turn * humps.variance[k]) *
+        const double odds = humps_share / (1.0 - humps_share) / highest_hump *
+                            std::sqrt(full_turn * humps.variance[k]) *
                             portable::exp(std::min(600.0, 0.5 * humps.rise[k] * sum));
         humps.chance[k] = odds / (1.0 + odds);
     }
@@ -651,6 +650,19 @@ double LineScan::evidence_with(std::size_t k, std::complex<double> added_nm, con
            portable::log(3.0);
 }
 
+double LineScan::once_nm(double from, double to, double false_alarm) const {
+    double most_nm = 0.0;
+    for (std::size_t k = bin_of(from); k < count_ && place(k) < to; ++k) {
+        if (evidence_[k] > 0.0 || tail_of_sum(free_.scores[k], free_.sweeps[k]) < threshold(false_alarm))
+            continue;
+        for (std::size_t i = 0; i < pieces_.size(); ++i) {
+            if (pieces_[i].shows(place(k)))
+                most_nm = std::max(most_nm, 2.0 * std::abs(whole_[i].sum[k]) / whole_[i].weight);
+        }
+    }
+    return most_nm;
+}
+
 LineScan::Excess LineScan::excess_at(std::size_t k) const {
     Excess e;
     e.free = free_.excess[octave(k)];
@@ -670,12 +682,13 @@ LineScan::Evidences LineScan::evidences_at(double place) const {
     return out;
 }
 
-bool LineScan::is_line(double place, const Evidences& evidences, double false_alarm) const {
+double LineScan::false_alarm_of(double place, const Evidences& evidences) const {
     const double excess = excess_at(bin_of(place)).free;
     std::size_t i = 0;
     while (i + 2 < excesses.size() && excesses.at(i + 1) < excess) ++i;
     const double part = (excess - excesses.at(i)) / (excesses.at(i + 1) - excesses.at(i));
-    return evidences.at(i) + part * (evidences.at(i + 1) - evidences.at(i)) > threshold(false_alarm);
+    const double evidence = evidences.at(i) + part * (evidences.at(i + 1) - evidences.at(i));
+    return std::min(1.0, portable::exp(threshold(1.0) - evidence));
 }
 
 double LineScan::detectable_nm(double from, double to, double false_alarm,

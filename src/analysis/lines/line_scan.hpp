@@ -54,8 +54,9 @@ class LineScan {
     static constexpr std::array excesses{0.0, 0.02, 0.05, 0.1, 0.2, 0.4, 0.8};
     using Evidences = std::array<double, excesses.size()>;
     [[nodiscard]] Evidences evidences_at(double place) const;
-    /// Whether it is a line in noise that scatters as that of the last score() does.
-    [[nodiscard]] bool is_line(double place, const Evidences& evidences, double false_alarm) const;
+    /// The chance that noise alone gives as much anywhere, where it scatters as that of the last score()
+    /// does.
+    [[nodiscard]] double false_alarm_of(double place, const Evidences& evidences) const;
     /// Where the summed power over noise is largest within a line's width.
     [[nodiscard]] double peak_near(double place) const;
     /// As of the last score().
@@ -64,6 +65,8 @@ class LineScan {
     /// many phases are added to the sums of the last score(), and the test is made again.
     [[nodiscard]] double detectable_nm(double from, double to, double false_alarm,
                                        std::span<const double> lines) const;
+    /// The largest amplitude that one sweep shows, and the others do not, between two places; 0: none does.
+    [[nodiscard]] double once_nm(double from, double to, double false_alarm) const;
     /// Takes a line of either axis off every sweep, fitted along with the trend.
     void remove(const KnownLine& line);
 

@@ -16,16 +16,20 @@ constexpr double line_cells = 2.5;  // half width of a line and of what is left 
 
 struct SpeedRange {
     double slow = 0.0, fast = 0.0;
+    double quick = 0.0;  ///< without the fastest quarter of each sweep
+    bool rests = false;
 };
 
 SpeedRange speed_range(std::span<const Sweep> sweeps) {
-    SpeedRange range{1e300, 0.0};
+    SpeedRange range{1e300};
     for (const Sweep& sweep : sweeps) {
+        range.rests = range.rests || sweep.rest();
         if (sweep.rest()) continue;
+        range.quick = std::max(range.quick, sweep.quick_deg_s);
         range.slow = std::min(range.slow, sweep.slow_deg_s);
         range.fast = std::max(range.fast, sweep.fast_deg_s);
     }
-    return range.fast > 0.0 ? range : SpeedRange{};
+    return range.fast > 0.0 ? range : SpeedRange{.rests = range.rests};
 }
 
 struct Peak {
@@ -59,8 +63,11 @@ class LineSearch {
     /// stays off, and bounds what would have been found.
     [[nodiscard]] std::vector<MotionLine> lines() const {
         std::vector<MotionLine> lines;
-        for (const Taken& taken : taken_)
-            if (is_line(taken)) lines.push_back(taken.line);
+        for (const Taken& taken : taken_) {
+            if (!is_line(taken)) continue;
+            lines.push_back(taken.line);
+            lines.back().false_alarm = false_alarm_of(taken);
+        }
         return lines;
     }
     [[nodiscard]] const SpeedRange& range() const { return range_; }
@@ -70,12 +77,14 @@ class LineSearch {
     [[nodiscard]] std::optional<SearchedOrders> searched() const {
         constexpr double band = 2.0;  // from one order to its double
         if (angle_.empty()) return std::nullopt;
-        SearchedOrders searched{angle_.lowest(), angle_.highest(), 0.0, angle_.deviation_nm(), {}};
+        SearchedOrders searched{
+            angle_.lowest(), angle_.highest(), 0.0, std::max(angle_.deviation_nm(), least_nm_), {}};
         std::vector<SearchedOrders::Bound> bounds, run;
         double all_nm = 0.0;
         for (double from = angle_.lowest(); from < angle_.highest(); from *= band) {
             const double to = std::min(band * from, angle_.highest());
-            double nm = std::max(angle_.detectable_nm(from, to, false_alarm(), orders_), least_nm_);
+            double nm = std::max({angle_.detectable_nm(from, to, false_alarm(), orders_),
+                                  angle_.once_nm(from, to, false_alarm()), least_nm_});
             for (const Taken& taken : taken_) {
                 if (taken.line.kind != LineKind::tone && taken.line.order_output >= from &&
                     taken.line.order_output < to && !is_line(taken))
@@ -111,18 +120,21 @@ class LineSearch {
     }
 
   private:
+    static constexpr double axes = 2.0;  ///< that are searched
     /// What was taken off, and its evidence.
     struct Taken {
         KnownLine known;
         MotionLine line;
         LineScan::Evidences evidences;
     };
-    [[nodiscard]] bool is_line(const Taken& taken) const {
+    [[nodiscard]] double false_alarm_of(const Taken& taken) const {
         const LineScan& scan = taken.known.axis == Axis::angle ? angle_ : time_;
-        return taken.line.amplitude_nm >= least_nm_ &&
-               scan.is_line(taken.known.place, taken.evidences, false_alarm());
+        return axes * scan.false_alarm_of(taken.known.place, taken.evidences);
     }
-    [[nodiscard]] double false_alarm() const { return 0.5 * options_.false_alarm; }  // two axes are searched
+    [[nodiscard]] bool is_line(const Taken& taken) const {
+        return taken.line.amplitude_nm >= least_nm_ && false_alarm_of(taken) < options_.false_alarm;
+    }
+    [[nodiscard]] double false_alarm() const { return options_.false_alarm / axes; }
 
     void score() {
         if (!angle_.empty()) angle_scores_ = &angle_.score();
@@ -165,26 +177,29 @@ class LineSearch {
         const bool order_is = !angle_.empty() && order.evidence > angle_.threshold(false_alarm());
         const bool tone_is = !time_.empty() && tone.evidence > time_.threshold(false_alarm());
         if (!order_is && !tone_is) return false;
-        const bool by_angle = order_is && (!tone_is || order.evidence >= tone.evidence);
+        bool by_angle = order_is && (!tone_is || order.evidence >= tone.evidence);
         // What the other axis shows where the line could be seen there.
-        const double turns_s = by_angle ? order.place : tone.place;
         const double reach = line_cells / (by_angle ? time_ : angle_).longest();
         if (by_angle)
-            tone = clearest(time_, time_scores_, turns_s * range_.slow / 360.0 - reach,
-                            turns_s * range_.fast / 360.0 + reach, {});
+            tone = clearest(time_, time_scores_, order.place * range_.slow / 360.0 - reach,
+                            order.place * range_.fast / 360.0 + reach, {});
         else if (range_.fast > 0.0)
-            order = clearest(angle_, angle_scores_, turns_s * 360.0 / range_.fast - reach,
-                             turns_s * 360.0 / std::max(range_.slow, 1e-9) + reach, {});
+            order = clearest(angle_, angle_scores_, tone.place * 360.0 / range_.fast - reach,
+                             tone.place * 360.0 / std::max(range_.slow, 1e-9) + reach, {});
         else
             order = {};
-        const double apart = std::abs(order.evidence - tone.evidence);
-        LineKind kind =
-            apart > decisive_nats ? by_angle ? LineKind::order : LineKind::tone : LineKind::unknown;
+        // Of a line whose frequency changes by less than it is wide, the other axis shows the same.
+        const double spread_hz = order.place * (range_.quick - range_.slow) / 360.0;
+        const bool both = order.place > 0.0 && tone.place > 0.0;
+        const bool alike = both && !range_.rests && spread_hz * time_.longest() < 1.0;
+        const bool unknown = alike || (both && std::abs(order.evidence - tone.evidence) <= decisive_nats);
+        by_angle = by_angle || unknown;
+        const LineKind kind = unknown ? LineKind::unknown : by_angle ? LineKind::order : LineKind::tone;
         const KnownLine known{by_angle ? Axis::angle : Axis::time, by_angle ? order.place : tone.place};
-        taken_.push_back({known, measured(known, kind, by_angle ? tone.place : order.place),
+        taken_.push_back({known, measured(known, kind, tone.place),
                           (by_angle ? angle_ : time_).evidences_at(known.place)});
-        if (by_angle || kind == LineKind::unknown) orders_.push_back(order.place);
-        if (!by_angle || kind == LineKind::unknown) tones_.push_back(tone.place);
+        if (by_angle) orders_.push_back(order.place);
+        if (!by_angle || unknown) tones_.push_back(tone.place);
         const MotionLine& line = taken_.back().line;
         const KnownLine exact{known.axis, by_angle ? line.order_output : line.hz};
         if (!angle_.empty()) angle_.remove(exact);
@@ -192,20 +207,16 @@ class LineSearch {
         return true;
     }
 
-    [[nodiscard]] MotionLine measured(const KnownLine& known, LineKind kind, double rival) const {
+    [[nodiscard]] MotionLine measured(const KnownLine& known, LineKind kind, double tone_hz) const {
         const LineScan& scan = known.axis == Axis::angle ? angle_ : time_;
         const LineNoise noise = scan.noise_at(known.place);
         MotionLine line;
         line.kind = kind;
         measure(scan.sweeps(), noise,
                 refined(scan.sweeps(), noise, scan.peak_near(known.place), 0.5 / scan.longest()), line);
-        if (kind != LineKind::unknown) return line;
-        if (known.axis == Axis::angle) {
-            line.hz = rival;
-            line.hz_stderr = time_.empty() ? 0.0 : hann_cell / time_.longest();
-        } else {
-            line.order_output = rival;
-            line.order_stderr = hann_cell / angle_.longest();
+        if (kind == LineKind::unknown) {
+            line.hz = tone_hz;
+            line.hz_stderr = hann_cell / time_.longest();
         }
         return line;
     }
