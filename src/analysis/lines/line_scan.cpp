@@ -193,6 +193,18 @@ double LineScan::peak_near(double place) const {
     return best;
 }
 
+double LineScan::strongest_at(double place) const {
+    const std::size_t k = bin_of(place);
+    double most = 0.0, speed = 0.0;
+    for (std::size_t i = 0; i < pieces_.size(); ++i) {
+        const double ratio = pieces_[i].shows(place) ? whole_[i].power[k] / whole_[i].noise.power[k] : 0.0;
+        if (ratio <= most) continue;
+        most = ratio;
+        speed = std::abs(sweeps_[i].mean_deg_s);
+    }
+    return speed;
+}
+
 std::size_t LineScan::bin_of(double place) const {
     return static_cast<std::size_t>(
         std::lround(std::clamp((place - first_) / step_, 0.0, static_cast<double>(count_ - 1))));

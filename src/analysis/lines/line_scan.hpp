@@ -59,6 +59,8 @@ class LineScan {
     [[nodiscard]] double false_alarm_of(double place, const Evidences& evidences) const;
     /// Where the summed power over noise is largest within a line's width.
     [[nodiscard]] double peak_near(double place) const;
+    /// Mean |speed| of the sweep that shows most power over noise at a place; 0 at rest.
+    [[nodiscard]] double strongest_at(double place) const;
     /// As of the last score().
     [[nodiscard]] LineNoise noise_at(double place) const;
     /// The amplitude that is found in 95 of 100 such logs between two places, away from `lines`: lines of

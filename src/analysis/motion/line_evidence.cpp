@@ -7,11 +7,13 @@
 
 #include "core/process/two_cores.hpp"
 #include "ripplenotch/analysis/fourier.hpp"
+#include "ripplenotch/analysis/line_test.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
 
+constexpr double clear_ratio = 6.0;      // power over noise; below, a peak's own position is not near normal
 constexpr std::size_t few_sweeps = 4;    // chosen, not derived: fewer are cut in parts, for a scatter
 constexpr std::size_t parts_of_few = 3;  // the fewest with a scatter
 constexpr std::size_t fewest_samples_for_error = 24;  // chosen, not derived
@@ -20,6 +22,12 @@ constexpr std::size_t fewest_samples_for_error = 24;  // chosen, not derived
 /// over noise, and the variance of the slope under noise.
 struct Opinion {
     double slope = 0.0, curve = 0.0, slope_variance = 0.0;
+    double ratio = 0.0;  ///< power over noise
+    double reach = 0.0;  ///< the width of its line
+
+    [[nodiscard]] bool clear() const { return ratio > clear_ratio && curve < 0.0; }
+    [[nodiscard]] double shift() const { return std::clamp(-slope / curve, -reach, reach); }
+    [[nodiscard]] double variance() const { return slope_variance / (curve * curve); }
 };
 
 Opinion opinion_of(const Sweep& sweep, Axis axis, double noise, double place) {
@@ -36,13 +44,14 @@ Opinion opinion_of(const Sweep& sweep, Axis axis, double noise, double place) {
         second += arm * arm;
     }
     Opinion opinion;
-    const double ratio = std::norm(sum.value) / noise;
+    opinion.ratio = std::norm(sum.value) / noise;
     opinion.slope = std::real(std::conj(sum.value) * sum.first) / noise;
     opinion.curve = (std::norm(sum.first) + std::real(std::conj(sum.value) * sum.second)) / noise;
     // Slope = Re(conj(X) X'). Noise of power N in X has N full_turn^2 sum w^2 (u - mean)^2 / sum w^2 in X',
     // half of it in phase with X.
     opinion.slope_variance =
-        0.5 * std::max(0.0, ratio - 1.0) * full_turn * full_turn * second / sweep.weight_square_sum;
+        0.5 * std::max(0.0, opinion.ratio - 1.0) * full_turn * full_turn * second / sweep.weight_square_sum;
+    opinion.reach = 1.0 / length_of(sweep, axis);
     return opinion;
 }
 
@@ -59,28 +68,29 @@ void add_parts(const Sweep& sweep, Axis axis, double noise, double place, std::v
     }
 }
 
-/// Standard error of the common shift, by leaving out one after the other.
-double jackknife_error(std::span<const Opinion> opinions) {
-    const auto n = static_cast<double>(opinions.size());
-    if (n < 2.0) return 0.0;
-    double slope = 0.0, curve = 0.0;
+/// By what factor the estimates scatter more than their own variances explain.
+double disagreement(std::span<const Opinion> opinions) {
+    double top = 0.0, bottom = 0.0, count = 0.0;
     for (const Opinion& one : opinions) {
-        slope += one.slope;
-        curve += one.curve;
+        if (!one.clear()) continue;
+        top += one.shift() / one.variance();
+        bottom += 1.0 / one.variance();
+        count += 1.0;
     }
-    double sum = 0.0, squares = 0.0;
-    for (const Opinion& left_out : opinions) {
-        if (!(curve - left_out.curve < 0.0)) return 0.0;
-        const double shift = -(slope - left_out.slope) / (curve - left_out.curve);
-        sum += shift;
-        squares += shift * shift;
+    if (count < 2.0) return 1.0;
+    double squares = 0.0;
+    for (const Opinion& one : opinions) {
+        if (!one.clear()) continue;
+        const double off = one.shift() - top / bottom;
+        squares += off * off / one.variance();
     }
-    return std::sqrt((n - 1.0) / n * std::max(0.0, squares - sum * sum / n));
+    return excess_scatter(squares, count - 1.0);
 }
 
-/// Standard error of the position of the largest summed power, in turns or hertz: the larger of what the
-/// noise near the line explains (one Newton step, delta method) and of what the sweeps show, or thirds of
-/// them when they are few, as with a phase that drifts with speed or load.
+/// Standard error of the position of the largest summed power, in turns or hertz. First from the noise near
+/// the line (one Newton step, delta method). Where the estimates of the sweeps, or thirds of them when they
+/// are few, scatter more than that noise explains, as with a phase that drifts with speed or load, the error
+/// is widened to their scatter.
 double place_error(std::span<const Sweep> sweeps, const LineNoise& noise, double place) {
     std::vector<Opinion> whole, parts;
     double variance = 0.0, curve = 0.0;
@@ -93,7 +103,7 @@ double place_error(std::span<const Sweep> sweeps, const LineNoise& noise, double
     }
     if (!(curve < 0.0) || !(variance > 0.0)) return noise.resolution;
     const double error = std::sqrt(variance) / -curve;
-    return std::min(std::max({error, jackknife_error(whole), jackknife_error(parts)}), noise.resolution);
+    return std::min(error * std::max(disagreement(whole), disagreement(parts)), noise.resolution);
 }
 
 }  // namespace
@@ -120,6 +130,16 @@ double refined(std::span<const Sweep> sweeps, const LineNoise& noise, double sta
         if (settled) break;
     }
     return place;
+}
+
+double explained(std::span<const Sweep> sweeps, const LineNoise& noise, double place) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < sweeps.size(); ++i) {
+        if (!(noise.power[i] > 0.0)) continue;
+        const FourierPoint at = fourier_point(places(sweeps[i], noise.axis), sweeps[i].value, place);
+        sum += std::norm(at.value) / noise.power[i] - 1.0;
+    }
+    return sum;
 }
 
 void measure(std::span<const Sweep> sweeps, const LineNoise& noise, double place, MotionLine& line) {

@@ -121,15 +121,22 @@ class LineSearch {
 
   private:
     static constexpr double axes = 2.0;  ///< that are searched
-    /// What was taken off, and its evidence.
+    /// What was taken off, and the evidence of it as an order and as a tone.
+    struct Reading {
+        const LineScan* scan;
+        double place;
+        LineScan::Evidences evidences;
+    };
     struct Taken {
         KnownLine known;
         MotionLine line;
-        LineScan::Evidences evidences;
+        std::vector<Reading> readings;
     };
-    [[nodiscard]] double false_alarm_of(const Taken& taken) const {
-        const LineScan& scan = taken.known.axis == Axis::angle ? angle_ : time_;
-        return axes * scan.false_alarm_of(taken.known.place, taken.evidences);
+    [[nodiscard]] static double false_alarm_of(const Taken& taken) {
+        double chance = 1.0;
+        for (const Reading& reading : taken.readings)
+            chance = std::min(chance, axes * reading.scan->false_alarm_of(reading.place, reading.evidences));
+        return chance;
     }
     [[nodiscard]] bool is_line(const Taken& taken) const {
         return taken.line.amplitude_nm >= least_nm_ && false_alarm_of(taken) < options_.false_alarm;
@@ -178,33 +185,76 @@ class LineSearch {
         const bool tone_is = !time_.empty() && tone.evidence > time_.threshold(false_alarm());
         if (!order_is && !tone_is) return false;
         bool by_angle = order_is && (!tone_is || order.evidence >= tone.evidence);
-        // What the other axis shows where the line could be seen there.
+        // What the other axis shows where the line could be seen there, and at the speed of the sweep that
+        // shows it best: with several lines in that range the clearest may be another one.
         const double reach = line_cells / (by_angle ? time_ : angle_).longest();
-        if (by_angle)
-            tone = clearest(time_, time_scores_, order.place * range_.slow / 360.0 - reach,
-                            order.place * range_.fast / 360.0 + reach, {});
-        else if (range_.fast > 0.0)
-            order = clearest(angle_, angle_scores_, tone.place * 360.0 / range_.fast - reach,
-                             tone.place * 360.0 / std::max(range_.slow, 1e-9) + reach, {});
-        else
-            order = {};
-        // Of a line whose frequency changes by less than it is wide, the other axis shows the same.
-        const double spread_hz = order.place * (range_.quick - range_.slow) / 360.0;
-        const bool both = order.place > 0.0 && tone.place > 0.0;
-        const bool alike = both && !range_.rests && spread_hz * time_.longest() < 1.0;
-        const bool unknown = alike || (both && std::abs(order.evidence - tone.evidence) <= decisive_nats);
-        by_angle = by_angle || unknown;
-        const LineKind kind = unknown ? LineKind::unknown : by_angle ? LineKind::order : LineKind::tone;
+        const double speed =
+            (by_angle ? angle_ : time_).strongest_at(by_angle ? order.place : tone.place) / 360.0;
+        std::vector<double> others;
+        if (by_angle) {
+            others.push_back(clearest(time_, time_scores_, order.place * range_.slow / 360.0 - reach,
+                                      order.place * range_.fast / 360.0 + reach, {})
+                                 .place);
+            if (!time_.empty()) others.push_back(order.place * speed);
+        } else if (range_.fast > 0.0 && !angle_.empty()) {
+            others.push_back(clearest(angle_, angle_scores_, tone.place * 360.0 / range_.fast - reach,
+                                      tone.place * 360.0 / std::max(range_.slow, 1e-9) + reach, {})
+                                 .place);
+            if (speed > 0.0) others.push_back(tone.place / speed);
+        }
+        double margin = by_angle ? only_reading : -only_reading;
+        (by_angle ? tone : order) = {};
+        for (const double other : others) {
+            if (!(other > 0.0)) continue;
+            const double here = by_angle ? margin_of(order.place, other) : margin_of(other, tone.place);
+            if (by_angle ? here >= margin : here <= margin) continue;
+            margin = here;
+            (by_angle ? tone : order).place = other;
+        }
+        const LineKind kind = std::abs(margin) <= decisive_nats ? LineKind::unknown
+                              : margin > 0.0                    ? LineKind::order
+                                                                : LineKind::tone;
+        by_angle = kind != LineKind::tone;
         const KnownLine known{by_angle ? Axis::angle : Axis::time, by_angle ? order.place : tone.place};
-        taken_.push_back({known, measured(known, kind, tone.place),
-                          (by_angle ? angle_ : time_).evidences_at(known.place)});
+        Taken taken{known, measured(known, kind, tone.place), {}};
+        if (order.place > 0.0)
+            taken.readings.push_back({&angle_, order.place, angle_.evidences_at(order.place)});
+        if (tone.place > 0.0) taken.readings.push_back({&time_, tone.place, time_.evidences_at(tone.place)});
+        taken_.push_back(std::move(taken));
         if (by_angle) orders_.push_back(order.place);
-        if (!by_angle || unknown) tones_.push_back(tone.place);
+        if (kind != LineKind::order) tones_.push_back(tone.place);
         const MotionLine& line = taken_.back().line;
         const KnownLine exact{known.axis, by_angle ? line.order_output : line.hz};
         if (!angle_.empty()) angle_.remove(exact);
         if (!time_.empty()) time_.remove(exact);
         return true;
+    }
+
+    static constexpr double only_reading = 1e300;  ///< margin where one reading is all there is
+    /// How much more (natural units) of what is left of the torque an order explains than a tone, each at its
+    /// best near a place. Both are measured over the same rows against one noise: two noises, of which either
+    /// has what the other's lines leave in it, would decide instead of the line.
+    [[nodiscard]] double margin_of(double order, double hz) const {
+        // Of a line whose frequency changes by less than it is wide, both show the same.
+        const double spread_hz = order * (range_.quick - range_.slow) / 360.0;
+        if (!range_.rests && spread_hz * time_.longest() < 1.0) return 0.0;
+        LineNoise noise = time_.noise_at(hz);
+        const LineNoise over_angle = angle_.noise_at(order);
+        const std::span<const Sweep> sweeps = time_.sweeps(), turning = angle_.sweeps();
+        LineNoise in_motion{Axis::angle, noise.resolution, std::vector<double>(sweeps.size())};
+        std::size_t next = 0;
+        for (std::size_t i = 0; i < sweeps.size() && next < turning.size(); ++i) {
+            if (turning[next].log != sweeps[i].log || turning[next].first != sweeps[i].first) continue;
+            const double power =
+                over_angle.power[next] * sweeps[i].weight_square_sum / turning[next].weight_square_sum;
+            if (power > 0.0) noise.power[i] = noise.power[i] > 0.0 ? std::min(noise.power[i], power) : power;
+            in_motion.power[i] = noise.power[i];
+            ++next;
+        }
+        const double by_time = explained(sweeps, noise, refined(sweeps, noise, hz, 0.5 / time_.longest()));
+        const double by_angle =
+            explained(sweeps, in_motion, refined(sweeps, in_motion, order, 0.5 / angle_.longest()));
+        return by_angle - by_time;
     }
 
     [[nodiscard]] MotionLine measured(const KnownLine& known, LineKind kind, double tone_hz) const {
