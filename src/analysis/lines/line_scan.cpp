@@ -19,9 +19,10 @@ constexpr double cycles_of_lowest = 5.0;     // in the longest sweep: fewer are 
 constexpr double cycles_beside_trend = 3.0;  // in a sweep that counts: its trend follows up to one
 // In a sweep in motion: slower tones are those of the motion.
 constexpr double cycles_of_motion = 12.0;
-constexpr double top_of_rate = 0.4;  // of the sample rate: an anti-alias filter leaves little above
-constexpr double corner_s = 0.01;    // chosen, not derived: corners of the motion are no sharper in a torque
-constexpr double step_cells = 0.3;   // of the sums, in 1 / longest sweep
+constexpr double top_of_rate = 0.4;   // of the sample rate: an anti-alias filter leaves little above
+constexpr double corner_s = 0.01;     // chosen, not derived: corners of the motion are no sharper in a torque
+constexpr double beyond_share = 0.1;  // chosen, not derived: of the false alarms, above half the sample rate
+constexpr double step_cells = 0.3;    // of the sums, in 1 / longest sweep
 constexpr double wide_cells = 20.0, near_cells = 5.0;
 constexpr double humps_share = 0.05;    // of the places: chosen, not derived
 constexpr double highest_hump = 4.6;    // ln 100
@@ -139,6 +140,7 @@ LineScan::LineScan(std::span<const Sweep> sweeps, std::span<const TraceView> log
         }
         longest_ = std::max(longest_, piece.length);
         top = std::max(top, piece.top);
+        if (axis == Axis::angle) piece.top = range.highest;
         pieces_.push_back(std::move(piece));
         sweeps_.push_back(std::move(copy));
     }
@@ -154,7 +156,11 @@ LineScan::LineScan(std::span<const Sweep> sweeps, std::span<const TraceView> log
     step_ = step_cells / longest_;
     first_bin_ = static_cast<std::size_t>(std::ceil(1.0 / step_cells));
     first_ = static_cast<double>(first_bin_) * step_;
-    count_ = static_cast<std::size_t>(highest_ / step_) + 1 - first_bin_;
+    const double end = axis == Axis::angle ? range.highest : highest_;
+    count_ = static_cast<std::size_t>(end / step_) + 1 - first_bin_;
+    if (end > highest_)
+        beyond_ = std::max(0.0, portable::log((end - highest_) / (highest_ - lowest_) * (1.0 - beyond_share) /
+                                              beyond_share));
     const double smooth = std::max(range.smooth, cycles_of_lowest / longest_);
     on_two_cores(pieces_.size(), [&](std::size_t i) {
         pieces_[i].splines = splines_of(pieces_[i].length, std::max(smooth, pieces_[i].bottom));
@@ -164,7 +170,8 @@ LineScan::LineScan(std::span<const Sweep> sweeps, std::span<const TraceView> log
 }
 
 double LineScan::threshold(double false_alarm) const {
-    return portable::log((highest_ - lowest_) * longest_ * hann_cell / false_alarm);
+    return portable::log((highest_ - lowest_) * longest_ * hann_cell /
+                         (false_alarm * (beyond_ > 0.0 ? 1.0 - beyond_share : 1.0)));
 }
 
 double LineScan::deviation_nm() const {
@@ -178,31 +185,34 @@ double LineScan::deviation_nm() const {
     return std::sqrt(squares / std::max(weights, 1e-300));
 }
 
-double LineScan::peak_near(double place) const {
-    const LineNoise noise = noise_at(place);
-    double most = 0.0, best = place;
-    for (std::size_t k = 0; k < count_; ++k) {
-        if (std::abs(this->place(k) - place) > 1.5 / longest_ || this->place(k) < lowest_) continue;
+LineScan::Sum LineScan::largest_sum(double from, double to, const LineNoise& noise) const {
+    Sum most{0.5 * (from + to)};
+    for (std::size_t k = from > first_ ? static_cast<std::size_t>((from - first_) / step_) : 0;
+         k < count_ && place(k) <= to; ++k) {
+        if (place(k) < std::max(from, lowest_)) continue;
         double sum = 0.0;
         for (std::size_t i = 0; i < pieces_.size(); ++i)
-            if (noise.power[i] > 0.0) sum += std::norm(whole_[i].sum[k]) / noise.power[i];
-        if (sum <= most) continue;
-        most = sum;
-        best = this->place(k);
+            if (noise.power[i] > 0.0) sum += whole_[i].power[k] / noise.power[i];
+        if (sum > most.gain) most = {place(k), sum};
     }
-    return best;
+    return most;
 }
 
-double LineScan::strongest_at(double place) const {
+double LineScan::peak_near(double place) const {
+    return largest_sum(place - 1.5 / longest_, place + 1.5 / longest_, noise_at(place)).place;
+}
+
+const Sweep& LineScan::strongest_at(double place) const {
     const std::size_t k = bin_of(place);
-    double most = 0.0, speed = 0.0;
+    double most = 0.0;
+    std::size_t strongest = 0;
     for (std::size_t i = 0; i < pieces_.size(); ++i) {
         const double ratio = pieces_[i].shows(place) ? whole_[i].power[k] / whole_[i].noise.power[k] : 0.0;
         if (ratio <= most) continue;
         most = ratio;
-        speed = std::abs(sweeps_[i].mean_deg_s);
+        strongest = i;
     }
-    return speed;
+    return sweeps_[strongest];
 }
 
 std::size_t LineScan::bin_of(double place) const {
@@ -613,7 +623,7 @@ const std::vector<double>& LineScan::score() {
         if (n > 1.5 && tail_of_sum(free_.scores[k] - free_.best[k], n - 1.0) <= again_evidence) continue;
         const double best = std::max({tail_of_sum(free_.scores[k], n), locked_.score[k],
                                       tail_of_sum(varying_.scores[k], varying_.sweeps[k])});
-        evidence_[k] = std::max(0.0, best - portable::log(3.0));
+        evidence_[k] = std::max(0.0, best - portable::log(3.0) - (place(k) > highest_ ? beyond_ : 0.0));
     }
     return evidence_;
 }
@@ -659,17 +669,27 @@ double LineScan::evidence_with(std::size_t k, std::complex<double> added_nm, con
     }
     return std::max({tail_of_sum(free / level, sweeps), tail_of_sum(locked, directions),
                      tail_of_sum(halves / varying_.level[k], in_halves)}) -
-           portable::log(3.0);
+           portable::log(3.0) - (place(k) > highest_ ? beyond_ : 0.0);
 }
 
 double LineScan::once_nm(double from, double to, double false_alarm) const {
     double most_nm = 0.0;
-    for (std::size_t k = bin_of(from); k < count_ && place(k) < to; ++k) {
-        if (evidence_[k] > 0.0 || tail_of_sum(free_.scores[k], free_.sweeps[k]) < threshold(false_alarm))
+    for (std::size_t k = 0; k < count_; ++k) {
+        if (place(k) < lowest_ || evidence_[k] > 0.0 ||
+            tail_of_sum(free_.scores[k], free_.sweeps[k]) < threshold(false_alarm))
             continue;
         for (std::size_t i = 0; i < pieces_.size(); ++i) {
-            if (pieces_[i].shows(place(k)))
-                most_nm = std::max(most_nm, 2.0 * std::abs(whole_[i].sum[k]) / whole_[i].weight);
+            const Sweep& sweep = sweeps_[i];
+            double first = place(k), last = place(k);
+            if (axis_ == Axis::time) {
+                if (!(sweep.slow_deg_s > 0.0)) continue;
+                first *= 360.0 / sweep.fast_deg_s;
+                last *= 360.0 / sweep.slow_deg_s;
+            }
+            if (!pieces_[i].shows(place(k)) || last < from || first >= to ||
+                score_at(whole_[i].power[k], whole_[i].noise, free_.humps, k) < threshold(false_alarm))
+                continue;
+            most_nm = std::max(most_nm, 2.0 * std::abs(whole_[i].sum[k]) / whole_[i].weight);
         }
     }
     return most_nm;

@@ -37,6 +37,9 @@ class LineScan {
     [[nodiscard]] double place(std::size_t k) const { return first_ + step_ * static_cast<double>(k); }
     [[nodiscard]] std::size_t count() const { return count_; }
     [[nodiscard]] double lowest() const { return lowest_; }
+    /// Of what is said to be searched: below half the sample rate. Orders above are looked for up to the
+    /// highest asked for, at a tenth of the false alarms: where the speed varies an order shows more than its
+    /// images do.
     [[nodiscard]] double highest() const { return highest_; }
     [[nodiscard]] double longest() const { return longest_; }  ///< sweep, in turns or seconds
     /// The sweeps with what is left of their torque; on the axis of time all have no length in angle.
@@ -57,17 +60,23 @@ class LineScan {
     /// The chance that noise alone gives as much anywhere, where it scatters as that of the last score()
     /// does.
     [[nodiscard]] double false_alarm_of(double place, const Evidences& evidences) const;
-    /// Where the summed power over noise is largest within a line's width.
+    struct Sum {
+        double place = 0.0, gain = 0.0;
+    };
+    /// Where between two places the power summed over a noise of each sweep is largest.
+    [[nodiscard]] Sum largest_sum(double from, double to, const LineNoise& noise) const;
+    /// The same within a line's width, over the noise of that place.
     [[nodiscard]] double peak_near(double place) const;
-    /// Mean |speed| of the sweep that shows most power over noise at a place; 0 at rest.
-    [[nodiscard]] double strongest_at(double place) const;
+    /// The sweep that shows most power over noise at a place.
+    [[nodiscard]] const Sweep& strongest_at(double place) const;
     /// As of the last score().
     [[nodiscard]] LineNoise noise_at(double place) const;
     /// The amplitude that is found in 95 of 100 such logs between two places, away from `lines`: lines of
     /// many phases are added to the sums of the last score(), and the test is made again.
     [[nodiscard]] double detectable_nm(double from, double to, double false_alarm,
                                        std::span<const double> lines) const;
-    /// The largest amplitude that one sweep shows, and the others do not, between two places; 0: none does.
+    /// The largest amplitude that one sweep shows, and the others do not, between two orders; 0: none does.
+    /// What is clear over time is of the orders that the speeds of its sweep make of it.
     [[nodiscard]] double once_nm(double from, double to, double false_alarm) const;
     /// Takes a line of either axis off every sweep, fitted along with the trend.
     void remove(const KnownLine& line);
@@ -139,6 +148,7 @@ class LineScan {
     std::vector<Sweep> sweeps_;
     std::vector<Piece> pieces_;
     double lowest_ = 0.0, highest_ = 0.0, longest_ = 0.0;
+    double beyond_ = 0.0;  ///< evidence that is asked in addition above highest_
     double usual_ = 0.0;  ///< length of a sweep: three of four are longer
     double first_ = 0.0, step_ = 0.0;
     std::size_t count_ = 0, first_bin_ = 0;

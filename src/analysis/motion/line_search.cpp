@@ -84,7 +84,8 @@ class LineSearch {
         for (double from = angle_.lowest(); from < angle_.highest(); from *= band) {
             const double to = std::min(band * from, angle_.highest());
             double nm = std::max({angle_.detectable_nm(from, to, false_alarm(), orders_),
-                                  angle_.once_nm(from, to, false_alarm()), least_nm_});
+                                  angle_.once_nm(from, to, false_alarm()),
+                                  time_.empty() ? 0.0 : time_.once_nm(from, to, false_alarm()), least_nm_});
             for (const Taken& taken : taken_) {
                 if (taken.line.kind != LineKind::tone && taken.line.order_output >= from &&
                     taken.line.order_output < to && !is_line(taken))
@@ -148,6 +149,11 @@ class LineSearch {
         if (!time_.empty()) time_scores_ = &time_.score();
     }
 
+    [[nodiscard]] static bool is_near(double place, const LineScan& scan, std::span<const double> taken) {
+        return std::any_of(taken.begin(), taken.end(),
+                           [&](double line) { return std::abs(line - place) < line_cells / scan.longest(); });
+    }
+
     /// Of peaks that are about as clear the lowest: at one speed an order and its images look alike.
     [[nodiscard]] static Peak clearest(const LineScan& scan, const std::vector<double>* scores, double from,
                                        double to, std::span<const double> taken) {
@@ -157,10 +163,7 @@ class LineSearch {
         for (std::size_t k = 0; k < scores->size(); ++k) {
             const double place = scan.place(k);
             if ((*scores)[k] <= std::max(0.0, most - decisive_nats) || place < from || place > to) continue;
-            if (std::any_of(taken.begin(), taken.end(), [&](double line) {
-                    return std::abs(line - place) < line_cells / scan.longest();
-                }))
-                continue;
+            if (is_near(place, scan, taken)) continue;
             peaks.push_back({place, (*scores)[k]});
             most = std::max(most, (*scores)[k]);
         }
@@ -185,22 +188,25 @@ class LineSearch {
         const bool tone_is = !time_.empty() && tone.evidence > time_.threshold(false_alarm());
         if (!order_is && !tone_is) return false;
         bool by_angle = order_is && (!tone_is || order.evidence >= tone.evidence);
+        const bool first_by_angle = by_angle;
+        const double first = by_angle ? order.place : tone.place;
         // What the other axis shows where the line could be seen there, and at the speed of the sweep that
         // shows it best: with several lines in that range the clearest may be another one.
         const double reach = line_cells / (by_angle ? time_ : angle_).longest();
-        const double speed =
-            (by_angle ? angle_ : time_).strongest_at(by_angle ? order.place : tone.place) / 360.0;
+        const Sweep& best = by_angle ? angle_.strongest_at(order.place) : time_.strongest_at(tone.place);
+        const double speed = std::abs(best.mean_deg_s) / 360.0;
         std::vector<double> others;
         if (by_angle) {
             others.push_back(clearest(time_, time_scores_, order.place * range_.slow / 360.0 - reach,
                                       order.place * range_.fast / 360.0 + reach, {})
                                  .place);
-            if (!time_.empty()) others.push_back(order.place * speed);
+            if (!time_.empty()) others.push_back(folded(order.place * speed, best.rate_hz));
+            order.place = unfolded(order.place, others.back(), best);
         } else if (range_.fast > 0.0 && !angle_.empty()) {
             others.push_back(clearest(angle_, angle_scores_, tone.place * 360.0 / range_.fast - reach,
                                       tone.place * 360.0 / std::max(range_.slow, 1e-9) + reach, {})
                                  .place);
-            if (speed > 0.0) others.push_back(tone.place / speed);
+            if (speed > 0.0) others.push_back(unfolded(tone.place / speed, tone.place, best));
         }
         double margin = by_angle ? only_reading : -only_reading;
         (by_angle ? tone : order) = {};
@@ -217,6 +223,12 @@ class LineSearch {
         by_angle = kind != LineKind::tone;
         const KnownLine known{by_angle ? Axis::angle : Axis::time, by_angle ? order.place : tone.place};
         Taken taken{known, measured(known, kind, tone.place), {}};
+        const double hz = first_by_angle ? folded(first * speed, best.rate_hz) : first;
+        if (is_near(known.place, by_angle ? angle_ : time_, by_angle ? orders_ : tones_) ||
+            is_remainder(taken.line, hz, best)) {
+            (first_by_angle ? orders_ : tones_).push_back(first);
+            return true;
+        }
         if (order.place > 0.0)
             taken.readings.push_back({&angle_, order.place, angle_.evidences_at(order.place)});
         if (tone.place > 0.0) taken.readings.push_back({&time_, tone.place, time_.evidences_at(tone.place)});
@@ -230,10 +242,51 @@ class LineSearch {
         return true;
     }
 
+    /// Of a line that was taken off before, in the sweep that shows this one best at a frequency.
+    [[nodiscard]] bool is_remainder(const MotionLine& line, double hz, const Sweep& sweep) const {
+        constexpr double share = 0.05;  // chosen, not derived: what a removal leaves where the angle is off
+        return std::any_of(taken_.begin(), taken_.end(), [&](const Taken& taken) {
+            const double there =
+                taken.known.axis == Axis::time
+                    ? taken.line.hz
+                    : folded(taken.line.order_output * std::abs(sweep.mean_deg_s) / 360.0, sweep.rate_hz);
+            return line.amplitude_nm < share * taken.line.amplitude_nm &&
+                   std::abs(hz - there) * sweep.duration_s < line_cells;
+        });
+    }
+
+    static double folded(double hz, double rate_hz) {
+        return std::abs(hz - rate_hz * std::round(hz / rate_hz));
+    }
+
+    /// Of the orders that a sweep shows at a frequency, as it is or folded at the sample rate, the lowest of
+    /// those that explain most over all sweeps. Only where orders above half the rate are searched.
+    [[nodiscard]] double unfolded(double order, double hz, const Sweep& sweep) const {
+        const double speed = std::abs(sweep.mean_deg_s) / 360.0;
+        if (angle_.highest() >= options_.highest_order || !(hz > 0.0) || !(speed > 0.0)) return order;
+        const LineNoise noise = angle_.noise_at(order);
+        std::vector<LineScan::Sum> images;
+        double most = 0.0;
+        for (double fold = 0.0; fold - hz <= options_.highest_order * speed; fold += sweep.rate_hz) {
+            for (const double seen : {fold - hz, fold + hz}) {
+                if (seen / speed < angle_.lowest() || seen / speed > options_.highest_order) continue;
+                const double width = 1.5 / angle_.longest();
+                images.push_back(angle_.largest_sum(seen / speed - width, seen / speed + width, noise));
+                most = std::max(most, images.back().gain);
+            }
+        }
+        const auto lowest = std::find_if(images.begin(), images.end(), [&](const LineScan::Sum& image) {
+            return image.gain >= alike_images * most - decisive_nats;
+        });
+        return lowest == images.end() ? order : lowest->place;
+    }
+    /// Chosen, not derived: gains of images of one line, each at the nearest of the searched places.
+    static constexpr double alike_images = 0.7;
+
     static constexpr double only_reading = 1e300;  ///< margin where one reading is all there is
     /// How much more (natural units) of what is left of the torque an order explains than a tone, each at its
-    /// best near a place. Both are measured over the same rows against one noise: two noises, of which either
-    /// has what the other's lines leave in it, would decide instead of the line.
+    /// best near a place. Both are measured over the same rows against one noise, the larger of the two:
+    /// where each had its own, what other lines leave in either would decide instead of the line.
     [[nodiscard]] double margin_of(double order, double hz) const {
         // Of a line whose frequency changes by less than it is wide, both show the same.
         const double spread_hz = order * (range_.quick - range_.slow) / 360.0;
@@ -247,7 +300,7 @@ class LineSearch {
             if (turning[next].log != sweeps[i].log || turning[next].first != sweeps[i].first) continue;
             const double power =
                 over_angle.power[next] * sweeps[i].weight_square_sum / turning[next].weight_square_sum;
-            if (power > 0.0) noise.power[i] = noise.power[i] > 0.0 ? std::min(noise.power[i], power) : power;
+            noise.power[i] = std::max(noise.power[i], power);
             in_motion.power[i] = noise.power[i];
             ++next;
         }
