@@ -83,18 +83,21 @@ class LineSearch {
         double all_nm = 0.0;
         for (double from = angle_.lowest(); from < angle_.highest(); from *= band) {
             const double to = std::min(band * from, angle_.highest());
-            double nm = std::max({angle_.detectable_nm(from, to, false_alarm(), orders_),
-                                  angle_.once_nm(from, to, false_alarm()),
-                                  time_.empty() ? 0.0 : time_.once_nm(from, to, false_alarm()), least_nm_});
+            const double found_nm =
+                std::max(angle_.detectable_nm(from, to, false_alarm(), orders_), least_nm_);
+            all_nm = std::max(all_nm, found_nm);
+            // What was seen and is no line may be one.
+            double once_nm = angle_.once_nm(from, to, false_alarm());
+            if (!time_.empty()) once_nm = std::max(once_nm, time_.once_nm(from, to, false_alarm()));
+            if (found_nm > searched.deviation_nm && !(once_nm > searched.deviation_nm)) {
+                run.clear();
+                continue;
+            }
+            double nm = std::max(found_nm, once_nm);
             for (const Taken& taken : taken_) {
                 if (taken.line.kind != LineKind::tone && taken.line.order_output >= from &&
                     taken.line.order_output < to && !is_line(taken))
                     nm = std::max(nm, taken.line.amplitude_nm);
-            }
-            all_nm = std::max(all_nm, nm);
-            if (nm > searched.deviation_nm) {
-                run.clear();
-                continue;
             }
             run.push_back({from, nm});
             if (run.size() > bounds.size()) {
@@ -190,51 +193,32 @@ class LineSearch {
         bool by_angle = order_is && (!tone_is || order.evidence >= tone.evidence);
         const bool first_by_angle = by_angle;
         const double first = by_angle ? order.place : tone.place;
-        // What the other axis shows where the line could be seen there, and at the speed of the sweep that
-        // shows it best: with several lines in that range the clearest may be another one.
-        const double reach = line_cells / (by_angle ? time_ : angle_).longest();
-        const Sweep& best = by_angle ? angle_.strongest_at(order.place) : time_.strongest_at(tone.place);
-        const double speed = std::abs(best.mean_deg_s) / 360.0;
-        std::vector<double> others;
-        if (by_angle) {
-            others.push_back(clearest(time_, time_scores_, order.place * range_.slow / 360.0 - reach,
-                                      order.place * range_.fast / 360.0 + reach, {})
-                                 .place);
-            if (!time_.empty()) others.push_back(folded(order.place * speed, best.rate_hz));
-            order.place = unfolded(order.place, others.back(), best);
-        } else if (range_.fast > 0.0 && !angle_.empty()) {
-            others.push_back(clearest(angle_, angle_scores_, tone.place * 360.0 / range_.fast - reach,
-                                      tone.place * 360.0 / std::max(range_.slow, 1e-9) + reach, {})
-                                 .place);
-            if (speed > 0.0) others.push_back(unfolded(tone.place / speed, tone.place, best));
+        // What another reading explains better may be a line of which the first was a part only, and there is
+        // perhaps one of which that is a part: where one order is twice another's at half the speed.
+        constexpr int most_rounds = 4;
+        Readings best = readings_of(by_angle, first);
+        for (int round = 0; round < most_rounds; ++round) {
+            if (by_angle ? best.margin >= -decisive_nats : best.margin <= decisive_nats) break;
+            by_angle = !by_angle;
+            best = readings_of(by_angle, by_angle ? best.order : best.hz);
         }
-        double margin = by_angle ? only_reading : -only_reading;
-        (by_angle ? tone : order) = {};
-        for (const double other : others) {
-            if (!(other > 0.0)) continue;
-            const double here = by_angle ? margin_of(order.place, other) : margin_of(other, tone.place);
-            if (by_angle ? here >= margin : here <= margin) continue;
-            margin = here;
-            (by_angle ? tone : order).place = other;
-        }
-        const LineKind kind = std::abs(margin) <= decisive_nats ? LineKind::unknown
-                              : margin > 0.0                    ? LineKind::order
-                                                                : LineKind::tone;
+        const LineKind kind = std::abs(best.margin) <= decisive_nats ? LineKind::unknown
+                              : best.margin > 0.0                    ? LineKind::order
+                                                                     : LineKind::tone;
         by_angle = kind != LineKind::tone;
-        const KnownLine known{by_angle ? Axis::angle : Axis::time, by_angle ? order.place : tone.place};
-        Taken taken{known, measured(known, kind, tone.place), {}};
-        const double hz = first_by_angle ? folded(first * speed, best.rate_hz) : first;
+        const KnownLine known{by_angle ? Axis::angle : Axis::time, by_angle ? best.order : best.hz};
+        Taken taken{known, measured(known, kind, best.hz), {}};
         if (is_near(known.place, by_angle ? angle_ : time_, by_angle ? orders_ : tones_) ||
-            is_remainder(taken.line, hz, best)) {
+            is_remainder(taken.line, first_by_angle, first)) {
             (first_by_angle ? orders_ : tones_).push_back(first);
             return true;
         }
-        if (order.place > 0.0)
-            taken.readings.push_back({&angle_, order.place, angle_.evidences_at(order.place)});
-        if (tone.place > 0.0) taken.readings.push_back({&time_, tone.place, time_.evidences_at(tone.place)});
+        if (best.order > 0.0)
+            taken.readings.push_back({&angle_, best.order, angle_.evidences_at(best.order)});
+        if (best.hz > 0.0) taken.readings.push_back({&time_, best.hz, time_.evidences_at(best.hz)});
         taken_.push_back(std::move(taken));
-        if (by_angle) orders_.push_back(order.place);
-        if (kind != LineKind::order) tones_.push_back(tone.place);
+        if (by_angle) orders_.push_back(best.order);
+        if (kind != LineKind::order) tones_.push_back(best.hz);
         const MotionLine& line = taken_.back().line;
         const KnownLine exact{known.axis, by_angle ? line.order_output : line.hz};
         if (!angle_.empty()) angle_.remove(exact);
@@ -242,9 +226,48 @@ class LineSearch {
         return true;
     }
 
-    /// Of a line that was taken off before, in the sweep that shows this one best at a frequency.
-    [[nodiscard]] bool is_remainder(const MotionLine& line, double hz, const Sweep& sweep) const {
-        constexpr double share = 0.05;  // chosen, not derived: what a removal leaves where the angle is off
+    /// A line as an order and as a tone, 0 where it is none, and how much more the order explains.
+    struct Readings {
+        double order = 0.0, hz = 0.0, margin = 0.0;
+    };
+    /// Of an order, or of a tone, with what the other axis shows where the line could be seen there, and at
+    /// the speed of the sweep that shows it best: with several lines in that range the clearest may be
+    /// another one.
+    [[nodiscard]] Readings readings_of(bool by_angle, double place) const {
+        const double reach = line_cells / (by_angle ? time_ : angle_).longest();
+        const Sweep& best = (by_angle ? angle_ : time_).strongest_at(place);
+        const double speed = std::abs(best.mean_deg_s) / 360.0;
+        std::vector<double> others;
+        if (by_angle && !time_.empty()) {
+            others = {clearest(time_, time_scores_, place * range_.slow / 360.0 - reach,
+                               place * range_.fast / 360.0 + reach, {})
+                          .place,
+                      folded(place * speed, best.rate_hz)};
+            place = unfolded(place, others.back(), best);
+        } else if (!by_angle && range_.fast > 0.0 && !angle_.empty()) {
+            others.push_back(clearest(angle_, angle_scores_, place * 360.0 / range_.fast - reach,
+                                      place * 360.0 / std::max(range_.slow, 1e-9) + reach, {})
+                                 .place);
+            if (speed > 0.0) others.push_back(unfolded(place / speed, place, best));
+        }
+        constexpr double only_reading = 1e300;
+        Readings found = by_angle ? Readings{place, 0.0, only_reading} : Readings{0.0, place, -only_reading};
+        for (const double other : others) {
+            if (!(other > 0.0)) continue;
+            const double margin = by_angle ? margin_of(place, other) : margin_of(other, place);
+            if (by_angle ? margin >= found.margin : margin <= found.margin) continue;
+            found.margin = margin;
+            (by_angle ? found.hz : found.order) = other;
+        }
+        return found;
+    }
+
+    /// Of a line that was taken off before, in the sweep that shows this order or tone best.
+    [[nodiscard]] bool is_remainder(const MotionLine& line, bool by_angle, double place) const {
+        constexpr double share = 0.1;  // chosen, not derived: what a removal leaves where the angle is off
+        const Sweep& sweep = (by_angle ? angle_ : time_).strongest_at(place);
+        const double speed = std::abs(sweep.mean_deg_s) / 360.0;
+        const double hz = by_angle ? folded(place * speed, sweep.rate_hz) : place;
         return std::any_of(taken_.begin(), taken_.end(), [&](const Taken& taken) {
             const double there =
                 taken.known.axis == Axis::time
@@ -283,7 +306,6 @@ class LineSearch {
     /// Chosen, not derived: gains of images of one line, each at the nearest of the searched places.
     static constexpr double alike_images = 0.7;
 
-    static constexpr double only_reading = 1e300;  ///< margin where one reading is all there is
     /// How much more (natural units) of what is left of the torque an order explains than a tone, each at its
     /// best near a place. Both are measured over the same rows against one noise, the larger of the two:
     /// where each had its own, what other lines leave in either would decide instead of the line.
