@@ -190,17 +190,6 @@ void settle(Identification& result) {
     result.verdict = verdict_sentence(result);
 }
 
-/// The range begins where less than the deviation of what is left would have been found.
-void keep_telling_bounds(SearchedOrders& searched) {
-    const auto first = std::find_if(
-        searched.bounds.begin(), searched.bounds.end(),
-        [&](const SearchedOrders::Bound& bound) { return bound.detectable_nm <= searched.deviation_nm; });
-    if (first == searched.bounds.end()) return;
-    searched.bounds.erase(searched.bounds.begin(), first);
-    searched.lowest_order = searched.bounds.front().from_order;
-    searched.detectable_nm = searched.bounds.front().detectable_nm;
-}
-
 /// Writes finding, grounds, notes, conclusive and verdict from the lines and the ratio already in `result`.
 void conclude(const MotionLines& motion, const IdentifyOptions& options, Identification& result) {
     if (motion.sweeps_left_out > 0) {
@@ -215,8 +204,6 @@ void conclude(const MotionLines& motion, const IdentifyOptions& options, Identif
     }
     result.grounds = grounds_of(motion, options);
     result.searched = motion.searched;
-    if (result.searched && finding_in(result) == RippleFinding::too_noisy)
-        keep_telling_bounds(*result.searched);
     settle(result);
 }
 

@@ -19,10 +19,9 @@ constexpr double cycles_of_lowest = 5.0;     // in the longest sweep: fewer are 
 constexpr double cycles_beside_trend = 3.0;  // in a sweep that counts: its trend follows up to one
 // In a sweep in motion: slower tones are those of the motion.
 constexpr double cycles_of_motion = 12.0;
-constexpr double top_of_rate = 0.4;   // of the sample rate: an anti-alias filter leaves little above
-constexpr double corner_s = 0.01;     // chosen, not derived: corners of the motion are no sharper in a torque
-constexpr double beyond_share = 0.1;  // chosen, not derived: of the false alarms, above half the sample rate
-constexpr double step_cells = 0.3;    // of the sums, in 1 / longest sweep
+constexpr double top_of_rate = 0.4;  // of the sample rate: an anti-alias filter leaves little above
+constexpr double corner_s = 0.01;    // chosen, not derived: corners of the motion are no sharper in a torque
+constexpr double step_cells = 0.3;   // of the sums, in 1 / longest sweep
 constexpr double wide_cells = 20.0, near_cells = 5.0;
 constexpr double humps_share = 0.05;    // of the places: chosen, not derived
 constexpr double highest_hump = 4.6;    // ln 100
@@ -140,7 +139,6 @@ LineScan::LineScan(std::span<const Sweep> sweeps, std::span<const TraceView> log
         }
         longest_ = std::max(longest_, piece.length);
         top = std::max(top, piece.top);
-        if (axis == Axis::angle) piece.top = range.highest;
         pieces_.push_back(std::move(piece));
         sweeps_.push_back(std::move(copy));
     }
@@ -156,11 +154,7 @@ LineScan::LineScan(std::span<const Sweep> sweeps, std::span<const TraceView> log
     step_ = step_cells / longest_;
     first_bin_ = static_cast<std::size_t>(std::ceil(1.0 / step_cells));
     first_ = static_cast<double>(first_bin_) * step_;
-    const double end = axis == Axis::angle ? range.highest : highest_;
-    count_ = static_cast<std::size_t>(end / step_) + 1 - first_bin_;
-    if (end > highest_)
-        beyond_ = std::max(0.0, portable::log((end - highest_) / (highest_ - lowest_) * (1.0 - beyond_share) /
-                                              beyond_share));
+    count_ = static_cast<std::size_t>(highest_ / step_) + 1 - first_bin_;
     const double smooth = std::max(range.smooth, cycles_of_lowest / longest_);
     on_two_cores(pieces_.size(), [&](std::size_t i) {
         pieces_[i].splines = splines_of(pieces_[i].length, std::max(smooth, pieces_[i].bottom));
@@ -170,8 +164,7 @@ LineScan::LineScan(std::span<const Sweep> sweeps, std::span<const TraceView> log
 }
 
 double LineScan::threshold(double false_alarm) const {
-    return portable::log((highest_ - lowest_) * longest_ * hann_cell /
-                         (false_alarm * (beyond_ > 0.0 ? 1.0 - beyond_share : 1.0)));
+    return portable::log((highest_ - lowest_) * longest_ * hann_cell / false_alarm);
 }
 
 double LineScan::deviation_nm() const {
@@ -623,7 +616,7 @@ const std::vector<double>& LineScan::score() {
         if (n > 1.5 && tail_of_sum(free_.scores[k] - free_.best[k], n - 1.0) <= again_evidence) continue;
         const double best = std::max({tail_of_sum(free_.scores[k], n), locked_.score[k],
                                       tail_of_sum(varying_.scores[k], varying_.sweeps[k])});
-        evidence_[k] = std::max(0.0, best - portable::log(3.0) - (place(k) > highest_ ? beyond_ : 0.0));
+        evidence_[k] = std::max(0.0, best - portable::log(3.0));
     }
     return evidence_;
 }
@@ -669,7 +662,7 @@ double LineScan::evidence_with(std::size_t k, std::complex<double> added_nm, con
     }
     return std::max({tail_of_sum(free / level, sweeps), tail_of_sum(locked, directions),
                      tail_of_sum(halves / varying_.level[k], in_halves)}) -
-           portable::log(3.0) - (place(k) > highest_ ? beyond_ : 0.0);
+           portable::log(3.0);
 }
 
 double LineScan::once_nm(double from, double to, double false_alarm) const {

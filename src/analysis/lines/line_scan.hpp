@@ -37,9 +37,7 @@ class LineScan {
     [[nodiscard]] double place(std::size_t k) const { return first_ + step_ * static_cast<double>(k); }
     [[nodiscard]] std::size_t count() const { return count_; }
     [[nodiscard]] double lowest() const { return lowest_; }
-    /// Of what is said to be searched: below half the sample rate. Orders above are looked for up to the
-    /// highest asked for, at a tenth of the false alarms: where the speed varies an order shows more than its
-    /// images do.
+    /// Below half the sample rate: above it the slow noise of a steady speed has images, which are no lines.
     [[nodiscard]] double highest() const { return highest_; }
     [[nodiscard]] double longest() const { return longest_; }  ///< sweep, in turns or seconds
     /// The sweeps with what is left of their torque; on the axis of time all have no length in angle.
@@ -148,7 +146,6 @@ class LineScan {
     std::vector<Sweep> sweeps_;
     std::vector<Piece> pieces_;
     double lowest_ = 0.0, highest_ = 0.0, longest_ = 0.0;
-    double beyond_ = 0.0;  ///< evidence that is asked in addition above highest_
     double usual_ = 0.0;  ///< length of a sweep: three of four are longer
     double first_ = 0.0, step_ = 0.0;
     std::size_t count_ = 0, first_bin_ = 0;

@@ -242,13 +242,12 @@ class LineSearch {
             others = {clearest(time_, time_scores_, place * range_.slow / 360.0 - reach,
                                place * range_.fast / 360.0 + reach, {})
                           .place,
-                      folded(place * speed, best.rate_hz)};
-            place = unfolded(place, others.back(), best);
+                      place * speed};
         } else if (!by_angle && range_.fast > 0.0 && !angle_.empty()) {
             others.push_back(clearest(angle_, angle_scores_, place * 360.0 / range_.fast - reach,
                                       place * 360.0 / std::max(range_.slow, 1e-9) + reach, {})
                                  .place);
-            if (speed > 0.0) others.push_back(unfolded(place / speed, place, best));
+            if (speed > 0.0) others.push_back(place / speed);
         }
         constexpr double only_reading = 1e300;
         Readings found = by_angle ? Readings{place, 0.0, only_reading} : Readings{0.0, place, -only_reading};
@@ -262,49 +261,21 @@ class LineSearch {
         return found;
     }
 
-    /// Of a line that was taken off before, in the sweep that shows this order or tone best.
+    /// Whether an order, or a tone, is what the removal of a line left, or the same line where the sweep that
+    /// shows it best does not resolve the two.
     [[nodiscard]] bool is_remainder(const MotionLine& line, bool by_angle, double place) const {
         constexpr double share = 0.1;  // chosen, not derived: what a removal leaves where the angle is off
         const Sweep& sweep = (by_angle ? angle_ : time_).strongest_at(place);
         const double speed = std::abs(sweep.mean_deg_s) / 360.0;
-        const double hz = by_angle ? folded(place * speed, sweep.rate_hz) : place;
+        const double hz = by_angle ? place * speed : place;
         return std::any_of(taken_.begin(), taken_.end(), [&](const Taken& taken) {
             const double there =
-                taken.known.axis == Axis::time
-                    ? taken.line.hz
-                    : folded(taken.line.order_output * std::abs(sweep.mean_deg_s) / 360.0, sweep.rate_hz);
-            return line.amplitude_nm < share * taken.line.amplitude_nm &&
-                   std::abs(hz - there) * sweep.duration_s < line_cells;
+                taken.known.axis == Axis::time ? taken.line.hz : taken.line.order_output * speed;
+            const double cells = std::abs(hz - there) * sweep.duration_s;
+            return cells < line_cells &&
+                   line.amplitude_nm < (cells < 1.0 ? 1.0 : share) * taken.line.amplitude_nm;
         });
     }
-
-    static double folded(double hz, double rate_hz) {
-        return std::abs(hz - rate_hz * std::round(hz / rate_hz));
-    }
-
-    /// Of the orders that a sweep shows at a frequency, as it is or folded at the sample rate, the lowest of
-    /// those that explain most over all sweeps. Only where orders above half the rate are searched.
-    [[nodiscard]] double unfolded(double order, double hz, const Sweep& sweep) const {
-        const double speed = std::abs(sweep.mean_deg_s) / 360.0;
-        if (angle_.highest() >= options_.highest_order || !(hz > 0.0) || !(speed > 0.0)) return order;
-        const LineNoise noise = angle_.noise_at(order);
-        std::vector<LineScan::Sum> images;
-        double most = 0.0;
-        for (double fold = 0.0; fold - hz <= options_.highest_order * speed; fold += sweep.rate_hz) {
-            for (const double seen : {fold - hz, fold + hz}) {
-                if (seen / speed < angle_.lowest() || seen / speed > options_.highest_order) continue;
-                const double width = 1.5 / angle_.longest();
-                images.push_back(angle_.largest_sum(seen / speed - width, seen / speed + width, noise));
-                most = std::max(most, images.back().gain);
-            }
-        }
-        const auto lowest = std::find_if(images.begin(), images.end(), [&](const LineScan::Sum& image) {
-            return image.gain >= alike_images * most - decisive_nats;
-        });
-        return lowest == images.end() ? order : lowest->place;
-    }
-    /// Chosen, not derived: gains of images of one line, each at the nearest of the searched places.
-    static constexpr double alike_images = 0.7;
 
     /// How much more (natural units) of what is left of the torque an order explains than a tone, each at its
     /// best near a place. Both are measured over the same rows against one noise, the larger of the two:
