@@ -76,8 +76,8 @@ struct Line {
     std::optional<double> order;         ///< cycles per motor revolution; only with a gear ratio
     std::optional<double> order_output;  ///< cycles per output revolution; not for tones
     std::optional<double> order_output_stderr;
-    std::optional<double> hz;      ///< for kind tone, and the seen frequency of a single-speed line
-    double amplitude_nm = 0.0;     ///< zero to peak, mean over the stretches that show it
+    std::optional<double> hz;   ///< for kind tone, and the seen frequency of a single-speed line
+    double amplitude_nm = 0.0;  ///< zero to peak, mean over the stretches that show it
     /// Phase in cos(order * motor angle + phase), angle from position where there is one.
     double phase_deg = 0.0;
     bool phase_known = false;

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "analysis/spectrum/running_median.hpp"
 #include "core/functions/many_numbers.hpp"
