@@ -174,11 +174,12 @@ class LineSearch {
             return peak.evidence >= most - decisive_nats;
         });
         if (lowest == peaks.end()) return {};
-        // The top of that peak.
+        // The top of that peak: by evidence, which a strong line has all over its width, and then by power.
         Peak best = *lowest;
         for (auto next = lowest; next != peaks.end(); ++next)
             if (next->place - lowest->place < line_cells / scan.longest() && next->evidence > best.evidence)
                 best = *next;
+        best.place = scan.peak_near(best.place);
         return best;
     }
 
@@ -209,7 +210,7 @@ class LineSearch {
         const KnownLine known{by_angle ? Axis::angle : Axis::time, by_angle ? best.order : best.hz};
         Taken taken{known, measured(known, kind, best.hz), {}};
         if (is_near(known.place, by_angle ? angle_ : time_, by_angle ? orders_ : tones_) ||
-            is_remainder(taken.line, first_by_angle, first)) {
+            is_remainder(taken, first_by_angle, first)) {
             (first_by_angle ? orders_ : tones_).push_back(first);
             return true;
         }
@@ -261,19 +262,27 @@ class LineSearch {
         return found;
     }
 
-    /// Whether an order, or a tone, is what the removal of a line left, or the same line where the sweep that
-    /// shows it best does not resolve the two.
-    [[nodiscard]] bool is_remainder(const MotionLine& line, bool by_angle, double place) const {
+    /// Whether a line, first seen at a place of one axis, is what the removal of another left, or the same
+    /// where the sweep that shows it best does not resolve the two.
+    [[nodiscard]] bool is_remainder(const Taken& one, bool by_angle, double place) const {
         constexpr double share = 0.1;  // chosen, not derived: what a removal leaves where the angle is off
         const Sweep& sweep = (by_angle ? angle_ : time_).strongest_at(place);
-        const double speed = std::abs(sweep.mean_deg_s) / 360.0;
-        const double hz = by_angle ? place * speed : place;
-        return std::any_of(taken_.begin(), taken_.end(), [&](const Taken& taken) {
-            const double there =
-                taken.known.axis == Axis::time ? taken.line.hz : taken.line.order_output * speed;
-            const double cells = std::abs(hz - there) * sweep.duration_s;
-            return cells < line_cells &&
-                   line.amplitude_nm < (cells < 1.0 ? 1.0 : share) * taken.line.amplitude_nm;
+        const auto hz_at = [&](const Taken& line, double deg_s) {
+            return line.known.axis == Axis::time ? line.line.hz : line.line.order_output * deg_s / 360.0;
+        };
+        const double hz = by_angle ? place * std::abs(sweep.mean_deg_s) / 360.0 : place;
+        return std::any_of(taken_.begin(), taken_.end(), [&](const Taken& other) {
+            const double apart = std::abs(hz - hz_at(other, std::abs(sweep.mean_deg_s)));
+            // An order leaves something wherever the speed goes.
+            const bool crosses = other.known.axis != one.known.axis;
+            const Taken& order = one.known.axis == Axis::angle ? one : other;
+            const Taken& tone = one.known.axis == Axis::angle ? other : one;
+            const double least = crosses ? std::max({0.0, hz_at(order, sweep.slow_deg_s) - tone.line.hz,
+                                                     tone.line.hz - hz_at(order, sweep.fast_deg_s)})
+                                         : apart;
+            const double size = one.line.amplitude_nm / other.line.amplitude_nm;
+            return (apart * sweep.duration_s < 1.0 && size < 1.0) ||
+                   (least * sweep.duration_s < line_cells && size < share);
         });
     }
 
