@@ -52,10 +52,9 @@ struct MotionLines {
     double order_share_error = 0.0;
 };
 
-/// Takes the clearest line of both axes, assigns it to the axis that explains it better, subtracts it sweep
-/// by sweep, and searches again, until noise could account for what is left. So a tone leaves no orders where
-/// the speed lingers, nor an order tones. Where the angle is a sum of velocities, the orders found determine
-/// the offset of the velocity, and the search is repeated with it corrected.
+/// Takes the clearest line of both axes, as the order or the tone that explains more, subtracts it sweep by
+/// sweep, and searches again, until noise could account for what is left. Where the angle is a sum of
+/// velocities, the orders found determine the offset of the velocity; the search is repeated with it corrected.
 [[nodiscard]] MotionLines find_motion_lines(std::span<const TraceView> logs,
                                             const MotionLinesOptions& options);
 

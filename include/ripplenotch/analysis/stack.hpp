@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // Spectra of many sweeps on one grid, against output angle or against time, each sweep normalized by its own
-// noise before they are averaged. Order and time are treated alike so that they can be compared: a line
-// belongs to the axis on which it has the higher SNR.
+// noise before they are averaged.
 
 #include <cstddef>
 #include <span>

@@ -4,12 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <complex>
 #include <numbers>
 
 #include "core/functions/many_numbers.hpp"
 #include "core/matrices/factorisations.hpp"
-#include "core/process/two_cores.hpp"
 #include "core/vectors/dot.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
