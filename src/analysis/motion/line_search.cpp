@@ -34,6 +34,7 @@ SpeedRange speed_range(std::span<const Sweep> sweeps) {
 
 struct Peak {
     double place = 0.0, evidence = 0.0;
+    double top = 0.0;  ///< where the evidence is largest
 };
 
 ScanRange orders_of(std::span<const Sweep> sweeps, const MotionLinesOptions& options) {
@@ -179,6 +180,7 @@ class LineSearch {
         for (auto next = lowest; next != peaks.end(); ++next)
             if (next->place - lowest->place < line_cells / scan.longest() && next->evidence > best.evidence)
                 best = *next;
+        best.top = best.place;
         best.place = scan.peak_near(best.place);
         return best;
     }
@@ -193,7 +195,7 @@ class LineSearch {
         if (!order_is && !tone_is) return false;
         bool by_angle = order_is && (!tone_is || order.evidence >= tone.evidence);
         const bool first_by_angle = by_angle;
-        const double first = by_angle ? order.place : tone.place;
+        const double first = by_angle ? order.place : tone.place, top = by_angle ? order.top : tone.top;
         // What another reading explains better may be a line of which the first was a part only, and there is
         // perhaps one of which that is a part: where one order is twice another's at half the speed.
         constexpr int most_rounds = 4;
@@ -210,13 +212,18 @@ class LineSearch {
         const KnownLine known{by_angle ? Axis::angle : Axis::time, by_angle ? best.order : best.hz};
         Taken taken{known, measured(known, kind, best.hz), {}};
         if (is_near(known.place, by_angle ? angle_ : time_, by_angle ? orders_ : tones_) ||
-            is_remainder(taken, first_by_angle, first)) {
+            is_remainder(taken.line, first_by_angle, first)) {
             (first_by_angle ? orders_ : tones_).push_back(first);
             return true;
         }
-        if (best.order > 0.0)
-            taken.readings.push_back({&angle_, best.order, angle_.evidences_at(best.order)});
-        if (best.hz > 0.0) taken.readings.push_back({&time_, best.hz, time_.evidences_at(best.hz)});
+        const auto read = [&](const LineScan& scan, bool over_angle, double place) {
+            if (place > 0.0)
+                taken.readings.push_back(
+                    {&scan, place,
+                     scan.evidences_at(over_angle == first_by_angle && place == first ? top : place)});
+        };
+        read(angle_, true, best.order);
+        read(time_, false, best.hz);
         taken_.push_back(std::move(taken));
         if (by_angle) orders_.push_back(best.order);
         if (kind != LineKind::order) tones_.push_back(best.hz);
@@ -264,25 +271,17 @@ class LineSearch {
 
     /// Whether a line, first seen at a place of one axis, is what the removal of another left, or the same
     /// where the sweep that shows it best does not resolve the two.
-    [[nodiscard]] bool is_remainder(const Taken& one, bool by_angle, double place) const {
-        constexpr double share = 0.1;  // chosen, not derived: what a removal leaves where the angle is off
+    [[nodiscard]] bool is_remainder(const MotionLine& line, bool by_angle, double place) const {
+        constexpr double share = 0.03;  // chosen, not derived: what a removal leaves where the angle is off
         const Sweep& sweep = (by_angle ? angle_ : time_).strongest_at(place);
-        const auto hz_at = [&](const Taken& line, double deg_s) {
-            return line.known.axis == Axis::time ? line.line.hz : line.line.order_output * deg_s / 360.0;
-        };
-        const double hz = by_angle ? place * std::abs(sweep.mean_deg_s) / 360.0 : place;
-        return std::any_of(taken_.begin(), taken_.end(), [&](const Taken& other) {
-            const double apart = std::abs(hz - hz_at(other, std::abs(sweep.mean_deg_s)));
-            // An order leaves something wherever the speed goes.
-            const bool crosses = other.known.axis != one.known.axis;
-            const Taken& order = one.known.axis == Axis::angle ? one : other;
-            const Taken& tone = one.known.axis == Axis::angle ? other : one;
-            const double least = crosses ? std::max({0.0, hz_at(order, sweep.slow_deg_s) - tone.line.hz,
-                                                     tone.line.hz - hz_at(order, sweep.fast_deg_s)})
-                                         : apart;
-            const double size = one.line.amplitude_nm / other.line.amplitude_nm;
-            return (apart * sweep.duration_s < 1.0 && size < 1.0) ||
-                   (least * sweep.duration_s < line_cells && size < share);
+        const double speed = std::abs(sweep.mean_deg_s) / 360.0;
+        const double hz = by_angle ? place * speed : place;
+        return std::any_of(taken_.begin(), taken_.end(), [&](const Taken& taken) {
+            const double there =
+                taken.known.axis == Axis::time ? taken.line.hz : taken.line.order_output * speed;
+            const double cells = std::abs(hz - there) * sweep.duration_s;
+            return cells < line_cells &&
+                   line.amplitude_nm < (cells < 1.0 ? 1.0 : share) * taken.line.amplitude_nm;
         });
     }
 
@@ -306,10 +305,19 @@ class LineSearch {
             in_motion.power[i] = noise.power[i];
             ++next;
         }
-        const double by_time = explained(sweeps, noise, refined(sweeps, noise, hz, 0.5 / time_.longest()));
-        const double by_angle =
+        const std::vector<double> by_time =
+            explained(sweeps, noise, refined(sweeps, noise, hz, 0.5 / time_.longest()));
+        const std::vector<double> by_angle =
             explained(sweeps, in_motion, refined(sweeps, in_motion, order, 0.5 / angle_.longest()));
-        return by_angle - by_time;
+        // Where they explain different rows, what these hold is known as well as the noise there is.
+        constexpr double noise_error = 0.15, same = 0.01;  // chosen, not derived
+        double margin = 0.0, squares = 0.0;
+        for (std::size_t i = 0; i < sweeps.size(); ++i) {
+            const double larger = std::max(by_angle[i], by_time[i]);
+            margin += by_angle[i] - by_time[i];
+            if (std::abs(by_angle[i] - by_time[i]) > same * larger) squares += larger * larger;
+        }
+        return std::abs(margin) <= noise_error * std::sqrt(squares) ? 0.0 : margin;
     }
 
     [[nodiscard]] MotionLine measured(const KnownLine& known, LineKind kind, double tone_hz) const {
