@@ -54,7 +54,8 @@ struct MotionLines {
 
 /// Takes the clearest line of both axes, as the order or the tone that explains more, subtracts it sweep by
 /// sweep, and searches again, until noise could account for what is left. Where the angle is a sum of
-/// velocities, the orders found determine the offset of the velocity; the search is repeated with it corrected.
+/// velocities, the orders found determine the offset of the velocity; the search is repeated with it
+/// corrected.
 [[nodiscard]] MotionLines find_motion_lines(std::span<const TraceView> logs,
                                             const MotionLinesOptions& options);
 
