@@ -132,14 +132,14 @@ double refined(std::span<const Sweep> sweeps, const LineNoise& noise, double sta
     return place;
 }
 
-std::vector<double> explained(std::span<const Sweep> sweeps, const LineNoise& noise, double place) {
-    std::vector<double> gains(sweeps.size());
+double explained(std::span<const Sweep> sweeps, const LineNoise& noise, double place) {
+    double sum = 0.0;
     for (std::size_t i = 0; i < sweeps.size(); ++i) {
         if (!(noise.power[i] > 0.0)) continue;
         const FourierPoint at = fourier_point(places(sweeps[i], noise.axis), sweeps[i].value, place);
-        gains[i] = std::norm(at.value) / noise.power[i] - 1.0;
+        sum += std::norm(at.value) / noise.power[i] - 1.0;
     }
-    return gains;
+    return sum;
 }
 
 void measure(std::span<const Sweep> sweeps, const LineNoise& noise, double place, MotionLine& line) {

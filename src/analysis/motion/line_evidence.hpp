@@ -20,8 +20,9 @@ struct LineNoise {
 /// Place of the maximum of the summed power over noise within a reach, by Newton steps.
 double refined(std::span<const Sweep> sweeps, const LineNoise& noise, double start, double reach);
 
-/// Improvement in log-likelihood (natural units) of each sweep by a line at a place, beyond what noise gives.
-std::vector<double> explained(std::span<const Sweep> sweeps, const LineNoise& noise, double place);
+/// Improvement in log-likelihood (natural units) by a line at a place, of a phase of its own in each sweep,
+/// beyond what noise gives.
+double explained(std::span<const Sweep> sweeps, const LineNoise& noise, double place);
 
 /// Fills in the results of the sweeps for a line at `place`.
 void measure(std::span<const Sweep> sweeps, const LineNoise& noise, double place, MotionLine& line);

@@ -305,19 +305,10 @@ class LineSearch {
             in_motion.power[i] = noise.power[i];
             ++next;
         }
-        const std::vector<double> by_time =
-            explained(sweeps, noise, refined(sweeps, noise, hz, 0.5 / time_.longest()));
-        const std::vector<double> by_angle =
+        const double by_time = explained(sweeps, noise, refined(sweeps, noise, hz, 0.5 / time_.longest()));
+        const double by_angle =
             explained(sweeps, in_motion, refined(sweeps, in_motion, order, 0.5 / angle_.longest()));
-        // Where they explain different rows, what these hold is known as well as the noise there is.
-        constexpr double noise_error = 0.15, same = 0.01;  // chosen, not derived
-        double margin = 0.0, squares = 0.0;
-        for (std::size_t i = 0; i < sweeps.size(); ++i) {
-            const double larger = std::max(by_angle[i], by_time[i]);
-            margin += by_angle[i] - by_time[i];
-            if (std::abs(by_angle[i] - by_time[i]) > same * larger) squares += larger * larger;
-        }
-        return std::abs(margin) <= noise_error * std::sqrt(squares) ? 0.0 : margin;
+        return by_angle - by_time;
     }
 
     [[nodiscard]] MotionLine measured(const KnownLine& known, LineKind kind, double tone_hz) const {
