@@ -87,6 +87,23 @@ double disagreement(std::span<const Opinion> opinions) {
     return excess_scatter(squares, count - 1.0);
 }
 
+/// Standard error of the common shift, by leaving out one sweep after the other.
+double jackknife_error(std::span<const Opinion> opinions) {
+    const auto n = static_cast<double>(opinions.size());
+    double slope = 0.0, curve = 0.0, sum = 0.0, squares = 0.0;
+    for (const Opinion& one : opinions) {
+        slope += one.slope;
+        curve += one.curve;
+    }
+    for (const Opinion& left_out : opinions) {
+        if (n < 2.0 || !(curve - left_out.curve < 0.0)) return 0.0;
+        const double shift = -(slope - left_out.slope) / (curve - left_out.curve);
+        sum += shift;
+        squares += shift * shift;
+    }
+    return std::sqrt((n - 1.0) / n * std::max(0.0, squares - sum * sum / n));
+}
+
 /// Standard error of the position of the largest summed power, in turns or hertz. First from the noise near
 /// the line (one Newton step, delta method). Where the estimates of the sweeps, or thirds of them when they
 /// are few, scatter more than that noise explains, as with a phase that drifts with speed or load, the error
@@ -103,7 +120,9 @@ double place_error(std::span<const Sweep> sweeps, const LineNoise& noise, double
     }
     if (!(curve < 0.0) || !(variance > 0.0)) return noise.resolution;
     const double error = std::sqrt(variance) / -curve;
-    return std::min(error * std::max(disagreement(whole), disagreement(parts)), noise.resolution);
+    return std::min(
+        std::max(error * std::max(disagreement(whole), disagreement(parts)), jackknife_error(whole)),
+        noise.resolution);
 }
 
 }  // namespace
