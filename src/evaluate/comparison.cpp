@@ -15,6 +15,7 @@
 #include "ripplenotch/core/progress.hpp"
 #include "ripplenotch/evaluate/comparison.hpp"
 #include "ripplenotch/evaluate/contender.hpp"
+#include "ripplenotch/evaluate/filter_metrics.hpp"
 #include "ripplenotch/evaluate/ledger.hpp"
 
 namespace ripplenotch {
@@ -246,30 +247,6 @@ Contender make_contender(const Spec& spec, std::shared_ptr<const CandidateTable>
             std::move(table)};
 }
 
-std::optional<double> attenuation_db(const OrderLevel& level) {
-    const double raw = level.amplitude_nm[0], filtered = level.amplitude_nm[1];
-    if (!(raw > 0.0) || !(filtered > 0.0)) return std::nullopt;
-    return 20.0 * portable::log10(raw / filtered);
-}
-
-double ripple_rms_nm(const RippleLevels& levels, std::size_t signal) {
-    double power = 0.0;
-    for (const OrderLevel& level : levels.orders) {
-        const double a = level.amplitude_nm[signal];
-        if (level.windows > 0) power += 0.5 * a * a;
-    }
-    return std::sqrt(power);
-}
-
-std::optional<double> predicted_nm(const FilterMetrics& metrics, std::size_t order) {
-    if (!metrics.levels) return std::nullopt;
-    const OrderLevel& level = metrics.levels->orders[order];
-    if (!level.expected_gain) return std::nullopt;
-    const std::vector<double>& known_nm = metrics.gear->amplitude_nm;
-    const double before = known_nm.empty() ? level.amplitude_nm[0] : known_nm[order];
-    return before * *level.expected_gain;
-}
-
 namespace {
 
 constexpr std::size_t block_rows = 4096;  // chosen, not derived
@@ -306,12 +283,16 @@ double largest_jump_nm(const CausalFilter& filter) {
     return largest;
 }
 
-// Feeds a block to every method and to the meter; signal 0 is the log's own torque. `truth_nm` may be empty.
+// Feeds a block to every method and to the meter; signal 0 is the log's own torque. `truth_nm` and
+// `given_nm`, the output where it is known, may be empty.
 void run_block(std::vector<Runner>& runners, RippleMeter& meter, const TraceView& block,
-               std::span<const double> truth_nm) {
+               std::span<const double> truth_nm, std::span<const double> given_nm) {
     for (Runner& runner : runners) {
         runner.out.resize(block.size());
-        runner.filter->process({block.velocity_deg_s, block.torque_nm, block.position_deg}, runner.out);
+        if (!given_nm.empty())
+            std::copy(given_nm.begin(), given_nm.end(), runner.out.begin());
+        else
+            runner.filter->process({block.velocity_deg_s, block.torque_nm, block.position_deg}, runner.out);
         if (runner.ledger) runner.ledger->add(block.time_s, runner.out, runner.filter->switches());
         for (std::size_t k = 0; k < truth_nm.size(); ++k) {
             const double error = runner.out[k] - truth_nm[k];
@@ -404,7 +385,14 @@ std::vector<double> output_on_log(const Contender& contender, const ComparedLog&
 
 namespace {
 
-MethodFigures on_bench(const Contender& contender, Hertz sample_rate, const BenchSignals& signals) {
+MethodFigures on_bench(const Contender& contender, Hertz sample_rate,
+                       const std::optional<BenchSignals>& asked) {
+    if (!asked) {
+        MethodFigures figures;
+        figures.method = contender.text;
+        return figures;
+    }
+    const BenchSignals& signals = *asked;
     try {
         return measure_on_signals(contender, sample_rate, signals.speed, signals.step_nm, signals.ramp_nm_s,
                                   nullptr);
@@ -412,6 +400,32 @@ MethodFigures on_bench(const Contender& contender, Hertz sample_rate, const Benc
         // A filter that does not settle has no such figures; the others still count.
         return measure_on_signals(contender, sample_rate, signals.speed, std::nullopt, std::nullopt, nullptr);
     }
+}
+
+// The complex gains of the method's filter, by speed.
+LineGains gains_of(const Contender& method, const GearAccount& lines, Hertz sample_rate) {
+    return [&method, &lines, sample_rate](double speed, std::span<std::complex<double>> gains) {
+        const auto frozen = method.frozen(sample_rate, DegPerSec(speed));
+        for (std::size_t i = 0; i < gains.size(); ++i) {
+            const Hertz at = ripple_frequency(lines.orders[i], lines.ratio, DegPerSec(speed));
+            gains[i] = frozen ? response(frozen->cascade, at, SampledAt(sample_rate)) : 1.0;
+        }
+    };
+}
+
+// Whether what is left of the ripple is predicted along a log: not for methods whose filter at a speed is too
+// slow to compute for every window of a log.
+bool predictable(const Contender& method) {
+    return method.method->frozen != nullptr && !method.method->frozen_is_dear && method.gear;
+}
+
+std::size_t longest_run(const TraceView& trace) {
+    std::size_t longest = 0, from = 0;
+    for (const std::size_t start : trace.run_starts) {
+        longest = std::max(longest, start - from);
+        from = start;
+    }
+    return std::max(longest, trace.size() - from);
 }
 
 // Output minus TorqueReference::smooth_nm(), as the blocks of a log go by.
@@ -453,7 +467,7 @@ class ReferenceErrors {
 
 LogLevels measure_on_log(std::span<const Contender> contenders, const ComparedLog& log,
                          const GearAccount* lines, std::vector<RippleEstimate> ripple,
-                         const BenchSignals& signals, std::optional<TorqueBand> band) {
+                         const std::optional<BenchSignals>& signals, std::optional<TorqueBand> band) {
     LogLevels result;
     result.ripple = std::move(ripple);
     Progress::current().begin("measuring", "methods", contenders.size());
@@ -469,17 +483,22 @@ LogLevels measure_on_log(std::span<const Contender> contenders, const ComparedLo
         if (contender.method->needs_table) runners.back().ledger.emplace(log.truth_nm);
     }
     std::optional<TorqueReference> reference;
-    if (log.trace.size() >= fewest_spectrum_samples) reference.emplace(log, *lines, result.ripple, band);
+    if (longest_run(log.trace) >= fewest_spectrum_samples)
+        reference.emplace(log, *lines, result.ripple, band);
     if (reference && reference->smooth_nm().empty()) reference.reset();
     std::optional<ReferenceErrors> errors;
     if (reference) errors.emplace(log, reference->smooth_nm());
-    RippleMeter meter(lines->ratio, lines->orders, log.trace.sample_rate, runners.size() + 1);
+    LineGains gains;
+    if (contenders.size() == 1 && predictable(contenders.front()))
+        gains = gains_of(contenders.front(), *lines, log.trace.sample_rate);
+    RippleMeter meter(lines->ratio, lines->orders, log.trace.sample_rate, runners.size() + 1, gains);
     std::size_t done = 0;
     for_each_block(
         log.trace,
         [&](const TraceView& block) {
             const auto truth = log.truth_nm.empty() ? log.truth_nm : log.truth_nm.subspan(done, block.size());
-            run_block(runners, meter, block, truth);
+            const auto given = log.out_nm.empty() ? log.out_nm : log.out_nm.subspan(done, block.size());
+            run_block(runners, meter, block, truth, given);
             if (errors) errors->add(block, runners);
             for (std::size_t i = 0; log.watch && i < runners.size(); ++i)
                 log.watch(i, block, runners[i].out, truth);
@@ -492,9 +511,8 @@ LogLevels measure_on_log(std::span<const Contender> contenders, const ComparedLo
                 if (runner.ledger) runner.ledger->split();
             }
         });
-    const RippleLevels levels = meter.levels();
-    result.windows = levels.windows;
-    result.measured_share = levels.measured_share;
+    result.lines = meter.levels();
+    const RippleLevels& levels = result.lines;
     if (levels.windows > 0) result.raw_ripple_rms_nm = ripple_rms_nm(levels, 0);
     if (reference) result.band = reference->band();
     if (levels.windows == 0) {

@@ -326,13 +326,13 @@ Recommendation recommend(std::span<const Contender> contenders, const ComparedLo
     }
     LogLevels levels = measured ? std::move(*measured)
                                 : measure_on_log(contenders, log, &lines, found.orders,
-                                                 {median_moving_speed(log.trace)}, band);
-    found.windows = levels.windows;
+                                                 BenchSignals{median_moving_speed(log.trace)}, band);
+    found.windows = levels.lines.windows;
     found.raw_ripple_rms_nm = levels.raw_ripple_rms_nm;
-    if (levels.windows == 0 || !levels.band) {
+    if (found.windows == 0 || !levels.band) {
         found.why =
             fmt::format("nothing can be judged on this log: {}",
-                        levels.windows == 0 ? levels.why_none : "no line of its ripple is known in it");
+                        found.windows == 0 ? levels.why_none : "no line of its ripple is known in it");
         return found;
     }
     found.band = levels.band;

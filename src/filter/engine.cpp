@@ -2,7 +2,6 @@
 #include "ripplenotch/filter/engine.hpp"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <span>
@@ -47,8 +46,8 @@ class StreamPass {
     void filter_part(const RowBlock& block, std::size_t joint, const RunPart& part,
                      std::span<const double> other_ripple_nm, std::vector<double>& torque_nm);
     /// `first`: the place of the rows in the log.
-    static void meter_rows(const TraceView& rows, std::size_t first, bool begins_run,
-                           std::span<const double> torque_nm, Lane& lane);
+    static void keep_rows(const TraceView& rows, std::size_t first, bool begins_run,
+                          std::span<const double> torque_nm, KeptRows& kept);
     static void note_switches(const RowBlock& block, Lane& lane);
     static void note_motion(const JointRows& rows, Lane& lane);
 
@@ -95,7 +94,8 @@ void StreamPass::filter_part(const RowBlock& block, std::size_t joint, const Run
     }
     lane.run.filter->process({rows.velocity_deg_s, torque, rows.position_deg}, out);
     note_switches(block, lane);
-    if (lane.run.meter != nullptr) meter_rows(rows, lane.rows + part.first, part.begins_run, out, lane);
+    if (lane.run.kept != nullptr)
+        keep_rows(rows, lane.rows + part.first, part.begins_run, out, *lane.run.kept);
 }
 
 // Stretches 0, 1, 3, 7, 15, ...: all of a short log.
@@ -104,18 +104,27 @@ bool in_measured_stretch(std::size_t row) {
     return std::has_single_bit(row / stretch + 1);
 }
 
-void StreamPass::meter_rows(const TraceView& rows, std::size_t first, bool begins_run,
-                            std::span<const double> torque_nm, Lane& lane) {
-    RippleMeter& meter = *lane.run.meter;
-    if (begins_run) meter.split();
+void StreamPass::keep_rows(const TraceView& rows, std::size_t first, bool begins_run,
+                           std::span<const double> torque_nm, KeptRows& kept) {
+    Trace& trace = kept.trace;
+    kept.rows += rows.size();
+    kept.breaks = kept.breaks || begins_run;
     for (std::size_t k = 0; k < rows.size(); ++k) {
-        if (lane.run.sparsely && !in_measured_stretch(first + k)) {
-            if (in_measured_stretch(first + k - 1)) meter.split();
+        if (trace.size() == most_rows_kept) return;
+        if (kept.sparsely && !in_measured_stretch(first + k)) {
+            kept.breaks = true;
             continue;
         }
-        const double* const position = rows.has_position() ? &rows.position_deg[k] : nullptr;
-        const std::array torque = {rows.torque_nm[k], torque_nm[k]};
-        meter.add(Seconds(rows.time_s[k]), rows.velocity_deg_s[k], position, torque);
+        if (kept.breaks && trace.size() > 0) trace.run_starts.push_back(trace.size());
+        kept.breaks = false;
+        if (rows.has_position() && trace.position_deg.size() == trace.size())
+            trace.position_deg.push_back(rows.position_deg[k]);
+        else
+            trace.position_deg.clear();
+        trace.time_s.push_back(rows.time_s[k]);
+        trace.velocity_deg_s.push_back(rows.velocity_deg_s[k]);
+        trace.torque_nm.push_back(rows.torque_nm[k]);
+        kept.out_nm.push_back(torque_nm[k]);
     }
 }
 
@@ -235,9 +244,8 @@ std::optional<int> LogStream::torque_decimals() const {
     return decimals;
 }
 
-StreamReport LogStream::run(CausalFilter& filter, LogWriter* writer, RippleMeter* meter,
-                            std::size_t threads) {
-    const JointRun joint{&filter, meter};
+StreamReport LogStream::run(CausalFilter& filter, LogWriter* writer, KeptRows* kept, std::size_t threads) {
+    const JointRun joint{&filter, kept};
     return std::move(run(std::span(&joint, 1), writer, threads).front());
 }
 

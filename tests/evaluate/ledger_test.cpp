@@ -5,6 +5,7 @@
 #include "evaluate/contenders.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/evaluate/contender.hpp"
+#include "ripplenotch/evaluate/filter_metrics.hpp"
 #include "ripplenotch/evaluate/ledger.hpp"
 #include "support/catch.hpp"
 
@@ -232,9 +233,9 @@ TEST_CASE("a twentieth left is 26 dB off, and what a filter should leave is its 
     FilterMetrics metrics;
     CHECK_FALSE(predicted_nm(metrics, 0).has_value());
     metrics.gear = GearAccount{GearRatio(100.0), {Order(1.0)}, {}, {}, "test"};
-    metrics.levels = RippleLevels{};
-    metrics.levels->orders = {level};
-    metrics.levels->windows = 3;
+    metrics.measured = LogLevels{};
+    metrics.measured->lines.orders = {level};
+    metrics.measured->lines.windows = 3;
     // Of what the log shows, unless table or joint say what the ripple is.
     CHECK(predicted_nm(metrics, 0).value() == Approx(0.8 * 0.07));
     metrics.gear->amplitude_nm = {1.2};

@@ -269,29 +269,33 @@ TEST_CASE(
     CHECK_THROWS_AS(stream_of(Rows{}), DataError);
 }
 
-TEST_CASE("the meter sees raw and filtered torque of every run") {
+TEST_CASE("what is kept of a log are the rows of every run, raw and filtered; of a long one stretches") {
     Rows rows;
-    for (std::size_t k = 0; k < 8000; ++k) {
+    for (std::size_t k = 0; k < 40000; ++k) {
         const double t = static_cast<double>(k) / 1000.0;
         rows.time_s.push_back(t < 4.0 ? t : t + 1.0);
         rows.velocity_deg_s.push_back(90.0);
         rows.torque_nm.push_back(3.0 + std::sin(2.0 * std::numbers::pi * 25.0 * t));
     }
-    LogStream stream = stream_of(rows);
-    const std::vector<Order> orders = {Order(1.0)};
-    RippleMeter meter(GearRatio(100.0), orders, stream.design_rate(), 2);
-    // The one-pole low-pass's gain at 25 Hz.
-    const auto filter = start("lowpass,cutoff=13rad/s");
-    stream.run(*filter, nullptr, &meter);
-    const Method& lowpass = find_method("lowpass");
-    const Settings settings("lowpass", parse_spec("lowpass,cutoff=13rad/s"), lowpass.keys);
-    const double gain =
-        std::abs(response(lowpass.frozen(settings, Hertz(1000.0), nullptr, DegPerSec(90.0)).cascade,
-                          Hertz(25.0), SampledAt(Hertz(1000.0))));
-    const RippleLevels levels = meter.levels();
-    CHECK(levels.windows == 48);
-    CHECK(levels.orders[0].amplitude_nm[0] == Approx(1.0).epsilon(1e-3));
-    CHECK(levels.orders[0].amplitude_nm[1] == Approx(gain).epsilon(0.01));
+    const auto kept_of = [&](bool sparsely) {
+        KeptRows kept;
+        kept.sparsely = sparsely;
+        LogStream stream = stream_of(rows);
+        const auto filter = start("lowpass,cutoff=13rad/s");
+        stream.run(*filter, nullptr, &kept);
+        return kept;
+    };
+    const KeptRows all = kept_of(false), some = kept_of(true);
+    CHECK(all.rows == 40000);
+    CHECK(all.trace.torque_nm == rows.torque_nm);
+    CHECK(all.trace.time_s == rows.time_s);
+    CHECK(all.trace.run_starts == std::vector<std::size_t>{4000});
+    CHECK(all.out_nm.size() == 40000);
+    // Stretches 0, 1 and 3 of 8192 rows.
+    CHECK(some.rows == 40000);
+    CHECK(some.trace.size() == 3 * 8192);
+    CHECK(some.trace.run_starts == std::vector<std::size_t>{4000, 2 * 8192});
+    CHECK(some.out_nm.back() == all.out_nm[4 * 8192 - 1]);
 }
 
 TEST_CASE("blocks are filtered and put in their order, and no more are on their way than there are threads") {

@@ -27,10 +27,7 @@ struct OrderLevel {
 
 struct RippleLevels {
     std::vector<OrderLevel> orders;
-    std::vector<double> residual_rms_nm;  ///< per signal: torque minus the window's trend
-    /// Per signal: how far its trend is from that of the first one, which is what a filter's delay and its
-    /// transients do to the torque itself.
-    std::vector<double> distortion_rms_nm;
+    std::vector<double> residual_rms_nm;           ///< per signal: torque minus the window's trend
     std::vector<double> residual_peak_to_peak_nm;  ///< per signal: the same, median over windows
     std::vector<double> ripple_peak_to_peak_nm;    ///< per signal: of the fitted orders alone, largest window
     std::size_t windows = 0;                       ///< windows in which at least one order was measured

@@ -8,7 +8,7 @@
 #include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/document/provenance.hpp"
 #include "ripplenotch/evaluate/comparison.hpp"
-#include "ripplenotch/evaluate/ledger.hpp"
+#include "ripplenotch/evaluate/filter_metrics.hpp"
 #include "ripplenotch/evaluate/recommendation.hpp"
 
 namespace ripplenotch {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "ripplenotch/analysis/ripple_estimate.hpp"
+#include "ripplenotch/analysis/ripple_meter.hpp"
 #include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/core/quantity.hpp"
 #include "ripplenotch/core/trace.hpp"
@@ -134,6 +135,8 @@ struct ComparedLog {
     std::function<void(std::size_t method, const TraceView& block, std::span<const double> out_nm,
                        std::span<const double> truth_nm)>
         watch = {};
+    /// What the only method has given already, row by row; empty: it is run.
+    std::span<const double> out_nm = {};
 };
 
 /// Median of |v| over the samples that move: faster than a twentieth of the fastest. 0 for a log without
@@ -199,9 +202,9 @@ inline constexpr double start_seconds = 2.0;
 /// same rows.
 struct LogLevels {
     std::vector<MethodFigures> methods;  ///< one per contender
+    /// Lines in the log as it is, then in the output of each method; expected gains where one method ran.
+    RippleLevels lines;
     double raw_ripple_rms_nm = 0.0;      ///< of the log as it is
-    std::size_t windows = 0;
-    double measured_share = 0.0;
     std::string why_none;                ///< a clause with the reason why no window could be measured
     std::vector<RippleEstimate> ripple;  ///< one for each of the lines, as handed over
     std::optional<TorqueBand> band;      ///< empty where nothing tells torque and ripple apart
@@ -211,11 +214,12 @@ struct BenchSignals {
     DegPerSec speed;
     double step_nm = usual_step_nm, ramp_nm_s = usual_ramp_nm_s;
 };
-/// `lines`: null where none are known; then the log is not looked at. `ripple`: of estimate_ripple(). `band`:
-/// the torque's, where it is stated. Figures of a method that does not settle on a signal are left out.
+/// `lines`: null where none are known; then the log is not looked at. `ripple`: of estimate_ripple().
+/// `signals`: none is run where it is empty; figures of a method that does not settle on one are left out.
+/// `band`: the torque's, where it is stated.
 [[nodiscard]] LogLevels measure_on_log(std::span<const Contender> contenders, const ComparedLog& log,
                                        const GearAccount* lines, std::vector<RippleEstimate> ripple,
-                                       const BenchSignals& signals,
+                                       const std::optional<BenchSignals>& signals,
                                        std::optional<TorqueBand> band = std::nullopt);
 
 }  // namespace ripplenotch

@@ -6,11 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "ripplenotch/analysis/ripple_meter.hpp"
-#include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/core/quantity.hpp"
 #include "ripplenotch/evaluate/contender.hpp"
-#include "ripplenotch/filter/engine.hpp"
 
 namespace ripplenotch {
 
@@ -58,35 +55,5 @@ struct LongestDelay {
 /// when it is not at any speed up to where its lowest order reaches half the sample rate.
 [[nodiscard]] std::optional<DegPerSec> within_from(const Contender& contender, Hertz sample_rate,
                                                    Seconds limit);
-
-// Figures of a filter on one log.
-
-struct FilterMetrics {
-    std::string source, joint, method;  ///< the method as it would be typed again
-    Hertz sample_rate;                  ///< rate that the filter was designed for, or started with
-    std::optional<Hertz> table_rate;    ///< rate that the table was designed for
-    StreamReport stream;
-    std::optional<GearAccount> gear;     ///< empty when unknown: then there are no levels
-    std::optional<RippleLevels> levels;  ///< levels of raw and filtered torque, one per order of the gear
-    std::vector<LedgerEntry> delays;
-    std::optional<Hertz> crossover;  ///< frequency of the ledger's phase lags
-};
-
-/// Attenuation of one order in dB; empty when there was nothing to attenuate or nothing was left.
-[[nodiscard]] std::optional<double> attenuation_db(const OrderLevel& level);
-
-/// What the filter made worse, one sentence each with the remedy: an order that grew, more torque moved than
-/// ripple taken out, a jump at a switch larger than the ripple. Empty where nothing was measured.
-[[nodiscard]] std::vector<std::string> harm_done(const FilterMetrics& metrics);
-/// Orders of which far more is left than was predicted, one sentence each.
-[[nodiscard]] std::vector<std::string> short_of_prediction(const FilterMetrics& metrics);
-
-/// Ripple of all measured orders together, rms, of one of the meter's signals: 0 is the raw torque.
-[[nodiscard]] double ripple_rms_nm(const RippleLevels& levels, std::size_t signal);
-
-/// The remaining ripple of one order at the speeds of this log, predicted from the filter's response: from
-/// the amplitude in the table or joint if stated, else from the measured one before filtering. Empty when it
-/// was not computed.
-[[nodiscard]] std::optional<double> predicted_nm(const FilterMetrics& metrics, std::size_t order);
 
 }  // namespace ripplenotch

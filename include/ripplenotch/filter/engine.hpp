@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "ripplenotch/analysis/ripple_meter.hpp"
 #include "ripplenotch/core/quantity.hpp"
 #include "ripplenotch/core/spec.hpp"
+#include "ripplenotch/core/trace.hpp"
 #include "ripplenotch/design/candidate_table.hpp"
 #include "ripplenotch/design/running_design.hpp"
 #include "ripplenotch/filter/method.hpp"
@@ -62,13 +62,23 @@ class RowValues {
     virtual std::span<const double> next(std::size_t count) = 0;
 };
 
-/// The processing of one joint. The meter may be null; it gets two signals, raw and filtered torque.
+/// Rows of a log with what a filter made of them, kept while they go by so that both can be measured.
+struct KeptRows {
+    /// Stretches of a long log only, ever further apart: enough for a warning, at a cost that grows with the
+    /// logarithm of the log's length.
+    bool sparsely = false;
+    Trace trace;                 ///< without position unless all of them have one
+    std::vector<double> out_nm;  ///< the filtered torque
+    std::size_t rows = 0;        ///< that went by
+    bool breaks = false;         ///< the next one that is kept begins a run
+};
+/// The first so many rows, 50 MB, are kept at most.
+inline constexpr std::size_t most_rows_kept = std::size_t{1} << 20U;
+
+/// The processing of one joint.
 struct JointRun {
     CausalFilter* filter = nullptr;
-    RippleMeter* meter = nullptr;
-    /// The meter gets stretches of a long log only, ever further apart: enough for a warning, at a cost that
-    /// grows with the logarithm of the log's length.
-    bool sparsely = false;
+    KeptRows* kept = nullptr;  ///< or null
     /// Ripple of the motors of other joints, Nm, taken from the torque before the filter; or null.
     RowValues* other_ripple = nullptr;
 };
@@ -97,7 +107,7 @@ class LogStream {
     std::vector<StreamReport> run(std::span<const JointRun> joints, LogWriter* writer,
                                   std::size_t threads = 1);
     /// The same for a log that is read for one joint.
-    StreamReport run(CausalFilter& filter, LogWriter* writer, RippleMeter* meter, std::size_t threads = 1);
+    StreamReport run(CausalFilter& filter, LogWriter* writer, KeptRows* kept, std::size_t threads = 1);
 
   private:
     struct State;

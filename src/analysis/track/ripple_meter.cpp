@@ -120,7 +120,6 @@ RippleLevels RippleMeter::levels() const {
     }
     for (const std::vector<SegmentResidual>& signal : all.residuals()) {
         levels.residual_rms_nm.push_back(root_mean_square(signal, &SegmentResidual::square_nm2));
-        levels.distortion_rms_nm.push_back(root_mean_square(signal, &SegmentResidual::moved_nm2));
         std::vector<double> peaks;
         double ripple = 0.0;
         for (const SegmentResidual& one : signal) {

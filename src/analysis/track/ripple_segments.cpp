@@ -202,13 +202,9 @@ void RippleSegments::measure(const Part& part, const SampleRun& window, std::siz
 }
 
 void RippleSegments::measure_residuals(const WindowFit& fit, std::span<const WindowFit::Torque> torques) {
-    const std::vector<double> first_trend = fit.trend_in_sum(torques.front());
     for (std::size_t j = 0; j < torques.size(); ++j) {
         SegmentResidual found;
         found.weight = fit.weight();
-        const std::vector<double> trend = fit.trend_in_sum(torques[j]);
-        for (std::size_t k = 0; k < trend.size(); ++k)
-            found.moved_nm2 += (trend[k] - first_trend[k]) * (trend[k] - first_trend[k]) / found.weight;
         std::vector<double> detrended, ripple = fit.lines_in_sum(torques[j]);
         for (std::size_t k = 0; k < ripple.size(); ++k) {
             const double all = ripple[k] + torques[j].residual[k];

@@ -47,7 +47,6 @@ struct OrderSegments {
 struct SegmentResidual {
     double weight = 0.0;
     double square_nm2 = 0.0;  ///< torque minus trend, weighted mean
-    double moved_nm2 = 0.0;   ///< its trend minus that of the first signal, weighted mean
     /// Peak to peak of that and of the lines, middle half.
     double peak_to_peak_nm = 0.0, ripple_peak_to_peak_nm = 0.0;
 };

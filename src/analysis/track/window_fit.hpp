@@ -51,12 +51,9 @@ class WindowFit {
     [[nodiscard]] Torque fit(std::span<const double> torque_nm) const;
     /// a - ib of a cos + b sin at the middle of the window.
     [[nodiscard]] std::complex<double> amplitude(const Torque& torque, std::size_t line) const;
-    /// The torque of all lines, and of the trend, times the root weights.
+    /// The torque of all lines, times the root weights.
     [[nodiscard]] std::vector<double> lines_in_sum(const Torque& torque) const {
         return terms_in_sum(torque, trend_, columns_.size());
-    }
-    [[nodiscard]] std::vector<double> trend_in_sum(const Torque& torque) const {
-        return terms_in_sum(torque, 0, trend_);
     }
     /// Values of the samples between a quarter and three quarters of the window, without their root weights.
     [[nodiscard]] std::vector<double> middle_half(std::span<const double> weighted) const;

@@ -612,13 +612,13 @@ Comparison compare_on_log(const CompareRequest& request, Field& field, Provenanc
     if (field.gear) ripple = estimate_ripple({&compared.trace, 1}, field.gear->ratio, field.gear->orders);
     LogLevels levels =
         measure_on_log(field.contenders, compared, field.gear ? &*field.gear : nullptr, std::move(ripple),
-                       {comparison.speed, *comparison.step_nm, *comparison.ramp_nm_s});
-    if (field.gear && levels.windows == 0)
+                       BenchSignals{comparison.speed, *comparison.step_nm, *comparison.ramp_nm_s});
+    if (field.gear && levels.lines.windows == 0)
         warn(request.common, fmt::format("the ripple cannot be measured on this log: {}", levels.why_none));
     comparison.methods = levels.methods;
-    comparison.windows = levels.windows;
+    comparison.windows = levels.lines.windows;
     comparison.raw_ripple_rms_nm = levels.raw_ripple_rms_nm;
-    comparison.measured_share = levels.measured_share;
+    comparison.measured_share = levels.lines.measured_share;
     const Gates& gates = request.costs.gates;
     judge(comparison, field.contenders, compared,
           {gates.max_delay, gates.min_attenuation_db, std::nullopt, true}, std::move(levels));

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <complex>
 #include <memory>
 #include <optional>
 #include <string>
@@ -23,6 +22,7 @@
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/visible_text.hpp"
 #include "ripplenotch/document/comparison_json.hpp"
+#include "ripplenotch/evaluate/filter_metrics.hpp"
 #include "ripplenotch/evaluate/ledger.hpp"
 #include "ripplenotch/filter/engine.hpp"
 #include "ripplenotch/log/log.hpp"
@@ -71,7 +71,7 @@ struct JointWork {
     std::shared_ptr<const Contender> method;
     std::unique_ptr<CausalFilter> filter;
     std::unique_ptr<OtherRipple> other_ripple;  ///< null where the method has no map of other motors
-    std::optional<RippleMeter> meter;
+    std::optional<KeptRows> kept;
     FilterMetrics metrics;
     std::optional<std::string> metrics_path;
     std::unique_ptr<ByteSink> metrics_sink;
@@ -88,23 +88,6 @@ bool tells(const FilterRequest& request) {
 bool must_measure(const FilterRequest& request) { return tells(request) || request.gates.min_attenuation_db; }
 /// Where a gear is known the warnings are worth it, too.
 bool measures(const FilterRequest& request) { return must_measure(request) || !request.common.quiet; }
-
-/// The complex gains of the method's filter for the lines of its gear, by speed.
-LineGains gains_of(const Contender& method, Hertz sample_rate) {
-    return [method, sample_rate](double speed, std::span<std::complex<double>> gains) {
-        const auto frozen = method.frozen(sample_rate, DegPerSec(speed));
-        for (std::size_t i = 0; i < gains.size(); ++i) {
-            const Hertz at = ripple_frequency(method.gear->orders[i], method.gear->ratio, DegPerSec(speed));
-            gains[i] = frozen ? response(frozen->cascade, at, SampledAt(sample_rate)) : 1.0;
-        }
-    };
-}
-
-/// Whether what is left of the ripple is predicted along a log: not for methods whose filter at a speed is
-/// too slow to compute for every window of a log.
-bool predictable(const Contender& method) {
-    return method.method->frozen != nullptr && !method.method->frozen_is_dear;
-}
 
 /// All but the filter.
 JointWork start_work(const FilterRequest& request, const LogStream& stream, const std::string& joint,
@@ -129,8 +112,9 @@ JointWork start_work(const FilterRequest& request, const LogStream& stream, cons
     metrics.gear = gear;
     if (gear) say(work.common, gear_in_words(*gear));
     if (measures(request) && gear) {
-        work.meter.emplace(gear->ratio, gear->orders, stream.design_rate(), 2,
-                           predictable(method) ? gains_of(method, stream.design_rate()) : LineGains{});
+        work.kept.emplace();
+        work.kept->sparsely = !must_measure(request);
+        work.kept->trace.sample_rate = stream.design_rate();
     }
     if (tells(request)) {
         metrics.crossover = request.crossover;
@@ -179,7 +163,8 @@ Provenance provenance_of(const FilterRequest& request, const JointWork& work,
 /// Reports the result of a joint; true when everything is within the limits.
 bool tell(const FilterRequest& request, JointWork& work, const std::string& command_line) {
     FilterMetrics& metrics = work.metrics;
-    if (work.meter) metrics.levels = work.meter->levels();
+    if (work.kept) metrics.measured = measure_kept(*work.method, *work.kept, *metrics.gear);
+    work.kept.reset();
     std::vector<std::string> warnings = filter_warnings(metrics);
     for (std::string& warning : beyond_map(work)) warnings.push_back(std::move(warning));
     if (must_measure(request) && !metrics.gear) {
@@ -324,8 +309,7 @@ ExitCode run_filter(FilterRequest& request, const std::string& command_line) {
     }
     std::vector<JointRun> runs;
     for (JointWork& work : works) {
-        runs.push_back({work.filter.get(), work.meter ? &*work.meter : nullptr, !must_measure(request),
-                        work.other_ripple.get()});
+        runs.push_back({work.filter.get(), work.kept ? &*work.kept : nullptr, work.other_ripple.get()});
     }
     std::vector<StreamReport> reports = stream.run(runs, writer.get(), threads_of(request));
     bool within = true;

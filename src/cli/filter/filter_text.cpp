@@ -16,7 +16,7 @@ namespace ripplenotch {
 namespace {
 
 std::string ripple_line(const FilterMetrics& metrics, std::size_t order) {
-    const OrderLevel& level = metrics.levels->orders[order];
+    const OrderLevel& level = metrics.lines()->orders[order];
     const std::string name = order_in_words(Order(level.order), metrics.gear->ratio);
     if (level.windows == 0) return name + ": not measured, nowhere four periods in one direction";
     const auto attenuation = attenuation_db(level), predicted = predicted_nm(metrics, order);
@@ -92,12 +92,12 @@ std::vector<std::string> filter_warnings(const FilterMetrics& metrics) {
     for (const auto& sentences : {harm_done(metrics), short_of_prediction(metrics)})
         for (const std::string& sentence : sentences)
             warnings.push_back(fmt::format("{}: {}", metrics.source, sentence));
-    if (metrics.levels && metrics.levels->windows == 0) {
+    if (metrics.measured && metrics.lines() == nullptr) {
         warnings.push_back(fmt::format(
             "{}: ripple could not be measured: no four periods of an order in one direction, slow enough for "
             "two samples a period ({} too few samples)",
             metrics.source,
-            how_many(metrics.levels->windows_too_few_samples, "window with", "windows with")));
+            how_many(metrics.measured->lines.windows_too_few_samples, "window with", "windows with")));
     }
     return warnings;
 }
@@ -115,8 +115,8 @@ std::vector<std::string> filter_summary(const FilterMetrics& metrics) {
         lines.push_back(fmt::format("{}: {} rows before and {} after are left out, by --from and --to",
                                     metrics.source, recording.outside->before, recording.outside->after));
     }
-    if (metrics.levels && metrics.levels->windows > 0) {
-        const RippleLevels& levels = *metrics.levels;
+    if (metrics.lines() != nullptr) {
+        const RippleLevels& levels = *metrics.lines();
         for (std::size_t i = 0; i < levels.orders.size(); ++i) lines.push_back(ripple_line(metrics, i));
         lines.push_back(fmt::format(
             "ripple at most {:.3g} Nm peak to peak before, {:.3g} Nm after; residual {:.3g} Nm rms before, "
@@ -125,9 +125,14 @@ std::vector<std::string> filter_summary(const FilterMetrics& metrics) {
             levels.ripple_peak_to_peak_nm[0], levels.ripple_peak_to_peak_nm[1], levels.residual_rms_nm[0],
             levels.residual_rms_nm[1], how_many(levels.windows, "window"), 100.0 * levels.measured_share));
     }
-    if (metrics.levels && metrics.levels->windows > 0)
-        lines.push_back(
-            fmt::format("the torque itself is moved by {:.3g} Nm rms", metrics.levels->distortion_rms_nm[1]));
+    if (const MethodFigures* const figures = metrics.measured ? &metrics.measured->methods.front() : nullptr;
+        figures != nullptr && figures->error_nm) {
+        lines.push_back(fmt::format(
+            "the torque itself is moved by {:.3g} Nm rms, {:.3g} Nm rms is added to it; the output is off by "
+            "{:.3g} Nm rms, in its first {:g} s of motion by up to {:.2g} times as much as the raw torque",
+            figures->moved_nm.value_or(0.0), figures->added_nm.value_or(0.0), *figures->error_nm,
+            start_seconds, figures->start_ratio.value_or(0.0)));
+    }
     if (!metrics.delays.empty()) lines.push_back(delay_line(metrics.delays));
     if (metrics.crossover && !metrics.delays.empty())
         lines.push_back(crossover_line(metrics.delays, *metrics.crossover));

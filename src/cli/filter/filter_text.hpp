@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "ripplenotch/evaluate/ledger.hpp"
+#include "ripplenotch/evaluate/filter_metrics.hpp"
 
 namespace ripplenotch {
 

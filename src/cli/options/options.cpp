@@ -688,9 +688,9 @@ std::vector<std::string> filter_violations(const Gates& gates, const Contender& 
     const StreamReport& stream = metrics.stream;
     auto found = delay_violations(gates, contender, metrics.sample_rate, DegPerSec(stream.slowest_deg_s),
                                   DegPerSec(stream.fastest_deg_s));
-    if (!metrics.levels) return found;
+    if (!metrics.measured) return found;
     std::vector<OrderAttenuation> orders;
-    for (const OrderLevel& level : metrics.levels->orders) {
+    for (const OrderLevel& level : metrics.measured->lines.orders) {
         OrderAttenuation entry{level.order, level.mean_hz, std::nullopt, metrics.gear->ratio};
         if (level.windows > 0) entry.db = attenuation_db(level).value_or(most_attenuation_db);
         orders.push_back(entry);

@@ -17,7 +17,7 @@
 #include "ripplenotch/document/provenance.hpp"
 #include "ripplenotch/evaluate/comparison.hpp"
 #include "ripplenotch/evaluate/contender.hpp"
-#include "ripplenotch/evaluate/ledger.hpp"
+#include "ripplenotch/evaluate/filter_metrics.hpp"
 #include "ripplenotch/log/layout.hpp"
 #include "ripplenotch/log/log.hpp"
 

@@ -4,6 +4,7 @@
 #include "document/fields/fields.hpp"
 #include "document/fields/result_fields.hpp"
 #include "ripplenotch/evaluate/contender.hpp"
+#include "ripplenotch/evaluate/filter_metrics.hpp"
 
 namespace ripplenotch {
 
@@ -18,7 +19,7 @@ auto raw_and_filtered(const std::vector<double>& values) {
 }
 
 void write_order(JsonWriter& json, const FilterMetrics& metrics, std::size_t order) {
-    const OrderLevel& level = metrics.levels->orders[order];
+    const OrderLevel& level = metrics.lines()->orders[order];
     const auto predicted = predicted_nm(metrics, order);
     json("order", level.order);
     json("hz", level.mean_hz);
@@ -31,8 +32,10 @@ void write_order(JsonWriter& json, const FilterMetrics& metrics, std::size_t ord
 
 // Null figures, not zeros, when there was nothing to measure them on.
 void write_levels(JsonWriter& json, const FilterMetrics& metrics) {
-    const RippleLevels* const levels = metrics.levels ? &*metrics.levels : nullptr;
-    const bool measured = levels != nullptr && levels->windows > 0;
+    const RippleLevels* const levels = metrics.lines();
+    const bool measured = levels != nullptr;
+    const MethodFigures nothing;
+    const MethodFigures& figures = metrics.measured ? metrics.measured->methods.front() : nothing;
     json.known("gear_ratio", metrics.gear && metrics.gear->has_ratio(),
                metrics.gear ? metrics.gear->ratio : GearRatio());
     json("gear", metrics.gear);
@@ -49,12 +52,16 @@ void write_levels(JsonWriter& json, const FilterMetrics& metrics) {
     pair("residual_rms_nm", &RippleLevels::residual_rms_nm);
     pair("residual_peak_to_peak_nm", &RippleLevels::residual_peak_to_peak_nm);
     pair("ripple_peak_to_peak_nm", &RippleLevels::ripple_peak_to_peak_nm);
-    json.known("distortion_rms_nm", measured, measured ? levels->distortion_rms_nm[1] : 0.0);
-    json.group_if("windows", levels, [](JsonWriter& windows, const RippleLevels& of) {
-        windows("measured", of.windows);
-        windows("measured_share", of.measured_share);
-        windows("too_few_samples", of.windows_too_few_samples);
-    });
+    json("error_nm", figures.error_nm);
+    json("distortion_nm", figures.moved_nm);
+    json("added_nm", figures.added_nm);
+    json("start_ratio", figures.start_ratio);
+    json.group_if("windows", metrics.measured ? &metrics.measured->lines : nullptr,
+                  [](JsonWriter& windows, const RippleLevels& of) {
+                      windows("measured", of.windows);
+                      windows("measured_share", of.measured_share);
+                      windows("too_few_samples", of.windows_too_few_samples);
+                  });
 }
 
 }  // namespace
