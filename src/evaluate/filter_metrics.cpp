@@ -87,7 +87,7 @@ std::vector<std::string> harm_done(const FilterMetrics& metrics) {
             moved, taken));
     } else if (figures.start_ratio.value_or(0.0) > start_worth_a_word) {
         found.push_back(fmt::format(
-            "in the first {:g} s of motion the output is off by up to {:.2g} times as much as the torque "
+            "in the first {:g} s of motion the error of the output is up to {:.2g} times that of the torque "
             "before the filter; see other methods with 'ripplenotch recommend --max-start-error {:g}'",
             start_seconds, *figures.start_ratio, start_worth_a_word));
     }

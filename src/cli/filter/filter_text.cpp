@@ -128,8 +128,9 @@ std::vector<std::string> filter_summary(const FilterMetrics& metrics) {
     if (const MethodFigures* const figures = metrics.measured ? &metrics.measured->methods.front() : nullptr;
         figures != nullptr && figures->error_nm) {
         lines.push_back(fmt::format(
-            "the torque itself is moved by {:.3g} Nm rms, {:.3g} Nm rms is added to it; the output is off by "
-            "{:.3g} Nm rms, in its first {:g} s of motion by up to {:.2g} times as much as the raw torque",
+            "the torque itself is moved by {:.3g} Nm rms, {:.3g} Nm rms is added to it; the output's error "
+            "is "
+            "{:.3g} Nm rms, in the first {:g} s of motion up to {:.2g} times that of the raw torque",
             figures->moved_nm.value_or(0.0), figures->added_nm.value_or(0.0), *figures->error_nm,
             start_seconds, figures->start_ratio.value_or(0.0)));
     }
