@@ -10,7 +10,7 @@
 #include "evaluate/contenders.hpp"
 #include "ripplenotch/evaluate/filter_metrics.hpp"
 #include "ripplenotch/filter/engine.hpp"
-#include "ripplenotch/model/motions.hpp"
+#include "ripplenotch/model/motion.hpp"
 #include "support/catch.hpp"
 
 using namespace ripplenotch;
