@@ -44,6 +44,8 @@ struct StatedOrder {
 
 /// For people: "order 2", "200/turn", "order 6 of the other spline (121)" of a line at n (ratio +/- 1).
 [[nodiscard]] std::string order_in_words(Order order, GearRatio ratio);
+/// "6/121", order 6 of the spline that has 121 turns: for a column. Empty for an order of the ratio itself.
+[[nodiscard]] std::string order_on_other_spline(Order order, GearRatio ratio);
 
 struct GearAccount {
     GearRatio ratio;            ///< no_ratio where `per_turn`; 0: not known

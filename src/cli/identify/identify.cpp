@@ -63,6 +63,13 @@ std::string row(std::size_t kind_width, const std::array<std::string, 9>& cells)
     return text.substr(0, text.find_last_not_of(' ') + 1) + "\n";
 }
 
+// An order of the other spline is no odd number of the ratio's.
+std::string order_cell(double order, const GearRatioFit& ratio) {
+    const std::string other =
+        ratio.value ? order_on_other_spline(Order(order), GearRatio(*ratio.value)) : std::string();
+    return other.empty() ? fmt::format("{:.4g}", order) : other;
+}
+
 std::string line_row(const Line& line, std::size_t kind_width, const GearRatioFit& ratio) {
     std::string note = " " + line.note;
     if (line.order && ratio.value)
@@ -70,7 +77,7 @@ std::string line_row(const Line& line, std::size_t kind_width, const GearRatioFi
             words.find("other spline") != std::string::npos)
             note += (line.note.empty() ? "" : ", ") + words;
     return row(kind_width,
-               {std::string(kind_text(line)), line.order ? fmt::format("{:.4g}", *line.order) : "-",
+               {std::string(kind_text(line)), line.order ? order_cell(*line.order, ratio) : "-",
                 line.order_output ? fmt::format("{:.3f}", *line.order_output) : "-", hz_range(line),
                 fmt::format("{:.3g}", line.amplitude_nm),
                 line.phase_known ? fmt::format("{:.0f}", std::round(line.phase_deg) + 0.0) : "-",
@@ -93,7 +100,7 @@ std::string speed_cell(const RippleAtSpeed& at) {
 }
 
 /// A row per order and range of speed, a column per direction; empty without any.
-std::string amplitude_table(const std::vector<RippleAtSpeed>& all) {
+std::string amplitude_table(const std::vector<RippleAtSpeed>& all, const GearRatioFit& ratio) {
     const auto goes = [&](int direction) {
         return std::any_of(all.begin(), all.end(),
                            [&](const RippleAtSpeed& at) { return at.direction == direction; });
@@ -115,7 +122,7 @@ std::string amplitude_table(const std::vector<RippleAtSpeed>& all) {
         while (end < all.size() && all[end].ripple.order == all[i].ripple.order &&
                all[end].speed_from_deg_s == all[i].speed_from_deg_s)
             ++end;
-        text += row(fmt::format("{:.4g}", all[i].ripple.order), speed_cell(all[i]), [&](int direction) {
+        text += row(order_cell(all[i].ripple.order, ratio), speed_cell(all[i]), [&](int direction) {
             for (std::size_t k = i; k < end; ++k)
                 if (all[k].direction == direction) return amplitude_cell(all[k]);
             return std::string("-");
@@ -218,7 +225,7 @@ std::string identification_report(const CommonOptions& common, const Identificat
     if (ratio.second_comb)
         text += fmt::format("second comb: {:.4f} turns of the wave generator against the other spline\n",
                             *ratio.second_comb);
-    text += amplitude_table(found.by_speed);
+    text += amplitude_table(found.by_speed, found.gear_ratio);
     if (ratio.candidates.size() > (has_ratio ? 1U : 0U)) {
         text += has_ratio ? "\nrival ratios\n" : "\npossible ratios\n";
         for (const RatioCandidate& one : std::span(ratio.candidates).subspan(has_ratio ? 1 : 0))

@@ -67,17 +67,23 @@ std::string orders_text(const std::vector<Order>& orders, GearRatio ratio, std::
     return joined(orders, between, [ratio](Order order) { return order_text(order, ratio); });
 }
 
-std::string order_in_words(Order order, GearRatio ratio) {
+std::string order_on_other_spline(Order order, GearRatio ratio) {
     constexpr double apart = 0.25;  ///< of the distance between the two combs
-    const std::string text = order_text(order, ratio);
-    if (!text.ends_with(per_turn_mark)) return "order " + text;
+    if (ratio == no_ratio || !order_text(order, ratio).ends_with(per_turn_mark)) return "";
     for (const double side : {1.0, -1.0}) {
         const double teeth = ratio.value() + side, n = std::round(order.value() * ratio.value() / teeth);
-        if (ratio != no_ratio && n > 0.0 &&
-            std::abs(order.value() * ratio.value() / teeth - n) * teeth < apart * n)
-            return fmt::format("order {} of the other spline ({:.3g})", shortest(n), teeth);
+        if (n > 0.0 && std::abs(order.value() * ratio.value() / teeth - n) * teeth < apart * n)
+            return fmt::format("{}/{:.3g}", shortest(n), teeth);
     }
-    return text;
+    return "";
+}
+
+std::string order_in_words(Order order, GearRatio ratio) {
+    const std::string text = order_text(order, ratio), other = order_on_other_spline(order, ratio);
+    if (const std::size_t slash = other.find('/'); slash != std::string::npos)
+        return fmt::format("order {} of the other spline ({})", other.substr(0, slash),
+                           other.substr(slash + 1));
+    return text.ends_with(per_turn_mark) ? text : "order " + text;
 }
 
 }  // namespace ripplenotch
