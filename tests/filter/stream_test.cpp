@@ -269,7 +269,7 @@ TEST_CASE(
     CHECK_THROWS_AS(stream_of(Rows{}), DataError);
 }
 
-TEST_CASE("what is kept of a log are the rows of every run, raw and filtered; of a long one stretches") {
+TEST_CASE("what is kept of a log are the rows of every run, raw and filtered, and of a long one stretches") {
     Rows rows;
     for (std::size_t k = 0; k < 40000; ++k) {
         const double t = static_cast<double>(k) / 1000.0;
