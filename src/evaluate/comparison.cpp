@@ -419,7 +419,7 @@ bool predictable(const Contender& method) {
     return method.method->frozen != nullptr && !method.method->frozen_is_dear && method.gear;
 }
 
-std::size_t longest_run(const TraceView& trace) {
+std::size_t longest_unbroken_run(const TraceView& trace) {
     std::size_t longest = 0, from = 0;
     for (const std::size_t start : trace.run_starts) {
         longest = std::max(longest, start - from);
@@ -483,7 +483,7 @@ LogLevels measure_on_log(std::span<const Contender> contenders, const ComparedLo
         if (contender.method->needs_table) runners.back().ledger.emplace(log.truth_nm);
     }
     std::optional<TorqueReference> reference;
-    if (longest_run(log.trace) >= fewest_spectrum_samples)
+    if (longest_unbroken_run(log.trace) >= fewest_spectrum_samples)
         reference.emplace(log, *lines, result.ripple, band);
     if (reference && reference->smooth_nm().empty()) reference.reset();
     std::optional<ReferenceErrors> errors;
