@@ -171,10 +171,12 @@ std::string script_hash(std::string_view script) {
 
 class Writer {
   public:
-    Writer(const Page& page, const std::optional<std::string>& plotly_js)
-        : pictured_(std::any_of(page.sections.begin(), page.sections.end(),
-                                [](const PageSection& one) { return !one.figures.empty(); })),
-          plotly_js_(pictured_ ? plotly_js : std::nullopt) {}
+    Writer(const Page& page, const std::optional<std::string>& plotly_js) {
+        for (const PageSection& one : page.sections)
+            for (const Figure& drawn : one.figures)
+                pictured_ = pictured_ || std::any_of(drawn.panels.begin(), drawn.panels.end(), shows);
+        if (pictured_) plotly_js_ = plotly_js;
+    }
 
     [[nodiscard]] std::string written(const Page& page) {
         head(page);
