@@ -47,8 +47,8 @@ struct TrackingDesign {
 };
 
 /// For how many periods of the lowest order the oscillator gives the torque as it is measured, less the
-/// ripple of its map: a torque that rises while the motor has hardly turned cannot be told from ripple. Then
-/// what it has learnt is faded in. Chosen by measurement: docs/methods/oscillator.md#starting.
+/// ripple of its map: a torque that rises while the motor has hardly turned cannot be distinguished from
+/// ripple. Then what it has learnt is faded in. Chosen by measurement: docs/methods/oscillator.md#starting.
 struct OscillatorWait {
     static constexpr double from = 0.5, until = 1.0;
 };

@@ -457,7 +457,7 @@ struct MotionSearch {
     std::vector<Sweep> sweeps;  ///< where the angle is not absolute: no line that was found removed
 };
 
-/// Tones slower than those that are told from the motion, where the joint is at rest.
+/// Tones slower than those that are distinguished from the motion, where the joint is at rest.
 std::vector<MotionLine> slow_tones_at_rest(std::span<const Sweep> sweeps, std::span<const TraceView> logs,
                                            const MotionLinesOptions& options) {
     std::vector<Sweep> rests;

@@ -144,7 +144,7 @@ std::string contents_table(const LogInfo& log) {
 // One screen about a log, a sentence first. Wide files list only the columns that mean something.
 std::string info_to_text(const LogInfo& log, bool all_columns) {
     std::string text = first_sentence(log);
-    // What nobody stated, and what it would be otherwise, before any figure is believed.
+    // What is assumed, and what it would be otherwise, stands before the figures.
     for (const Assumption& one : log.layout.assumptions) {
         text += fmt::format("Assumed: {} is {}", one.about, one.assumed);
         for (const OtherReading& other : one.others)

@@ -31,7 +31,7 @@ double median_step(const std::vector<double>& time_s) {
 constexpr std::size_t scouted_rows = 512;  ///< that tell how the opening begins
 constexpr double alike_steps = 1.25;       // by hand: as a factor
 // Times of more rows than these in one say too little of when each was taken: with five, ripple of 11 to 33
-// Hz in 1 kHz rows was told with eleven false lines beside it, with four its amplitudes were up to 8 % low.
+// Hz in 1 kHz rows was found with eleven false lines, with four its amplitudes were up to 8 % low.
 constexpr double most_rows_a_time = 4.5;
 
 // By hand: of times of arrival a long step stands alone among short ones so often.

@@ -141,7 +141,7 @@ class Inference {
         return {place(joint.velocity), place(joint.position)};
     }
 
-    /// Looks at those that nobody has looked at.
+    /// Looks at those that have not been looked at.
     const MotionsSeen::Opening& look_at(std::size_t bytes) {
         std::vector<MotionPlace> places;
         MotionsSeen::Opening& opening = seen_.openings[bytes];

@@ -131,7 +131,7 @@ Dimension linear_dimension_of(Role role) {
                                     : Dimension::none;
 }
 
-// One sentence for all units that nobody stated.
+// One sentence for all units that are not stated.
 void say_assumed_units(Layout& layout, const ColumnFacts& facts) {
     std::vector<std::string> taken, asked;
     std::vector<std::optional<std::size_t>> columns = {layout.chosen.time};

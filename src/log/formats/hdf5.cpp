@@ -76,7 +76,7 @@ class Hdf5Handle {
 
 // Files for libhdf5, which opens by name only.
 
-/// A new file that nobody sees, for the library to write and us to read.
+/// A new file without a name, for the library to write and us to read.
 struct Hdf5Scratch {
     Hdf5Handle file;
     std::unique_ptr<TemporaryFile> bytes;

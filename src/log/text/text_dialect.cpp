@@ -246,7 +246,7 @@ void take_repeated_clocks(TextDialect& dialect) {
 }
 
 // Whether a signal of a joint has numbers in some rows only, as topics have that were written into one table.
-// Where a third of the cells of many rows is empty, nobody lost them.
+// Where a third of the cells of many rows is empty, they were not lost.
 bool has_own_rows(const TextDialect& dialect) {
     constexpr std::size_t many = 64;
     for (std::size_t c = 0; c < std::min(dialect.names.size(), dialect.sample.size()); ++c) {

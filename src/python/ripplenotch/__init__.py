@@ -347,7 +347,7 @@ def diagnose(log: AnyLog, model: Mapping[str, Any] | str | os.PathLike[str] | No
         raise UsageError(f"simulated: read an array of shape {torque_nm.shape}, expected ({rows},): one value for each row of the log")
     if isinstance(source, np.ndarray) and "time_s" not in source.dtype.names:
         rate = options.get("sample_rate")
-        raise UsageError(f"simulated: read arrays without time_s (sample_rate {rate}), expected time_s beside them")
+        raise UsageError(f"simulated: read arrays without time_s (sample_rate {rate}), expected time_s, too")
     time_s = source["time_s"] if isinstance(source, np.ndarray) else source.time_s
     with _Files() as files:
         path = files._new("simulated.npy")
