@@ -1,20 +1,23 @@
 // SPDX-License-Identifier: MIT
-#include "page/html_page.hpp"
+#include "ripplenotch/page/page.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
+#include <string_view>
 
 #include "ripplenotch/core/files.hpp"
 #include "ripplenotch/core/progress.hpp"
 #include "ripplenotch/core/visible_text.hpp"
 #include "ripplenotch/figure/figure.hpp"
-#include "ripplenotch/page/page.hpp"
 
 namespace ripplenotch {
 
-const std::string_view page_style = R"css(
+namespace {
+
+// Light or dark by the reader's system setting; print is light.
+constexpr std::string_view page_style = R"css(
 :root { color-scheme: light dark; --ink: #1b1b1b; --paper: #fff; --soft: #4a5056; --rule: #d3d7db;
   --box: #f3f5f7; --link: #0b5394; }
 @media (prefers-color-scheme: dark) {
@@ -80,7 +83,7 @@ details > summary { cursor: pointer; color: var(--soft); }
 
 // The figures come in the colours of paper; in dark mode each of these has another of the same contrast.
 // White names on a heat map stay white, since the map stays as it is.
-const std::string_view page_script = R"js(
+constexpr std::string_view page_script = R"js(
 const dark = matchMedia("(prefers-color-scheme: dark)"), narrow = matchMedia("(max-width: 45rem)");
 const night = {"#1b1b1b": "#e4e6e8", "#222": "#e4e6e8", "#444": "#aab1b8", "#555": "#8f969d", "#888": "#8f969d",
   "#e3e3e3": "#333940", "#eeeeee": "#22272c", "#000000": "#e4e6e8", "#0072b2": "#3ea0dc", "#808080": "#9aa1a8"};
@@ -125,7 +128,7 @@ addEventListener("afterprint", () => draw_all(false));
 )js";
 
 // Copies a command; where the page may not, the command is selected.
-const std::string_view copy_script = R"js(
+constexpr std::string_view copy_script = R"js(
 document.addEventListener("click", (event) => {
   const line = event.target.matches(".command button") && event.target.previousElementSibling;
   if (!line) return;
@@ -135,8 +138,6 @@ document.addEventListener("click", (event) => {
   else said(document.execCommand("copy") ? "copied" : "selected");
 });
 )js";
-
-namespace {
 
 std::string base64(std::string_view bytes) {
     constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -241,25 +242,25 @@ class Writer {
             const PageSection& one = page.sections[i];
             if (!one.in_summary) continue;
             put("<article class=\"result{}\">\n<h2><a href=\"#result-{}\">{}</a></h2>\n",
-                answer_class(one.state), i + 1, shown(one.title));
-            if (!one.verdict.empty()) put("<p>{}{}</p>\n", state_badge(one.state), shown(one.verdict));
+                badge(one.state).style, i + 1, shown(one.title));
+            if (!one.verdict.empty()) put("<p>{}{}</p>\n", badge(one.state).words, shown(one.verdict));
             facts(one.key);
             put("</article>\n");
         }
         put("</div>\n");
     }
 
-    static std::string_view answer_class(PageState state) {
-        return state == PageState::good       ? " good"
-               : state == PageState::doubtful ? " doubtful"
-               : state == PageState::bad      ? " bad"
-                                              : "";
-    }
-    static std::string_view state_badge(PageState state) {
-        return state == PageState::good       ? "<span class=\"state\">decided</span> "
-               : state == PageState::doubtful ? "<span class=\"state\">not decided</span> "
-               : state == PageState::bad      ? "<span class=\"state\">amplifies an order</span> "
-                                              : "";
+    // By PageState: the class of an answer, and what stands before it.
+    struct Badge {
+        std::string_view style, words;
+    };
+    static const Badge& badge(PageState state) {
+        static constexpr std::array<Badge, 4> all = {
+            {{"", ""},
+             {" good", "<span class=\"state\">decided</span> "},
+             {" doubtful", "<span class=\"state\">not decided</span> "},
+             {" bad", "<span class=\"state\">amplifies an order</span> "}}};
+        return all[static_cast<std::size_t>(state)];
     }
 
     void contents(const Page& page) {
@@ -289,7 +290,7 @@ class Writer {
         if (!one.about.empty()) put("<p class=\"note\">{}</p>\n", shown(one.about));
         for (const Figure& drawn : one.figures) figure(drawn, false);
         if (!one.verdict.empty())
-            put("<p class=\"verdict answer{}\">{}{}</p>\n", answer_class(one.state), state_badge(one.state),
+            put("<p class=\"verdict answer{}\">{}{}</p>\n", badge(one.state).style, badge(one.state).words,
                 shown(one.verdict));
         for (const PageTable& numbers : one.tables) rows(numbers);
         for (const std::string& command : one.commands)
@@ -414,28 +415,16 @@ class Writer {
 }  // namespace
 
 std::string html_escaped(std::string_view text) {
+    constexpr std::string_view special = "&<>\"'";
+    constexpr std::array<std::string_view, 5> entities = {"&amp;", "&lt;", "&gt;", "&quot;", "&#39;"};
     std::string escaped;
     escaped.reserve(text.size());
     for (const char c : text) {
-        switch (c) {
-            case '&':
-                escaped += "&amp;";
-                break;
-            case '<':
-                escaped += "&lt;";
-                break;
-            case '>':
-                escaped += "&gt;";
-                break;
-            case '"':
-                escaped += "&quot;";
-                break;
-            case '\'':
-                escaped += "&#39;";
-                break;
-            default:
-                escaped += c;
-        }
+        const std::size_t found = special.find(c);
+        if (found == std::string_view::npos)
+            escaped += c;
+        else
+            escaped += entities[found];
     }
     return escaped;
 }

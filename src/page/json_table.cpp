@@ -202,7 +202,7 @@ bool says_nothing(const std::string& cell) {
 // A row's objects become columns of their own: settle_ms {"0.5": 147} is column "settle 0.5, ms". One more
 // cell than there may be columns indicates that some are left out.
 void cells_of(const Json& row, const std::string& prefix, const std::string& unit,
-              std::vector<std::pair<std::string, std::string>>& cells) {
+              NamedCells& cells) {
     for (const auto& [name, entry] : row.items()) {
         if (cells.size() > most_columns) return;
         const Spoken said = spoken(name);
@@ -231,28 +231,31 @@ bool is_table(const Json& json) {
 }
 
 PageTable table_of(const std::string& name, const Json& rows) {
-    PageTable table{spoken(name).name, {}, {}};
-    std::vector<std::vector<std::pair<std::string, std::string>>> all;
+    std::vector<NamedCells> all;
+    for (std::size_t i = 0; i < std::min(rows.size(), most_rows); ++i)
+        cells_of(rows[i], "", "", all.emplace_back());
+    PageTable table = table_of_cells(spoken(name).name, all, 0);
+    if (rows.size() > most_rows) table.title += fmt::format(" (the first {} of {})", most_rows, rows.size());
+    return table;
+}
+
+PageTable table_of_cells(const std::string& title, std::span<const NamedCells> rows, std::size_t always) {
+    PageTable table{title, {}, {}};
     std::unordered_map<std::string, std::size_t> places;  // indices of the columns in the header
     bool left_out = false;
-    for (const Json& row : rows) {
-        if (all.size() == most_rows) break;
-        cells_of(row, "", "", all.emplace_back());
-        for (const auto& [column, value] : all.back()) {
+    for (const NamedCells& cells : rows) {
+        for (const auto& [column, value] : cells) {
             if (places.size() < most_columns && places.emplace(column, places.size()).second)
                 table.header.push_back(column);
             left_out |= places.size() == most_columns && !places.contains(column);
         }
     }
-    for (const auto& cells : all) {
-        std::vector<std::string> row(table.header.size(), "-");
-        for (const auto& [column, value] : cells) {
+    for (const NamedCells& cells : rows) {
+        std::vector<std::string>& row = table.rows.emplace_back(table.header.size(), "-");
+        for (const auto& [column, value] : cells)
             if (const auto at = places.find(column); at != places.end()) row[at->second] = value;
-        }
-        table.rows.push_back(std::move(row));
     }
-    // Removes columns that no row fills.
-    for (std::size_t c = table.header.size(); c-- > 0;) {
+    for (std::size_t c = table.header.size(); c-- > always;) {
         if (!std::all_of(table.rows.begin(), table.rows.end(),
                          [c](const auto& row) { return says_nothing(row[c]); }))
             continue;
@@ -260,7 +263,6 @@ PageTable table_of(const std::string& name, const Json& rows) {
         for (auto& row : table.rows) row.erase(row.begin() + static_cast<std::ptrdiff_t>(c));
     }
     if (left_out) table.title += fmt::format(" (the first {} columns)", most_columns);
-    if (rows.size() > most_rows) table.title += fmt::format(" (the first {} of {})", most_rows, rows.size());
     return table;
 }
 

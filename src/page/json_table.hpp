@@ -2,7 +2,10 @@
 #pragma once
 // A list of objects as a table of a page.
 
+#include <span>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "document/json/json.hpp"
 #include "ripplenotch/page/page.hpp"
@@ -38,6 +41,14 @@ struct Spoken {
 
 /// A list of objects, not empty.
 [[nodiscard]] bool is_table(const Json& json);
+
+/// The cells of a row, each under the name of its column.
+using NamedCells = std::vector<std::pair<std::string, std::string>>;
+
+/// A column for each name, in the order in which they come; columns that no row fills are left out, but for
+/// the first `always`.
+[[nodiscard]] PageTable table_of_cells(const std::string& title, std::span<const NamedCells> rows,
+                                       std::size_t always);
 
 /// One row an object, one column a field, units apart; objects and short lists within a row are columns of
 /// their own, and columns that no row fills are left out. At most 200 rows; the title states the total

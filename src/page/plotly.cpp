@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "page/plotly.hpp"
+#include "ripplenotch/page/page.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +14,6 @@
 #include "ripplenotch/core/visible_text.hpp"
 #include "ripplenotch/figure/figure.hpp"
 #include "ripplenotch/figure/min_max.hpp"
-#include "ripplenotch/page/page.hpp"
 
 namespace ripplenotch {
 
@@ -80,7 +79,7 @@ void colour_ticks(Json& bar, const HeatMap& map) {
     }
 }
 
-}  // namespace
+// The traces complete `json`, which holds the axes, the name and the legend already.
 
 Json curve_trace(Json json, const Panel& panel, const Curve& whole) {
     const Curve curve = thinned(whole);
@@ -101,8 +100,6 @@ Json curve_trace(Json json, const Panel& panel, const Curve& whole) {
     }
     return json;
 }
-
-namespace {
 
 // The lower edge first, then the upper, which fills down to it.
 Json ribbon_trace(Json json, const Ribbon& ribbon, bool upper) {

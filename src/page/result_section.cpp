@@ -12,7 +12,6 @@
 #include <utility>
 
 #include "document/fields/fields.hpp"
-#include "document/fields/result_fields.hpp"
 #include "document/json/json.hpp"
 #include "page/json_table.hpp"
 #include "ripplenotch/chart/diagnosis_figure.hpp"
@@ -21,10 +20,9 @@
 #include "ripplenotch/chart/track_figure.hpp"
 #include "ripplenotch/chart/trend_figure.hpp"
 #include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/visible_text.hpp"
 #include "ripplenotch/diagnose/diagnosis.hpp"
-#include "ripplenotch/document/diagnosis_json.hpp"
-#include "ripplenotch/document/features_json.hpp"
 #include "ripplenotch/document/figure_json.hpp"
 #include "ripplenotch/document/identification_json.hpp"
 #include "ripplenotch/document/map_json.hpp"
@@ -77,29 +75,38 @@ std::vector<std::string> short_names(const std::vector<std::string>& specs) {
     return std::set<std::string>(names.begin(), names.end()).size() == names.size() ? names : specs;
 }
 
-// A number, or a dash; attenuation without bound is null in a document.
-std::string cell(const Json& row, const char* name) {
-    const auto found = row.find(name);
-    if (found == row.end() || !found->is_number()) return "-";
-    return coarse_text(found->get<double>());
+// Empty where there is no number.
+std::optional<double> number_under(const Json& json, const char* pointer) {
+    const Json::json_pointer at(pointer);
+    if (!json.contains(at) || !json.at(at).is_number()) return std::nullopt;
+    return json.at(at).get<double>();
 }
 
-std::vector<std::pair<std::string, std::string>> method_cells(const Json& method) {
-    std::vector<std::pair<std::string, std::string>> cells;
+const Json& list_at(const Json& json, const char* name) {
+    static const Json none = Json::array();
+    const auto found = json.find(name);
+    return found != json.end() && found->is_array() ? *found : none;
+}
+
+// A number, or a dash; attenuation without bound is null in a document.
+std::string cell(const Json& row, const char* name) {
+    const auto value = number_under(row, fmt::format("/{}", name).c_str());
+    return value ? coarse_text(*value) : "-";
+}
+
+NamedCells method_cells(const std::string& name, const Json& method) {
+    NamedCells cells{{"method", name}};
     if (const auto meets = method.find("meets"); meets != method.end() && meets->is_boolean())
         cells.emplace_back("fits", meets->get<bool>() ? "yes" : "no");
     cells.emplace_back("maximum delay, ms", cell(method, "longest_delay_ms"));
-    if (const auto settle = method.find("settle_ms"); settle != method.end() && settle->is_object())
-        cells.emplace_back("settles to 0.5 %, ms", cell(*settle, "0.5"));
+    cells.emplace_back("settles to 0.5 %, ms", cell(method, "settle_ms/0.5"));
     cells.emplace_back("overshoot, %", cell(method, "overshoot_percent"));
     cells.emplace_back("undershoot, %", cell(method, "undershoot_percent"));
     cells.emplace_back("ramp delay, ms", cell(method, "ramp_delay_ms"));
     cells.emplace_back("delay at 0 Hz, ms", cell(method, "dc_delay_ms"));
     cells.emplace_back("lag at the crossover, deg", cell(method, "phase_lag_deg"));
-    if (const auto lines = method.find("attenuation_db"); lines != method.end() && is_table(*lines))
-        for (const Json& line : *lines)
-            cells.emplace_back(fmt::format("attenuation of order {}, dB", cell(line, "order")),
-                               cell(line, "db"));
+    for (const Json& line : list_at(method, "attenuation_db"))
+        cells.emplace_back(fmt::format("attenuation of order {}, dB", cell(line, "order")), cell(line, "db"));
     cells.emplace_back("remaining ripple, Nm rms", cell(method, "ripple_rms_nm"));
     cells.emplace_back("residual, Nm rms", cell(method, "residual_rms_nm"));
     cells.emplace_back("switches", cell(method, "switches"));
@@ -110,67 +117,31 @@ std::vector<std::pair<std::string, std::string>> method_cells(const Json& method
     return cells;
 }
 
-// Why a method is not recommended.
-std::string shortfalls_of(const Json& method) {
-    std::string all;
-    if (const auto reasons = method.find("shortfalls"); reasons != method.end() && reasons->is_array())
-        for (const Json& reason : *reasons) all += (all.empty() ? "" : "; ") + value_text(reason);
-    return all;
-}
-
-void drop_empty_columns(PageTable& table) {
-    for (std::size_t c = table.header.size(); c-- > 1;) {
-        if (!std::all_of(table.rows.begin(), table.rows.end(),
-                         [c](const auto& row) { return row[c] == "-"; }))
-            continue;
-        table.header.erase(table.header.begin() + static_cast<std::ptrdiff_t>(c));
-        for (auto& row : table.rows) row.erase(row.begin() + static_cast<std::ptrdiff_t>(c));
-    }
-}
-
-double jump_of(const Json& one) {
-    const auto found = one.find("jump_nm");
-    return found != one.end() && found->is_number() ? std::abs(found->get<double>()) : 0.0;
-}
+double jump_of(const Json& one) { return std::abs(number_under(one, "/jump_nm").value_or(0.0)); }
 
 }  // namespace
 
 PageTable comparison_table(const Json& methods) {
-    PageTable table{"The methods", {"method"}, {}};
-    std::vector<std::vector<std::pair<std::string, std::string>>> all;
     std::vector<std::string> names;
-    for (const Json& method : methods) {
-        const auto found = method.find("method");
-        names.push_back(found != method.end() ? value_text(*found) : "-");
-    }
+    for (const Json& method : methods) names.push_back(value_text(method.value("method", Json())));
     names = short_names(names);
+    std::vector<NamedCells> rows;
+    std::vector<PageFact> legend;
     for (const Json& method : methods) {
-        const std::string& name = names[all.size()];
-        if (const std::string reasons = shortfalls_of(method); !reasons.empty())
-            table.legend.push_back({name, reasons});
-        table.rows.push_back({name});
-        all.push_back(method_cells(method));
-        for (const auto& [column, value] : all.back())
-            if (std::find(table.header.begin(), table.header.end(), column) == table.header.end())
-                table.header.push_back(column);
+        const std::string& name = names[rows.size()];
+        if (std::string why = joined(list_at(method, "shortfalls"), "; ", value_text); !why.empty())
+            legend.push_back({name, std::move(why)});
+        rows.push_back(method_cells(name, method));
     }
-    for (std::size_t i = 0; i < all.size(); ++i) {
-        table.rows[i].resize(table.header.size(), "-");
-        for (const auto& [column, value] : all[i]) {
-            const auto at = std::find(table.header.begin(), table.header.end(), column);
-            table.rows[i][static_cast<std::size_t>(at - table.header.begin())] = value;
-        }
-    }
-    drop_empty_columns(table);
+    PageTable table = table_of_cells("The methods", rows, 1);
+    table.legend = std::move(legend);
     return table;
 }
 
 // The least attenuated order of a table's band; older tables state them, too.
 std::optional<double> least_attenuation_db(const Json& band) {
     std::optional<double> least;
-    const auto all = band.find("worst_attenuation_db");
-    if (all == band.end()) return least;
-    for (const Json& one : *all)
+    for (const Json& one : list_at(band, "worst_attenuation_db"))
         if (one.is_number()) least = std::min(least.value_or(one.get<double>()), one.get<double>());
     return least;
 }
@@ -181,13 +152,10 @@ PageTable notch_table(const Json& bands) {
         Json row{{"band", band.value("number", Json())}};
         row["speed, deg/s"] =
             fmt::format("{} to {}", cell(band, "speed_from_deg_s"), cell(band, "speed_to_deg_s"));
-        const auto notches = band.find("notches");
-        if (notches != band.end() && is_table(*notches)) {
-            for (const Json& notch : *notches) {
-                const std::string order = cell(notch, "order");
-                row[fmt::format("order {}: centre, Hz", order)] = cell(notch, "center_hz");
-                row[fmt::format("order {}: Q", order)] = cell(notch, "q");
-            }
+        for (const Json& notch : list_at(band, "notches")) {
+            const std::string order = cell(notch, "order");
+            row[fmt::format("order {}: centre, Hz", order)] = cell(notch, "center_hz");
+            row[fmt::format("order {}: Q", order)] = cell(notch, "q");
         }
         row["delay at 0 Hz, ms"] = cell(band, "dc_delay_ms");
         row["settles, ms"] = cell(band, "settle_ms");
@@ -242,45 +210,7 @@ PageTable largest_switches(const Json& switches) {
 
 namespace {
 
-std::string gap_from_to(double before_nm, double after_nm) {
-    return fmt::format("{} to {}", coarse_text(before_nm), coarse_text(after_nm));
-}
-
-Json row_of(const Finding& finding) {
-    Json row{{"effect", finding.term.effect->name}, {"status", status_name(finding.status)}};
-    if (!finding.reason.empty()) row["reason"] = finding.reason;
-    row["parameters"] = parameters_json(finding.term, finding.values);
-    row["times_the_noise"] = finite_or_null(to_digits(finding.evidence.noise_share, 4));
-    row["gap_nm"] = gap_from_to(finding.gap_before_nm, finding.gap_after_nm);
-    if (finding.validation_before_nm)
-        row["validation_nm"] = gap_from_to(*finding.validation_before_nm, *finding.validation_after_nm);
-    const std::string rivals = joined(finding.alternatives, ", ", &RivalFinding::name);
-    if (!rivals.empty()) row["rivals"] = rivals;
-    return row;
-}
-
-// The rounds of a diagnosis as a table that fits a page, which is not as wide as the JSON is deep: a round's
-// gap as "0.435 to 0.0497" in one cell, and the most important items of its evidence.
-PageTable rounds_table(const Diagnosis& diagnosis) {
-    Json rows = Json::array();
-    for (const Finding& finding : diagnosis.rounds) rows.push_back(row_of(finding));
-    return table_of("rounds", rows);
-}
-
 constexpr std::size_t most_numbers = 3;
-
-// Empty where there is no number.
-std::optional<double> number_under(const Json& json, const char* pointer) {
-    const Json::json_pointer at(pointer);
-    if (!json.contains(at) || !json.at(at).is_number()) return std::nullopt;
-    return json.at(at).get<double>();
-}
-
-const Json& list_at(const Json& json, const char* name) {
-    static const Json none = Json::array();
-    const auto found = json.find(name);
-    return found != json.end() && found->is_array() ? *found : none;
-}
 
 // Smallest and largest of a field over the rows.
 std::optional<std::pair<double, double>> extremes(const Json& rows, const char* pointer) {
@@ -297,6 +227,110 @@ std::optional<std::pair<double, double>> extremes(const Json& rows, const char* 
 
 std::string from_to(const std::pair<double, double>& ends) {
     return fmt::format("{:.4g} to {:.4g}", ends.first, ends.second);
+}
+
+// Empty where there is no text of this name.
+std::string text_at(const Json& json, const char* name) {
+    const auto found = json.find(name);
+    return found != json.end() && found->is_string() ? found->get<std::string>() : "";
+}
+
+// The rounds of a diagnosis as a table that fits a page, which is not as wide as the JSON is deep: a round's
+// gap as "0.435 to 0.0497" in one cell, and the most important items of its evidence.
+PageTable rounds_table(const Json& rounds) {
+    Json rows = Json::array();
+    for (const Json& round : rounds) {
+        Json& row = rows.emplace_back(Json::object());
+        for (const char* name : {"effect", "status", "reason", "parameters"})
+            if (round.contains(name)) row[name] = round[name];
+        if (const auto share = number_under(round, "/evidence/noise_share"))
+            row["times_the_noise"] = to_digits(*share, 4);
+        for (const char* name : {"gap", "validation"}) {
+            const auto before = number_under(round, fmt::format("/{}_before_nm", name).c_str()),
+                       after = number_under(round, fmt::format("/{}_after_nm", name).c_str());
+            if (before && after)
+                row[fmt::format("{}_nm", name)] =
+                    fmt::format("{} to {}", coarse_text(*before), coarse_text(*after));
+        }
+        const std::string rivals = joined(list_at(round, "alternatives"), ", ", [](const Json& rival) {
+            return rival.is_object() ? text_at(rival, "effect") : "";
+        });
+        if (!rivals.empty()) row["rivals"] = rivals;
+    }
+    return table_of("rounds", rows);
+}
+
+// Empty for a word that names none of them.
+template <class Enum>
+std::optional<Enum> named(std::string_view word, std::string_view (*name_of)(Enum), Enum last) {
+    for (int i = 0; i <= static_cast<int>(last); ++i)
+        if (name_of(static_cast<Enum>(i)) == word) return static_cast<Enum>(i);
+    return std::nullopt;
+}
+
+// A diagnosis as far as its sentence and the figure of its gap go.
+Diagnosis gap_of(const Json& json, const std::string& source) {
+    Diagnosis found;
+    const auto verdict = named(text_at(json, "verdict"), verdict_name, DiagnosisVerdict::undecided);
+    if (!verdict) raise<DataError>("{}: verdict is none of a diagnosis", source);
+    found.verdict = *verdict;
+    for (const Json& name : list_at(json, "named")) found.named.push_back(value_text(name));
+    const auto nm = [](const Json& owner, const char* pointer) {
+        return number_under(owner, pointer).value_or(not_a_number);
+    };
+    found.gap.before_nm = nm(json, "/gap/before_nm");
+    found.gap.after_nm = nm(json, "/gap/after_nm");
+    found.gap.noise_floor_nm = nm(json, "/gap/noise_floor_nm");
+    for (const Json& round : list_at(json, "rounds")) {
+        if (!round.is_object()) continue;
+        const auto effects = catalogue();
+        const auto effect = std::find_if(effects.begin(), effects.end(), [&](const Effect* one) {
+            return one->name == text_at(round, "effect");
+        });
+        const auto status = named(text_at(round, "status"), status_name, FindingStatus::refused);
+        if (effect == effects.end() || !status) continue;
+        Finding& finding = found.rounds.emplace_back();
+        finding.term.effect = *effect;
+        finding.status = *status;
+        finding.gap_before_nm = nm(round, "/gap_before_nm");
+        finding.gap_after_nm = nm(round, "/gap_after_nm");
+    }
+    return found;
+}
+
+// A trend as far as its figure goes: the alerts, and the courses of the first.
+Trend courses_of(const Json& json) {
+    Trend trend;
+    trend.joint_months = number_under(json, "/joint_months").value_or(0.0);
+    std::map<std::pair<std::string, std::string>, std::size_t> places;
+    const auto each = [&](const char* table, const auto& take) {
+        for (const Json& row : list_at(json, table)) {
+            if (!row.is_object()) continue;
+            const std::pair name{text_at(row, "robot"), text_at(row, "joint")};
+            const auto [place, is_new] = places.try_emplace(name, trend.joints.size());
+            if (is_new) {
+                JointTrend& joint = trend.joints.emplace_back();
+                joint.robot = name.first;
+                joint.joint = name.second;
+            }
+            take(row, trend.joints[place->second]);
+        }
+    };
+    each("joints", [](const Json& row, JointTrend& joint) { joint.from = text_at(row, "from"); });
+    each("alerts", [](const Json& row, JointTrend& joint) {
+        JointChange& change = joint.changes.emplace_back();
+        change.drift = text_at(row, "kind") == "drift";
+        change.date = text_at(row, "date");
+        change.descriptors.push_back({text_at(row, "descriptor"), 0.0, {}, {}});
+    });
+    each("courses", [](const Json& row, JointTrend& joint) {
+        const auto value = number_under(row, "/value");
+        for (JointChange& change : joint.changes)
+            if (value && change.date == text_at(row, "alert") &&
+                change.descriptors.front().name == text_at(row, "descriptor"))
+                return change.course.push_back({text_at(row, "date"), *value, {}});
+    });
+    return trend;
 }
 
 class Numbers {
@@ -513,12 +547,6 @@ void add_field(PageSection& section, const std::string& name, const Json& whole)
     }
 }
 
-// Empty where there is no text of this name.
-std::string text_at(const Json& json, const char* name) {
-    const auto found = json.find(name);
-    return found != json.end() && found->is_string() ? found->get<std::string>() : "";
-}
-
 // The main tables of a kind are shown first; its other tables are ledgers.
 bool is_ledger(const std::string& kind, const std::string& name) {
     struct Shown {
@@ -539,9 +567,9 @@ bool is_ledger(const std::string& kind, const std::string& name) {
 void add_method_ledgers(PageSection& section, const Json& methods, const PageTable& compared) {
     for (std::size_t i = 0; i < methods.size(); ++i) {
         for (const char* name : {"ledger", "switch_ledger"}) {
-            const auto found = methods[i].find(name);
-            if (found == methods[i].end() || !is_table(*found)) continue;
-            section.tables.push_back(table_of(name, *found));
+            const Json& ledger = list_at(methods[i], name);
+            if (!is_table(ledger)) continue;
+            section.tables.push_back(table_of(name, ledger));
             section.tables.back().title = fmt::format("{} of {}", spoken(name).name, compared.rows[i][0]);
             section.tables.back().folded = true;
         }
@@ -566,6 +594,13 @@ void add_best(PageSection& section, PageTable methods) {
     section.tables.push_back(std::move(others));
 }
 
+// All of a list whose best columns stand above.
+void add_every_value(PageSection& section, const std::string& name, const Json& rows) {
+    section.tables.push_back(table_of(name, rows));
+    section.tables.back().title = fmt::format("Every value of the {}", name);
+    section.tables.back().folded = true;
+}
+
 // The tables that people read across have columns of their own choice; false for any other.
 bool add_known_table(PageSection& section, const std::string& kind, const std::string& name,
                      const Json& rows) {
@@ -575,21 +610,17 @@ bool add_known_table(PageSection& section, const std::string& kind, const std::s
         add_method_ledgers(section, rows, PageTable(section.tables.back()));
     } else if (kind == "recommendation" && name == "methods") {
         add_best(section, comparison_table(rows));
-        section.tables.push_back(table_of(name, rows));
-        section.tables.back().title = "Every value of the methods";
-        section.tables.back().folded = true;
+        add_every_value(section, name, rows);
     } else if (kind == "joint" && name == "lines") {
         Json lines = rows;  // amplitudes at each speed are in the figure
         for (Json& line : lines) line.erase("amplitude_by_speed");
         section.tables.push_back(table_of(name, lines));
-        section.tables.push_back(table_of(name, rows));
-        section.tables.back().title = "Every value of the lines";
-        section.tables.back().folded = true;
+        add_every_value(section, name, rows);
     } else if (kind == "table" && name == "bands") {
         section.tables.push_back(notch_table(rows));
-        section.tables.push_back(table_of(name, rows));
-        section.tables.back().title = "Every value of the bands";
-        section.tables.back().folded = true;
+        add_every_value(section, name, rows);
+    } else if (kind == "diagnosis" && name == "rounds") {
+        section.tables.push_back(rounds_table(rows));
     } else if (kind == "metrics" && name == "switches") {
         if (auto drawn = switch_figure(rows)) section.figures.push_back(std::move(*drawn));
         section.tables.push_back(largest_switches(rows));
@@ -601,19 +632,15 @@ bool add_known_table(PageSection& section, const std::string& kind, const std::s
 
 // Every field as a fact or a table, in the order of the document, but for what stands elsewhere in the
 // section.
-void add_fields(PageSection& section, const std::string& kind, const Json& json,
-                const std::optional<Diagnosis>& diagnosis) {
+void add_fields(PageSection& section, const std::string& kind, const Json& json) {
     constexpr std::array told = {"schema", "tool", "version", "command", "inputs", "verdict"};
     for (const auto& [name, entry] : json.items()) {
         if (std::find(told.begin(), told.end(), name) != told.end()) continue;
-        if (diagnosis && name == "rounds") {
-            if (!diagnosis->rounds.empty()) section.tables.push_back(rounds_table(*diagnosis));
-        } else if (!add_known_table(section, kind, name, entry)) {
-            const std::size_t before = section.tables.size();
-            add_field(section, name, json);
-            for (std::size_t i = before; i < section.tables.size(); ++i)
-                section.tables[i].folded = is_ledger(kind, name);
-        }
+        if (add_known_table(section, kind, name, entry)) continue;
+        const std::size_t before = section.tables.size();
+        add_field(section, name, json);
+        for (std::size_t i = before; i < section.tables.size(); ++i)
+            section.tables[i].folded = is_ledger(kind, name);
     }
 }
 
@@ -639,13 +666,11 @@ PageSection section_of_result(const std::string& text, const std::string& source
     section.json = text;
     if (const auto verdict = json.find("verdict"); verdict != json.end())
         section.verdict = value_text(*verdict);
-    std::optional<Diagnosis> diagnosis;
-    if (kind == "diagnosis") diagnosis = read_diagnosis(text, source);
     if (section.verdict.empty()) section.verdict = sentence_of(kind, json);
     section.in_summary = true;
     section.state = state_of(json);
     section.key = key_numbers(kind, json);
-    add_fields(section, kind, json, diagnosis);
+    add_fields(section, kind, json);
     if (kind == "joint") {
         section.figures.push_back(identification_figure(source, identification_from_json(text, source)));
         section.figures.back().sentence.clear();  // it is the verdict above
@@ -655,10 +680,11 @@ PageSection section_of_result(const std::string& text, const std::string& source
     } else if (kind == "table") {
         section.figures.push_back(table_figure(table_from_json(text, source)));
     } else if (kind == "trend") {
-        section.figures.push_back(trend_figure(trend_from_json(text, source)));
-    } else if (diagnosis) {
-        section.verdict = diagnosis_sentence(*diagnosis);
-        section.figures.push_back(gap_figure(fmt::format("How the gap shrank: {}", source), *diagnosis));
+        section.figures.push_back(trend_figure(courses_of(json)));
+    } else if (kind == "diagnosis") {
+        const Diagnosis diagnosis = gap_of(json, source);
+        section.verdict = diagnosis_sentence(diagnosis);
+        section.figures.push_back(gap_figure(fmt::format("How the gap shrank: {}", source), diagnosis));
     }
     return section;
 }

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "document/json/json.hpp"
-#include "ripplenotch/diagnose/diagnosis.hpp"
 #include "ripplenotch/figure/figure.hpp"
 #include "ripplenotch/page/page.hpp"
 

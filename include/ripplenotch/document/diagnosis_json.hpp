@@ -4,7 +4,6 @@
 
 #include <span>
 #include <string>
-#include <string_view>
 
 #include "ripplenotch/arm/arm_fit.hpp"
 #include "ripplenotch/arm/arm_setup.hpp"
@@ -37,10 +36,5 @@ struct DiagnosedJoint {
 
 /// Schema ripplenotch/friction-table/1.
 [[nodiscard]] std::string write_friction(const FrictionDiagnosis& found, const Provenance& provenance);
-
-/// Reads a diagnosis back; `source` is its name in messages. What the document does not hold is not known
-/// then: values of Diagnosis::baseline are empty, and FittedValue has no standard error. Throws DataError
-/// that names `source`, the field, what it holds and what was expected.
-[[nodiscard]] Diagnosis read_diagnosis(std::string_view text, const std::string& source);
 
 }  // namespace ripplenotch

@@ -31,8 +31,4 @@ namespace ripplenotch {
 /// The whole text of trend.json, schema ripplenotch/trend/1; same trend, same bytes.
 [[nodiscard]] std::string trend_text(const Trend& trend, const Provenance& provenance);
 
-/// Reads back what a picture of it needs: joints, alerts, and the courses of the first.
-/// Throws DataError that names `source`, the field, what it holds and what was expected.
-[[nodiscard]] Trend trend_from_json(std::string_view text, const std::string& source);
-
 }  // namespace ripplenotch

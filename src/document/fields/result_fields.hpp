@@ -31,28 +31,19 @@ void describe_switch(JsonWriter& json, const Switch& change, Seconds time);
 /// The change, and what it did to the output.
 void describe(JsonWriter& json, const SwitchEntry& entry);
 
-/// {"level_nm": {"value", "ci95", "fitted", "at_bound"}, ...}, one entry a parameter of the term's effect.
-[[nodiscard]] Json parameters_json(const Term& term, const std::vector<FittedValue>& values);
-
-/// An effect by its name. The catalogue answers an unknown one as a wrong request; in a file it is wrong
-/// data, and the file must be named.
-template <class Archive, class EffectPointer>
-void describe_effect(Archive& archive, EffectPointer& effect) {
+template <class Archive>
+void describe_term(Archive& archive, Is<Term> auto& term, const Model& model) {
     if constexpr (Archive::reading) {
+        // The catalogue answers an unknown name as a wrong request; in a file it is wrong data.
         try {
-            effect = &find_effect(archive.text("effect"));
+            term.effect = &find_effect(archive.text("effect"));
         } catch (const UsageError& error) {
             raise<DataError>("{}: {}", archive.where("effect"), error.what());
         }
+        term.values.resize(term.effect->parameters.size());
     } else {
-        archive("effect", effect->name);
+        archive("effect", term.effect->name);
     }
-}
-
-template <class Archive>
-void describe_term(Archive& archive, Is<Term> auto& term, const Model& model) {
-    describe_effect(archive, term.effect);
-    if constexpr (Archive::reading) term.values.resize(term.effect->parameters.size());
     for (std::size_t p = 0; p < term.values.size(); ++p) {
         const Parameter& parameter = term.effect->parameters[p];
         archive(parameter.name, term.values[p], if_any);
@@ -66,7 +57,6 @@ void describe_term(Archive& archive, Is<Term> auto& term, const Model& model) {
     }
 }
 
-/// What stands for the ratio of a model that has none, and no effect that needs one.
 /// The gear ratio of a table or a map: null where its orders count by turns of the joint.
 template <class Archive>
 void describe_ratio(Archive& archive, auto& ratio) {
@@ -74,6 +64,7 @@ void describe_ratio(Archive& archive, auto& ratio) {
     if constexpr (Archive::reading) ratio = no_ratio;
 }
 
+/// What stands for the ratio of a model that has none, and no effect that needs one.
 inline constexpr const char* unknown_gear_ratio = "unknown";
 
 /// "gear_ratio" and "effects"; the caller knows whether the model has a simulation.
