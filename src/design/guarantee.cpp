@@ -255,4 +255,9 @@ std::optional<DegPerSec> slowest_within(const TableSpec& spec, Seconds delay) {
     return DegPerSec(high);
 }
 
+std::string slowest_sentence(Seconds delay, DegPerSec slowest) {
+    return fmt::format("Below {:.4g} deg/s no notch of Q 5 or less is within {:.4g} ms.", slowest.value(),
+                       1e3 * delay.value());
+}
+
 }  // namespace ripplenotch

@@ -37,5 +37,7 @@ struct DesignChoice {
 /// The lowest speed at which notches for these orders, as narrow as a design may take them (Q 5), delay by no
 /// more than `delay`; empty when they do not at any speed below half the sample rate.
 [[nodiscard]] std::optional<DegPerSec> slowest_within(const TableSpec& spec, Seconds delay);
+/// "Below 4.3 deg/s no notch of Q 5 or less is within 20 ms."
+[[nodiscard]] std::string slowest_sentence(Seconds delay, DegPerSec slowest);
 
 }  // namespace ripplenotch

@@ -15,7 +15,6 @@
 #include <vector>
 
 #include "cli/command.hpp"
-#include "cli/design/design_text.hpp"
 #include "cli/options/joint_runs.hpp"
 #include "cli/options/lists.hpp"
 #include "cli/options/options.hpp"
@@ -503,13 +502,9 @@ std::vector<std::string> violations(const Comparison& comparison, const CostRequ
     return found;
 }
 
-struct CompareRequest {
-    CommonOptions common;
-    PlotRequest plot;
-    ReadOptions log_options;
-    std::string log, truth;
+struct CompareRequest : LogRequest {
+    std::string truth;
     std::vector<std::string> methods;
-    GearOptions gear;
     std::optional<double> step_nm, ramp_nm_s;
     std::optional<DegPerSec> speed;
     CostRequest costs;
@@ -521,8 +516,8 @@ Comparison compare_on_signals(const CompareRequest& request, const Field& field)
         raise<UsageError>("nothing to compare on; give a LOG, or --step 10Nm, or --ramp 20Nm/s");
     }
     Comparison comparison;
-    if (request.log_options.sample_rate) {
-        comparison.sample_rate = *request.log_options.sample_rate;
+    if (request.log.sample_rate) {
+        comparison.sample_rate = *request.log.sample_rate;
     } else if (field.table) {
         comparison.sample_rate = field.table->spec().sample_rate;
     } else {
@@ -556,7 +551,7 @@ std::vector<double> true_torque(const CompareRequest& request, const ReadOptions
     provenance.inputs.back().rows = truth.trace.size();
     if (truth.trace.size() != rows) {
         raise<DataError>("--truth {} has {} rows, {} has {}; they have to be of the same motion, row by row",
-                         request.truth, truth.trace.size(), request.log, rows);
+                         request.truth, truth.trace.size(), request.path, rows);
     }
     return std::move(truth.trace.torque_nm);
 }
@@ -568,12 +563,12 @@ bool follows_motion(const Contender& contender) {
 
 Comparison compare_on_log(const CompareRequest& request, Field& field, Provenance& provenance,
                           ComparedCourse& course) {
-    ReadOptions read = read_options(request.log_options, field.gear);
+    ReadOptions read = read_options(request.log, field.gear);
     // What has the same coefficients at every speed is measured without one.
     read.needs_velocity =
         field.gear || std::any_of(field.contenders.begin(), field.contenders.end(), follows_motion);
-    const Log log = read_log_in_part(request.log, read);
-    take_log(request.common, request.log, log, provenance);
+    const Log log = read_log_in_part(request.path, read);
+    take_log(request.common, request.path, log, provenance);
     for (const Contender& contender : field.contenders) refuse_other_joint(contender, log.trace.joint);
     if (field.gear)
         if (const std::string against = against_gear({&log, 1}, *field.gear); !against.empty())
@@ -631,8 +626,8 @@ JointResult compare_once(const CompareRequest& request, const std::string& comma
     if (request.costs.gates.min_attenuation_db && !field.gear) raise_no_gear("--min-attenuation");
     if (field.gear) say(request.common, gear_in_words(*field.gear));
     ComparedCourse course;
-    Comparison comparison = request.log.empty() ? compare_on_signals(request, field)
-                                                : compare_on_log(request, field, provenance, course);
+    Comparison comparison = request.path.empty() ? compare_on_signals(request, field)
+                                                 : compare_on_log(request, field, provenance, course);
     add_costs(comparison, request.costs, field, request.common.verbose);
     const std::string unit = provenance.recordings.empty() ? "Nm" : provenance.recordings.front().torque_unit;
     JointResult result{in_torque_unit(request.common.json ? comparison_text(comparison, provenance)
@@ -643,7 +638,7 @@ JointResult compare_once(const CompareRequest& request, const std::string& comma
     result.afterwards = [request, provenance, broken, field = std::move(field),
                          comparison = std::move(comparison), course = std::move(course)] {
         draw_plot(request.plot, request.common, provenance, [&] {
-            if (!course.empty()) return course.figure(request.log, comparison);
+            if (!course.empty()) return course.figure(request.path, comparison);
             return comparison_figure(comparison, field.contenders);
         });
         say_warnings(request.common, broken);
@@ -652,27 +647,20 @@ JointResult compare_once(const CompareRequest& request, const std::string& comma
 }
 
 ExitCode run_compare(const CompareRequest& request, const std::string& command_line) {
-    if (request.log.empty() && request.log_options.range.given())
+    if (request.path.empty() && request.log.range.given())
         raise<UsageError>("--from and --to: there is no LOG to select rows from");
     // A signal is no joint's, and is compared on as a log of one is.
-    static const std::string no_log = "-";
-    const std::string& path = request.log.empty() ? no_log : request.log;
-    return run_joints({path, request.log_options, request.common, &request.plot, "comparisons"},
-                      [&](const std::optional<std::string>& joint, const CommonOptions& common) {
-                          CompareRequest one = request;
-                          one.common = common;
-                          if (joint) one.log_options.joint = joint;
-                          one.plot.path = of_joint(request.plot.path, joint);
-                          one.gear.joint_file = of_joint(request.gear.joint_file, joint);
-                          if (joint)
-                              for (std::string& method : one.methods) method = with_joint(method, *joint);
-                          return compare_once(one, command_line);
-                      });
+    return run_joints(request, "comparisons", false, [&](CompareRequest& one) {
+        if (one.joint)
+            for (std::string& method : one.methods) method = with_joint(method, *one.joint);
+        return compare_once(one, command_line);
+    });
 }
 
 std::function<ExitCode()> attach_compare(Options& options) {
     auto request = std::make_shared<CompareRequest>();
-    options.argument("LOG", request->log, false, "a log; - is standard input. Without one, --step or --ramp");
+    options.argument("LOG", request->path, false,
+                     "a log; - is standard input. Without one, --step or --ramp");
     options.texts(
         "--method", request->methods, "NAME,KEY=VALUE,...",
         fmt::format("a method to compare; repeatable; methods: {}; see docs/methods", name_list(methods())));
@@ -686,7 +674,7 @@ std::function<ExitCode()> attach_compare(Options& options) {
                  "the same log without ripple and noise: each method's error against its torque");
     attach_costs(options, request->costs);
     attach_plot(options, request->plot, request->common);
-    attach_log(options, request->log_options);
+    attach_log(options, request->log);
     attach_common(options, request->common, {"a comparison", ".txt .json", true});
     return [request, &options] { return run_compare(*request, options.command_line()); };
 }

@@ -7,31 +7,23 @@
 #include <string_view>
 #include <vector>
 
-#include "cli/command.hpp"
 #include "cli/options/joint_runs.hpp"
-#include "cli/options/options.hpp"
-#include "cli/options/plot_request.hpp"
 #include "ripplenotch/arm/arm_setup.hpp"
 #include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/diagnose/diagnosis.hpp"
 #include "ripplenotch/export/joint_mjcf.hpp"
-#include "ripplenotch/model/model.hpp"
 #include "ripplenotch/model/motion.hpp"
-#include "ripplenotch/verdict/gear_choice.hpp"
 #include "ripplenotch/verdict/given_terms.hpp"
 
 namespace ripplenotch {
 
 // What was asked of diagnose.
 
-struct DiagnoseRequest {
-    CommonOptions common;
-    PlotRequest plot;
-    ReadOptions log;
-    std::string path, model;
+/// Its gear is a ratio alone, in place of a model.
+struct DiagnoseRequest : LogRequest {
+    std::string model;
     std::optional<std::string> improved;  ///< file of the improved model
     bool improved_by_output = false;      ///< which was named by -o
-    GearOptions gear;                     ///< a ratio alone, in place of a model
     GivenOptions given;
     std::optional<std::string> validate;
     std::vector<std::string> without, accept;

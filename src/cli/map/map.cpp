@@ -138,15 +138,10 @@ std::string map_report(const MapFit& fit, const std::vector<std::string>& logs) 
     return text;
 }
 
-struct MapRequest {
-    CommonOptions common;
-    PlotRequest plot;
-    ReadOptions log;
+struct MapRequest : LogRequest {
     std::vector<std::string> logs;
-    GearOptions gear;
     Degrees zero;
     bool require_conclusive = false;
-    bool heads = false;                           ///< what is printed begins with the joint
     std::optional<std::string> joint_files = {};  ///< --joint-file where it names one for each joint
 };
 
@@ -218,7 +213,7 @@ ExitCode run_map_once(const MapRequest& request, const std::string& command_line
         fit.conclusive = false;
     }
     for (const std::string& note : fit.notes) say(request.common, note);
-    const std::string heading = request.heads ? fit.map.joint + ": " : "";
+    const std::string heading = request.joint ? fit.map.joint + ": " : "";
     const std::string& unit = logs.front().recording.torque_unit;
     write_result(
         request.common, [&] { return in_torque_unit(map_text(fit, provenance), unit); },
@@ -265,14 +260,11 @@ ExitCode run_each(const MapRequest& request, const std::string& command_line) {
     const auto messages = std::make_shared<JointMessages>();
     for (const std::string& joint : joints.names) {
         MapRequest one = request;
-        one.common.joint = joint;
-        one.common.messages = messages;
-        one.log.joint = joint;
-        one.heads = true;
-        one.common.output = with_joint(request.common.output, joint);
-        if (request.plot.path) one.plot.path = with_joint(*request.plot.path, joint);
-        if (request.gear.joint_file) one.gear.joint_file = with_joint(*request.gear.joint_file, joint);
-        one.joint_files = request.joint_files;
+        CommonOptions common = request.common;
+        common.joint = joint;
+        common.messages = messages;
+        common.output = with_joint(common.output, joint);
+        one.take_joint(joint, common);
         const ExitCode code = run_or_complain(one, command_line);
         if (code == ExitCode::done || code == ExitCode::inconclusive)
             maps = std::max(maps, code);

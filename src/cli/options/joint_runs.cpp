@@ -23,7 +23,8 @@ namespace {
 bool can_be_read_again(const std::string& path) {
     std::error_code unknown;
     const auto status = std::filesystem::status(path, unknown);
-    return path != "-" && !is_fifo(status) && !is_character_file(status) && !is_socket(status);
+    return !path.empty() && path != "-" && !is_fifo(status) && !is_character_file(status) &&
+           !is_socket(status);
 }
 
 }  // namespace
@@ -56,9 +57,12 @@ bool asks_for_several(const std::string& path, const ReadOptions& log) {
     return joints_asked_for(path, log).names.size() > 1;
 }
 
-std::optional<std::string> of_joint(const std::optional<std::string>& text,
-                                    const std::optional<std::string>& joint) {
-    return text && joint ? with_joint(*text, *joint) : text;
+void LogRequest::take_joint(const std::optional<std::string>& name, const CommonOptions& of_joint) {
+    common = of_joint;
+    if (!name) return;
+    joint = log.joint = name;
+    if (plot.path) plot.path = with_joint(*plot.path, *joint);
+    if (gear.joint_file) gear.joint_file = with_joint(*gear.joint_file, *joint);
 }
 
 void say_left_out(const CommonOptions& common, const std::vector<LeftOutJoint>& joints) {
@@ -109,28 +113,28 @@ struct JointResults {
     std::shared_ptr<JointMessages> messages;  ///< for what is said afterwards
 };
 
-void check_several(const JointRuns& runs, const std::vector<std::string>& joints) {
-    const auto& columns = runs.log.columns;
+void check_several(const LogRequest& request, const std::vector<std::string>& joints) {
+    const auto& columns = request.log.columns;
     const auto is_of_joint = [](const std::string& entry) { return !entry.starts_with("time"); };
     if (std::any_of(columns.begin(), columns.end(), is_of_joint))
         raise<UsageError>(
             "--columns names columns of one joint, and {} are asked for ({}); select one with --joint",
             joints.size(), fmt::join(joints, ", "));
-    if (runs.plot != nullptr && runs.plot->path && !names_joint(*runs.plot->path))
+    if (request.plot.path && !names_joint(*request.plot.path))
         raise<UsageError>(
             "--plot {}: a picture shows one joint, and {} are asked for ({}); select one with --joint, or "
             "put {} into the name",
-            *runs.plot->path, joints.size(), fmt::join(joints, ", "), joint_mark);
+            *request.plot.path, joints.size(), fmt::join(joints, ", "), joint_mark);
 }
 
 template <class One>
-JointResults go_over(const JointRuns& runs, const std::vector<std::string>& joints, const One& one) {
+JointResults go_over(const CommonOptions& asked, const std::vector<std::string>& joints, const One& one) {
     JointResults all;
-    CommonOptions common = runs.common;
+    CommonOptions common = asked;
     common.messages = std::make_shared<JointMessages>();
     for (const std::string& joint : joints) {
         common.joint = joint;
-        common.output = with_joint(runs.common.output, joint);
+        common.output = with_joint(asked.output, joint);
         try {
             all.results.push_back(one(joint, common));
             all.joints.push_back(joint);
@@ -170,14 +174,14 @@ std::string with_joint_column(const JointResults& all) {
     return whole;
 }
 
-std::string as_one(const JointRuns& runs, const JointResults& all) {
-    if (runs.common.json) {
+std::string as_one(const JointResults& all, bool json, std::string_view kind, bool csv) {
+    if (json) {
         std::vector<JointDocument> documents;
         for (std::size_t j = 0; j < all.joints.size(); ++j)
             documents.push_back({all.joints[j], all.results[j].text});
-        return joint_documents_text(runs.documents, documents);
+        return joint_documents_text(kind, documents);
     }
-    if (runs.csv) return with_joint_column(all);
+    if (csv) return with_joint_column(all);
     std::string whole;
     for (std::size_t j = 0; j < all.joints.size(); ++j)
         whole += (j > 0 ? "\n" : "") + all.joints[j] + ": " + all.results[j].text;
@@ -193,31 +197,33 @@ void write_own(const JointResult& result, const std::string& path, const CommonO
 
 }  // namespace
 
-ExitCode run_joints(const JointRuns& runs,
-                    const std::function<JointResult(const std::optional<std::string>& joint,
-                                                    const CommonOptions& common)>& one) {
-    if (!can_be_read_again(runs.path) && asks_for_several(runs.path, runs.log))
-        raise<UsageError>("--joint {}: standard input can be read once only; give a file", *runs.log.joint);
-    const AskedJoints asked = joints_asked_for(runs.path, runs.log);
-    const bool several = asked.names.size() + asked.left_out.size() > 1 && runs.log.joint;
-    if (several || asked.names.size() > 1) say_left_out(runs.common, asked.left_out);
+ExitCode run_each_joint(const LogRequest& request, std::string_view documents, bool csv,
+                        const std::function<JointResult(const std::optional<std::string>& joint,
+                                                        const CommonOptions& common)>& one) {
+    const CommonOptions& common = request.common;
+    if (!can_be_read_again(request.path) && asks_for_several(request.path, request.log))
+        raise<UsageError>("--joint {}: standard input can be read once only; give a file",
+                          *request.log.joint);
+    const AskedJoints asked = joints_asked_for(request.path, request.log);
+    const bool several = asked.names.size() + asked.left_out.size() > 1 && request.log.joint;
+    if (several || asked.names.size() > 1) say_left_out(common, asked.left_out);
     if (asked.names.size() < 2) {
         // Where others are left out, the name says which is meant.
         const auto only = several ? std::optional(asked.names.front()) : std::nullopt;
-        const JointResult result = one(only, runs.common);
-        write_own(result, runs.common.output, runs.common);
+        const JointResult result = one(only, common);
+        write_own(result, common.output, common);
         if (result.afterwards) result.afterwards();
         return result.code;
     }
-    check_several(runs, asked.names);
-    const JointResults all = go_over(runs, asked.names, one);
+    check_several(request, asked.names);
+    const JointResults all = go_over(common, asked.names, one);
     if (all.results.empty()) std::rethrow_exception(all.first_error);
-    say_left_out(runs.common, all.left_out);
-    if (names_joint(runs.common.output)) {
+    say_left_out(common, all.left_out);
+    if (names_joint(common.output)) {
         for (std::size_t j = 0; j < all.joints.size(); ++j)
-            write_own(all.results[j], with_joint(runs.common.output, all.joints[j]), runs.common);
+            write_own(all.results[j], with_joint(common.output, all.joints[j]), common);
     } else {
-        write_text(runs.common.output, as_one(runs, all), runs.common.overwrite());
+        write_text(common.output, as_one(all, common.json, documents, csv), common.overwrite());
     }
     ExitCode code = ExitCode::done;
     for (const JointResult& result : all.results) {

@@ -12,6 +12,7 @@
 #include "cli/options/plot_request.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/log/log.hpp"
+#include "ripplenotch/verdict/gear_choice.hpp"
 
 namespace ripplenotch {
 
@@ -30,28 +31,40 @@ struct JointResult {
     std::function<void()> afterwards = {};  ///< when all is written: --plot, limits that are broken
 };
 
-/// A command that gives one result a joint.
-struct JointRuns {
-    const std::string& path;
-    const ReadOptions& log;
-    const CommonOptions& common;
-    const PlotRequest* plot = nullptr;
-    std::string_view documents;  ///< kind of the document that lists those of all joints: "spectra"
-    bool csv = false;            ///< text is CSV, which gets a column with the joint, and no report
+/// What a command on one log is asked, beside its own options.
+struct LogRequest {
+    CommonOptions common;
+    PlotRequest plot;
+    ReadOptions log;
+    std::string path;
+    GearOptions gear;
+    std::optional<std::string> joint = {};  ///< the one of several that this is about
+
+    /// What is asked of one joint: its name stands for {joint} in the names of files. `name` is empty for a
+    /// log that is read as it is.
+    void take_joint(const std::optional<std::string>& name, const CommonOptions& of_joint);
 };
 
 /// Runs `one` on each joint that is asked for, all where none is, and writes what they give: into a file each
-/// where -o holds {joint}; else one list with --json, one CSV with a column `joint`, or one report below the
-/// other. `one` takes the joint and the options that go with it, or none where the log has one joint: then
-/// its result is written as it is. A joint of which it throws Error is left out with a warning; where none
-/// is left, the error of the first is thrown. The exit code is the lowest that is not ExitCode::done.
-ExitCode run_joints(const JointRuns& runs,
-                    const std::function<JointResult(const std::optional<std::string>& joint,
-                                                    const CommonOptions& common)>& one);
+/// where -o holds {joint}; else one list with --json, one CSV with a column `joint` (`csv`: the texts are
+/// CSV, and no report), or one report below the other. `one` takes the joint and the options that go with it,
+/// or none where the log has one joint: then its result is written as it is. A joint of which it throws Error
+/// is left out with a warning; where none is left, the error of the first is thrown. `documents`: kind of the
+/// document that lists those of all joints, "spectra". The exit code is the lowest that is not
+/// ExitCode::done.
+ExitCode run_each_joint(const LogRequest& request, std::string_view documents, bool csv,
+                        const std::function<JointResult(const std::optional<std::string>& joint,
+                                                        const CommonOptions& common)>& one);
 
-/// --joint-file and the like with the name of the joint in the place of {joint}, where one is given.
-[[nodiscard]] std::optional<std::string> of_joint(const std::optional<std::string>& text,
-                                                  const std::optional<std::string>& joint);
+/// The same with the request of each joint.
+template <class Request, class One>
+ExitCode run_joints(const Request& request, std::string_view documents, bool csv, const One& one) {
+    return run_each_joint(request, documents, csv, [&](const auto& joint, const CommonOptions& common) {
+        Request of_joint = request;
+        of_joint.take_joint(joint, common);
+        return one(of_joint);
+    });
+}
 
 /// A result about a torque in this unit (Recording::torque_unit), in which the library says "Nm": a report
 /// with "A" in its place, where that is the unit, or the verdict of a document.

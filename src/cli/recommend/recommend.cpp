@@ -6,17 +6,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "cli/command.hpp"
+#include "cli/export/target_choice.hpp"
 #include "cli/options/joint_runs.hpp"
 #include "cli/options/lists.hpp"
 #include "cli/options/options.hpp"
 #include "cli/options/verdict_options.hpp"
-#include "cli/recommend/candidates.hpp"
 #include "cli/talk.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/gear_account.hpp"
@@ -26,9 +30,11 @@
 #include "ripplenotch/core/visible_text.hpp"
 #include "ripplenotch/design/ripple_map.hpp"
 #include "ripplenotch/document/comparison_json.hpp"
+#include "ripplenotch/document/map_json.hpp"
 #include "ripplenotch/evaluate/contender.hpp"
-#include "ripplenotch/export/target.hpp"
+#include "ripplenotch/filter/map_fit.hpp"
 #include "ripplenotch/log/log.hpp"
+#include "ripplenotch/verdict/gear_choice.hpp"
 #include "ripplenotch/verdict/readings.hpp"
 
 namespace ripplenotch {
@@ -116,24 +122,20 @@ std::string recommendation_view(const CommonOptions& common, const Recommendatio
 
 constexpr std::size_t most_other_lines = 3;  // by hand: of a sentence
 
-struct RecommendRequest {
-    CommonOptions common;
-    ReadOptions log_options;
-    /// The options that read the log, or the part of it between these times.
-    [[nodiscard]] std::string log_words(const std::optional<std::string>& from,
-                                        const std::optional<std::string>& to) const {
-        return options->log_words(from, to, joint);
-    }
+struct RecommendRequest : LogRequest {
     const Options* options = nullptr;
-    std::optional<std::string> joint;  ///< one of several
-    std::string log;
     std::optional<std::string> target;
-    GearOptions gear;
     Gates limits;
     std::optional<std::string> torque_band;
     std::optional<double> max_start_ratio;
     double train_percent = 60.0;
     bool require_conclusive = false;
+
+    /// The options that read the log, or the part of it between these times.
+    [[nodiscard]] std::string log_words(const std::optional<std::string>& from,
+                                        const std::optional<std::string>& to) const {
+        return options->log_words(from, to, joint);
+    }
 };
 
 /// The log, and its parts as --to and --from give them.
@@ -143,7 +145,7 @@ struct Parts {
 };
 
 void check_recommend(const RecommendRequest& request) {
-    if (request.log == "-")
+    if (request.path == "-")
         raise<UsageError>(
             "recommend reads the log three times; standard input can be read once: name a file");
     if (!(request.train_percent >= 10.0 && request.train_percent <= 90.0))
@@ -182,14 +184,14 @@ std::string split_words(double split_s) { return shortest(split_s) + "s"; }
 Parts read_parts(const RecommendRequest& request, const std::optional<GearAccount>& gear, double& split_s,
                  Provenance& provenance) {
     Parts parts;
-    parts.whole = read_log_in_part(request.log, read_options(request.log_options, gear));
-    take_log(request.common, request.log, parts.whole, provenance);
+    parts.whole = read_log_in_part(request.path, read_options(request.log, gear));
+    take_log(request.common, request.path, parts.whole, provenance);
     split_s = split_at(parts.whole, request.train_percent);
-    parts.train_options = parts.judge_options = read_options(request.log_options, gear);
+    parts.train_options = parts.judge_options = read_options(request.log, gear);
     parts.train_options.range.to = parts.judge_options.range.from =
         parse_time_point(split_words(split_s), "--to");
-    parts.train = read_log_in_part(request.log, parts.train_options);
-    parts.judge = read_log_in_part(request.log, parts.judge_options);
+    parts.train = read_log_in_part(request.path, parts.train_options);
+    parts.judge = read_log_in_part(request.path, parts.judge_options);
     return parts;
 }
 
@@ -314,49 +316,204 @@ std::vector<std::string> assumptions(const RecommendRequest& request, const Part
     return all;
 }
 
-class Judge {
+constexpr std::string_view map_file = "map.json";
+
+// " --gear-ratio 100 --orders 1,2", " --orders 200/turn"
+std::string gear_words(const GearAccount& gear) {
+    const std::string ratio = gear.has_ratio() ? " --gear-ratio " + shortest(gear.ratio.value()) : "";
+    return ratio + " --orders " + orders_text(gear.orders, gear.ratio, ",");
+}
+
+// A name for the filtered log beside this one: "filtered.csv".
+std::string filtered_name(const std::string& log) {
+    // A name that the filtered log can keep; others hold what is not written or is packed.
+    static const std::set<std::string> written = {".csv", ".txt", ".npy", ".mat", ".h5"};
+    const std::string ending = std::filesystem::path(log).extension().string();
+    return "filtered" + (written.contains(ending) ? ending : ".csv");
+}
+
+struct MovingSpeeds {
+    DegPerSec slowest, median, fastest;
+};
+
+// Of the rows that move; the slowest leaves out the starts and stops. Empty at standstill.
+std::optional<MovingSpeeds> moving_speeds(const TraceView& trace) {
+    const DegPerSec median = median_moving_speed(trace);
+    std::vector<double> speeds;
+    for (const double v : trace.velocity_deg_s)
+        if (std::abs(v) > 0.2 * median.value()) speeds.push_back(std::abs(v));
+    if (speeds.empty()) return std::nullopt;
+    std::sort(speeds.begin(), speeds.end());
+    return MovingSpeeds{DegPerSec(speeds[speeds.size() / 20]), median, DegPerSec(speeds.back())};
+}
+
+/// The settings that each method holds worth trying, of all methods, with the files that they need made in
+/// memory as the commands would make them. The same for every limit, so that looser limits never give a worse
+/// answer.
+class Candidates {
   public:
-    Judge(TriedMethods& tried, const Parts& parts, const GearAccount& gear,
-          const RecommendationLimits& limits, const std::optional<TorqueBand>& band)
-        : tried_(tried),
+    /// All are borrowed. `split`: the end of the part that methods learn from, as --to has it.
+    Candidates(const RecommendRequest& request, const Parts& parts, const GearChoice& choice,
+               const GearAccount& gear, const std::optional<TargetChoice>& target, const std::string& split)
+        : request_(request),
           parts_(parts),
+          choice_(choice),
           gear_(gear),
-          limits_(limits),
-          band_(band),
-          ripple_(ripple_of(parts.whole.trace, gear)) {}
+          target_(target),
+          train_words_(shell_quoted(request.path) + request.log_words({}, split)),
+          rate_(parts.whole.recording.clock.nominal_rate) {
+        const TraceView train = parts.train.trace.view();
+        const auto extent = moving_speeds(train);
+        if (extent) fit_map(train);
+        for (const Method* method : methods()) {
+            if (method->trials == nullptr)
+                add(std::string(method->name));
+            else if (extent)
+                try_settings(*method, *extent);
+        }
+        if (!extent) leave_out("the joint does not move in the part that methods learn from");
+    }
+
+    /// What was not tried, and why, one sentence each.
+    [[nodiscard]] const std::vector<std::string>& left_out() const { return left_out_; }
 
     /// What cannot be designed at the log's rate, and a map of part of the speeds that the log moves at, is
     /// left out. A log whose last part is too short is judged in all, by the methods that learn nothing of
     /// it: `on_all` says so.
-    Recommendation result(bool& on_all) {
-        std::erase_if(tried_.contenders, [&](const Contender& one) {
-            const std::string why = one.refusal(parts_.whole.recording.clock.nominal_rate);
-            if (!why.empty()) tried_.leave_out(why);
+    Recommendation judged(const RecommendationLimits& limits, const std::optional<TorqueBand>& band,
+                          bool& on_all) {
+        std::erase_if(contenders_, [&](const Contender& one) {
+            const std::string why = one.refusal(rate_);
+            if (!why.empty()) leave_out(why);
             return !why.empty();
         });
         leave_out_far_maps();
-        Recommendation found = judged(parts_.judge);
+        const std::vector<RippleEstimate> ripple = ripple_of(parts_.whole.trace, gear_);
+        Recommendation found = recommend(contenders_, compared(parts_.judge), gear_, limits, ripple, band);
         on_all = found.finding == RecommendationFinding::cannot_tell &&
-                 std::any_of(ripple_.begin(), ripple_.end(), std::mem_fn(&RippleEstimate::present));
+                 std::any_of(ripple.begin(), ripple.end(), std::mem_fn(&RippleEstimate::present));
         if (!on_all) return found;
         leave_out_maps("a ripple map: the log is too short to make it of one part and judge it on another");
-        return judged(parts_.whole);
+        return recommend(contenders_, compared(parts_.whole), gear_, limits, ripple, band);
+    }
+
+    /// The command lines that make use of a method, one after the other; its export comes last: as C code
+    /// where there is some, if no target is asked for.
+    [[nodiscard]] std::vector<std::string> commands(const MethodFigures& figures) const {
+        const auto contender = std::find_if(contenders_.begin(), contenders_.end(),
+                                            [&](const Contender& one) { return one.text == figures.method; });
+        std::vector<std::string> lines;
+        if (contender->method->part == MethodPart::control) return lines;
+        const TargetChoice to = target_ ? *target_ : find_any_target("c-header");
+        const bool exported = target_ || to.refusal(*contender, rate_).empty();
+        for (const auto& [file, command] : made_) {
+            // A target that does not hold the whole map is given the map all the same.
+            const bool whole_map = exported && contender->method->is_map && file == map_file;
+            const auto& files = contender->files;
+            if (whole_map || std::find(files.begin(), files.end(), file) != files.end())
+                lines.push_back(command);
+        }
+        lines.push_back(fmt::format("ripplenotch filter {}{} --method {} -o {}", shell_quoted(request_.path),
+                                    request_.log_words({}, {}), shell_quoted(figures.method),
+                                    filtered_name(request_.path)));
+        if (exported) lines.push_back(to.command(*contender, rate_));
+        return lines;
+    }
+
+    /// The command line that measures methods again as they were measured here; null ones are left out.
+    /// `part`: the options that read the part that was judged.
+    [[nodiscard]] std::string check(const std::string& part,
+                                    const std::vector<const JudgedMethod*>& judged) const {
+        std::string line =
+            fmt::format("ripplenotch compare {}{}{}", shell_quoted(request_.path), part, gear_words(gear_));
+        for (const JudgedMethod* method : judged)
+            if (method != nullptr) line += " --method " + shell_quoted(method->figures.method);
+        return line;
     }
 
   private:
+    void leave_out(const std::string& sentence) {
+        if (std::find(left_out_.begin(), left_out_.end(), sentence) == left_out_.end())
+            left_out_.push_back(sentence);
+    }
+
+    void try_settings(const Method& method, const MovingSpeeds& speeds) {
+        const Trials trials =
+            method.trials({gear_, rate_, parts_.train.recording.update_rate(), speeds.slowest, speeds.median,
+                           speeds.fastest, map_ ? std::string(map_file) : ""});
+        if (!trials.none_because.empty()) leave_out(fmt::format("{}: {}", method.name, trials.none_because));
+        for (const Trial& trial : trials.all) {
+            const std::string text = std::string(method.name) + trial.settings;
+            if (trial.table)
+                add_table(text, *trial.table);
+            else if (const auto held = method.is_map && target_ ? target_->held(*map_) : std::nullopt)
+                add_held(std::string(method.name), *held);
+            else
+                add(text);
+        }
+    }
+
+    void take(Contender contender) {
+        const std::string why = contender.method->part != MethodPart::control && target_
+                                    ? target_->refusal(contender, rate_)
+                                    : "";
+        if (why.empty())
+            contenders_.push_back(std::move(contender));
+        else
+            leave_out(
+                fmt::format("{} does not fit into {}: {}", contender.method->name, target_->spec.name, why));
+    }
+
+    void add(const std::string& text) {
+        take(choose_method(text, std::nullopt, choice_, [this](const std::string&) { return *map_; }));
+    }
+
+    void add_held(std::string text, const RippleMap& held) {
+        for (const auto& [key, value] : map_as_keys(held)) text += "," + key + "=" + value;
+        add(text);
+    }
+
+    // What a method reads is what stands in the file, not what was fitted.
+    void fit_map(const TraceView& train) {
+        MapFit fit = fit_ripple_map({&train, 1}, gear_);
+        fit.map.joint = parts_.train.trace.joint;
+        if (fit.map.orders.empty() || !fit.anchored) {
+            leave_out("a ripple map: " +
+                      (fit.map.orders.empty()
+                           ? map_verdict(fit)
+                           : std::string("the log has no position that ties the motor's angle")));
+            return;
+        }
+        map_ = map_from_json(map_text(fit, {}), std::string(map_file)).map;
+        made_.emplace_back(
+            map_file, fmt::format("ripplenotch map {}{} -o {}", train_words_, gear_words(gear_), map_file));
+    }
+
+    void add_table(const std::string& text, const TableSpec& spec) {
+        Contender contender = make_contender(
+            parse_spec(text), std::make_shared<const CandidateTable>(CandidateTable::design(spec)));
+        const std::string file = contender.settings.text("table");
+        contender.gear = gear_;
+        contender.files = {file};
+        take(std::move(contender));
+        const auto& [slowest_from, slowest_to] = spec.bands.front();
+        made_.emplace_back(
+            file, fmt::format("ripplenotch design{} --sample-rate {}Hz --speed {}:{}:{} --q {} -o {}",
+                              gear_words(gear_), shortest(spec.sample_rate.value()),
+                              shortest(slowest_from.value()), shortest(spec.bands.back().second.value()),
+                              shortest((slowest_to - slowest_from).value()), shortest(spec.q), file));
+    }
+
     [[nodiscard]] ComparedLog compared(const Log& on) const {
         ComparedLog log{on.trace.view()};
-        log.trace.sample_rate = parts_.whole.recording.clock.nominal_rate;
+        log.trace.sample_rate = rate_;
         return log;
-    }
-    [[nodiscard]] Recommendation judged(const Log& on) const {
-        return recommend(tried_.contenders, compared(on), gear_, limits_, ripple_, band_);
     }
     // The command that is printed filters all of the log.
     void leave_out_far_maps() {
-        const auto mapped = std::find_if(tried_.contenders.begin(), tried_.contenders.end(),
+        const auto mapped = std::find_if(contenders_.begin(), contenders_.end(),
                                          [](const Contender& one) { return one.map != nullptr; });
-        if (mapped == tried_.contenders.end()) return;
+        if (mapped == contenders_.end()) return;
         try {
             static_cast<void>(output_on_log(*mapped, compared(parts_.whole)));
         } catch (const DataError& error) {
@@ -365,15 +522,20 @@ class Judge {
     }
     void leave_out_maps(const std::string& why) {
         const auto has_map = [](const Contender& one) { return one.map != nullptr || one.method->is_map; };
-        if (std::erase_if(tried_.contenders, has_map) > 0) tried_.leave_out(why);
+        if (std::erase_if(contenders_, has_map) > 0) leave_out(why);
     }
 
-    TriedMethods& tried_;
+    const RecommendRequest& request_;
     const Parts& parts_;
+    const GearChoice& choice_;
     const GearAccount& gear_;
-    const RecommendationLimits& limits_;
-    const std::optional<TorqueBand>& band_;
-    std::vector<RippleEstimate> ripple_;
+    const std::optional<TargetChoice>& target_;
+    std::string train_words_;  ///< the log's name, with the options that read the part that is learnt from
+    Hertz rate_;               ///< of the whole log, which the filters are designed for
+    std::optional<RippleMap> map_;
+    std::vector<Contender> contenders_;
+    std::vector<std::pair<std::string, std::string>> made_;  ///< files, each with the command that makes it
+    std::vector<std::string> left_out_;
 };
 
 // Empty where the log has to show the lines: orders by the motor name none without a ratio.
@@ -410,12 +572,9 @@ RecommendationReport report_of(const RecommendRequest& request, Provenance& prov
     if (!stated_lines) report.gear->source = "identify";
     say(request.common, gear_in_words(*report.gear));
     const std::string split = split_words(report.split_s);
-    const Hertz rate = parts.whole.recording.clock.nominal_rate;
-    TriedMethods candidates =
-        candidates_for({parts.train, rate, shell_quoted(request.log) + request.log_words({}, split), choice,
-                        *report.gear, target});
+    Candidates candidates(request, parts, choice, *report.gear, target, split);
     bool on_all = false;
-    report.found = Judge(candidates, parts, *report.gear, report.found.limits, band).result(on_all);
+    report.found = candidates.judged(report.found.limits, band, on_all);
     const JudgedMethod* const first = report.found.taken();
     if (report.found.finding == RecommendationFinding::out_of_reach && target &&
         part_of(first->figures) == MethodPart::control)
@@ -430,7 +589,7 @@ RecommendationReport report_of(const RecommendRequest& request, Provenance& prov
             "settles it");
     report.conclusive = report.found.finding != RecommendationFinding::cannot_tell;
     // Where nothing can be told, nothing was tried: no list of what was not.
-    if (report.conclusive) report.left_out = candidates.left_out;
+    if (report.conclusive) report.left_out = candidates.left_out();
     const std::string against = stated_lines ? against_gear({&parts.whole, 1}, *report.gear) : "";
     if (!against.empty()) {
         warn(request.common, against);
@@ -443,14 +602,11 @@ RecommendationReport report_of(const RecommendRequest& request, Provenance& prov
         report.assumed.emplace_back(
             "the log is too short for a part of its own to judge by: all of it judges");
     }
-    const std::string all = request.log_words({}, {});
-    const CommandLines commands{request.log, all,        on_all ? all : request.log_words(split, {}),
-                                rate,        candidates, target,
-                                *report.gear};
     const JudgedMethod* const next = report.found.runner_up();
-    report.take = commands.of(first->figures);
-    if (next != nullptr) report.runner_up = commands.of(next->figures);
-    report.check = commands.check({first, next});
+    report.take = candidates.commands(first->figures);
+    if (next != nullptr) report.runner_up = candidates.commands(next->figures);
+    report.check =
+        candidates.check(on_all ? request.log_words({}, {}) : request.log_words(split, {}), {first, next});
     return report;
 }
 
@@ -469,19 +625,13 @@ JointResult recommend_for_joint(const RecommendRequest& request, const std::stri
 
 ExitCode run_recommend(const RecommendRequest& request, const std::string& command_line) {
     check_recommend(request);
-    return run_joints({request.log, request.log_options, request.common, nullptr, "recommendations"},
-                      [&](const std::optional<std::string>& joint, const CommonOptions& common) {
-                          RecommendRequest one = request;
-                          one.common = common;
-                          if (joint) one.joint = one.log_options.joint = joint;
-                          one.gear.joint_file = of_joint(request.gear.joint_file, joint);
-                          return recommend_for_joint(one, command_line);
-                      });
+    return run_joints(request, "recommendations", false,
+                      [&](const RecommendRequest& one) { return recommend_for_joint(one, command_line); });
 }
 
 std::function<ExitCode()> attach_recommend(Options& options) {
     const auto request = std::make_shared<RecommendRequest>();
-    options.argument("LOG", request->log, true, "a log of the joint, as it moves at work");
+    options.argument("LOG", request->path, true, "a log of the joint, as it moves at work");
     attach_gear(options, request->gear);
     options.duration("--max-delay", request->limits.max_delay,
                      "longest delay at 0 Hz and within the torque's band at any speed of the log, e.g. 10ms");
@@ -498,7 +648,7 @@ std::function<ExitCode()> attach_recommend(Options& options) {
                    "per cent of the log that methods learn from; they are evaluated on the rest");
     options.flag("--require-conclusive", request->require_conclusive,
                  "exit with code 5 when the log does not settle it");
-    attach_log(options, request->log_options);
+    attach_log(options, request->log);
     request->options = &options;
     attach_common(options, request->common, {"a recommendation", ".txt .json", true});
     return [request, &options] { return run_recommend(*request, options.command_line()); };

@@ -9,16 +9,436 @@
 #include <array>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <utility>
+#include <vector>
 
 #include "cli/command.hpp"
 #include "cli/options/verdict_options.hpp"
-#include "cli/report/log_report.hpp"
+#include "cli/run.hpp"
+#include "core/files/byte_sink.hpp"
+#include "document/json/json.hpp"
+#include "page/json_table.hpp"
+#include "page/result_section.hpp"
+#include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/files.hpp"
+#include "ripplenotch/core/gear_account.hpp"
+#include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/portable_math.hpp"
+#include "ripplenotch/document/figure_json.hpp"
+#include "ripplenotch/figure/figure.hpp"
 #include "ripplenotch/page/page.hpp"
 
 namespace ripplenotch {
 namespace {
+
+using Words = std::vector<std::string>;
+
+struct LogReport {
+    std::string log;             ///< its path
+    std::string piped;           ///< the log itself, where it came through standard input
+    Words reading, gear, ratio;  ///< options of the log, of its gear, and its ratio alone
+    bool quiet = false;
+};
+
+/// A folder for what the commands write, which ends with it.
+class Workspace {
+  public:
+    Workspace() : folder_(temporary_folder() + "/ripplenotch-report-XXXXXX") {
+        if (::mkdtemp(folder_.data()) == nullptr)
+            raise<FileError>("{}: cannot make a folder for the results: {}", folder_,
+                             std::generic_category().message(errno));
+    }
+    ~Workspace() {
+        std::error_code ignored;
+        std::filesystem::remove_all(folder_, ignored);
+    }
+    Workspace(const Workspace&) = delete;
+    Workspace& operator=(const Workspace&) = delete;
+
+    [[nodiscard]] std::string path(std::string_view name) const {
+        return fmt::format("{}/{}", folder_, name);
+    }
+    /// What a command wrote, with its files named as if they were here: the same bytes from every run.
+    [[nodiscard]] std::string text(std::string_view name) const {
+        std::string text = read_all(path(name));
+        const std::string prefix = folder_ + "/";
+        for (std::size_t at = text.find(prefix); at != std::string::npos; at = text.find(prefix, at))
+            text.erase(at, prefix.size());
+        return text;
+    }
+
+    /// Where the commands find the log: its file, or what was piped in, under a name that they can print.
+    [[nodiscard]] std::string holding(const LogReport& report) const {
+        if (report.piped.empty()) return report.log;
+        write_all(path("log.csv"), report.piped, ByteSink::Overwrite{true});
+        return path("log.csv");
+    }
+
+  private:
+    std::string folder_;
+};
+
+Words operator+(Words words, const Words& more) {
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+}
+
+/// One joint of a log: the answer with its picture first, then a section for each question.
+class JointReport {
+  public:
+    JointReport(const LogReport& report, std::string title, Words joint)
+        : report_(report),
+          log_(workspace_.holding(report)),
+          title_(std::move(title)),
+          reading_(report.reading + joint),
+          gear_(report.gear) {}
+
+    /// Throws where identify refuses the log: the other commands would repeat its message.
+    std::vector<PageSection> sections() {
+        command({"identify", log_, "--json", "-o", workspace_.path("joint.json")}, reading_ + report_.ratio,
+                report_.quiet);
+        const Json found = taken("joint.json", "Which ripple, and which gear");
+        const Json advice = tried({"recommend", log_}, reading_ + report_.gear, "recommendation.json",
+                                  "Which method, and why");
+        const Json log = tried({"info", log_}, reading_, "info.json", "How the log was read");
+        if (advice.contains("take")) show_recommended(advice);
+        if (const auto campbell =
+                figure({"spectrum", log_, "--map", "campbell", "-o", workspace_.path("campbell.csv")},
+                       reading_, "campbell.json"))
+            add("The spectrum at each speed", *campbell);
+        add_notes(found, advice, log);
+        sections_.insert(sections_.begin(), lead(found, advice, log));
+        // The answer stands above.
+        for (PageSection& section : sections_)
+            if (!section.leads && section.verdict == sections_.front().verdict) section.verdict.clear();
+        order_by_question();
+        return std::move(sections_);
+    }
+
+  private:
+    static void command(const Words& words, const Words& options, bool quiet) {
+        const ExitCode code =
+            run_within(words + options + Words{"--force"} + (quiet ? Words{"-q"} : Words{}));
+        if (code != ExitCode::done && code != ExitCode::inconclusive)
+            raise<DataError>("{} ended with exit code {}", words.front(), static_cast<int>(code));
+    }
+
+    /// Runs a command that writes JSON, and adds its section; one with its message where it refuses.
+    Json tried(const Words& words, const Words& options, const std::string& file, const std::string& title) {
+        try {
+            command(words + Words{"--json", "-o", workspace_.path(file)}, options, true);
+        } catch (const Error& error) {
+            PageSection section;
+            section.title = title;
+            section.verdict = error.what();
+            sections_.push_back(std::move(section));
+            return Json::object();
+        }
+        return taken(file, title);
+    }
+
+    Json taken(const std::string& file, const std::string& title) {
+        const std::string text = workspace_.text(file);
+        for (PageSection& section : sections_of_result(text, "")) {
+            section.title = title;
+            // The page names the log once.
+            for (Figure& drawn : section.figures)
+                if (drawn.title.ends_with(": ")) drawn.title.resize(drawn.title.size() - 2);
+            sections_.push_back(std::move(section));
+        }
+        return Json::parse(text);
+    }
+
+    /// The figure that a command draws; a command without one, or a figure without points, is no loss.
+    std::optional<Figure> figure(const Words& words, const Words& options, const std::string& file) {
+        try {
+            command(words + Words{"--plot", workspace_.path(file)}, options, true);
+            return figure_from_json(workspace_.text(file), file);
+        } catch (const Error&) {
+            return std::nullopt;
+        }
+    }
+
+    void add(const std::string& title, Figure drawn) {
+        PageSection section;
+        section.title = title;
+        section.verdict = std::exchange(drawn.sentence, "");
+        drawn.title = title;
+        section.figures.push_back(std::move(drawn));
+        sections_.push_back(std::move(section));
+    }
+
+    /// What the recommended method does to the log.
+    void show_recommended(const Json& advice) {
+        // As recommend found it, in the first part of the log.
+        const Json& found = advice["gear"];
+        if (report_.gear.empty() && found.is_object()) {
+            const bool known = found["ratio"].is_number();
+            const GearRatio ratio = known ? GearRatio(found["ratio"].get<double>()) : no_ratio;
+            std::vector<Order> orders;
+            for (const Json& order : found["orders"]) orders.emplace_back(order.get<double>());
+            gear_ = known ? Words{"--gear-ratio", shortest(ratio.value())} : Words{};
+            if (!orders.empty()) gear_ = gear_ + Words{"--orders", orders_text(orders, ratio, ",")};
+        }
+        if (!advice["take"].is_string()) return;
+        const auto method = with_files(advice["take"].get<std::string>(), advice);
+        if (!method) return;
+        filtered_ = figure(Words{"filter", log_, "-o", workspace_.path("filtered.csv"), "--decimals", "6",
+                                 "--method", *method},
+                           reading_ + gear_, "filtered.json");
+        if (!filtered_ || filtered_->panels.size() < 2) return;
+        Figure whole = *filtered_;
+        whole.panels.erase(whole.panels.begin());
+        add("The whole log, before and after", std::move(whole));
+    }
+
+    /// The method with the map that it needs, made of the first part of the log; none for other files.
+    std::optional<std::string> with_files(std::string method, const Json& advice) {
+        constexpr std::string_view map = "map=map.json";
+        const std::size_t at = method.find(map);
+        if (at == std::string::npos)
+            return method.find(".json") == std::string::npos ? std::optional(method) : std::nullopt;
+        const Json made =
+            tried({"map", log_},
+                  without_range() + Words{"--to", shortest(advice.at("split_s").get<double>()) + "s"} + gear_,
+                  "map.json", "The ripple map");
+        if (made.empty()) return std::nullopt;
+        return method.replace(at, map.size(), "map=" + workspace_.path("map.json"));
+    }
+
+    // recommend splits what --from and --to leave; its parts have ends of their own.
+    [[nodiscard]] Words without_range() const {
+        Words words;
+        for (std::size_t i = 0; i < reading_.size(); ++i) {
+            if (reading_[i] == "--from" || reading_[i] == "--to")
+                ++i;
+            else
+                words.push_back(reading_[i]);
+        }
+        return words;
+    }
+
+    PageSection lead(const Json& found, const Json& advice, const Json& log) {
+        PageSection top;
+        top.title = title_;
+        top.leads = true;
+        top.about = about(log);
+        const bool advised = advice.contains("verdict");
+        top.verdict = value_text(advised ? advice["verdict"] : found["verdict"]);
+        top.state = state_of(advised ? advice : found);
+        if (auto picture = first_picture(found)) top.figures.push_back(std::move(*picture));
+        if (auto orders = before_and_after(advice); !orders.rows.empty())
+            top.tables.push_back(std::move(orders));
+        if (advice.contains("take_commands"))
+            for (const Json& line : advice["take_commands"]) top.commands.push_back(value_text(line));
+        return top;
+    }
+
+    static std::string about(const Json& log) {
+        if (!log.contains("rows")) return "";
+        std::string text = fmt::format("{} rows in {:.4g} s", log["rows"].get<std::size_t>(),
+                                       log["duration_s"].get<double>());
+        if (log["sample_rate_hz"].is_number())
+            text += fmt::format(" at {:.4g} Hz", log["sample_rate_hz"].get<double>());
+        const auto& speed = log["speed_deg_s"];
+        if (speed.is_object() && speed["min"].is_number())
+            text += fmt::format("; speed {:.3g} to {:.3g} deg/s", speed["min"].get<double>(),
+                                speed["max"].get<double>());
+        return text + ".";
+    }
+
+    /// A detail of the torque, and the spectrum over orders, each before and after the method.
+    std::optional<Figure> first_picture(const Json& found) {
+        const Words by_order{"--domain", "order"};
+        auto before = figure(Words{"spectrum", log_, "-o", workspace_.path("before.csv")} + by_order,
+                             reading_, "before.json");
+        if (before && before->panels.size() == 1) before->panels[0].y.label = "amplitude";
+        Figure picture{"torque", "", "", {}};
+        if (filtered_) {
+            picture.panels.push_back(filtered_->panels.front());
+            picture.panels.back().title = "Torque, where the ripple is largest";
+        }
+        if (before && before->panels.size() == 1) {
+            Panel panel = std::move(before->panels.front());
+            panel.title = "Spectrum over orders";
+            panel.curves.resize(1);
+            panel.curves[0].name = filtered_ ? "before" : "torque";
+            panel.curves[0].ink = Ink::orange;
+            name_lines(panel, found);
+            if (filtered_) {
+                const Words spectrum{"spectrum", workspace_.path("filtered.csv"), "-o",
+                                     workspace_.path("after.csv")};
+                auto after = figure(spectrum + by_order, reading_, "after.json");
+                if (!after) after = figure(spectrum + by_order, {}, "after.json");
+                if (after && after->panels.size() == 1) {
+                    panel.curves.push_back(std::move(after->panels.front().curves.front()));
+                    panel.curves.back().name = "after";
+                    panel.curves.back().ink = Ink::blue;
+                    const auto& low = panel.curves.back().y;
+                    panel.y.from = std::min(panel.y.from.value_or(1e300),
+                                            0.7 * *std::min_element(low.begin(), low.end()));
+                }
+            }
+            picture.panels.push_back(std::move(panel));
+        }
+        if (picture.panels.empty()) return std::nullopt;
+        // The answer below shall be on the same screen.
+        for (Panel& panel : picture.panels) panel.height = 0.7;
+        return picture;
+    }
+
+    /// The lines of identify, each with the colour of its order; the axis ends behind the highest of them.
+    static void name_lines(Panel& panel, const Json& found) {
+        panel.lines.clear();
+        double highest = 0.0;
+        for (const Json& line : found.value("lines", Json::array())) {
+            if (!line["order_output"].is_number()) continue;
+            const double place = line["order_output"].get<double>();
+            const bool named = line["order"].is_number();
+            const double order = named ? line["order"].get<double>() : 0.0;
+            highest = std::max(highest, place);
+            panel.lines.push_back(
+                {.name = named ? fmt::format("order {:.4g}", order) : fmt::format("{:.4g} per turn", place),
+                 .run = NamedLine::Run::at_x,
+                 .value = place,
+                 .ink = named ? order_ink(order) : unknown_ink});
+        }
+        constexpr double beyond = 1.5;  // so that the highest line stands clear of the edge
+        if (highest > 0.0) panel.x.to = std::min(panel.x.to.value_or(1e300), beyond * highest);
+    }
+
+    /// What the recommended method leaves of each order, and what it costs.
+    static PageTable before_and_after(const Json& advice) {
+        PageTable table{"", {"order", "before, Nm", "after, Nm", "longest delay, ms"}, {}};
+        if (!advice.contains("take") || !advice["take"].is_string()) return table;
+        for (const Json& method : advice["methods"]) {
+            if (method["method"] != advice["take"]) continue;
+            for (const Json& fall : method["attenuation_db"]) {
+                for (const Json& order : advice["orders"]) {
+                    if (order["order"] != fall["order"] || !order["amplitude_nm"].is_number()) continue;
+                    const double before_nm = order["amplitude_nm"].get<double>();
+                    const bool known = fall["db"].is_number();
+                    table.rows.push_back(
+                        {fmt::format("{:.4g}", order["order"].get<double>()), coarse_text(before_nm),
+                         known
+                             ? coarse_text(before_nm * portable::pow(10.0, -fall["db"].get<double>() / 20.0))
+                             : "0",
+                         method["longest_delay_ms"].is_number()
+                             ? fmt::format("{:.3g}", method["longest_delay_ms"].get<double>())
+                             : "-"});
+                }
+            }
+        }
+        return table;
+    }
+
+    /// What was assumed, what was not tried and why, and what a further log should have.
+    void add_notes(const Json& found, const Json& advice, const Json& log) {
+        PageSection section;
+        section.title = not_shown;
+        const auto list = [&](const Json& of, const char* name, std::string_view before) {
+            for (const Json& one : of.value(name, Json::array()))
+                section.notes.push_back(fmt::format("{}{}", before, value_text(one)));
+        };
+        list(found, "notes", "");
+        list(log, "warnings", "");
+        list(advice, "assumed", "Assumed: ");
+        list(advice, "left_out", "Not tried: ");
+        for (const Json& use : log.value("uses", Json::array()))
+            if (!use["possible"].get<bool>())
+                section.notes.push_back(
+                    fmt::format("Not possible: {}: {}", value_text(use["name"]), value_text(use["reason"])));
+        if (!section.notes.empty()) sections_.push_back(std::move(section));
+    }
+
+    /// The lead first; what the log does not tell and how it was read last.
+    void order_by_question() {
+        const auto rank = [](const PageSection& section) {
+            if (section.leads) return 0;
+            if (section.title.starts_with("Which ripple")) return 1;
+            if (section.title.starts_with("Which method")) return 2;
+            if (section.title == not_shown) return 4;
+            return section.title.starts_with("How the log") ? 5 : 3;
+        };
+        std::stable_sort(sections_.begin(), sections_.end(),
+                         [&](const PageSection& a, const PageSection& b) { return rank(a) < rank(b); });
+    }
+
+    static constexpr std::string_view not_shown = "What the log does not show";
+
+    const LogReport& report_;
+    Workspace workspace_;
+    std::string log_, title_;
+    Words reading_, gear_;
+    std::vector<PageSection> sections_;
+    std::optional<Figure> filtered_;
+};
+
+/// The joints of a log that are named, as options; one without any where it has one joint or one was chosen.
+std::vector<std::string> joints_of(const LogReport& report) {
+    if (std::find(report.reading.begin(), report.reading.end(), "--joint") != report.reading.end()) return {};
+    const Workspace workspace;
+    run_within(Words{"info", workspace.holding(report), "--json", "-o", workspace.path("info.json"), "-q"} +
+               report.reading);
+    std::vector<std::string> names;
+    for (const Json& joint : Json::parse(workspace.text("info.json")).value("joints", Json::array()))
+        if (joint["joint"].is_string()) names.push_back(joint["joint"].get<std::string>());
+    return names.size() > 1 ? names : std::vector<std::string>{};
+}
+
+// False for what commands wrote: a JSON object whose first lines name its schema.
+bool is_log(std::string_view text) {
+    const std::string_view head = text.substr(0, 4096);
+    const std::size_t first = head.find_first_not_of(" \t\r\n");
+    if (first == std::string_view::npos) return false;
+    return head[first] != '{' || head.find("\"ripplenotch/") == std::string_view::npos;
+}
+
+// The name of a log on a page: without folders.
+std::string shown_name(const std::string& path) {
+    return path == "-" ? "standard input" : std::filesystem::path(path).filename().string();
+}
+
+// Runs the commands on each log, and on each joint of it, one after the other: the answer with its picture
+// first, then a section for each question; before all that a table where there are several joints. What one
+// of the commands refuses is a section with its message; without a log that can be read, or a torque in it,
+// Error is thrown.
+std::vector<PageSection> sections_of_logs(const std::vector<LogReport>& reports) {
+    PageSection overview;
+    overview.leads = true;
+    overview.tables.push_back({"", {"joint", "answer"}, {}});
+    std::vector<PageSection> all;
+    const auto add = [&](const LogReport& report, const std::string& title, const Words& joint) {
+        auto sections = JointReport(report, title, joint).sections();
+        overview.tables[0].rows.push_back({title, sections.front().verdict});
+        all.insert(all.end(), std::make_move_iterator(sections.begin()),
+                   std::make_move_iterator(sections.end()));
+    };
+    for (const LogReport& report : reports) {
+        const auto joints = joints_of(report);
+        const std::string name = shown_name(report.log);
+        for (const std::string& joint : joints) {
+            // A joint that one command refuses is said in the table; the others have their sections.
+            try {
+                add(report, reports.size() > 1 ? fmt::format("{}, {}", name, joint) : joint,
+                    {"--joint", joint});
+            } catch (const DataError& error) {
+                overview.tables[0].rows.push_back({joint, error.what()});
+            }
+        }
+        if (joints.empty()) add(report, name, {});
+    }
+    if (overview.tables[0].rows.size() < 2) return all;
+    overview.title = "The joints";
+    all.insert(all.begin(), std::move(overview));
+    return all;
+}
 
 struct ReportRequest {
     ReadOptions reading;

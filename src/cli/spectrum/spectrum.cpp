@@ -156,23 +156,38 @@ LogSpectrum streamed_spectrum(LogPasses& log, const SpectrumOptions& options,
 
 namespace {
 
-// spectrum --map: its options, and the map as CSV or JSON.
+constexpr std::array<std::string_view, 2> map_names = {"campbell", "order"};
+constexpr std::array<std::string_view, 2> domain_names = {"frequency", "order"};
 
-struct SpeedMapRequest {
-    std::optional<std::string> map;  ///< "campbell" or "order"; nothing without it
+struct SpectrumRequest : LogRequest {
+    std::string domain = "frequency";
+    std::optional<Seconds> segment;
+    double false_alarm = 0.01;
+    std::optional<std::string> map;  ///< --map: "campbell" or "order"
     std::optional<double> resolution, highest;
     std::optional<DegPerSec> speed_step;
+    TrackRequest track;
+    ResidualOptions residual;
+    bool bins = false;
+
+    /// Frequencies of all of the log are the same however the joint moves.
+    [[nodiscard]] bool needs_motion() const { return map || residual.any() || domain != "frequency"; }
+    /// Numbers by the thousand, and no table for people.
+    [[nodiscard]] bool is_csv() const {
+        return !common.json && (map || bins || common.output.ends_with(".csv"));
+    }
+    /// Half-overlapping pieces of all of the log, which need no more of it at a time.
+    [[nodiscard]] bool in_pieces() const { return segment && !needs_motion(); }
 };
 
-/// CSV, one row a cell: speed_deg_s, then frequency_hz, order (with a gear ratio) or order_output, then
-/// amplitude_nm. JSON: schema ripplenotch/spectrum/1.
-struct SpeedMapResult {
+/// What goes to the output, and the figure of it.
+struct Result {
     std::string text;
-    SpeedMap map;
+    std::function<Figure()> figure;
 };
 
-constexpr std::array<std::string_view, 2> map_names = {"campbell", "order"};
-
+// One row a cell: speed_deg_s, then frequency_hz, order (with a gear ratio) or order_output, then
+// amplitude_nm.
 std::string map_csv(const SpeedMap& map, std::string_view axis_name) {
     std::string text = fmt::format("speed_deg_s,{},amplitude_nm\n", axis_name);
     for (std::size_t row = 0; row < map.speed_deg_s.size(); ++row) {
@@ -193,46 +208,29 @@ std::string in_words(const SpeedMap& map, std::string_view unit, std::optional<d
     return text;
 }
 
-void attach_speed_map(Options& options, SpeedMapRequest& request, GearOptions& gear) {
-    options.text("--map", request.map, "campbell|order",
-                 "over speed: frequency against speed, or order against speed");
-    attach_gear(
-        options, gear,
-        {.ratio = "motor turns per joint turn; --map order counts orders per motor turn with it",
-         .orders = "orders that --track measures and --map draws, in cycles per motor turn (default: 1,2)",
-         .joint_file = "joint.json of identify: gear ratio and orders from there"});
-    options.number("--resolution", request.resolution, Dimension::none, "of the map, in Hz or orders", true);
-    options.number("--highest", request.highest, Dimension::none, "frequency or order where the map ends",
-                   true);
-    options.number("--speed-step", request.speed_step, Dimension::speed,
-                   "width of a row of the map, or of --track --against speed; about 24 rows when left out",
-                   true);
-}
-
 // Throws UsageError when options of the map are given without --map, or make no sense.
-void check_speed_map(const SpeedMapRequest& request, const GearOptions& gear, bool track) {
-    if (!request.map &&
-        ((!track && (gear.any() || request.speed_step)) || request.resolution || request.highest)) {
+void check_speed_map(const SpectrumRequest& request) {
+    const bool of_track = request.gear.any() || request.speed_step;
+    if (!request.map && ((!request.track.wanted && of_track) || request.resolution || request.highest))
         raise<UsageError>(
             "--joint-file, --gear-ratio, --orders and --speed-step belong to --map and --track, and "
             "--resolution and --highest to --map");
-    }
     if (request.map && *request.map != map_names[0] && *request.map != map_names[1])
         raise<UsageError>("--map: '{}' is none of campbell, order", *request.map);
-    check_gear(gear);
+    check_gear(request.gear);
 }
 
 // The lines that are drawn into the map, where a gear is known; notes the joint file as an input.
-MapLines map_lines(const SpeedMapRequest& request, const GearOptions& gear, Provenance& provenance) {
-    const GearChoice choice(gear);
+MapLines map_lines(const SpectrumRequest& request, Provenance& provenance) {
+    const GearChoice choice(request.gear);
     if (choice.joint()) provenance.inputs.push_back(input_record(choice.joint()->path));
     MapLines lines{choice.of(), false};
     lines.axis_per_motor_turn = lines.gear && !lines.gear->per_turn && *request.map == "order";
     return lines;
 }
 
-SpeedMapResult speed_map_result(const SpeedMapRequest& request, const MapLines& lines, const Trace& trace,
-                                const CommonOptions& common, const Provenance& provenance) {
+Result map_result(const SpectrumRequest& request, const MapLines& lines, const Trace& trace,
+                  const Provenance& provenance) {
     const bool campbell = *request.map == "campbell";
     const TraceView view = trace.view();
     OutputAngle angle = output_angle(view);
@@ -247,46 +245,17 @@ SpeedMapResult speed_map_result(const SpeedMapRequest& request, const MapLines& 
                                   : lines.axis_per_motor_turn ? "order"
                                                               : "order_output";
     const std::string words = in_words(map, campbell ? "Hz" : "orders", request.resolution);
-    if (request.resolution && map.resolution > 1.001 * *request.resolution) {
-        warn(common, words);
-    } else {
-        say(common, words);
-    }
-    std::string text =
-        common.json ? speed_map_text(trace.joint, map, axis, lines.gear, provenance) : map_csv(map, axis);
-    return {std::move(text), std::move(map)};
+    if (request.resolution && map.resolution > 1.001 * *request.resolution)
+        warn(request.common, words);
+    else
+        say(request.common, words);
+    std::string text = request.common.json ? speed_map_text(trace.joint, map, axis, lines.gear, provenance)
+                                           : map_csv(map, axis);
+    return {std::move(text),
+            [map = std::move(map), lines, source = joint_in_words(request.path, trace.joint)] {
+                return speed_map_figure(source, map, lines);
+            }};
 }
-
-constexpr std::array<std::string_view, 2> domain_names = {"frequency", "order"};
-
-struct SpectrumRequest {
-    CommonOptions common;
-    ReadOptions log;
-    std::string path, domain = "frequency";
-    std::optional<Seconds> segment;
-    double false_alarm = 0.01;
-    GearOptions gear;
-    SpeedMapRequest map;
-    TrackRequest track;
-    ResidualOptions residual;
-    PlotRequest plot;
-    bool bins = false;
-
-    /// Frequencies of all of the log are the same however the joint moves.
-    [[nodiscard]] bool needs_motion() const { return map.map || residual.any() || domain != "frequency"; }
-    /// Numbers by the thousand, and no table for people.
-    [[nodiscard]] bool is_csv() const {
-        return !common.json && (map.map || bins || common.output.ends_with(".csv"));
-    }
-    /// Half-overlapping pieces of all of the log, which need no more of it at a time.
-    [[nodiscard]] bool in_pieces() const { return segment && !needs_motion(); }
-};
-
-/// What goes to the output, and the figure of it.
-struct Result {
-    std::string text;
-    std::function<Figure()> figure;
-};
 
 Result order_result(const SpectrumRequest& request, const TraceView& trace, const std::string& joint,
                     const std::string& doubt, const Provenance& provenance) {
@@ -332,33 +301,22 @@ Result frequency_result(const SpectrumRequest& request, LogSpectrum found, const
             }};
 }
 
-Result map_result(const SpectrumRequest& request, const MapLines& lines, const Trace& trace,
-                  const Provenance& provenance) {
-    SpeedMapResult result = speed_map_result(request.map, lines, trace, request.common, provenance);
-    return {std::move(result.text),
-            [map = std::move(result.map), lines, source = joint_in_words(request.path, trace.joint)] {
-                return speed_map_figure(source, map, lines);
-            }};
-}
-
-using Made = std::pair<Result, Provenance>;
-
 /// The log goes by and is not held.
-Made piecewise_result(const SpectrumRequest& request, const std::string& command_line) {
+Result piecewise_result(const SpectrumRequest& request, Provenance& provenance) {
     ReadOptions reading = request.log;
     reading.needs_velocity = false;
     LogPasses log(request.path, reading);
-    const LogSpectrum spectrum = streamed_spectrum(log, {request.segment, request.false_alarm}, [&] {
+    LogSpectrum spectrum = streamed_spectrum(log, {request.segment, request.false_alarm}, [&] {
         say_layout(request.common, log.layout());
         say_warnings(request.common, log.recording().warnings);
     });
-    const Provenance provenance{{input_record(request.path)}, command_line, {{log.recording()}}};
-    return {frequency_result(request, spectrum, log.layout().chosen.joint, provenance), provenance};
+    provenance.inputs.push_back(input_record(request.path));
+    provenance.recordings.push_back({log.recording()});
+    return frequency_result(request, std::move(spectrum), log.layout().chosen.joint, provenance);
 }
 
-Made whole_result(const SpectrumRequest& request, const std::string& command_line) {
-    Provenance provenance{{}, command_line};
-    const MapLines lines = request.map.map ? map_lines(request.map, request.gear, provenance) : MapLines{};
+Result whole_result(const SpectrumRequest& request, Provenance& provenance) {
+    const MapLines lines = request.map ? map_lines(request, provenance) : MapLines{};
     if (lines.gear) say(request.common, gear_in_words(*lines.gear));
     ReadOptions reading = read_options(request.log, lines.gear);
     take_joint_of(request.residual, reading.joint);
@@ -369,26 +327,25 @@ Made whole_result(const SpectrumRequest& request, const std::string& command_lin
     say_warnings(request.common, log.recording.warnings);
     provenance.inputs.insert(provenance.inputs.begin(), input_record(request.path));
     provenance.recordings.push_back({log.recording});
-    const bool by_order = request.domain == "order" || request.map.map == "order";
+    const bool by_order = request.domain == "order" || request.map == "order";
     const std::string doubt =
         by_order ? reading_doubt({&log, 1}, [](const OtherReading&) { return true; }) : "";
     if (!doubt.empty()) warn(request.common, doubt);
-    if (request.map.map) return {map_result(request, lines, log.trace, provenance), provenance};
+    if (request.map) return map_result(request, lines, log.trace, provenance);
     const TraceView trace = log.trace.view();
-    if (request.domain == "order")
-        return {order_result(request, trace, log.trace.joint, doubt, provenance), provenance};
-    return {frequency_result(
-                request, {whole_log(trace), torque_spectrum(trace, {request.segment, request.false_alarm})},
-                log.trace.joint, provenance),
-            provenance};
+    if (request.domain == "order") return order_result(request, trace, log.trace.joint, doubt, provenance);
+    return frequency_result(
+        request, {whole_log(trace), torque_spectrum(trace, {request.segment, request.false_alarm})},
+        log.trace.joint, provenance);
 }
 
 JointResult spectrum_of_joint(const SpectrumRequest& request, const std::string& command_line) {
-    auto [made, provenance] =
-        request.in_pieces() ? piecewise_result(request, command_line) : whole_result(request, command_line);
-    JointResult result{!request.is_csv()
-                           ? in_torque_unit(std::move(made.text), provenance.recordings.front().torque_unit)
-                           : std::move(made.text)};
+    Provenance provenance{{}, command_line};
+    Result made =
+        request.in_pieces() ? piecewise_result(request, provenance) : whole_result(request, provenance);
+    JointResult result{std::move(made.text)};
+    if (!request.is_csv())
+        result.text = in_torque_unit(std::move(result.text), provenance.recordings.front().torque_unit);
     // A figure in the terminal takes the place of the bins, and not that of the tables.
     if (request.is_csv() && request.plot.instead_of(request.common.output)) result.write = [] {};
     result.afterwards = [request, provenance = std::move(provenance), figure = std::move(made.figure)] {
@@ -397,48 +354,32 @@ JointResult spectrum_of_joint(const SpectrumRequest& request, const std::string&
     return result;
 }
 
-/// What the spectra and the track share.
-ExitCode run_track_of(const SpectrumRequest& request, const std::string& command_line) {
-    if (request.map.map || request.segment || request.bins || request.domain != "frequency" ||
-        request.residual.any())
-        raise<UsageError>(
-            "--track goes with neither --domain, --segment, --map, --bins, --residual nor --simulated");
-    check_output_name(request.common.output, "a track", ".csv .txt .npy .json");
-    TrackRequest track = request.track;
-    track.common = request.common;
-    track.plot = request.plot;
-    track.log = request.log;
-    track.path = request.path;
-    track.gear_options = request.gear;
-    return run_track(track, command_line);
-}
-
 ExitCode run_spectrum(SpectrumRequest& request, const std::string& command_line) {
     if (!(request.false_alarm > 0.0) || request.false_alarm > 0.5) {
         raise<UsageError>("--false-alarm {} is not between 0 and 0.5", shortest(request.false_alarm));
     }
-    request.track.speed_step = request.map.speed_step;
-    check_speed_map(request.map, request.gear, request.track.wanted);
+    request.track.speed_step = request.speed_step;
+    check_speed_map(request);
     check_track(request.track);
     hash_where_told(request.common, request.plot);
-    if (request.track.wanted) return run_track_of(request, command_line);
+    const bool of_spectrum = request.segment || request.bins || request.domain != "frequency";
+    if (request.track.wanted) {
+        if (request.map || of_spectrum || request.residual.any())
+            raise<UsageError>(
+                "--track goes with neither --domain, --segment, --map, --bins, --residual nor --simulated");
+        check_output_name(request.common.output, "a track", ".csv .txt .npy .json");
+        static_cast<LogRequest&>(request.track) = request;
+        return run_track(request.track, command_line);
+    }
     check_output_name(request.common.output, "a spectrum", ".csv .txt .json");
-    if (request.map.map && (request.segment || request.bins || request.domain != "frequency"))
+    if (request.map && of_spectrum)
         raise<UsageError>("--map goes with neither --domain, --segment nor --bins");
     if (request.bins) check_output_name(request.common.output, "a table of bins", ".csv .txt");
     if (request.bins && request.common.json)
         raise<UsageError>("--bins and --json: the bins are CSV, and not the lines; give one of them");
-    ReadOptions log = request.log;
-    take_joint_of(request.residual, log.joint);
-    return run_joints({request.path, log, request.common, &request.plot, "spectra", request.is_csv()},
-                      [&](const std::optional<std::string>& joint, const CommonOptions& common) {
-                          SpectrumRequest one = request;
-                          one.common = common;
-                          if (joint) one.log.joint = joint;
-                          one.plot.path = of_joint(request.plot.path, joint);
-                          one.gear.joint_file = of_joint(request.gear.joint_file, joint);
-                          return spectrum_of_joint(one, command_line);
-                      });
+    take_joint_of(request.residual, request.log.joint);
+    return run_joints(request, "spectra", request.is_csv(),
+                      [&](const SpectrumRequest& one) { return spectrum_of_joint(one, command_line); });
 }
 
 std::function<ExitCode()> attach_spectrum(Options& options) {
@@ -452,7 +393,19 @@ std::function<ExitCode()> attach_spectrum(Options& options) {
                  "every bin as CSV instead of a table of the lines; as with -o FILE.csv");
     options.number("--false-alarm", request->false_alarm, Dimension::none,
                    "chance that noise gives any line in a spectrum");
-    attach_speed_map(options, request->map, request->gear);
+    options.text("--map", request->map, "campbell|order",
+                 "over speed: frequency against speed, or order against speed");
+    attach_gear(
+        options, request->gear,
+        {.ratio = "motor turns per joint turn; --map order counts orders per motor turn with it",
+         .orders = "orders that --track measures and --map draws, in cycles per motor turn (default: 1,2)",
+         .joint_file = "joint.json of identify: gear ratio and orders from there"});
+    options.number("--resolution", request->resolution, Dimension::none, "of the map, in Hz or orders", true);
+    options.number("--highest", request->highest, Dimension::none, "frequency or order where the map ends",
+                   true);
+    options.number("--speed-step", request->speed_step, Dimension::speed,
+                   "width of a row of the map, or of --track --against speed; about 24 rows when left out",
+                   true);
     attach_track(options, request->track);
     attach_residual(options, request->residual);
     attach_plot(options, request->plot, request->common);

@@ -6,16 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "cli/command.hpp"
-#include "cli/options/options.hpp"
-#include "cli/options/plot_request.hpp"
-#include "ripplenotch/analysis/order_map.hpp"
-#include "ripplenotch/chart/spectrum_figure.hpp"
-#include "ripplenotch/core/trace.hpp"
-#include "ripplenotch/document/provenance.hpp"
+#include "cli/options/joint_runs.hpp"
 #include "ripplenotch/document/spectrum_json.hpp"
 #include "ripplenotch/log/log.hpp"
-#include "ripplenotch/verdict/gear_choice.hpp"
 
 namespace ripplenotch {
 
@@ -28,18 +21,13 @@ namespace ripplenotch {
 
 // spectrum --track: amplitude and phase of each order against time or speed.
 
-struct TrackRequest {
+/// With what the command shares with the spectra, which is known when the track is made.
+struct TrackRequest : LogRequest {
     bool wanted = false;  ///< --track
     std::string against = "time";
     std::vector<double> output_orders, tones_hz;
     std::optional<double> window_turns;
     std::optional<Seconds> window;
-    // What the command shares with the spectra; set when the track is made.
-    CommonOptions common;
-    PlotRequest plot;
-    ReadOptions log;
-    std::string path;
-    GearOptions gear_options;
     std::optional<DegPerSec> speed_step;
 };
 

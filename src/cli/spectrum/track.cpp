@@ -64,10 +64,10 @@ constexpr std::array<std::string_view, 2> against_names = {"time", "speed"};
 
 /// The gear that was chosen; empty where other lines alone are tracked.
 std::optional<GearAccount> read_gear(const TrackRequest& request, Provenance& provenance) {
-    const GearChoice choice(request.gear_options);
+    const GearChoice choice(request.gear);
     if (choice.joint()) provenance.inputs.push_back(input_record(choice.joint()->path));
     std::optional<GearAccount> gear = choice.of();
-    const bool orders_stated = !request.gear_options.orders.empty() || request.gear_options.joint_file;
+    const bool orders_stated = !request.gear.orders.empty() || request.gear.joint_file;
     const bool other_lines = !request.output_orders.empty() || !request.tones_hz.empty();
     // Whoever lists other lines and no orders asks for those lines alone.
     if (gear && other_lines && !orders_stated) gear = GearAccount{gear->ratio, {}, {}, {}, "--gear-ratio"};
@@ -268,17 +268,11 @@ void require_text_of_several(const TrackRequest& request) {
 }  // namespace
 
 ExitCode run_track(const TrackRequest& request, const std::string& command_line) {
-    return run_joints({request.path, request.log, request.common, &request.plot, "tracks", true},
-                      [&](const std::optional<std::string>& joint, const CommonOptions& common) {
-                          TrackRequest one = request;
-                          one.common = common;
-                          if (joint) one.log.joint = joint;
-                          one.plot.path = of_joint(request.plot.path, joint);
-                          one.gear_options.joint_file = of_joint(request.gear_options.joint_file, joint);
-                          const bool several = common.messages != nullptr;
-                          if (several) require_text_of_several(request);
-                          return track_joint(one, command_line, several);
-                      });
+    return run_joints(request, "tracks", true, [&](const TrackRequest& one) {
+        const bool several = one.common.messages != nullptr;
+        if (several) require_text_of_several(request);
+        return track_joint(one, command_line, several);
+    });
 }
 
 void check_track(const TrackRequest& request) {
