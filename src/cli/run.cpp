@@ -145,8 +145,6 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 5> command_g
      {"trend", "Fleets"},
      {"report", "Report"}}};
 
-constexpr std::string_view reading_group = "How the log is read";
-
 // The library hides options by taking their names away, which command lines that are printed need.
 class ShortHelp : public CLI::Formatter {
   public:
@@ -156,33 +154,12 @@ class ShortHelp : public CLI::Formatter {
     }
 };
 
-// Each option under what it is for: the command's own first. How a log is read fills half a page, which is
-// shown only where it is asked for.
-void group_options(CLI::App& command, bool whole) {
-    constexpr std::array<std::string_view, 3> gear = {"--gear-ratio", "--orders", "--joint-file"};
-    constexpr std::array<std::string_view, 8> output = {
-        "--output", "--improved-model", "--json",    "--plot",
-        "--force",  "--quiet",          "--verbose", "--require-conclusive"};
-    const auto is_one = [](const auto& names, const std::string& name) {
-        return std::find(names.begin(), names.end(), name) != names.end();
-    };
-    const bool reads = command.get_option_no_throw("--hold-bad-values") != nullptr;
-    bool reading = false, hidden = false;
-    for (CLI::Option* option : command.get_options()) {
-        if (option->get_positional()) continue;
-        const std::string longest = option->get_lnames().empty() ? "" : "--" + option->get_lnames().back();
-        if (reads && (longest == "--format" || longest == "--from")) reading = true;
-        if (reading) {
-            option->group(std::string(reading_group));
-            hidden = !whole;
-        } else if (is_one(gear, longest)) {
-            option->group("Gear");
-        } else if (is_one(output, longest)) {
-            option->group("Output");
-        }
-        if (longest == "--hold-bad-values") reading = false;
-    }
-    if (!hidden) return;
+// How a log is read fills half a page, which is shown only where it is asked for.
+void hide_reading(CLI::App& command) {
+    const auto options = command.get_options();
+    if (std::none_of(options.begin(), options.end(),
+                     [](const CLI::Option* option) { return option->get_group() == reading_group; }))
+        return;
     command.formatter(std::make_shared<ShortHelp>());
     command.footer(
         fmt::format("How the log is read (--format, --joint, --columns, --unit, --scale, --side, --from, "
@@ -213,7 +190,7 @@ void declare(CLI::App& app, const CommandWords& words, bool all, bool whole, std
             for (const auto& check : parsed.after_parse) check();
             parsed.check_files();
         });
-        group_options(*sub, whole);
+        if (!whole) hide_reading(*sub);
     }
 }
 

@@ -25,8 +25,8 @@
 
 namespace ripplenotch {
 
-std::string text_table(const std::vector<std::vector<std::string>>& cells, std::string_view alignment) {
-    std::vector<std::vector<std::string>> rows = cells;
+std::string text_table(const TextRows& cells, std::string_view alignment) {
+    TextRows rows = cells;
     for (auto& row : rows)
         for (std::string& cell : row) cell = visible_text(cell);
     std::vector<std::size_t> widths;

@@ -11,16 +11,24 @@
 #include <vector>
 
 #include "ripplenotch/core/files.hpp"
+#include "ripplenotch/core/number.hpp"
 
 namespace ripplenotch {
 
 // Tables for people: columns as wide as their widest cell, two spaces between them.
 
+using TextRows = std::vector<std::vector<std::string>>;
+
 /// Rows of cells, header rows included. `alignment` has one letter a column, 'l' or 'r'; the last letter
 /// holds for all further columns. Cells are made visible. Rows may be of different length; no line ends in a
 /// space.
-[[nodiscard]] std::string text_table(const std::vector<std::vector<std::string>>& cells,
-                                     std::string_view alignment);
+[[nodiscard]] std::string text_table(const TextRows& cells, std::string_view alignment);
+
+/// A cell with so many decimals of a number, or of a quantity times `factor`; a dash where there is none.
+template <class Number>
+[[nodiscard]] std::string cell_text(const std::optional<Number>& value, int decimals, double factor = 1.0) {
+    return value ? rounded(factor * (*value / Number(1.0)), decimals) : "-";
+}
 
 // The bar on standard error for work that takes longer than a second; only on a terminal, and gone
 // afterwards.

@@ -201,8 +201,7 @@ bool says_nothing(const std::string& cell) {
 
 // A row's objects become columns of their own: settle_ms {"0.5": 147} is column "settle 0.5, ms". One more
 // cell than there may be columns indicates that some are left out.
-void cells_of(const Json& row, const std::string& prefix, const std::string& unit,
-              NamedCells& cells) {
+void cells_of(const Json& row, const std::string& prefix, const std::string& unit, NamedCells& cells) {
     for (const auto& [name, entry] : row.items()) {
         if (cells.size() > most_columns) return;
         const Spoken said = spoken(name);

@@ -43,7 +43,6 @@ namespace ripplenotch {
 namespace {
 
 // The methods of a comparison and the ripple it looks at, from what was typed and the files it names.
-
 struct Field {
     std::vector<Contender> contenders;            ///< the control first, unless it was typed elsewhere
     std::shared_ptr<const CandidateTable> table;  ///< of the first method that needs one
@@ -52,8 +51,7 @@ struct Field {
     std::optional<GearAccount> gear;
 };
 
-// What the methods of a comparison cost a control loop, and whether that is within the user's limits.
-
+// What the methods may cost a control loop.
 struct CostRequest {
     std::optional<Hertz> crossover;
     Gates gates;
@@ -68,20 +66,16 @@ std::string ledger_place(const LedgerEntry& entry) {
 }
 
 std::vector<std::string> ledger_row(const LedgerEntry& entry, bool crossover) {
-    std::vector<std::string> cells = {ledger_place(entry), rounded(1e3 * entry.dc_delay.value(), 1)};
-    cells.push_back(entry.ramp_delay ? rounded(1e3 * entry.ramp_delay->value(), 1) : "-");
+    std::vector<std::string> cells = {ledger_place(entry), rounded(1e3 * entry.dc_delay.value(), 1),
+                                      cell_text(entry.ramp_delay, 1, 1e3)};
     for (std::size_t i = 0; i < settle_bands_percent.size(); ++i)
         cells.push_back(entry.step ? rounded(1e3 * entry.step->settle[i].value(), 0) : "-");
     cells.push_back(entry.step ? rounded(entry.step->overshoot_percent, 1) : "-");
     if (crossover) {
-        cells.push_back(entry.phase_lag_deg ? rounded(*entry.phase_lag_deg, 1) : "-");
-        cells.push_back(entry.crossover_db ? rounded(*entry.crossover_db, 1) : "-");
+        cells.push_back(cell_text(entry.phase_lag_deg, 1));
+        cells.push_back(cell_text(entry.crossover_db, 1));
     }
     return cells;
-}
-
-std::string milliseconds(const std::optional<Seconds>& time) {
-    return time ? rounded(1e3 * time->value(), 0) : "-";
 }
 
 std::string band_name(int band) { return band > 0 ? std::to_string(band) : "none"; }
@@ -90,8 +84,7 @@ std::string band_name(int band) { return band > 0 ? std::to_string(band) : "none
 std::string switches_text(const MethodFigures& figures) {
     if (figures.switch_ledger.empty()) return "";
     const bool truth = figures.switch_ledger.front().peak_error_nm.has_value();
-    std::vector<std::vector<std::string>> rows = {{"change", "from", "to", "speed", "jump"},
-                                                  {"at s", "band", "band", "deg/s", "Nm"}};
+    TextRows rows = {{"change", "from", "to", "speed", "jump"}, {"at s", "band", "band", "deg/s", "Nm"}};
     if (truth) {
         rows[0].insert(rows[0].end(), {"error, Nm", "", "peak after", "settles, ms"});
         rows[1].insert(rows[1].end(), {"before", "peak", "ms"});
@@ -103,10 +96,10 @@ std::string switches_text(const MethodFigures& figures) {
                         rounded(entry.change.jump_nm, 3)});
         if (!truth) continue;
         auto& cells = rows.back();
-        cells.push_back(entry.error_before_nm ? rounded(*entry.error_before_nm, 3) : "-");
+        cells.push_back(cell_text(entry.error_before_nm, 3));
         cells.push_back(rounded(entry.peak_error_nm.value_or(0.0), 3));
-        cells.push_back(milliseconds(entry.peak_after));
-        for (const auto& settle : entry.settle) cells.push_back(milliseconds(settle));
+        cells.push_back(cell_text(entry.peak_after, 0, 1e3));
+        for (const auto& settle : entry.settle) cells.push_back(cell_text(settle, 0, 1e3));
     }
     return "\n" + text_table(rows, "r");
 }
@@ -123,8 +116,7 @@ std::string ledger_text(const Comparison& comparison) {
                         : fmt::format("{}: within the delay limit at every speed.\n", figures.method);
         }
         if (figures.ledger.empty()) continue;
-        std::vector<std::vector<std::string>> rows = {{"speed", "DC delay", "ramp delay", "settles, ms"},
-                                                      {"deg/s", "ms", "ms"}};
+        TextRows rows = {{"speed", "DC delay", "ramp delay", "settles, ms"}, {"deg/s", "ms", "ms"}};
         for (std::size_t i = 0; i < settle_bands_percent.size(); ++i) {
             if (i > 0) rows[0].push_back("");
             rows[1].push_back(fmt::format("to {} %", settle_bands_percent[i]));
@@ -149,19 +141,21 @@ constexpr std::size_t page_width = 100;  // of tables; chosen, not derived
 
 struct ViewColumn {
     std::string title, unit;
-    std::function<std::string(const MethodFigures&)> cell;  ///< empty text: not measured
+    std::function<std::string(const MethodFigures&)> cell;  ///< "-": not measured
     bool with_next = false;  ///< stands beside the next one: they share a title
 };
 
-std::string fixed_or_empty(const std::optional<double>& value, int decimals) {
-    return value ? rounded(*value, decimals) : "";
+ViewColumn column_of(std::string title, std::string unit, std::optional<double> MethodFigures::*value,
+                     int decimals, bool with_next = false) {
+    return {std::move(title), std::move(unit),
+            [value, decimals](const MethodFigures& figures) { return cell_text(figures.*value, decimals); },
+            with_next};
 }
 
 std::string attenuation(const MethodFigures& figures, std::size_t line) {
-    if (line >= figures.attenuation.size() || !figures.attenuation[line].db) return "";
+    if (line >= figures.attenuation.size() || !figures.attenuation[line].db) return "-";
     const double db = *figures.attenuation[line].db;
-    if (db >= most_attenuation_db) return fmt::format(">{:.0f}", most_attenuation_db);
-    return rounded(db, 1);
+    return db >= most_attenuation_db ? fmt::format(">{:.0f}", most_attenuation_db) : rounded(db, 1);
 }
 
 // What a method costs.
@@ -170,99 +164,77 @@ std::vector<ViewColumn> cost_columns(const Comparison& comparison) {
     for (std::size_t b = 0; b < settle_bands_percent.size(); ++b) {
         columns.push_back(
             {b == 0 ? "settles, ms" : "", fmt::format("to {} %", settle_bands_percent[b]),
-             [b](const MethodFigures& f) { return f.settle_ms ? fixed_or_empty((*f.settle_ms)[b], 0) : ""; },
+             [b](const MethodFigures& f) { return f.settle_ms ? rounded((*f.settle_ms)[b], 0) : "-"; },
              b + 1 < settle_bands_percent.size()});
     }
-    columns.push_back(
-        {"overshoot", "%", [](const MethodFigures& f) { return fixed_or_empty(f.overshoot_percent, 1); }});
-    columns.push_back(
-        {"of a ramp", "Nm", [](const MethodFigures& f) { return fixed_or_empty(f.ramp_overshoot_nm, 2); }});
-    columns.push_back({"ramp delay", "ms",
-                       [](const MethodFigures& f) { return fixed_or_empty(f.ramp_delay_ms, 1); }, true});
-    columns.push_back(
-        {"DC delay", "ms", [](const MethodFigures& f) { return fixed_or_empty(f.dc_delay_ms, 1); }});
-    if (comparison.crossover) {
-        columns.push_back({fmt::format("lag at {:g} Hz", comparison.crossover->value()), "deg",
-                           [](const MethodFigures& f) { return fixed_or_empty(f.phase_lag_deg, 1); }, true});
-        columns.push_back(
-            {"", "dB", [](const MethodFigures& f) { return fixed_or_empty(f.crossover_db, 1); }});
-    }
+    columns.push_back(column_of("overshoot", "%", &MethodFigures::overshoot_percent, 1));
+    columns.push_back(column_of("of a ramp", "Nm", &MethodFigures::ramp_overshoot_nm, 2));
+    columns.push_back(column_of("ramp delay", "ms", &MethodFigures::ramp_delay_ms, 1, true));
+    columns.push_back(column_of("DC delay", "ms", &MethodFigures::dc_delay_ms, 1));
+    if (!comparison.crossover) return columns;
+    columns.push_back(column_of(fmt::format("lag at {:g} Hz", comparison.crossover->value()), "deg",
+                                &MethodFigures::phase_lag_deg, 1, true));
+    columns.push_back(column_of("", "dB", &MethodFigures::crossover_db, 1));
     return columns;
 }
 
 // What it leaves.
 std::vector<ViewColumn> result_columns(const Comparison& comparison) {
     std::vector<ViewColumn> columns;
-    for (std::size_t i = 0; comparison.lines && i < comparison.lines->orders.size(); ++i) {
+    for (std::size_t i = 0; comparison.lines && i < comparison.lines->orders.size(); ++i)
         columns.push_back({order_in_words(comparison.lines->orders[i], comparison.lines->ratio), "dB",
                            [i](const MethodFigures& f) { return attenuation(f, i); }});
-    }
-    columns.push_back(
-        {"ripple", "Nm rms", [](const MethodFigures& f) { return fixed_or_empty(f.ripple_rms_nm, 4); }});
-    columns.push_back(
-        {"torque moved", "Nm rms", [](const MethodFigures& f) { return fixed_or_empty(f.moved_nm, 4); }});
-    columns.push_back(
-        {"added", "Nm rms", [](const MethodFigures& f) { return fixed_or_empty(f.added_nm, 4); }});
-    columns.push_back(
-        {"error", "Nm rms", [](const MethodFigures& f) { return fixed_or_empty(f.error_nm, 4); }});
-    columns.push_back(
-        {"start", "of raw", [](const MethodFigures& f) { return fixed_or_empty(f.start_ratio, 1); }});
-    columns.push_back({"residual", "Nm rms",
-                       [](const MethodFigures& f) { return fixed_or_empty(f.residual_rms_nm, 4); }, true});
-    columns.push_back(
-        {"", "Nm p-p", [](const MethodFigures& f) { return fixed_or_empty(f.residual_peak_to_peak_nm, 3); }});
-    columns.push_back(
-        {"true error", "Nm rms", [](const MethodFigures& f) { return fixed_or_empty(f.error_rms_nm, 4); }});
+    columns.push_back(column_of("ripple", "Nm rms", &MethodFigures::ripple_rms_nm, 4));
+    columns.push_back(column_of("torque moved", "Nm rms", &MethodFigures::moved_nm, 4));
+    columns.push_back(column_of("added", "Nm rms", &MethodFigures::added_nm, 4));
+    columns.push_back(column_of("error", "Nm rms", &MethodFigures::error_nm, 4));
+    columns.push_back(column_of("start", "of raw", &MethodFigures::start_ratio, 1));
+    columns.push_back(column_of("residual", "Nm rms", &MethodFigures::residual_rms_nm, 4, true));
+    columns.push_back(column_of("", "Nm p-p", &MethodFigures::residual_peak_to_peak_nm, 3));
+    columns.push_back(column_of("true error", "Nm rms", &MethodFigures::error_rms_nm, 4));
     columns.push_back({"switches", "",
-                       [](const MethodFigures& f) { return f.switches ? std::to_string(*f.switches) : ""; },
+                       [](const MethodFigures& f) { return f.switches ? std::to_string(*f.switches) : "-"; },
                        true});
-    columns.push_back(
-        {"largest", "jump, Nm", [](const MethodFigures& f) { return fixed_or_empty(f.largest_jump_nm, 3); }});
+    columns.push_back(column_of("largest", "jump, Nm", &MethodFigures::largest_jump_nm, 3));
     return columns;
 }
 
-using Cells = std::vector<std::vector<std::string>>;  // rows of a table
-
 // The names of the methods below two lines of head.
-Cells names_of(const Comparison& comparison) {
-    Cells rows = {{"method"}, {""}};
+TextRows names_of(const Comparison& comparison) {
+    TextRows rows = {{"method"}, {""}};
     for (const MethodFigures& figures : comparison.methods) rows.push_back({figures.method});
     return rows;
 }
 
 // The same with further columns; those that no method has a figure for are left out.
-Cells with_columns(Cells rows, const Comparison& comparison, std::span<const ViewColumn> columns) {
+TextRows with_columns(TextRows rows, const Comparison& comparison, std::span<const ViewColumn> columns) {
     for (const ViewColumn& column : columns) {
         std::vector<std::string> cells;
         for (const MethodFigures& figures : comparison.methods) cells.push_back(column.cell(figures));
-        if (std::all_of(cells.begin(), cells.end(), [](const std::string& cell) { return cell.empty(); }))
+        if (std::all_of(cells.begin(), cells.end(), [](const std::string& one) { return one == "-"; }))
             continue;
         rows[0].push_back(column.title);
         rows[1].push_back(column.unit);
-        for (std::size_t i = 0; i < cells.size(); ++i)
-            rows[i + 2].push_back(cells[i].empty() ? "-" : cells[i]);
+        for (std::size_t i = 0; i < cells.size(); ++i) rows[i + 2].push_back(std::move(cells[i]));
     }
     return rows;
 }
 
-bool fits(const std::string& text) {
-    for (std::size_t at = 0; at < text.size();) {
-        const std::size_t end = std::min(text.find('\n', at), text.size());
-        if (end - at > page_width) return false;
-        at = end + 1;
-    }
-    return true;
+bool fits(std::string_view text) {
+    const auto lines = split(text, '\n');
+    return std::all_of(lines.begin(), lines.end(),
+                       [](std::string_view line) { return line.size() <= page_width; });
 }
 
 // Tables to stand one below the other, each as wide as the page at most.
 std::vector<std::string> tables_of(const Comparison& comparison, std::span<const ViewColumn> columns) {
     std::vector<std::string> tables;
     for (std::size_t at = 0; at < columns.size();) {
-        Cells rows = names_of(comparison);
+        TextRows rows = names_of(comparison);
         do {
             std::size_t end = at + 1;
             while (columns[end - 1].with_next) ++end;
-            Cells wider = with_columns(rows, comparison, columns.subspan(at, end - at));
+            TextRows wider = with_columns(rows, comparison, columns.subspan(at, end - at));
             if (rows[0].size() > 1 && !fits(text_table(wider, "lr"))) break;
             rows = std::move(wider);
             at = end;

@@ -179,7 +179,7 @@ Extra extra_of(const CandidateTable& table) {
     return extra;
 }
 
-std::vector<std::vector<std::string>> title_rows(const TableSpec& spec, const Extra& extra) {
+TextRows title_rows(const TableSpec& spec, const Extra& extra) {
     std::vector<std::string> titles = {"band", "speed"}, units = {"", "deg/s"};
     for (const Order order : spec.orders) {
         titles.push_back(order_in_words(order, spec.gear_ratio));

@@ -32,7 +32,7 @@ std::string joints_table(const std::vector<JointDiagnosis>& joints) {
     const bool validated = std::any_of(joints.begin(), joints.end(), [](const JointDiagnosis& one) {
         return one.diagnosis.gap.validation_before_nm.has_value();
     });
-    std::vector<std::vector<std::string>> cells = {{"joint", "before, Nm", "after, Nm"}};
+    TextRows cells = {{"joint", "before, Nm", "after, Nm"}};
     if (validated) cells.front().insert(cells.front().end(), {"validation before", "validation after"});
     cells.front().insert(cells.front().end(), {"verdict", "named"});
     for (const JointDiagnosis& one : joints) {
@@ -49,7 +49,7 @@ std::string joints_table(const std::vector<JointDiagnosis>& joints) {
 // The catalogue of effects.
 
 std::string catalogue_text() {
-    std::vector<std::vector<std::string>> rows = {{"effect", "acts on", "summary"}};
+    TextRows rows = {{"effect", "acts on", "summary"}};
     for (const Effect* effect : catalogue()) {
         rows.push_back(
             {std::string(effect->name), std::string(side_name(effect->side)), std::string(effect->summary)});
@@ -58,8 +58,7 @@ std::string catalogue_text() {
 }
 
 std::string parameters_text(const Effect& effect) {
-    std::vector<std::vector<std::string>> rows = {
-        {"parameter", "unit", "neutral", "from", "to", "left out", "meaning"}};
+    TextRows rows = {{"parameter", "unit", "neutral", "from", "to", "left out", "meaning"}};
     for (const Parameter& p : effect.parameters) {
         const std::string left_out = p.left_out == LeftOut::fitted    ? "is fitted"
                                      : p.left_out == LeftOut::refused ? "is refused"
@@ -211,14 +210,17 @@ std::function<ExitCode()> attach_diagnose(Options& options) {
                  "explain one effect (equation, parameters, symptom, look-alikes), and end; needs no LOG");
     options.number("--smoothing", request->smoothing, Dimension::time,
                    "window in which the log's velocity is fitted to give speed and acceleration");
-    options.flag("--require-conclusive", request->require_conclusive,
-                 "exit with 5 unless the log is explained in the end");
+    attach_conclusive(options, request->require_conclusive,
+                      "exit with 5 unless the log is explained in the end");
     attach_plot(options, request->plot, request->common);
     attach_log(options, request->log);
-    options.text("--improved-model", request->improved, "FILE",
-                 "write the improved model here: .json, or .xml and .mjcf for MuJoCo");
-    options.writes("--improved-model");
-    options.was_output("--improved-model", request->improved_by_output);
+    {
+        const Options::Group group(options, output_group);
+        options.text("--improved-model", request->improved, "FILE",
+                     "write the improved model here: .json, or .xml and .mjcf for MuJoCo");
+        options.writes("--improved-model");
+        options.was_output("--improved-model", request->improved_by_output);
+    }
     attach_json(options, request->common);
     attach_manner(options, request->common);
     return [request, &options] { return run_diagnose(*request, options.command_line()); };

@@ -57,8 +57,7 @@ std::string accepted_text(const Diagnosis& diagnosis) {
 // Where in frequency the torque is, and what is left of it; nothing without given terms.
 std::string band_table(const std::vector<BandGap>& bands) {
     if (bands.empty()) return {};
-    std::vector<std::vector<std::string>> rows = {
-        {"frequency", "torque, Nm rms", "without the known terms", "and the model"}};
+    TextRows rows = {{"frequency", "torque, Nm rms", "without the known terms", "and the model"}};
     for (const BandGap& band : bands) {
         const std::string name = band.from_hz == 0.0 ? fmt::format("below {:g} Hz", band.to_hz)
                                  : band.to_hz == 0.0

@@ -298,9 +298,8 @@ std::string export_report_to_text(const ExportReport& report) {
                                    report.file == "-" ? "standard output" : report.file, report.target,
                                    shortest(report.sample_rate.value()), report.arithmetic);
     const bool orders = !report.checks.empty() && report.checks.front().order.has_value();
-    std::vector<std::vector<std::string>> rows = {{orders ? "order" : "section", "centre Hz", "shift %", "Q",
-                                                   "depth dB", "DC error dB", "mean error mNm",
-                                                   "pole radius"}};
+    TextRows rows = {{orders ? "order" : "section", "centre Hz", "shift %", "Q", "depth dB", "DC error dB",
+                      "mean error mNm", "pole radius"}};
     if (bands) rows.front().insert(rows.front().begin(), "band");
     for (const SectionCheck& check : report.checks) rows.push_back(row(check, bands));
     text += text_table(rows, "r");

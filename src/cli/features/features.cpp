@@ -218,9 +218,8 @@ std::function<ExitCode()> attach_features(Options& options) {
                  "a number");
     options.flag("--merge", request->merge, "put files of lines together; each LOG is one");
     attach_log(options, request->log);
-    options.text("-o,--output", request->common.output, "FILE", "where the lines go; - is standard output");
-    options.writes("-o");
-    options.flag("--json", request->common.json, "as without it: one JSON object a line");
+    attach_output(options, request->common.output, "where the lines go; - is standard output");
+    attach_json(options, request->common, "as without it: one JSON object a line");
     attach_manner(options, request->common);
     return [request] { return run_features(*request); };
 }

@@ -487,8 +487,8 @@ std::function<ExitCode()> attach_identify(Options& options) {
                     "expected motor order of the strongest line, 1 to 16");
     options.number("--false-alarm", request->identify.false_alarm, Dimension::none,
                    "false-alarm probability for noise only: that any line is reported");
-    options.flag("--require-conclusive", request->require_conclusive,
-                 "exit with code 5 when the logs do not settle it");
+    attach_conclusive(options, request->require_conclusive,
+                      "exit with code 5 when the logs do not settle it");
     attach_residual(options, request->residual);
     attach_plot(options, request->plot, request->common);
     attach_log(options, request->log);

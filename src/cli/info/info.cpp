@@ -89,9 +89,8 @@ std::string joints_in_log(const LogInfo& log) {
     const bool currents = std::any_of(log.joints.begin(), log.joints.end(), [](const JointInfo& joint) {
         return joint.recording.torque_unit != "Nm";
     });
-    std::vector<std::vector<std::string>> rows = {{"joint", "speed deg/s",
-                                                   currents ? "torque A" : "torque Nm", "turns", "steady",
-                                                   "held", "position/velocity"}};
+    TextRows rows = {{"joint", "speed deg/s", currents ? "torque A" : "torque Nm", "turns", "steady", "held",
+                      "position/velocity"}};
     for (const JointInfo& joint : log.joints) {
         const auto steady = std::count_if(joint.stretches.begin(), joint.stretches.end(),
                                           [](const SteadyStretch& s) { return !s.rest; });
@@ -106,7 +105,7 @@ std::string joints_in_log(const LogInfo& log) {
 // With `all`, what is not used is listed too, with the reason.
 std::string columns_table(const LogInfo& log, bool all) {
     const auto& columns = log.layout.columns;
-    std::vector<std::vector<std::string>> rows = {{"column", "name", "is", "unit", "joint"}};
+    TextRows rows = {{"column", "name", "is", "unit", "joint"}};
     std::size_t others = 0;
     for (std::size_t c = 0; c < columns.size(); ++c) {
         const Column& column = columns[c];
@@ -128,7 +127,7 @@ std::string columns_table(const LogInfo& log, bool all) {
 // What is in a container beside the columns that were read.
 std::string contents_table(const LogInfo& log) {
     constexpr std::size_t max_listed = 40;
-    std::vector<std::vector<std::string>> rows = {{"in the file", "", "shape", "type", "unit", "Hz"}};
+    TextRows rows = {{"in the file", "", "shape", "type", "unit", "Hz"}};
     const auto& contents = log.layout.contents;
     for (std::size_t i = 0; i < std::min(contents.size(), max_listed); ++i) {
         const ContentEntry& entry = contents[i];

@@ -35,8 +35,6 @@ namespace {
 
 // A ripple map as people read it.
 
-using MapRows = std::vector<std::vector<std::string>>;
-
 std::string without_decimals(double value) { return fmt::format("{:.0f}", std::round(value) + 0.0); }
 
 std::string decibels(double from_nm, double to_nm) {
@@ -48,8 +46,8 @@ std::string order_cell(double order, const MapFit& fit) {
     return order_text(Order(order), fit.map.gear_ratio);
 }
 
-MapRows scores_of(const MapFit& fit) {
-    MapRows rows = {{"order", "ripple Nm", "remaining Nm", "dB", "noise limit dB", "predicted %", ""}};
+TextRows scores_of(const MapFit& fit) {
+    TextRows rows = {{"order", "ripple Nm", "remaining Nm", "dB", "noise limit dB", "predicted %", ""}};
     for (const MapOrderScore& score : fit.scores) {
         rows.push_back({order_cell(score.order, fit), fmt::format("{:.3f}", score.ripple_nm),
                         fmt::format("{:.3f}", score.left_nm), decibels(score.ripple_nm, score.left_nm),
@@ -60,8 +58,8 @@ MapRows scores_of(const MapFit& fit) {
     return rows;
 }
 
-MapRows map_values(const MapFit& fit) {
-    MapRows rows = {{"order", "at", "cosine Nm", "+/-", "sine Nm", "+/-", "amplitude Nm", "phase deg"}};
+TextRows map_values(const MapFit& fit) {
+    TextRows rows = {{"order", "at", "cosine Nm", "+/-", "sine Nm", "+/-", "amplitude Nm", "phase deg"}};
     for (std::size_t i = 0; i < fit.map.orders.size(); ++i) {
         for (std::size_t c = 0; c < fit.map.values[i].size(); ++c) {
             const std::complex<double> z = fit.map.values[i][c], error = normal_95_errors * fit.errors[i][c];
@@ -76,8 +74,8 @@ MapRows map_values(const MapFit& fit) {
 }
 
 // By motor and order: what is found, or the amplitude that would have been.
-MapRows others_of(const MapFit& fit) {
-    MapRows rows = {
+TextRows others_of(const MapFit& fit) {
+    TextRows rows = {
         {"motor of", "gear ratio", "order", "ripple Nm", "remaining Nm", "dB", "predicted %", ""}};
     for (const MapFit& other : fit.others) {
         for (const MapOrderScore& score : other.scores) {
@@ -95,8 +93,8 @@ MapRows others_of(const MapFit& fit) {
     return rows;
 }
 
-MapRows agreement_of(const MapFit& fit, const std::vector<std::string>& logs) {
-    MapRows rows = {{"order", "times as large", "+/-", "deg ahead", "+/-", "", "log"}};
+TextRows agreement_of(const MapFit& fit, const std::vector<std::string>& logs) {
+    TextRows rows = {{"order", "times as large", "+/-", "deg ahead", "+/-", "", "log"}};
     for (const MapAgreement& one : fit.agreement) {
         rows.push_back({order_cell(one.order, fit), fmt::format("{:.2f}", one.amplitude_ratio),
                         fmt::format("{:.2f}", normal_95_errors * one.amplitude_error),
@@ -287,8 +285,8 @@ std::function<ExitCode()> attach_map(Options& options) {
     attach_gear(options, request->gear);
     options.number("--zero", request->zero, Dimension::angle,
                    "joint position at which the wave generator's angle counts as 0");
-    options.flag("--require-conclusive", request->require_conclusive,
-                 "exit with code 5 when the logs do not settle it");
+    attach_conclusive(options, request->require_conclusive,
+                      "exit with code 5 when the logs do not settle it");
     attach_plot(options, request->plot, request->common);
     attach_log(options, request->log);
     attach_common(options, request->common, {"a ripple map", ".txt .json"});

@@ -260,35 +260,49 @@ std::string Options::command_line() const {
     return line;
 }
 
-std::vector<std::string> Options::given(const std::string& first, const std::string& last) const {
-    const std::vector<CLI::Option*> all = implementation_.command->get_options();
-    const auto at = [&](const std::string& name) {
-        return std::find(all.begin(), all.end(), implementation_.command->get_option(name));
-    };
-    std::vector<std::string> words;
-    for (auto option = at(first); option <= at(last); ++option) {
-        const bool is_flag = (*option)->get_items_expected_max() == 0;
-        for (const std::string& value : (*option)->results()) {
-            words.push_back((*option)->get_name());
-            if (!is_flag) words.push_back(value);
-        }
+Options::Group::Group(Options& options, std::string_view name)
+    : command_(*options.implementation_.command), name_(name), first_(command_.get_options().size()) {}
+
+Options::Group::~Group() {
+    const auto all = command_.get_options();
+    for (std::size_t i = first_; i < all.size(); ++i) all[i]->group(name_);
+}
+
+namespace {
+
+// What is given of an option, as words: its name before each value.
+void add_words(const CLI::Option& option, const std::vector<std::string>& values,
+               std::vector<std::string>& words) {
+    for (const std::string& value : values) {
+        words.push_back(option.get_name());
+        if (option.get_items_expected_max() > 0) words.push_back(value);
     }
+}
+
+}  // namespace
+
+std::vector<std::string> Options::given(std::string_view group) const {
+    std::vector<std::string> words;
+    for (const CLI::Option* option : implementation_.command->get_options())
+        if (option->get_group() == group) add_words(*option, option->results(), words);
     return words;
 }
 
 std::string Options::log_words(const std::optional<std::string>& from, const std::optional<std::string>& to,
                                const std::optional<std::string>& joint) const {
-    std::vector<CLI::Option*> all = implementation_.command->get_options();
-    const auto at = [&](const char* name) {
-        return std::find(all.begin(), all.end(), implementation_.command->get_option(name));
-    };
-    all.erase(at("--hold-bad-values") + 1, all.end());
-    all.erase(all.begin(), at("--format"));
     // The rows first, which differ between the lines of one log; then what the columns are and their clock.
-    std::rotate(all.begin(), at("--from"), at("--joint"));
-    std::rotate(at("--sample-rate"), at("--sample-rate") + 1, at("--side"));
-    std::rotate(at("--side"), at("--constant-speed"), at("--delimiter"));
-    std::string line;
+    constexpr std::array<std::string_view, 10> first = {
+        "--from", "--to",    "--format",      "--joint",          "--columns",
+        "--unit", "--scale", "--sample-rate", "--constant-speed", "--side"};
+    std::vector<const CLI::Option*> all;
+    for (const CLI::Option* option : implementation_.command->get_options())
+        if (option->get_group() == reading_group) all.push_back(option);
+    const auto place = [&](const CLI::Option* option) {
+        return std::find(first.begin(), first.end(), option->get_name()) - first.begin();
+    };
+    std::stable_sort(all.begin(), all.end(),
+                     [&](const auto* a, const auto* b) { return place(a) < place(b); });
+    std::vector<std::string> words;
     for (const CLI::Option* option : all) {
         const std::string name = option->get_name();
         std::vector<std::string> values = option->results();
@@ -300,11 +314,11 @@ std::string Options::log_words(const std::optional<std::string>& from, const std
                 value = shortest(parse_quantity(value, Dimension::frequency, name)) + "Hz";
             if (name == "--constant-speed")
                 value = shortest(parse_quantity(value, Dimension::speed, name)) + "deg/s";
-            line += " " + name;
-            const bool is_flag = option->get_items_expected_max() == 0;
-            if (!is_flag) line += " " + shell_quoted(value);
         }
+        add_words(*option, values, words);
     }
+    std::string line;
+    for (const std::string& word : words) line += " " + shell_quoted(word);
     return line;
 }
 
@@ -321,6 +335,7 @@ std::vector<std::string> heading_of(const Provenance& provenance) {
 bool ends_with_json(std::string_view path) { return path.size() > 5 && path.ends_with(".json"); }
 
 void attach_manner(Options& options, CommonOptions& common) {
+    const Options::Group group(options, output_group);
     options.flag("--force", common.force, "overwrite existing files");
     options.flag("-q,--quiet", common.quiet, "no warnings on standard error");
     options.flag("-v,--verbose", common.verbose, "print the decisions on standard error");
@@ -334,14 +349,25 @@ void attach_common(Options& options, CommonOptions& common, const OutputNames& n
         }
         common.json = common.json || (names.json_is_option && ends_with_json(common.output));
     });
-    options.text("-o,--output", common.output, "FILE", "where the result goes; - is standard output");
-    options.writes("-o");
+    attach_output(options, common.output, "where the result goes; - is standard output");
     attach_json(options, common);
     attach_manner(options, common);
 }
 
-void attach_json(Options& options, CommonOptions& common) {
-    options.flag("--json", common.json, "one JSON object instead of text");
+void attach_output(Options& options, std::string& output, std::string_view help) {
+    const Options::Group group(options, output_group);
+    options.text("-o,--output", output, "FILE", help);
+    options.writes("-o");
+}
+
+void attach_conclusive(Options& options, bool& required, std::string_view help) {
+    const Options::Group group(options, output_group);
+    options.flag("--require-conclusive", required, help);
+}
+
+void attach_json(Options& options, CommonOptions& common, std::string_view help) {
+    const Options::Group group(options, output_group);
+    options.flag("--json", common.json, help);
 }
 
 std::string joints_in_words(std::span<const std::string> joints) {
@@ -515,6 +541,7 @@ std::string one_of(std::initializer_list<std::string_view> all, const std::strin
 }  // namespace
 
 void attach_log(Options& options, ReadOptions& log) {
+    const Options::Group group(options, reading_group);
     options.text("--format", log.format, "NAME",
                  fmt::format("format of the log: {} (default: found out from its first bytes)",
                              name_list(log_formats())));
@@ -529,6 +556,7 @@ void attach_log(Options& options, ReadOptions& log) {
 
 void attach_log_columns(Options& options, ReadOptions& log) {
     using Text = const std::string&;
+    const Options::Group group(options, reading_group);
     options.parsed(
         "--from", [&log](Text text) { log.range.from = parse_time_point(text, "--from"); }, "TIME",
         "earlier rows are ignored: 2s, 500ms, 1.5min or 1:30 on the log's own time axis; 12:30:05 where it "

@@ -21,12 +21,33 @@
 #include "ripplenotch/log/layout.hpp"
 #include "ripplenotch/log/log.hpp"
 
+namespace CLI {
+class App;
+}
+
 namespace ripplenotch {
+
+inline constexpr std::string_view reading_group = "How the log is read", gear_group = "Gear",
+                                  output_group = "Output";
 
 class Options {
   public:
     struct Implementation;
     explicit Options(Implementation& implementation) : implementation_(implementation) {}
+
+    /// What is declared while it lives is listed under this heading in --help, and can be asked for by it.
+    class Group {
+      public:
+        Group(Options& options, std::string_view name);
+        ~Group();
+        Group(const Group&) = delete;
+        Group& operator=(const Group&) = delete;
+
+      private:
+        CLI::App& command_;
+        std::string name_;
+        std::size_t first_;
+    };
 
     void flag(std::string_view names, bool& target, std::string_view help);
     void flag(std::string_view names, std::function<void()> set, std::string_view help);
@@ -101,8 +122,8 @@ class Options {
     [[nodiscard]] std::string log_words(const std::optional<std::string>& from = {},
                                         const std::optional<std::string>& to = {},
                                         const std::optional<std::string>& joint = {}) const;
-    /// The options from `first` to `last`, in the order of their declaration, as words as they were given.
-    [[nodiscard]] std::vector<std::string> given(const std::string& first, const std::string& last) const;
+    /// The options of a group, as words as they were given.
+    [[nodiscard]] std::vector<std::string> given(std::string_view group) const;
 
   private:
     void names_file(std::string_view names, std::string_view type_name);
@@ -152,7 +173,10 @@ struct OutputNames {
 /// How a file says where it is from, one line each: tool, command and inputs.
 [[nodiscard]] std::vector<std::string> heading_of(const Provenance& provenance);
 void attach_common(Options& options, CommonOptions& common, const OutputNames& names);
-void attach_json(Options& options, CommonOptions& common);
+void attach_json(Options& options, CommonOptions& common,
+                 std::string_view help = "one JSON object instead of text");
+void attach_output(Options& options, std::string& output, std::string_view help);
+void attach_conclusive(Options& options, bool& required, std::string_view help);
 /// How it writes and what it says: --force, --quiet and --verbose.
 void attach_manner(Options& options, CommonOptions& common);
 [[nodiscard]] bool ends_with_json(std::string_view path);

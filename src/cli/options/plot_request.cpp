@@ -41,6 +41,7 @@ std::string joint_in_words(const std::string& path, const std::string& joint) {
 }
 
 void attach_plot(Options& options, PlotRequest& request, const CommonOptions& common) {
+    const Options::Group group(options, output_group);
     options.text("--plot", request.path, "FILE",
                  fmt::format("the result as a picture ({}): FILE.svg, .png or .pdf by gnuplot, FILE.json for "
                              "the data of the figure; - draws it in the terminal",

@@ -20,6 +20,7 @@ constexpr std::string_view arm_option_help =
 }  // namespace
 
 void attach_gear(Options& options, GearOptions& gear, const GearHelp& help) {
+    const Options::Group group(options, gear_group);
     options.number("--gear-ratio", gear.ratio, Dimension::none, help.ratio);
     if (!help.orders.empty()) options.orders("--orders", gear.orders, help.orders);
     if (!help.joint_file.empty()) options.text("--joint-file", gear.joint_file, "FILE", help.joint_file);

@@ -49,8 +49,7 @@ std::string next_commands(std::string_view head, const std::vector<std::string>&
 }
 
 std::string orders_of_log(const Recommendation& found) {
-    std::vector<std::vector<std::string>> rows = {
-        {"order", "ripple Nm", "standard error Nm", "detectable Nm", ""}};
+    TextRows rows = {{"order", "ripple Nm", "standard error Nm", "detectable Nm", ""}};
     for (const RippleEstimate& one : found.orders) {
         const auto cell = [&](double nm) { return one.searched() ? fmt::format("{:.3f}", nm) : "-"; };
         rows.push_back({order_text(Order(one.order), found.ratio), cell(one.amplitude_nm),
@@ -64,17 +63,15 @@ std::string orders_of_log(const Recommendation& found) {
 
 // What each method leaves, in all, and what it costs.
 std::string methods_text(const Recommendation& found) {
-    std::vector<std::vector<std::string>> rows = {
+    TextRows rows = {
         {"method", "left", "error", "delay", "overshoot", "start", "cost", ""},
         {"", "Nm rms", "Nm rms", "ms", "%", "of ripple", "mult.", found.limits.any() ? "fits" : ""}};
-    const auto cell = [](const std::optional<double>& value, int decimals) {
-        return value ? rounded(*value, decimals) : "-";
-    };
     for (const JudgedMethod& method : found.methods) {
         const MethodFigures& figures = method.figures;
-        rows.push_back({short_method(figures), cell(figures.ripple_rms_nm, 4), cell(figures.error_nm, 4),
+        rows.push_back({short_method(figures), cell_text(figures.ripple_rms_nm, 4),
+                        cell_text(figures.error_nm, 4),
                         method.delay ? rounded(1e3 * method.delay->value(), 1) : "not known",
-                        cell(figures.overshoot_percent, 0), cell(figures.start_ratio, 2),
+                        cell_text(figures.overshoot_percent, 0), cell_text(figures.start_ratio, 2),
                         rounded(method.multiplications, 0), method.meets() ? "" : "no"});
     }
     return "\n" + text_table(rows, "lr");
@@ -646,8 +643,8 @@ std::function<ExitCode()> attach_recommend(Options& options) {
                  "only methods that this export target holds; see docs/export");
     options.number("--train", request->train_percent, Dimension::none,
                    "per cent of the log that methods learn from; they are evaluated on the rest");
-    options.flag("--require-conclusive", request->require_conclusive,
-                 "exit with code 5 when the log does not settle it");
+    attach_conclusive(options, request->require_conclusive,
+                      "exit with code 5 when the log does not settle it");
     attach_log(options, request->log);
     request->options = &options;
     attach_common(options, request->common, {"a recommendation", ".txt .json", true});

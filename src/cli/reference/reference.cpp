@@ -58,11 +58,6 @@ bool OptionEntry::names_file() const {
     return std::find(files.begin(), files.end(), word) != files.end();
 }
 
-const std::string& OptionEntry::longest_name() const {
-    return *std::max_element(names.begin(), names.end(),
-                             [](const std::string& a, const std::string& b) { return a.size() < b.size(); });
-}
-
 Reference reference_of(const CLI::App& app) {
     Reference reference{option_entry(app), {}};
     for (const CLI::App* command : app.get_subcommands({}))

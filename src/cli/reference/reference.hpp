@@ -22,8 +22,6 @@ struct OptionEntry {
     [[nodiscard]] std::vector<std::string> choices() const;
     [[nodiscard]] bool names_file() const;
     [[nodiscard]] bool takes_value() const { return !type.empty(); }
-    /// "--output"; of an argument its name.
-    [[nodiscard]] const std::string& longest_name() const;
 };
 
 struct CommandEntry {

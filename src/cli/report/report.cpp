@@ -40,9 +40,9 @@ namespace {
 using Words = std::vector<std::string>;
 
 struct LogReport {
-    std::string log;             ///< its path
-    std::string piped;           ///< the log itself, where it came through standard input
-    Words reading, gear, ratio;  ///< options of the log, of its gear, and its ratio alone
+    std::string log;      ///< its path
+    std::string piped;    ///< the log itself, where it came through standard input
+    Words reading, gear;  ///< options of the log, and of its gear
     bool quiet = false;
 };
 
@@ -101,7 +101,7 @@ class JointReport {
 
     /// Throws where identify refuses the log: the other commands would repeat its message.
     std::vector<PageSection> sections() {
-        command({"identify", log_, "--json", "-o", workspace_.path("joint.json")}, reading_ + report_.ratio,
+        command({"identify", log_, "--json", "-o", workspace_.path("joint.json")}, reading_ + ratio(),
                 report_.quiet);
         const Json found = taken("joint.json", "Which ripple, and which gear");
         const Json advice = tried({"recommend", log_}, reading_ + report_.gear, "recommendation.json",
@@ -122,6 +122,11 @@ class JointReport {
     }
 
   private:
+    // Of the gear identify takes the ratio alone.
+    [[nodiscard]] Words ratio() const {
+        const auto at = std::find(report_.gear.begin(), report_.gear.end(), "--gear-ratio");
+        return at == report_.gear.end() ? Words{} : Words{at, at + 2};
+    }
     static void command(const Words& words, const Words& options, bool quiet) {
         const ExitCode code =
             run_within(words + options + Words{"--force"} + (quiet ? Words{"-q"} : Words{}));
@@ -499,10 +504,8 @@ ExitCode run_report(const ReportRequest& request, const Options& options) {
         // A log may be longer than the memory; what commands wrote is not.
         std::string text = path == "-" ? read_all(path) : beginning_of(path);
         if (!path.ends_with(".json") && is_log(text)) {
-            logs.push_back({path, path == "-" ? std::move(text) : "",
-                            options.given("--format", "--hold-bad-values"),
-                            options.given("--gear-ratio", "--joint-file"),
-                            options.given("--gear-ratio", "--gear-ratio"), request.quiet});
+            logs.push_back({path, path == "-" ? std::move(text) : "", options.given(reading_group),
+                            options.given(gear_group), request.quiet});
             names.push_back(shown_name(path));
             continue;
         }
@@ -527,10 +530,12 @@ std::function<ExitCode()> attach_report(Options& options) {
                       "logs, of which info, identify, recommend and filter are run; or JSON that "
                       "commands wrote: joint.json, table.json, metrics, comparisons, diagnoses, figures "
                       "(--plot FILE.json); - is standard input");
-    options.text("-o,--output", request->output, "FILE", "where the page goes; - is standard output");
-    options.writes("-o");
-    options.flag("--force", request->force, "overwrite existing files");
-    options.flag("-q,--quiet", request->quiet, "no warnings on standard error");
+    attach_output(options, request->output, "where the page goes; - is standard output");
+    {
+        const Options::Group group(options, output_group);
+        options.flag("--force", request->force, "overwrite existing files");
+        options.flag("-q,--quiet", request->quiet, "no warnings on standard error");
+    }
     attach_gear(options, request->gear);
     attach_log(options, request->reading);
     return [request, &options] { return run_report(*request, options); };

@@ -45,7 +45,7 @@ namespace {
 
 std::string line_table(const std::vector<SpectralPeak>& peaks) {
     if (peaks.empty()) return "";
-    std::vector<std::vector<std::string>> rows{{"Hz", "+/-", "amplitude, Nm", "phase, deg", "SNR"}};
+    TextRows rows{{"Hz", "+/-", "amplitude, Nm", "phase, deg", "SNR"}};
     for (const SpectralPeak& peak : peaks) {
         rows.push_back({fmt::format("{:.4f}", peak.hz), fmt::format("{:.2g}", peak.hz_stderr),
                         fmt::format("{:.4g}", peak.amplitude_nm), fmt::format("{:.1f}", peak.phase_deg),
@@ -123,7 +123,7 @@ std::string order_peaks(const OrderSpectrum& spectrum) {
                         how_many(found.sweeps, "sweep"), found.turns, found.resolution_orders,
                         median_floor(spectrum.stack.floor_nm));
     if (found.lines.empty()) return text;
-    std::vector<std::vector<std::string>> rows{{"kind", "output order", "+/-", "Hz", "amplitude, Nm", "SNR"}};
+    TextRows rows{{"kind", "output order", "+/-", "Hz", "amplitude, Nm", "SNR"}};
     for (const MotionLine& line : found.lines) {
         const bool tone = line.kind == LineKind::tone, order = line.kind == LineKind::order;
         rows.push_back({std::string(line_kind_name(line.kind)),

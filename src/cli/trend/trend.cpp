@@ -24,7 +24,6 @@ namespace {
 // What changed, for people: the alerts, and what could not be looked at.
 
 constexpr std::size_t max_notes = 20;
-using TrendRows = std::vector<std::vector<std::string>>;
 
 std::string size_of(const ChangedDescriptor& one) {
     const double half = 0.5 * (one.ci95.high - one.ci95.low);
@@ -33,8 +32,8 @@ std::string size_of(const ChangedDescriptor& one) {
     return text;
 }
 
-TrendRows alerts_of(const Trend& trend) {
-    TrendRows rows = {{"joint", "since", "surest sign, 95 %", "also", "p"}};
+TextRows alerts_of(const Trend& trend) {
+    TextRows rows = {{"joint", "since", "surest sign, 95 %", "also", "p"}};
     for (const JointTrend& joint : trend.joints) {
         for (const JointChange& change : joint.changes) {
             std::string others;
@@ -62,7 +61,7 @@ std::string notes_of(const Trend& trend) {
 
 std::string trend_report(const Trend& trend) {
     std::string text = trend_verdict(trend) + "\n";
-    const TrendRows alerts = alerts_of(trend);
+    const TextRows alerts = alerts_of(trend);
     if (alerts.size() > 1) text += "\n" + text_table(alerts, "llllr");
     return text + notes_of(trend);
 }
