@@ -117,86 +117,63 @@ Curve run(const Contender& contender, const std::string& name, const Comparison&
 std::vector<Panel> course_panels(const Comparison& comparison, std::span<const Contender> contenders) {
     std::vector<Panel> panels;
     const double duration_s = shown_s(comparison);
-    const PlotAxis time{"time", "ms"};
-    Panel step{.title = "", .x = time, .y = {"torque", "Nm"}}, ramp = step;
-    step.legend = ramp.legend = false;
-    std::size_t taken = 0;
-    for (const Contender& contender : contenders) {
-        const Look look = look_of(contender, taken);
-        if (comparison.step_nm) {
-            const double height = *comparison.step_nm;
-            step.curves.push_back(run(contender, contender_name(comparison, contender), comparison,
-                                      duration_s, look, [height](double) { return height; }));
+    const auto add = [&](std::string title, const auto& signal) {
+        Panel panel{.title = std::move(title), .x = {"time", "ms"}, .y = {"torque", "Nm"}, .legend = false};
+        std::size_t taken = 0;
+        for (const Contender& contender : contenders) {
+            const Look look = look_of(contender, taken);
+            panel.curves.push_back(
+                run(contender, contender_name(comparison, contender), comparison, duration_s, look, signal));
         }
-        if (comparison.ramp_nm_s) {
-            const double slope = *comparison.ramp_nm_s;
-            ramp.curves.push_back(run(contender, contender_name(comparison, contender), comparison,
-                                      duration_s, look, [slope](double t) { return slope * t; }));
-        }
-    }
-    if (comparison.step_nm) {
-        step.title = fmt::format("A step of {:.4g} Nm", *comparison.step_nm);
-        panels.push_back(std::move(step));
-    }
-    if (comparison.ramp_nm_s) {
-        ramp.title = fmt::format("A ramp of {:.4g} Nm/s", *comparison.ramp_nm_s);
-        panels.push_back(std::move(ramp));
-    }
+        panels.push_back(std::move(panel));
+    };
+    if (comparison.step_nm)
+        add(fmt::format("A step of {:.4g} Nm", *comparison.step_nm),
+            [height = *comparison.step_nm](double) { return height; });
+    if (comparison.ramp_nm_s)
+        add(fmt::format("A ramp of {:.4g} Nm/s", *comparison.ramp_nm_s),
+            [slope = *comparison.ramp_nm_s](double t) { return slope * t; });
     return panels;
 }
 
-struct ResponsePanels {
-    Panel magnitude, phase, delay;
-};
-
-ResponsePanels empty_panels(const Comparison& comparison) {
-    const PlotAxis frequency{"frequency", "Hz", PlotScale::logarithmic};
-    ResponsePanels panels{{.title = "Magnitude", .x = frequency, .y = {"gain", "dB"}},
-                          {.title = "Phase", .x = frequency, .y = {"phase", "deg"}},
-                          {.title = "Group delay", .x = frequency, .y = {"delay", "ms"}}};
-    panels.phase.legend = panels.delay.legend = false;
-    if (!comparison.lines) return panels;
-    for (const Order order : comparison.lines->orders) {
-        const double hz = ripple_frequency(order, comparison.lines->ratio, comparison.speed).value();
-        panels.magnitude.lines.push_back(
-            {order_in_words(order, comparison.lines->ratio), NamedLine::Run::at_x, hz, Ink::black});
-    }
-    return panels;
-}
-
-// Near a null the delay of a notch is so large that the rest of the picture would be a line: the axis is
-// limited to the delays at low frequencies.
-void fit_delay_axis(Panel& delay, double longest_dc_ms) {
-    delay.y.from = -0.25 * std::max(longest_dc_ms, 1.0);
-    delay.y.to = 1.25 * std::max(longest_dc_ms, 1.0);
-}
-
+// Magnitude, phase and delay of the methods that are a linear filter at the comparison's speed.
 std::vector<Panel> response_panels(const Comparison& comparison, std::span<const Contender> contenders) {
-    ResponsePanels panels = empty_panels(comparison);
+    const PlotAxis frequency{"frequency", "Hz", PlotScale::logarithmic};
+    Panel magnitude{.title = "Magnitude", .x = frequency, .y = {"gain", "dB"}};
+    Panel phase{.title = "Phase", .x = frequency, .y = {"phase", "deg"}, .legend = false};
+    Panel delay{.title = "Group delay", .x = frequency, .y = {"delay", "ms"}, .legend = false};
     std::vector<double> lines_hz;
-    for (const NamedLine& line : panels.magnitude.lines) lines_hz.push_back(line.value);
+    for (const Order order : comparison.lines ? comparison.lines->orders : std::vector<Order>{}) {
+        lines_hz.push_back(ripple_frequency(order, comparison.lines->ratio, comparison.speed).value());
+        magnitude.lines.push_back({order_in_words(order, comparison.lines->ratio), NamedLine::Run::at_x,
+                                   lines_hz.back(), Ink::black});
+    }
     std::size_t taken = 0;
-    double longest_dc_ms = 0.0, deepest_db = -20.0;
+    double longest_dc_ms = 1.0, deepest_db = -20.0;
     for (const Contender& contender : contenders) {
         const Look look = look_of(contender, taken);
         const auto frozen = contender.frozen(comparison.sample_rate, comparison.speed);
         if (!frozen) continue;
         const FilterResponse response = filter_response(frozen->cascade, comparison.sample_rate, lines_hz);
-        panels.magnitude.curves.push_back({contender_name(comparison, contender), look.ink, look.style,
-                                           response.hz, response.magnitude_db});
-        panels.phase.curves.push_back(
-            {contender_name(comparison, contender), look.ink, look.style, response.hz, response.phase_deg});
-        panels.delay.curves.push_back({contender_name(comparison, contender), look.ink, look.style,
-                                       response.hz, response.group_delay_ms});
+        const auto add = [&](Panel& panel, const std::vector<double>& values) {
+            panel.curves.push_back(
+                {contender_name(comparison, contender), look.ink, look.style, response.hz, values});
+        };
+        add(magnitude, response.magnitude_db);
+        add(phase, response.phase_deg);
+        add(delay, response.group_delay_ms);
         longest_dc_ms = std::max(longest_dc_ms, response.group_delay_ms.front());
         deepest_db = std::min(deepest_db,
                               *std::min_element(response.magnitude_db.begin(), response.magnitude_db.end()));
     }
-    if (panels.magnitude.curves.empty()) return {};
-    panels.magnitude.y.from = std::max(deepest_db - 5.0, -85.0);
-    panels.magnitude.y.to = 8.0;
-    fit_delay_axis(panels.delay, longest_dc_ms);
-    return {std::move(panels.magnitude), std::move(panels.phase), std::move(panels.delay)};
+    if (magnitude.curves.empty()) return {};
+    magnitude.y.from = std::max(deepest_db - 5.0, -85.0);
+    magnitude.y.to = 8.0;
+    // Near a null the delay of a notch is so large that the rest of the picture would be a line: the axis is
+    // limited to the delays at low frequencies.
+    delay.y.from = -0.25 * longest_dc_ms;
+    delay.y.to = 1.25 * longest_dc_ms;
+    return {std::move(magnitude), std::move(phase), std::move(delay)};
 }
 
 }  // namespace

@@ -39,8 +39,9 @@ At at_speed(const MapFit& fit, std::size_t order, double speed_deg_s) {
     return found;
 }
 
-void add_curves(const MapFit& fit, std::size_t order, double sign, const std::string& name, double ordinal,
-                Panel& amplitude, Panel& phase) {
+void add_curves(const MapFit& fit, std::size_t order, double sign, const std::string& name, Panel& amplitude,
+                Panel& phase) {
+    const double ordinal = fit.map.orders[order].value();
     // Backward has the colour of its order and the other mark.
     const Ink ink = order_ink(ordinal);
     const auto style = [&](CurveStyle one) {
@@ -90,12 +91,9 @@ Figure map_figure(const std::string& source, const MapFit& fit) {
     amplitude.y.from = 0.0;
     for (std::size_t i = 0; i < fit.map.orders.size(); ++i) {
         const std::string order = order_in_words(fit.map.orders[i], fit.map.gear_ratio);
-        if (fit.map.form.directions == 1) {
-            add_curves(fit, i, 1.0, order, fit.map.orders[i].value(), amplitude, phase);
-        } else {
-            add_curves(fit, i, 1.0, order + " forward", fit.map.orders[i].value(), amplitude, phase);
-            add_curves(fit, i, -1.0, order + " backward", fit.map.orders[i].value(), amplitude, phase);
-        }
+        const bool one_way = fit.map.form.directions == 1;
+        add_curves(fit, i, 1.0, one_way ? order : order + " forward", amplitude, phase);
+        if (!one_way) add_curves(fit, i, -1.0, order + " backward", amplitude, phase);
     }
     return {"ripple-map", fmt::format("Ripple over speed: {}", source), "", {amplitude, phase}};
 }
@@ -203,23 +201,6 @@ CurveStyle track_style(const TrackName& line, CurveStyle style) {
     return line.order ? order_style(*line.order, style) : other_mark(style);
 }
 
-struct TrackPanels {
-    Panel amplitude, phase;
-};
-
-TrackPanels panels_over(const PlotAxis& x) {
-    TrackPanels panels{{.title = "Amplitude", .x = x, .y = {"amplitude, zero to peak", "Nm"}},
-                       {.title = "Phase against the angle of the shaft",
-                        .x = x,
-                        .y = {"phase", "deg"},
-                        .legend = false,
-                        .height = 0.7}};
-    panels.amplitude.y.from = 0.0;
-    panels.phase.y.from = -180.0;
-    panels.phase.y.to = 180.0;
-    return panels;
-}
-
 // A nan before each row that does not follow on the one before it.
 void break_at(const std::vector<std::size_t>& breaks, Curve& curve) {
     for (std::size_t i = breaks.size(); i-- > 0;) {
@@ -245,7 +226,7 @@ std::vector<Ribbon> parts_of(const Ribbon& whole, const std::vector<std::size_t>
     return parts;
 }
 
-void add_line(TrackPanels& panels, const TrackName& line, const std::vector<double>& x,
+void add_line(Panel& amplitude, Panel& phase, const TrackName& line, const std::vector<double>& x,
               const std::vector<double>& amplitude_nm, const std::vector<double>& half_width_nm,
               const std::vector<double>& phase_deg, const std::vector<std::size_t>& breaks) {
     const Ink ink = track_ink(line);
@@ -256,44 +237,50 @@ void add_line(TrackPanels& panels, const TrackName& line, const std::vector<doub
     }
     // A ribbon of more rows than a picture has columns would be a blur.
     if (x.size() <= max_ribbon_rows) {
-        for (Ribbon& part : parts_of(ribbon, breaks)) panels.amplitude.ribbons.push_back(std::move(part));
+        for (Ribbon& part : parts_of(ribbon, breaks)) amplitude.ribbons.push_back(std::move(part));
     }
-    Curve amplitude{line.words, ink, track_style(line, CurveStyle::line), x, amplitude_nm};
-    break_at(breaks, amplitude);
-    panels.amplitude.curves.push_back(thinned(amplitude));
-    panels.phase.curves.push_back(
-        thinned({line.words, ink, track_style(line, CurveStyle::points), x, phase_deg}));
+    Curve curve{line.words, ink, track_style(line, CurveStyle::line), x, amplitude_nm};
+    break_at(breaks, curve);
+    amplitude.curves.push_back(thinned(curve));
+    phase.curves.push_back(thinned({line.words, ink, track_style(line, CurveStyle::points), x, phase_deg}));
 }
 
-Figure figure_of(const std::string& source, TrackPanels panels) {
+// `width_of` a line: half of its ribbon, row by row.
+template <class Tracks, class WidthOf>
+Figure figure_over(const std::string& source, const PlotAxis& x, const std::vector<double>& at,
+                   const Tracks& tracks, std::span<const TrackName> names, const WidthOf& width_of) {
+    Panel amplitude{.title = "Amplitude", .x = x, .y = {"amplitude, zero to peak", "Nm"}};
+    Panel phase{.title = "Phase against the angle of the shaft",
+                .x = x,
+                .y = {"phase", "deg"},
+                .legend = false,
+                .height = 0.7};
+    amplitude.y.from = 0.0;
+    phase.y.from = -180.0;
+    phase.y.to = 180.0;
+    const std::vector<std::size_t> breaks = track_breaks(tracks);
+    for (std::size_t i = 0; i < tracks.lines.size(); ++i)
+        add_line(amplitude, phase, names[i], at, tracks.lines[i].amplitude_nm, width_of(tracks.lines[i]),
+                 tracks.lines[i].phase_deg, breaks);
     return {"track",
             fmt::format("Lines of the torque along the log: {}", source),
             "",
-            {std::move(panels.amplitude), std::move(panels.phase)}};
+            {std::move(amplitude), std::move(phase)}};
 }
 
 }  // namespace
 
 Figure track_figure(const std::string& source, const OrderTracks& tracks, std::span<const TrackName> names) {
-    TrackPanels panels = panels_over({"time", "s"});
-    const std::vector<std::size_t> breaks = track_breaks(tracks);
-    for (std::size_t i = 0; i < tracks.lines.size(); ++i) {
-        std::vector<double> twice = tracks.lines[i].standard_error_nm;
+    return figure_over(source, {"time", "s"}, tracks.time_s, tracks, names, [](const auto& line) {
+        std::vector<double> twice = line.standard_error_nm;
         for (double& error : twice) error *= 2.0;
-        add_line(panels, names[i], tracks.time_s, tracks.lines[i].amplitude_nm, twice,
-                 tracks.lines[i].phase_deg, breaks);
-    }
-    return figure_of(source, std::move(panels));
+        return twice;
+    });
 }
 
 Figure track_figure(const std::string& source, const SpeedTrack& tracks, std::span<const TrackName> names) {
-    TrackPanels panels = panels_over({"joint speed", "deg/s"});
-    const std::vector<std::size_t> breaks = track_breaks(tracks);
-    for (std::size_t i = 0; i < tracks.lines.size(); ++i) {
-        add_line(panels, names[i], tracks.speed_deg_s, tracks.lines[i].amplitude_nm,
-                 tracks.lines[i].spread_nm, tracks.lines[i].phase_deg, breaks);
-    }
-    return figure_of(source, std::move(panels));
+    return figure_over(source, {"joint speed", "deg/s"}, tracks.speed_deg_s, tracks, names,
+                       [](const auto& line) { return line.spread_nm; });
 }
 
 }  // namespace ripplenotch

@@ -25,8 +25,6 @@ constexpr double right_px = 22.0, box_height = 250.0, below_px = 50.0, colours_p
 constexpr double label_apart_px = 15.0;
 constexpr std::size_t longest_label = 32;
 
-double px(const std::string& text) { return letter_px * static_cast<double>(text_width(text)); }
-
 struct Frame {
     double left, top, width, beside;  ///< beside: kept free at the right, the same in all panels
 };
@@ -36,13 +34,9 @@ std::vector<LineLabel> labels_of(const Panel& panel, const PlotRange& x, const P
     std::vector<LineLabel> labels;
     for (std::size_t i = 0; i < panel.lines.size(); ++i) {
         const NamedLine& line = panel.lines[i];
-        Segment segment{};
-        if (line.name.empty() || !segment_of(line, x, y, segment)) continue;
-        const bool leaves_on_top = segment.y1 >= y.to - 1e-9 * (y.to - y.from);
-        const bool on_top =
-            line.run == NamedLine::Run::at_x ||
-            (line.run == NamedLine::Run::ray && leaves_on_top && segment.x1 < x.to - 1e-9 * (x.to - x.from));
-        labels.push_back({i, cut_to(visible_text(line.name), longest_label), on_top, 0.0, 0.0});
+        const auto segment = segment_of(line, x, y);
+        if (line.name.empty() || !segment) continue;
+        labels.push_back({i, cut_to(visible_text(line.name), longest_label), segment->on_top, 0.0, 0.0});
     }
     return labels;
 }
@@ -50,8 +44,7 @@ std::vector<LineLabel> labels_of(const Panel& panel, const PlotRange& x, const P
 double longest_px(const std::vector<LineLabel>& labels, bool on_top) {
     double longest = 0.0;
     for (const LineLabel& label : labels)
-        if (label.on_top == on_top)
-            longest = std::max(longest, small_letter_px * static_cast<double>(text_width(label.text)));
+        if (label.on_top == on_top) longest = std::max(longest, text_px(label.text, small_letter_px));
     return longest;
 }
 
@@ -60,8 +53,7 @@ void place(std::vector<LineLabel>& labels, const Panel& panel, const PanelLayout
     std::vector<double> wanted;
     for (std::size_t i = 0; i < labels.size(); ++i) {
         if (labels[i].on_top != on_top) continue;
-        Segment segment{};
-        (void)segment_of(panel.lines[labels[i].line], box.x, box.y, segment);
+        const Segment segment = *segment_of(panel.lines[labels[i].line], box.x, box.y);
         const double share = on_top ? share_along(box.x, panel.x.scale, segment.x1)
                                     : share_along(box.y, panel.y.scale, segment.y1);
         labels[i].anchor_px =
@@ -104,7 +96,7 @@ PanelLayout lay_out_panel(const Panel& panel, const Frame& frame, double& bottom
     const std::vector<std::string> names = legend_names(panel);
     if (!names.empty() && panel.legend) {
         double longest = 0.0;
-        for (const std::string& name : names) longest = std::max(longest, px(name) + 60.0);
+        for (const std::string& name : names) longest = std::max(longest, text_px(name) + 60.0);
         const int across = std::max(1, std::min(3, static_cast<int>((frame.width - 20.0) / longest)));
         box.legend_rows = (static_cast<int>(names.size()) + across - 1) / across;
         box.legend_x = frame.left + 14.0;
@@ -118,6 +110,10 @@ PanelLayout lay_out_panel(const Panel& panel, const Frame& frame, double& bottom
 }
 
 }  // namespace
+
+double text_px(std::string_view text, double letter) {
+    return letter * static_cast<double>(text_width(text));
+}
 
 std::vector<std::string> legend_names(const Panel& panel) {
     std::vector<std::string> names;
@@ -271,7 +267,7 @@ class PanelScript {
     }
 
     void axis(const char* name, const PlotAxis& axis, const PlotRange& range) {
-        script_.line("set {0}range [{1:.10g}:{2:.10g}]", name, range.from, range.to);
+        script_.axis(name, axis, range);
         if (name[0] == 'x') {
             script_.line("set xlabel {} font ',12' offset 0,0.2", gnuplot_string(axis_text(axis)));
         } else {
@@ -279,9 +275,6 @@ class PanelScript {
             text(axis_text(axis), box_.left - left_px + 16.0, 0.5 * (box_.top + box_.bottom),
                  "center rotate by 90 font ',12'");
         }
-        if (axis.scale == PlotScale::logarithmic) script_.line("set logscale {}", name);
-        if (const std::string ticks = gnuplot_ticks(range, axis.scale); !ticks.empty())
-            script_.line("set {}tics {}", name, ticks);
         script_.line("set format {} '%.10g'", name);
     }
 
@@ -310,19 +303,20 @@ class PanelScript {
         const double left = share_along(box_.x, panel_.x.scale, x0),
                      right = share_along(box_.x, panel_.x.scale, x1);
         const double width_px = (right - left) * (box_.right - box_.left);
-        if (words.empty() || letter_px * static_cast<double>(text_width(words)) > width_px) return;
+        if (words.empty() || text_px(words) > width_px) return;
         text(words, box_.left + 0.5 * (left + right) * (box_.right - box_.left),
              box_.bottom - share_along(box_.y, panel_.y.scale, y1) * (box_.bottom - box_.top) + 0.6 * line_px,
              "center font ',11' tc rgb '#404040'");
     }
 
     void draw(const NamedLine& line) {
-        Segment s{};
-        if (!segment_of(line, box_.x, box_.y, s)) return;
+        const auto s = segment_of(line, box_.x, box_.y);
+        if (!s) return;
         // On a map grey would drown in the dark.
         const std::string ink = panel_.map ? "#ffffff" : ink_rgb(line.ink);
-        script_.line("set arrow from {:.10g},{:.10g} to {:.10g},{:.10g} nohead {} lc rgb '{}' lw 1 {}", s.x0,
-                     s.y0, s.x1, s.y1, panel_.map ? "front" : "back", ink, line.dashed ? "dt (6,4)" : "dt 1");
+        script_.line("set arrow from {:.10g},{:.10g} to {:.10g},{:.10g} nohead {} lc rgb '{}' lw 1 {}", s->x0,
+                     s->y0, s->x1, s->y1, panel_.map ? "front" : "back", ink,
+                     line.dashed ? "dt (6,4)" : "dt 1");
     }
 
     void draw(const LineLabel& label) {
@@ -372,10 +366,7 @@ class PanelScript {
 
     // Right of the names of lines.
     [[nodiscard]] double colours_left() const {
-        double longest = 0.0;
-        for (const LineLabel& label : box_.labels)
-            if (!label.on_top)
-                longest = std::max(longest, small_letter_px * static_cast<double>(text_width(label.text)));
+        const double longest = longest_px(box_.labels, false);
         return box_.right + 16.0 + (longest > 0.0 ? longest + 14.0 : 0.0);
     }
 
@@ -409,9 +400,7 @@ class PanelScript {
         }
         for (const Curve& curve : panel_.curves) draw(curve, parts);
         if (parts.empty()) parts.emplace_back("NaN notitle");
-        std::string all;
-        for (const std::string& part : parts) all += (all.empty() ? "" : ", ") + part;
-        script_.line("plot {}", all);
+        script_.plot(parts);
     }
 
     GnuplotScript& script_;

@@ -21,6 +21,8 @@ inline constexpr double small_letter_px = 6.6;  ///< at 11 px
 
 inline constexpr double line_px = 17.0;
 
+[[nodiscard]] double text_px(std::string_view text, double letter = letter_px);
+
 /// A named line's label: on top (written upward) or at the right of the panel.
 struct LineLabel {
     std::size_t line = 0;  ///< index into Panel::lines
@@ -80,6 +82,9 @@ class GnuplotScript {
         fmt::format_to(std::back_inserter(text_), format, std::forward<Args>(args)...);
         text_ += '\n';
     }
+    /// Range, scale and numbers of the axis of this name, "x".
+    void axis(std::string_view name, const PlotAxis& axis, const PlotRange& range);
+    void plot(const std::vector<std::string>& parts);
     /// A block of rows; returns its name. A row with a nan becomes an empty row, which breaks a line.
     std::string rows(const std::vector<const std::vector<double>*>& columns);
     /// A block of text cells: x, y, one character.
@@ -102,11 +107,12 @@ class GnuplotScript {
 /// A cell within the range of the map's colours; nan stays.
 [[nodiscard]] double within_colours(const HeatMap& map, double value);
 
-/// The straight line of `line` through a panel with these ranges; false when it does not pass through it.
+/// The straight line of `line` through a panel with these ranges; empty when it does not pass through it.
 struct Segment {
     double x0, y0, x1, y1;
+    bool on_top;  ///< it leaves the panel at its upper edge, else at the right
 };
-[[nodiscard]] bool segment_of(const NamedLine& line, const PlotRange& x, const PlotRange& y,
-                              Segment& segment);
+[[nodiscard]] std::optional<Segment> segment_of(const NamedLine& line, const PlotRange& x,
+                                                const PlotRange& y);
 
 }  // namespace ripplenotch

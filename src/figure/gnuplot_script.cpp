@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <fcntl.h>
+#include <fmt/ranges.h>
 #include <poll.h>
 #include <spawn.h>
 #include <sys/wait.h>
@@ -184,6 +185,15 @@ std::string GnuplotScript::open_block() {
     return name;
 }
 
+void GnuplotScript::axis(std::string_view name, const PlotAxis& axis, const PlotRange& range) {
+    line("set {}range [{:.10g}:{:.10g}]", name, range.from, range.to);
+    if (axis.scale == PlotScale::logarithmic) line("set logscale {}", name);
+    if (const std::string ticks = gnuplot_ticks(range, axis.scale); !ticks.empty())
+        line("set {}tics {}", name, ticks);
+}
+
+void GnuplotScript::plot(const std::vector<std::string>& parts) { line("plot {}", fmt::join(parts, ", ")); }
+
 std::string GnuplotScript::rows(const std::vector<const std::vector<double>*>& columns) {
     std::string name = open_block();
     for (std::size_t i = 0; i < columns.front()->size(); ++i) {
@@ -247,14 +257,14 @@ double within_colours(const HeatMap& map, double value) {
     return std::isnan(value) ? value : std::clamp(value, map.lowest, map.highest);
 }
 
-bool segment_of(const NamedLine& line, const PlotRange& x, const PlotRange& y, Segment& segment) {
+std::optional<Segment> segment_of(const NamedLine& line, const PlotRange& x, const PlotRange& y) {
     if (line.run == NamedLine::Run::at_x) {
-        segment = {line.value, y.from, line.value, y.to};
-        return line.value >= x.from && line.value <= x.to;
+        if (!(line.value >= x.from && line.value <= x.to)) return std::nullopt;
+        return Segment{line.value, y.from, line.value, y.to, true};
     }
     if (line.run == NamedLine::Run::at_y) {
-        segment = {x.from, line.value, x.to, line.value};
-        return line.value >= y.from && line.value <= y.to;
+        if (!(line.value >= y.from && line.value <= y.to)) return std::nullopt;
+        return Segment{x.from, line.value, x.to, line.value, false};
     }
     // A ray through the origin of slope value, within the panel.
     double from = x.from, to = x.to;
@@ -263,10 +273,12 @@ bool segment_of(const NamedLine& line, const PlotRange& x, const PlotRange& y, S
         from = std::max(from, std::min(a, b));
         to = std::min(to, std::max(a, b));
     } else if (y.from > 0.0 || y.to < 0.0) {
-        return false;
+        return std::nullopt;
     }
-    segment = {from, line.value * from, to, line.value * to};
-    return from < to;
+    if (!(from < to)) return std::nullopt;
+    const double end = line.value * to;
+    return Segment{from, line.value * from, to, end,
+                   end >= y.to - 1e-9 * (y.to - y.from) && to < x.to - 1e-9 * (x.to - x.from)};
 }
 
 namespace {
@@ -311,8 +323,9 @@ class TextPanel {
             "set lmargin {}\nset rmargin 3\nset tmargin 1\nset bmargin 2\nset border 3\nset tics nomirror",
             left_columns);
         script_.line("unset key");
-        axis("x", panel_.x, x_);
-        axis("y", panel_.y, y_);
+        script_.axis("x", panel_.x, x_);
+        script_.axis("y", panel_.y, y_);
+        script_.line("set format x '%.5g'\nset format y '%.5g'");
         std::vector<std::string> parts;
         if (panel_.map) {
             const HeatMap raster =
@@ -323,22 +336,14 @@ class TextPanel {
         }
         for (std::size_t i = 0; i < panel_.curves.size(); ++i) draw(panel_.curves[i], i, parts);
         mark_lines();
-        std::string all;
-        for (const std::string& part : parts) all += (all.empty() ? "" : ", ") + part;
-        script_.line("plot {}", all.empty() ? "NaN" : all);
+        if (parts.empty()) parts.emplace_back("NaN");
+        script_.plot(parts);
         const auto drawn = run_gnuplot(script_.text());
         if (!drawn) return std::nullopt;
         return heading() + without_blank_ends(*drawn) + below();
     }
 
   private:
-    void axis(const char* name, const PlotAxis& axis, const PlotRange& range) {
-        script_.line("set {0}range [{1:.10g}:{2:.10g}]\nset format {0} '%.5g'", name, range.from, range.to);
-        if (axis.scale == PlotScale::logarithmic) script_.line("set logscale {}", name);
-        if (const std::string ticks = gnuplot_ticks(range, axis.scale); !ticks.empty())
-            script_.line("set {}tics {}", name, ticks);
-    }
-
     void draw(const Curve& whole, std::size_t i, std::vector<std::string>& parts) {
         const Curve curve = thinned(whole, static_cast<std::size_t>(columns_));
         const std::string data = script_.rows({&curve.x, &curve.y});
@@ -361,16 +366,16 @@ class TextPanel {
         std::vector<std::size_t> above, beside;
         std::vector<double> columns, rows;
         for (const NamedLine& line : panel_.lines) {
-            Segment s{};
-            if (named_.size() == letters.size() || !segment_of(line, x_, y_, s)) continue;
+            const auto s = segment_of(line, x_, y_);
+            if (named_.size() == letters.size() || !s) continue;
             const bool on_top = line.run == NamedLine::Run::at_x;
             (on_top ? above : beside).push_back(named_.size());
             if (on_top) {
-                columns.push_back(plot_columns() * share_along(x_, panel_.x.scale, s.x1));
+                columns.push_back(plot_columns() * share_along(x_, panel_.x.scale, s->x1));
             } else {
-                rows.push_back(plot_rows * share_along(y_, panel_.y.scale, s.y1));
+                rows.push_back(plot_rows * share_along(y_, panel_.y.scale, s->y1));
                 // Dots only where nothing else is drawn that they would hide.
-                if (!panel_.map) dots(s);
+                if (!panel_.map) dots(*s);
             }
             named_.push_back(&line);
         }

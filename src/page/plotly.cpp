@@ -163,124 +163,108 @@ constexpr double plot_px = 780.0;  ///< a page's width less the margins; narrowe
 
 constexpr double panel_px = 240.0;  ///< height of a panel of height 1
 
+std::string shown_name(const NamedLine& line) { return cut_to(visible_text(line.name), 28); }
+
 class PlotlyLines {
   public:
     /// `suffix` of the panel's axes: empty, "2", "3", ...
-    PlotlyLines(const Panel& panel, std::string suffix);
+    PlotlyLines(const Panel& panel, std::string suffix)
+        : panel_(panel), suffix_(std::move(suffix)), x_(x_range(panel)), y_(y_range(panel)) {}
 
     /// Space for the names above the panel, or right of it.
-    [[nodiscard]] double names_px(bool on_top) const;
-    /// Adds shapes and annotations.
-    void write(Json& layout) const;
+    [[nodiscard]] double names_px(bool on_top) const {
+        double longest = 0.0;
+        for (const NamedLine& line : panel_.lines) {
+            const auto s = segment_of(line, x_, y_);
+            if (line.name.empty() || !s || on_top != s->on_top) continue;
+            longest = std::max(longest, text_px(shown_name(line), small_letter_px));
+        }
+        return longest > 0.0 ? longest + 22.0 : 0.0;
+    }
+
+    /// Adds shapes and annotations: the lines themselves, and their names pushed off each other at the edge
+    /// where they leave.
+    void write(Json& layout) const {
+        for (const bool on_top : {true, false}) {
+            std::vector<const NamedLine*> named;
+            std::vector<Segment> segments;
+            std::vector<double> wanted;
+            for (const NamedLine& line : panel_.lines) {
+                const auto s = segment_of(line, x_, y_);
+                if (!s || on_top != s->on_top) continue;
+                draw(layout, line, *s);
+                if (line.name.empty()) continue;
+                named.push_back(&line);
+                segments.push_back(*s);
+                wanted.push_back(on_top ? plot_px * share_along(x_, panel_.x.scale, s->x1)
+                                        : panel_px * panel_.height *
+                                              (1.0 - share_along(y_, panel_.y.scale, s->y1)));
+            }
+            const auto placed = pushed_apart(wanted, 16.0, 0.0, on_top ? plot_px : panel_px * panel_.height);
+            for (std::size_t i = 0; i < named.size(); ++i)
+                label(layout, *named[i], segments[i], on_top, placed[i] - wanted[i]);
+        }
+    }
 
   private:
-    [[nodiscard]] bool leaves_on_top(const NamedLine& line, const Segment& s) const;
-    void draw(Json& layout, const NamedLine& line, const Segment& s) const;
-    void label(Json& layout, const NamedLine& line, const Segment& s, bool on_top, double push_px) const;
+    void draw(Json& layout, const NamedLine& line, const Segment& s) const {
+        layout["shapes"].push_back({{"type", "line"},
+                                    {"layer", panel_.map ? "above" : "below"},
+                                    {"xref", "x" + suffix_},
+                                    {"yref", "y" + suffix_},
+                                    {"x0", plotly_number(s.x0)},
+                                    {"y0", plotly_number(s.y0)},
+                                    {"x1", plotly_number(s.x1)},
+                                    {"y1", plotly_number(s.y1)},
+                                    {"line",
+                                     {{"color", panel_.map ? "#ffffffb0" : ink_rgb(line.ink)},
+                                      {"width", 1},
+                                      {"dash", line.dashed && !panel_.map ? "dash" : "solid"}}}});
+    }
+
+    // The name stands off its line's end by `push_px`; a leader ties them together.
+    void label(Json& layout, const NamedLine& line, const Segment& s, bool on_top, double push_px) const {
+        const std::string x = "x" + suffix_, y = "y" + suffix_;
+        const bool log = (on_top ? panel_.x : panel_.y).scale == PlotScale::logarithmic;
+        const double where = on_top ? s.x1 : s.y1;
+        const bool inside = panel_.map && !on_top;
+        Json note{{"text", plotly_shown(shown_name(line))},
+                  {"showarrow", false},
+                  {"font", {{"size", 11}, {"color", inside ? "#ffffff" : "#1b1b1b"}}},
+                  {"xref", on_top ? x : x + " domain"},
+                  {"yref", on_top ? y + " domain" : y},
+                  {"x", on_top ? plotly_number(log ? portable::log10(where) : where) : Json(1)},
+                  {"y", on_top ? Json(1) : plotly_number(log ? portable::log10(where) : where)},
+                  {"xanchor", on_top   ? "center"
+                              : inside ? "right"
+                                       : "left"},
+                  {"yanchor", on_top || inside ? "bottom" : "middle"},
+                  {"xshift", on_top   ? push_px
+                             : inside ? -2.0
+                                      : 14.0},
+                  {"yshift", on_top ? 12.0 : -push_px},
+                  {"textangle", on_top ? -90 : 0}};
+        if (inside) note["bgcolor"] = "#08112fb0";
+        layout["annotations"].push_back(std::move(note));
+        if (inside) return;
+        layout["shapes"].push_back({{"type", "line"},
+                                    {"xref", on_top ? x : x + " domain"},
+                                    {"yref", on_top ? y + " domain" : y},
+                                    {"xsizemode", "pixel"},
+                                    {"ysizemode", "pixel"},
+                                    {"xanchor", on_top ? plotly_number(where) : Json(1)},
+                                    {"yanchor", on_top ? Json(1) : plotly_number(where)},
+                                    {"x0", 0},
+                                    {"y0", 0},
+                                    {"x1", on_top ? push_px : 11.0},
+                                    {"y1", on_top ? 11.0 : -push_px},
+                                    {"line", {{"color", "#888"}, {"width", 0.7}}}});
+    }
 
     const Panel& panel_;
     std::string suffix_;
     PlotRange x_, y_;
 };
-
-std::string shown_name(const NamedLine& line) { return cut_to(visible_text(line.name), 28); }
-
-PlotlyLines::PlotlyLines(const Panel& panel, std::string suffix)
-    : panel_(panel), suffix_(std::move(suffix)), x_(x_range(panel)), y_(y_range(panel)) {}
-
-double PlotlyLines::names_px(bool on_top) const {
-    double longest = 0.0;
-    for (const NamedLine& line : panel_.lines) {
-        Segment s{};
-        if (line.name.empty() || !segment_of(line, x_, y_, s) || on_top != leaves_on_top(line, s)) continue;
-        longest = std::max(longest, small_letter_px * static_cast<double>(text_width(shown_name(line))));
-    }
-    return longest > 0.0 ? longest + 22.0 : 0.0;
-}
-
-bool PlotlyLines::leaves_on_top(const NamedLine& line, const Segment& s) const {
-    if (line.run == NamedLine::Run::at_x) return true;
-    return line.run == NamedLine::Run::ray && s.y1 >= y_.to - 1e-9 * (y_.to - y_.from) &&
-           s.x1 < x_.to - 1e-9 * (x_.to - x_.from);
-}
-
-// The lines themselves, and their names pushed off each other at the edge where they leave.
-void PlotlyLines::write(Json& layout) const {
-    for (const bool on_top : {true, false}) {
-        std::vector<const NamedLine*> named;
-        std::vector<Segment> segments;
-        std::vector<double> wanted;
-        for (const NamedLine& line : panel_.lines) {
-            Segment s{};
-            if (!segment_of(line, x_, y_, s) || on_top != leaves_on_top(line, s)) continue;
-            draw(layout, line, s);
-            if (line.name.empty()) continue;
-            named.push_back(&line);
-            segments.push_back(s);
-            wanted.push_back(on_top
-                                 ? plot_px * share_along(x_, panel_.x.scale, s.x1)
-                                 : panel_px * panel_.height * (1.0 - share_along(y_, panel_.y.scale, s.y1)));
-        }
-        const auto placed = pushed_apart(wanted, 16.0, 0.0, on_top ? plot_px : panel_px * panel_.height);
-        for (std::size_t i = 0; i < named.size(); ++i)
-            label(layout, *named[i], segments[i], on_top, placed[i] - wanted[i]);
-    }
-}
-
-void PlotlyLines::draw(Json& layout, const NamedLine& line, const Segment& s) const {
-    layout["shapes"].push_back({{"type", "line"},
-                                {"layer", panel_.map ? "above" : "below"},
-                                {"xref", "x" + suffix_},
-                                {"yref", "y" + suffix_},
-                                {"x0", plotly_number(s.x0)},
-                                {"y0", plotly_number(s.y0)},
-                                {"x1", plotly_number(s.x1)},
-                                {"y1", plotly_number(s.y1)},
-                                {"line",
-                                 {{"color", panel_.map ? "#ffffffb0" : ink_rgb(line.ink)},
-                                  {"width", 1},
-                                  {"dash", line.dashed && !panel_.map ? "dash" : "solid"}}}});
-}
-
-// The name stands off its line's end by `push_px`; a leader ties them together.
-void PlotlyLines::label(Json& layout, const NamedLine& line, const Segment& s, bool on_top,
-                        double push_px) const {
-    const std::string x = "x" + suffix_, y = "y" + suffix_;
-    const bool log = (on_top ? panel_.x : panel_.y).scale == PlotScale::logarithmic;
-    const double where = on_top ? s.x1 : s.y1;
-    const bool inside = panel_.map && !on_top;
-    Json note{{"text", plotly_shown(shown_name(line))},
-              {"showarrow", false},
-              {"font", {{"size", 11}, {"color", inside ? "#ffffff" : "#1b1b1b"}}},
-              {"xref", on_top ? x : x + " domain"},
-              {"yref", on_top ? y + " domain" : y},
-              {"x", on_top ? plotly_number(log ? portable::log10(where) : where) : Json(1)},
-              {"y", on_top ? Json(1) : plotly_number(log ? portable::log10(where) : where)},
-              {"xanchor", on_top   ? "center"
-                          : inside ? "right"
-                                   : "left"},
-              {"yanchor", on_top || inside ? "bottom" : "middle"},
-              {"xshift", on_top   ? push_px
-                         : inside ? -2.0
-                                  : 14.0},
-              {"yshift", on_top ? 12.0 : -push_px},
-              {"textangle", on_top ? -90 : 0}};
-    if (inside) note["bgcolor"] = "#08112fb0";
-    layout["annotations"].push_back(std::move(note));
-    if (inside) return;
-    layout["shapes"].push_back({{"type", "line"},
-                                {"xref", on_top ? x : x + " domain"},
-                                {"yref", on_top ? y + " domain" : y},
-                                {"xsizemode", "pixel"},
-                                {"ysizemode", "pixel"},
-                                {"xanchor", on_top ? plotly_number(where) : Json(1)},
-                                {"yanchor", on_top ? Json(1) : plotly_number(where)},
-                                {"x0", 0},
-                                {"y0", 0},
-                                {"x1", on_top ? push_px : 11.0},
-                                {"y1", on_top ? 11.0 : -push_px},
-                                {"line", {{"color", "#888"}, {"width", 0.7}}}});
-}
 
 constexpr double left_margin_px = 84.0, tool_bar_px = 34.0;
 constexpr double axis_px = 56.0, row_px = 24.0;
@@ -293,7 +277,7 @@ std::size_t legend_rows(const Panel& panel, double room_px) {
     std::size_t rows = 0;
     double used_px = room_px + 1.0;
     for (const std::string& name : legend_names(panel)) {
-        const double px = letter_px * static_cast<double>(text_width(name)) + 60.0;
+        const double px = text_px(name) + 60.0;
         if (used_px + px > room_px) {
             ++rows;
             used_px = 0.0;
@@ -422,8 +406,7 @@ class PlotlyPanel {
                                      {"fillcolor", ink_rgb(shade.ink) + "24"},
                                      {"line", {{"width", 0}}}});
         const double room_px = (x1 - x0) / (x_.to - x_.from) * 0.5 * plot_px;  // half: phones are narrow
-        if (shade.name.empty() || small_letter_px * static_cast<double>(text_width(shade.name)) > room_px)
-            return;
+        if (shade.name.empty() || text_px(shade.name, small_letter_px) > room_px) return;
         layout_["annotations"].push_back({{"text", plotly_shown(shade.name)},
                                           {"xref", "x" + suffix_},
                                           {"yref", "y" + suffix_ + " domain"},

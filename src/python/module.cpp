@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "cli/options/options.hpp"
-#include "cli/options/verdict_options.hpp"
 #include "cli/run.hpp"
 #include "cli/talk.hpp"
 #include "core/files/byte_sink.hpp"

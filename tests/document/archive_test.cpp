@@ -38,7 +38,7 @@ void describe(auto& archive, Is<Part> auto& part) {
 void describe(auto& archive, Is<Whole> auto& whole) {
     archive("colour", whole.colour, Names{colour_name, Colour::green});
     archive("delay_ms", whole.delay, in_ms, above_zero_up_to(500.0));
-    archive("gain", whole.gain, six_or_unknown);
+    archive("gain", whole.gain, Rounded{six.json_of, true});
     archive("note", whole.note, if_any);
     archive("parts", whole.parts, AtMost{3});
     archive("multiples", whole.multiples, Limits{1.0, 9.0});

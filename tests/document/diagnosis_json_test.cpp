@@ -9,7 +9,7 @@ using namespace ripplenotch;
 
 TEST_CASE("what is written of a diagnosis is what it holds") {
     const Diagnosis diagnosis = testing::full_diagnosis();
-    const Json json = Json::parse(write_diagnosis(diagnosis, testing::known_gear(), {}));
+    const Json json = Json::parse(testing::document_of(diagnosis));
     CHECK(json["verdict"] == "partly-explained");
     CHECK(json["gear"]["ratio"] == 100.0);
     REQUIRE(json["rounds"].size() == 2);

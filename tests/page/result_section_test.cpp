@@ -119,7 +119,7 @@ TEST_CASE("a hostile or empty document has no key numbers and throws nothing") {
 namespace {
 
 PageSection section_of(const Diagnosis& diagnosis) {
-    return section_of_result(write_diagnosis(diagnosis, testing::known_gear(), {}), "d.json");
+    return section_of_result(testing::document_of(diagnosis), "d.json");
 }
 
 const PageTable& table_named(const PageSection& section, const std::string& title) {

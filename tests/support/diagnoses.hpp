@@ -4,10 +4,15 @@
 
 #include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/diagnose/diagnosis.hpp"
+#include "ripplenotch/document/diagnosis_json.hpp"
 
 namespace ripplenotch::testing {
 
 inline GearAccount known_gear() { return {GearRatio(100.0), {}, {}, {}, "--gear-ratio"}; }
+
+inline std::string document_of(const Diagnosis& diagnosis) {
+    return write_diagnosis({"", diagnosis, known_gear()}, {});
+}
 
 inline Finding coulomb_finding() {
     Finding finding;

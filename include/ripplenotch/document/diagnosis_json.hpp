@@ -15,20 +15,17 @@
 
 namespace ripplenotch {
 
-/// Schema ripplenotch/diagnosis/1. `gear` is that of the model as given; `arm` what an arm was given, if one;
-/// `mjcf` the improved model as it was written for MuJoCo.
-[[nodiscard]] std::string write_diagnosis(const Diagnosis& diagnosis, const GearAccount& gear,
-                                          const Provenance& provenance, const ArmAccount* arm = nullptr,
-                                          const MjcfAccount* mjcf = nullptr);
-
-/// One of the joints of a log.
+/// What a document says of one joint of a log.
 struct DiagnosedJoint {
     std::string joint;
     const Diagnosis& diagnosis;
-    const GearAccount& gear;
-    const ArmAccount* arm;              ///< what an arm was given, if one
+    const GearAccount& gear;            ///< of the model as given
+    const ArmAccount* arm = nullptr;    ///< what an arm was given, if one
     const MjcfAccount* mjcf = nullptr;  ///< the improved model as it was written for MuJoCo
 };
+
+/// Schema ripplenotch/diagnosis/1.
+[[nodiscard]] std::string write_diagnosis(const DiagnosedJoint& joint, const Provenance& provenance);
 
 /// Schema ripplenotch/diagnoses/1: a list of what write_diagnosis tells of each, with its joint's name.
 [[nodiscard]] std::string write_diagnoses(std::span<const DiagnosedJoint> joints,

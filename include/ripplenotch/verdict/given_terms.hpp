@@ -140,9 +140,6 @@ struct GivenTerms {
     std::vector<std::string> files;        ///< that were read in addition to the logs
     std::optional<SetupAnswer> setup;      ///< of simulation and log, where it was asked for
     std::shared_ptr<GivenArm> fitted_arm;  ///< whose values are found with the rest; null: all are stated
-
-    /// "simulated.scale", "arm.links": values that are not stated yet; empty: none.
-    [[nodiscard]] std::vector<std::string> open() const;
 };
 
 /// One for a command; the arm of --arm is read and fitted once for all joints.

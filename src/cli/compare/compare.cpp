@@ -19,7 +19,6 @@
 #include "cli/options/lists.hpp"
 #include "cli/options/options.hpp"
 #include "cli/options/plot_request.hpp"
-#include "cli/options/verdict_options.hpp"
 #include "cli/talk.hpp"
 #include "ripplenotch/chart/comparison_figure.hpp"
 #include "ripplenotch/core/error.hpp"

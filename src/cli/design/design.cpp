@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -17,7 +18,6 @@
 #include "cli/command.hpp"
 #include "cli/options/options.hpp"
 #include "cli/options/plot_request.hpp"
-#include "cli/options/verdict_options.hpp"
 #include "cli/talk.hpp"
 #include "ripplenotch/chart/table_figure.hpp"
 #include "ripplenotch/core/error.hpp"
@@ -115,42 +115,26 @@ std::string plain(double value) { return fmt::format("{:.6g}", value); }
 std::string outside_sentence(const CandidateTable& table) {
     const TableSpec& spec = table.spec();
     const Band &first = table.bands().front(), &last = table.bands().back();
-    const std::string low = plain(first.from.value()), high = plain(last.to.value());
-    std::string text = first.from.value() > 0.0 ? fmt::format("At {} deg/s and below ", low) : "At rest ";
-    switch (spec.below) {
-        case OutsideRule::pass:
-            text += "the torque passes unfiltered";
-            break;
-        case OutsideRule::hold:
-            text += "the last active filter stays active";
-            break;
-        case OutsideRule::fade:
-            text += fmt::format("band 1 fades out, down to {} deg/s", plain(0.5 * first.from.value()));
-            break;
-    }
-    text += fmt::format("; above {} deg/s ", high);
-    switch (spec.above) {
-        case OutsideRule::pass:
-            text += "it passes unfiltered.";
-            break;
-        case OutsideRule::hold:
-            text += fmt::format("band {} stays active.", last.number);
-            break;
-        case OutsideRule::fade:
-            text +=
-                fmt::format("band {} fades out, up to {} deg/s.", last.number, plain(1.5 * last.to.value()));
-            break;
-    }
-    for (std::size_t i = 1; i < table.bands().size(); ++i) {
-        if (table.bands()[i - 1].to < table.bands()[i].from) {
-            return text + " Between bands that do not touch, the rule for low speed holds.";
-        }
-    }
+    const auto by_rule = [](OutsideRule rule, std::string pass, std::string hold, std::string fade) {
+        return rule == OutsideRule::pass ? pass : rule == OutsideRule::hold ? hold : fade;
+    };
+    std::string text = first.from.value() > 0.0
+                           ? fmt::format("At {} deg/s and below ", plain(first.from.value()))
+                           : "At rest ";
+    text += by_rule(spec.below, "the torque passes unfiltered", "the last active filter stays active",
+                    fmt::format("band 1 fades out, down to {} deg/s", plain(0.5 * first.from.value())));
+    text += fmt::format("; above {} deg/s ", plain(last.to.value()));
+    text +=
+        by_rule(spec.above, "it passes unfiltered.", fmt::format("band {} stays active.", last.number),
+                fmt::format("band {} fades out, up to {} deg/s.", last.number, plain(1.5 * last.to.value())));
+    const auto apart = [](const Band& a, const Band& b) { return a.to < b.from; };
+    if (std::adjacent_find(table.bands().begin(), table.bands().end(), apart) != table.bands().end())
+        text += " Between bands that do not touch, the rule for low speed holds.";
     return text;
 }
 
-// "0.25", or "0.62 to 1.9" where bands or orders differ.
-std::string q_text(const CandidateTable& table) {
+// The least and the largest Q of all bands and orders.
+std::pair<double, double> range_of_q(const CandidateTable& table) {
     double least = table.bands().front().notches.front().notch.q, largest = least;
     for (const Band& band : table.bands()) {
         for (const CandidateNotch& notch : band.notches) {
@@ -158,69 +142,51 @@ std::string q_text(const CandidateTable& table) {
             largest = std::max(largest, notch.notch.q);
         }
     }
-    if (least == largest) return shortest(least);
-    return fmt::format("{:.3g} to {:.3g}", least, largest);
+    return {least, largest};
 }
 
-// Which columns there are besides those that every table has.
-struct Extra {
-    std::size_t qs = 0;  // Q per order, one for all, or none because it stands in the heading
-    bool held = false;   // where the orders count by their amplitudes, which the single lines do not say
-    bool left = false;   // predicted residual
+struct BandColumn {
+    std::string title, unit;
+    std::function<std::string(const Band&)> cell;
 };
 
-Extra extra_of(const CandidateTable& table) {
+// Those that every table has, and Q where it differs: for each order, or one for all.
+std::vector<BandColumn> columns_of(const CandidateTable& table) {
     const TableSpec& spec = table.spec();
-    Extra extra{0, spec.amplitude_nm.size() > 1, !spec.amplitude_nm.empty()};
-    const double q = table.bands().front().notches.front().notch.q;
-    for (const Band& band : table.bands())
-        for (const CandidateNotch& notch : band.notches)
-            if (notch.notch.q != q) extra.qs = one_q_a_band(table) ? 1 : spec.orders.size();
-    return extra;
-}
-
-TextRows title_rows(const TableSpec& spec, const Extra& extra) {
-    std::vector<std::string> titles = {"band", "speed"}, units = {"", "deg/s"};
-    for (const Order order : spec.orders) {
-        titles.push_back(order_in_words(order, spec.gear_ratio));
-        units.push_back("Hz");
-    }
-    for (std::size_t i = 0; i < extra.qs; ++i) {
-        titles.push_back(extra.qs == 1 ? "Q" : "Q " + order_text(spec.orders[i], spec.gear_ratio));
-        units.push_back("");
-    }
-    titles.insert(titles.end(), {"DC delay", "settles", "overshoot"});
-    units.insert(units.end(), {"ms", fmt::format("ms to {} %", plain(spec.settle_band_percent)), "%"});
-    for (const Order order : spec.orders) {
-        titles.push_back("worst " + order_text(order, spec.gear_ratio));
-        units.push_back("dB");
-    }
-    if (extra.held) {
-        titles.push_back("together");
-        units.push_back("dB");
-    }
-    for (std::size_t i = 0; extra.left && i < spec.orders.size(); ++i) {
-        titles.push_back("remaining " + order_text(spec.orders[i], spec.gear_ratio));
-        units.push_back("Nm");
-    }
-    return {titles, units};
-}
-
-std::vector<std::string> band_row(const Band& band, const Extra& extra) {
-    std::vector<std::string> row = {std::to_string(band.number),
-                                    fmt::format("{:.5g}-{:.5g}", band.from.value(), band.to.value())};
-    for (const CandidateNotch& notch : band.notches) {
+    std::vector<BandColumn> columns;
+    const auto add = [&](std::string title, std::string unit, const auto& cell) {
+        columns.push_back({std::move(title), std::move(unit), cell});
+    };
+    const auto each_order = [&](std::string_view what, const std::string& unit, int decimals,
+                                std::vector<double> Band::*values) {
+        for (std::size_t i = 0; i < spec.orders.size(); ++i)
+            add(fmt::format("{} {}", what, order_text(spec.orders[i], spec.gear_ratio)), unit,
+                [=](const Band& band) { return fmt::format("{:.{}f}", (band.*values)[i], decimals); });
+    };
+    add("band", "", [](const Band& band) { return std::to_string(band.number); });
+    add("speed", "deg/s",
+        [](const Band& band) { return fmt::format("{:.5g}-{:.5g}", band.from.value(), band.to.value()); });
+    for (std::size_t i = 0; i < spec.orders.size(); ++i)
         // A measured gear ratio makes 7.49999 of 7.5; the full digits are in the CSV and the JSON.
-        row.push_back(fmt::format("{:.5g}", notch.notch.center.value()));
-    }
-    for (std::size_t i = 0; i < extra.qs; ++i) row.push_back(fmt::format("{:.3g}", band.notches[i].notch.q));
-    row.push_back(fmt::format("{:.1f}", 1e3 * band.dc_delay.value()));
-    row.push_back(fmt::format("{:.0f}", 1e3 * band.settle.value()));
-    row.push_back(fmt::format("{:.1f}", band.overshoot_percent));
-    for (const double worst : band.worst_attenuation_db) row.push_back(fmt::format("{:.1f}", worst));
-    if (extra.held) row.push_back(fmt::format("{:.1f}", band.held_attenuation_db));
-    for (const double left : band.predicted_residual_nm) row.push_back(fmt::format("{:.3f}", left));
-    return row;
+        add(order_in_words(spec.orders[i], spec.gear_ratio), "Hz",
+            [i](const Band& band) { return fmt::format("{:.5g}", band.notches[i].notch.center.value()); });
+    const auto [least_q, largest_q] = range_of_q(table);
+    const std::size_t qs = least_q == largest_q ? 0 : one_q_a_band(table) ? 1 : spec.orders.size();
+    for (std::size_t i = 0; i < qs; ++i)
+        add(qs == 1 ? "Q" : "Q " + order_text(spec.orders[i], spec.gear_ratio), "",
+            [i](const Band& band) { return fmt::format("{:.3g}", band.notches[i].notch.q); });
+    add("DC delay", "ms",
+        [](const Band& band) { return fmt::format("{:.1f}", 1e3 * band.dc_delay.value()); });
+    add("settles", fmt::format("ms to {} %", plain(spec.settle_band_percent)),
+        [](const Band& band) { return fmt::format("{:.0f}", 1e3 * band.settle.value()); });
+    add("overshoot", "%", [](const Band& band) { return fmt::format("{:.1f}", band.overshoot_percent); });
+    each_order("worst", "dB", 1, &Band::worst_attenuation_db);
+    // Where the orders count by their amplitudes, which the single lines do not say.
+    if (spec.amplitude_nm.size() > 1)
+        add("together", "dB",
+            [](const Band& band) { return fmt::format("{:.1f}", band.held_attenuation_db); });
+    if (!spec.amplitude_nm.empty()) each_order("remaining", "Nm", 3, &Band::predicted_residual_nm);
+    return columns;
 }
 
 std::string delay_sentence(std::span<const Band> bands) {
@@ -237,14 +203,20 @@ std::string delay_sentence(std::span<const Band> bands) {
 // it was designed for.
 std::string table_to_text(const CandidateTable& table, const DesignNote& note) {
     const TableSpec& spec = table.spec();
-    const Extra extra = extra_of(table);
+    const auto [least_q, largest_q] = range_of_q(table);
     std::string text = fmt::format(
         "Candidate notches for {}, at {} Hz: {} band{}, Q {} ({}), {}.\n\n", listed(spec),
         plain(spec.sample_rate.value()), table.bands().size(), table.bands().size() == 1 ? "" : "s",
-        q_text(table), width_rule_name(spec.width),
+        least_q == largest_q ? shortest(least_q) : fmt::format("{:.3g} to {:.3g}", least_q, largest_q),
+        width_rule_name(spec.width),
         spec.depth_db >= infinite_depth_db ? "full null" : fmt::format("{} dB deep", plain(spec.depth_db)));
-    auto rows = title_rows(spec, extra);
-    for (const Band& band : table.bands()) rows.push_back(band_row(band, extra));
+    TextRows rows(2 + table.bands().size());
+    for (const BandColumn& column : columns_of(table)) {
+        rows[0].push_back(column.title);
+        rows[1].push_back(column.unit);
+        for (std::size_t i = 0; i < table.bands().size(); ++i)
+            rows[i + 2].push_back(column.cell(table.bands()[i]));
+    }
     text += text_table(rows, "r");
     text += "\nWorst: the least attenuation of that order's line anywhere in the band";
     if (spec.ratio_error >= 5e-5)
@@ -253,8 +225,9 @@ std::string table_to_text(const CandidateTable& table, const DesignNote& note) {
         text +=
             fmt::format(", and {} deg/s beyond it, the switching hysteresis", plain(spec.hysteresis.value()));
     text += ". ";
-    if (extra.held) text += "Together: attenuation of all orders, weighted by their amplitudes.  ";
-    if (extra.left) text += "Remaining: largest amplitude of each order after the filter. ";
+    if (spec.amplitude_nm.size() > 1)
+        text += "Together: attenuation of all orders, weighted by their amplitudes.  ";
+    if (!spec.amplitude_nm.empty()) text += "Remaining: largest amplitude of each order after the filter. ";
     text += delay_sentence(table.bands()) + "\n" + outside_sentence(table) + "\n";
     if (!note.reason.empty()) text += fmt::format("Chosen: {}.\n", note.reason);
     if (note.slowest) text += slowest_sentence(*note.max_delay, *note.slowest) + "\n";

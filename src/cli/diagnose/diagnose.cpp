@@ -11,11 +11,9 @@
 
 #include "cli/command.hpp"
 #include "cli/diagnose/joint_diagnosis.hpp"
-#include "cli/options/verdict_options.hpp"
 #include "cli/talk.hpp"
 #include "ripplenotch/chart/diagnosis_figure.hpp"
 #include "ripplenotch/core/number.hpp"
-#include "ripplenotch/document/diagnosis_json.hpp"
 #include "ripplenotch/document/simulation_json.hpp"
 #include "ripplenotch/verdict/gear_choice.hpp"
 
@@ -113,17 +111,11 @@ void write_improved(const DiagnoseRequest& request, JointDiagnosis& one) {
     say(request.common, fmt::format("the improved model is in {}", path));
 }
 
-const MjcfAccount* mjcf_of(const JointDiagnosis& one) { return one.mjcf ? &*one.mjcf : nullptr; }
-
 ExitCode run_one(const DiagnoseRequest& request, GivenSource& given, const std::string& command_line) {
     JointDiagnosis one = diagnosed_joint(request, std::nullopt, given, command_line);
     if (!one.diagnosis.not_accepted.empty()) raise<UsageError>("{}", one.diagnosis.not_accepted.front());
     write_improved(request, one);
-    write_text("-",
-               request.common.json
-                   ? write_diagnosis(one.diagnosis, one.gear, one.provenance,
-                                     one.given.account ? &*one.given.account : nullptr, mjcf_of(one))
-                   : story(request, one),
+    write_text("-", request.common.json ? write_diagnosis(one.told(), one.provenance) : story(request, one),
                ByteSink::Overwrite::no);
     draw_plot(request.plot, request.common, one.provenance,
               [&] { return diagnosis_figure(request.path, one.diagnosis, one.log.trace.view()); });
@@ -142,8 +134,7 @@ std::string list_of(const std::vector<JointDiagnosis>& all, const std::string& c
     Provenance provenance{{}, command_line};
     std::vector<DiagnosedJoint> joints;
     for (const JointDiagnosis& one : all) {
-        joints.push_back({one.joint, one.diagnosis, one.gear,
-                          one.given.account ? &*one.given.account : nullptr, mjcf_of(one)});
+        joints.push_back(one.told());
         for (const InputRecord& input : one.provenance.inputs) {
             const auto same = [&](const InputRecord& known) { return known.name == input.name; };
             if (std::none_of(provenance.inputs.begin(), provenance.inputs.end(), same))

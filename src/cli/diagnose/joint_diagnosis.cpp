@@ -4,15 +4,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <cctype>
 #include <cmath>
 #include <complex>
+#include <limits>
 #include <numeric>
 #include <string>
 #include <string_view>
 
-#include "cli/options/verdict_options.hpp"
+#include "cli/options/options.hpp"
 #include "cli/talk.hpp"
 #include "core/rows/row_facts.hpp"
 #include "core/text/lower_case.hpp"
@@ -127,16 +126,12 @@ constexpr std::string_view model_from_log = "auto";
 // At one speed nothing tells an inertia from an offset.
 bool speed_changes(const Trace& trace) {
     constexpr double enough = 0.1;  // of the fastest
-    double least = 0.0, greatest = 0.0;
+    double slowest = std::numeric_limits<double>::infinity(), fastest = 0.0;
     for (const double speed : trace.velocity_deg_s) {
         if (!std::isfinite(speed)) continue;
-        least = std::min(least, speed);
-        greatest = std::max(greatest, speed);
+        slowest = std::min(slowest, std::abs(speed));
+        fastest = std::max(fastest, std::abs(speed));
     }
-    double slowest = std::max(-least, greatest);
-    const double fastest = slowest;
-    for (const double speed : trace.velocity_deg_s)
-        if (std::isfinite(speed)) slowest = std::min(slowest, std::abs(speed));
     return fastest > 0.0 && fastest - slowest > enough * fastest;
 }
 

@@ -11,6 +11,7 @@
 #include "ripplenotch/arm/arm_setup.hpp"
 #include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/diagnose/diagnosis.hpp"
+#include "ripplenotch/document/diagnosis_json.hpp"
 #include "ripplenotch/export/joint_mjcf.hpp"
 #include "ripplenotch/model/motion.hpp"
 #include "ripplenotch/verdict/given_terms.hpp"
@@ -52,6 +53,10 @@ struct JointDiagnosis {
     std::optional<MjcfAccount> mjcf = {};  ///< what the improved model was written as, if MuJoCo's
 
     [[nodiscard]] bool is_conclusive() const;
+    /// What its document says; it is borrowed.
+    [[nodiscard]] DiagnosedJoint told() const {
+        return {joint, diagnosis, gear, given.account ? &*given.account : nullptr, mjcf ? &*mjcf : nullptr};
+    }
 };
 
 /// Reads and diagnoses one joint: that of the request, or `joint` of all. `given`: what all joints share.

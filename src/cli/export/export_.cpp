@@ -19,7 +19,6 @@
 #include "cli/export/target_choice.hpp"
 #include "cli/options/lists.hpp"
 #include "cli/options/options.hpp"
-#include "cli/options/verdict_options.hpp"
 #include "cli/talk.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/files.hpp"
@@ -39,6 +38,17 @@
 namespace ripplenotch {
 
 namespace {
+
+struct ExportRequest {
+    std::string table, to;
+    std::optional<std::string> method;
+    GearOptions gear;
+    std::optional<Hertz> sample_rate;
+    int band = 0;
+    std::optional<std::string> motor_of;  ///< of a map: another joint than its own
+    std::optional<double> tolerance_percent;
+    CommonOptions common;
+};
 
 // What every export does with the file that it made: writes it, reads it again, reports what came through.
 
@@ -79,14 +89,6 @@ std::vector<std::string> generated_by(const Provenance& provenance) {
 
 // `export` of a method whose coefficients change while it runs.
 
-struct CodeExport {
-    const Contender& method;
-    Hertz sample_rate;
-    std::string to;
-    std::optional<double> tolerance_percent;
-    CommonOptions common;
-};
-
 constexpr std::size_t samples = 1'000'000, block = 10'000;
 constexpr double swing_s = 5.0, fastest_deg_s = 80.0 * 2.0 * std::numbers::pi / swing_s;
 
@@ -94,10 +96,9 @@ constexpr double swing_s = 5.0, fastest_deg_s = 80.0 * 2.0 * std::numbers::pi / 
 // With a map it swings where the map was made, no faster than there.
 class Swing {
   public:
-    explicit Swing(const CodeExport& request)
-        : gear_(*request.method.gear), rate_hz_(request.sample_rate.value()) {
-        if (request.method.map == nullptr) return;
-        const RippleMap& map = *request.method.map;
+    Swing(const Contender& method, Hertz sample_rate) : gear_(*method.gear), rate_hz_(sample_rate.value()) {
+        if (method.map == nullptr) return;
+        const RippleMap& map = *method.map;
         if (map.speeds_deg_s.to > 0.0) fastest_deg_s_ = std::min(fastest_deg_s_, map.speeds_deg_s.to);
         position_ = map.positions_deg.middle();
     }
@@ -139,13 +140,14 @@ struct CodeCheck {
     double largest_error_nm = 0.0, largest_nm = 0.0;
 };
 
-CodeCheck run_beside(const CodeExport& request, const RunningDesign& design, const LoadedCode& code) {
+CodeCheck run_beside(const Contender& method, Hertz sample_rate, const RunningDesign& design,
+                     const LoadedCode& code) {
     CodeCheck check;
     const auto* const oscillator = std::get_if<OscillatorDesign>(&design);
     const double ratio = oscillator != nullptr ? oscillator->gear_ratio : 0.0;
     const bool within_turn = oscillator != nullptr && repeats_each_turn(oscillator->orders);
-    Swing swing(request);
-    const auto filter = request.method.start(request.sample_rate);
+    Swing swing(method, sample_rate);
+    const auto filter = method.start(sample_rate);
     std::vector<double> torque(block), velocity(block), position(block), out(block), coded(block);
     for (std::size_t first = 0; first < samples; first += block) {
         for (std::size_t k = 0; k < block; ++k) {
@@ -178,21 +180,21 @@ ExitCode within_tolerance(double error_nm, double whole_nm, std::string_view who
 
 // Writes its code, reads it back and runs it beside the method itself over a million samples.
 // Throws UsageError for a target that takes coefficients only.
-ExitCode export_code(const CodeExport& request, const std::string& command_line) {
+ExitCode export_code(const ExportRequest& request, const Contender& method, const std::string& command_line) {
     if (request.common.json) raise<UsageError>("--json: export of a method as code has no JSON result yet");
     const Spec spec = parse_spec(request.to);
     if (!is_code_target(spec.name)) {
         raise<UsageError>("target {} takes coefficients, and those of {} change while it runs; use c-header",
-                          spec.name, request.method.method->name);
+                          spec.name, method.method->name);
     }
-    const Settings settings(fmt::format("target {}", spec.name), spec, method_code_keys());
+    const Settings settings = settings_of(spec, method_code_keys());
     check_output_name(request.common.output, spec.name, ".h .hpp");
-    const RunningDesign design = request.method.method->running(request.method.settings, request.sample_rate);
+    const RunningDesign design = method.method->running(method.settings, *request.sample_rate);
     const Written written = write_method_code(design, settings, generated_by({{}, command_line}));
     write_export(written, request.common);
     const ReadBack again = read_back(written, request.common);
     const LoadedCode code = read_method_code(again.bytes, again.source, design, settings);
-    const CodeCheck check = run_beside(request, design, code);
+    const CodeCheck check = run_beside(method, *request.sample_rate, design, code);
     tell_check(fmt::format("{}: {}, read back and compared with the method over {} samples in {}.\nlargest "
                            "output          {:.4g} Nm\nlargest difference      {:.1e} Nm\n",
                            again.source, spec.text(), samples, code.arithmetic, check.largest_nm,
@@ -204,23 +206,15 @@ ExitCode export_code(const CodeExport& request, const std::string& command_line)
 
 // `export` of a ripple map.
 
-/// What export does with a map: the options that a map has too.
-struct MapExport {
-    std::string map, to;
-    CommonOptions common;
-    std::optional<std::string> motor_of;  ///< of another joint than the map's own
-    std::optional<double> tolerance_percent;
-};
-
 // That of the joint's own motor, or of the motor of another joint: a map each, since each goes by an angle of
 // its own.
-RippleMap map_of_motor(const MapExport& request) {
-    const RippleMap all = load_map(request.map).map;
+RippleMap map_of_motor(const ExportRequest& request) {
+    const RippleMap all = load_map(request.table).map;
     const std::string names = joined(all.others, ", ", [](const RippleMap& map) { return map.joint; });
     if (request.motor_of) {
         for (const RippleMap& other : all.others)
             if (other.joint == *request.motor_of) return other;
-        raise<DataError>("{}: it holds no ripple of the motor of {}, but of {}", request.map,
+        raise<DataError>("{}: it holds no ripple of the motor of {}, but of {}", request.table,
                          *request.motor_of, names.empty() ? "its own joint alone" : names);
     }
     if (!names.empty())
@@ -228,54 +222,42 @@ RippleMap map_of_motor(const MapExport& request) {
              fmt::format(
                  "{}: the ripple of the {} of {} in this torque is not exported with it; --motor-of exports "
                  "it by itself, to be taken from this torque at the position and speed of that joint",
-                 request.map, all.others.size() == 1 ? "motor" : "motors", names));
+                 request.table, all.others.size() == 1 ? "motor" : "motors", names));
     return all;
-}
-
-std::string check_text(const std::string& file, const std::string& target, const LoadedMap& loaded,
-                       const MapCheck& check) {
-    return fmt::format(
-        "{}: {}, read back and run at {} states in {}.\nripple of the map       {:.4g} Nm rms\nnot "
-        "representable       {:.4g} Nm rms\nlargest error           {:.2g} Nm\n",
-        file, target, check.states, loaded.arithmetic, check.ripple_nm, check.not_held_nm,
-        check.largest_error_nm);
 }
 
 // Writes the map in the form of the target, reads it back and tells what came through. Throws UsageError,
 // DataError.
-ExitCode export_map(const MapExport& request, const std::string& command_line) {
+ExitCode export_map(const ExportRequest& request, const std::string& command_line) {
     if (request.common.json) raise<UsageError>("--json: export of a map has no JSON result yet");
     const Spec spec = parse_spec(request.to);
     const MapTarget& target = find_map_target(spec.name);
     check_output_name(request.common.output, target.name, target.endings);
-    const Settings settings(fmt::format("target {}", spec.name), spec, target.keys);
+    const Settings settings = settings_of(spec, target.keys);
     const RippleMap map = map_of_motor(request);
-    if (map.orders.empty()) raise<DataError>("{}: the map is empty: there is nothing to export", request.map);
+    if (map.orders.empty())
+        raise<DataError>("{}: the map is empty: there is nothing to export", request.table);
     const Written written =
-        target.write(map, settings, generated_by({{input_record(request.map)}, command_line}));
+        target.write(map, settings, generated_by({{input_record(request.table)}, command_line}));
     write_export(written, request.common);
     const ReadBack again = read_back(written, request.common);
     const LoadedMap loaded = target.read(again.bytes, again.source, map, settings);
     const MapCheck check = verify_map_export(map, loaded);
-    tell_check(check_text(again.source, std::string(target.name), loaded, check), request.common);
+    tell_check(fmt::format("{}: {}, read back and run at {} states in {}.\nripple of the map       {:.4g} Nm "
+                           "rms\nnot representable       {:.4g} Nm rms\nlargest error           {:.2g} Nm\n",
+                           again.source, target.name, check.states, loaded.arithmetic, check.ripple_nm,
+                           check.not_held_nm, check.largest_error_nm),
+               request.common);
     return within_tolerance(check.largest_error_nm, check.ripple_nm, "map's ripple, rms",
                             request.tolerance_percent);
 }
 
 // What was read back, for people.
 
-// A rounded zero has no sign: -0.0000 would differ from machine to machine.
-std::string fixed(const std::optional<double>& value, int decimals) {
-    if (!value) return "-";
-    const std::string text = fmt::format("{:.{}f}", *value, decimals);
-    const bool is_zero = text.find_first_of("123456789") == std::string::npos;
-    return is_zero && text.front() == '-' ? text.substr(1) : text;
-}
-
 std::string depth_text(const SectionCheck& check) {
     if (!check.is_notch) return "-";
     const double depth = check.depth_db.value_or(check.response_depth_db);
-    return depth >= deepest_measured_db ? fmt::format(">{:.0f}", deepest_measured_db) : fixed(depth, 1);
+    return depth >= deepest_measured_db ? fmt::format(">{:.0f}", deepest_measured_db) : rounded(depth, 1);
 }
 
 std::vector<std::string> row(const SectionCheck& check, bool bands) {
@@ -283,12 +265,12 @@ std::vector<std::string> row(const SectionCheck& check, bool bands) {
     if (bands) cells.push_back(std::to_string(check.band));
     cells.push_back(check.order ? order_text(*check.order, check.gear_ratio) : std::to_string(check.section));
     cells.push_back(fmt::format("{:.6g}", check.center.value()));
-    cells.push_back(check.shift_percent ? fixed(check.shift_percent, 4) : "none");
+    cells.push_back(check.shift_percent ? rounded(*check.shift_percent, 4) : "none");
     cells.push_back(fmt::format("{:.4g}", check.q));
     cells.push_back(depth_text(check));
-    cells.push_back(fixed(check.dc_error_db, 5));
-    cells.push_back(fixed(check.mean_error_nm ? std::optional(1e3 * *check.mean_error_nm) : std::nullopt, 4));
-    cells.push_back(fixed(check.pole_radius, 7));
+    cells.push_back(cell_text(check.dc_error_db, 5));
+    cells.push_back(cell_text(check.mean_error_nm, 4, 1e3));
+    cells.push_back(rounded(check.pole_radius, 7));
     return cells;
 }
 
@@ -309,17 +291,6 @@ std::string export_report_to_text(const ExportReport& report) {
 }
 
 constexpr std::size_t max_violations_said = 5;
-
-struct ExportRequest {
-    std::string table, to;
-    std::optional<std::string> method;
-    GearOptions gear;
-    std::optional<Hertz> sample_rate;
-    int band = 0;
-    std::optional<std::string> motor_of;
-    std::optional<double> tolerance_percent;
-    CommonOptions common;
-};
 
 /// Methods that an export can hold: coefficients, a table of them, or code.
 bool can_export(const Method& method) {
@@ -381,15 +352,6 @@ std::optional<std::string> left_to_caller(const Target& target, const FilterSet&
         target.name, shortest(design.hysteresis.value()), design.dwell_samples);
 }
 
-void verify(const ExportRequest& request, const Target& target, const Settings& settings,
-            const FilterSet& filters, const Written& written, ExportReport& report) {
-    const ReadBack again = read_back(written, request.common);
-    const LoadedFilters loaded = target.read(again.bytes, again.source, filters, settings);
-    report.checks = verify_export(filters, loaded, again.source);
-    report.arithmetic = arithmetic_name(loaded.bands.front().front().arithmetic);
-    report.violations = export_violations(report.checks, request.tolerance_percent);
-}
-
 void say_violations(const ExportReport& report) {
     for (std::size_t i = 0; i < std::min(report.violations.size(), max_violations_said); ++i) {
         talk(fmt::format("ripplenotch export: {}", report.violations[i]));
@@ -402,24 +364,17 @@ void say_violations(const ExportReport& report) {
 
 ExitCode run_export(const ExportRequest& request, const std::string& command_line) {
     check_export(request);
-    if (is_map(request.table))
-        return export_map(
-            {request.table, request.to, request.common, request.motor_of, request.tolerance_percent},
-            command_line);
+    if (is_map(request.table)) return export_map(request, command_line);
     if (request.motor_of) raise<UsageError>("--motor-of is for maps, and {} is none", request.table);
     const Spec spec = parse_spec(request.to);
     const Target& target = find_target(spec.name);
     const Contender method = method_of(request);
-    if (method.method->running != nullptr) {
-        return export_code(
-            {method, *request.sample_rate, request.to, request.tolerance_percent, request.common},
-            command_line);
-    }
+    if (method.method->running != nullptr) return export_code(request, method, command_line);
     if (ends_with_json(request.common.output) && target.name != "json")
         raise<UsageError>("-o {}: {} is no JSON; use --to json, or name the file otherwise",
                           request.common.output, target.name);
     check_output_name(request.common.output, target.name, target.endings);
-    const Settings settings(fmt::format("target {}", spec.name), spec, target.keys);
+    const Settings settings = settings_of(spec, target.keys);
     Provenance provenance{{}, command_line};
     FilterSet filters = filters_of(method, request.sample_rate);
     for (const std::string& file : method.files) provenance.inputs.push_back(input_record(file));
@@ -444,7 +399,11 @@ ExitCode run_export(const ExportRequest& request, const std::string& command_lin
         report.usage =
             target.usage(filters, settings, request.common.output == "-" ? "FILE" : request.common.output);
     if (!report.usage.empty()) say(request.common, report.usage);
-    verify(request, target, settings, filters, written, report);
+    const ReadBack again = read_back(written, request.common);
+    const LoadedFilters loaded = target.read(again.bytes, again.source, filters, settings);
+    report.checks = verify_export(filters, loaded, again.source);
+    report.arithmetic = arithmetic_name(loaded.bands.front().front().arithmetic);
+    report.violations = export_violations(report.checks, request.tolerance_percent);
 
     if (request.common.json) {
         write_text("-", export_report_to_json(report, provenance), ByteSink::Overwrite::no);

@@ -14,11 +14,11 @@
 
 namespace ripplenotch {
 
-namespace {
-
 Settings settings_of(const Spec& spec, std::span<const Key> keys) {
     return {fmt::format("target {}", spec.name), spec, keys};
 }
+
+namespace {
 
 template <class Entries>
 auto named(const Entries& entries, const std::string& name) -> decltype(*entries.begin()) {

@@ -3,6 +3,7 @@
 // --target: what of the methods an export target can hold.
 
 #include <optional>
+#include <span>
 #include <string>
 
 #include "ripplenotch/core/quantity.hpp"
@@ -15,6 +16,9 @@ namespace ripplenotch {
 
 /// Coefficients of a method that has some; a table has a rate of its own.
 [[nodiscard]] FilterSet filters_of(const Contender& method, const std::optional<Hertz>& sample_rate);
+
+/// The keys of a target, checked. Throws UsageError.
+[[nodiscard]] Settings settings_of(const Spec& spec, std::span<const Key> keys);
 
 struct TargetChoice {
     Spec spec;

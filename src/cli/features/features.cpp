@@ -14,7 +14,6 @@
 #include "cli/command.hpp"
 #include "cli/options/joint_runs.hpp"
 #include "cli/options/options.hpp"
-#include "cli/options/verdict_options.hpp"
 #include "cli/talk.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/files.hpp"

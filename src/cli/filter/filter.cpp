@@ -15,7 +15,6 @@
 #include "cli/options/lists.hpp"
 #include "cli/options/options.hpp"
 #include "cli/options/plot_request.hpp"
-#include "cli/options/verdict_options.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/files.hpp"
 #include "ripplenotch/core/gear_account.hpp"
@@ -263,15 +262,15 @@ std::string against_gear_of(const FilterRequest& request, const JointWork& work,
 }
 
 // A map says nothing of speeds that it never saw.
-std::vector<std::string> beyond_map(const JointWork& work) {
+std::string beyond_map(const JointWork& work) {
     const RippleMap* map = work.method->map.get();
     const double fastest = work.metrics.stream.fastest_deg_s;
     if (map == nullptr || map->orders.empty() || !(fastest > faster_than_seen * map->speeds_deg_s.to))
-        return {};
-    return {
-        fmt::format("the log moves at up to {:.3g} deg/s, and its map was made at {:.3g} to {:.3g} deg/s: "
-                    "beyond, the map's edge holds",
-                    fastest, map->speeds_deg_s.from, map->speeds_deg_s.to)};
+        return "";
+    return fmt::format(
+        "the log moves at up to {:.3g} deg/s, and its map was made at {:.3g} to {:.3g} deg/s: "
+        "beyond, the map's edge holds",
+        fastest, map->speeds_deg_s.from, map->speeds_deg_s.to);
 }
 
 /// The log, the method's files and the command, for the result of this joint.
@@ -292,7 +291,7 @@ bool tell(const FilterRequest& request, JointWork& work, const std::string& comm
     if (work.kept) metrics.measured = measure_kept(*work.method, *work.kept, *metrics.gear);
     work.kept.reset();
     std::vector<std::string> warnings = filter_warnings(metrics);
-    for (std::string& warning : beyond_map(work)) warnings.push_back(std::move(warning));
+    if (std::string beyond = beyond_map(work); !beyond.empty()) warnings.push_back(std::move(beyond));
     if (must_measure(request) && !metrics.gear) {
         warnings.emplace_back(
             "no line is known, so no ripple was measured; give --gear-ratio, --orders 200/turn (lines per "

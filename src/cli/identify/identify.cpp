@@ -17,7 +17,6 @@
 #include "cli/command.hpp"
 #include "cli/options/joint_runs.hpp"
 #include "cli/options/plot_request.hpp"
-#include "cli/options/verdict_options.hpp"
 #include "cli/talk.hpp"
 #include "core/matrices/least_squares.hpp"
 #include "ripplenotch/analysis/identification.hpp"

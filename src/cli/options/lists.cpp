@@ -93,18 +93,6 @@ bool is_quantity(const std::string& text, Dimension dimension) {
 
 }  // namespace
 
-std::vector<std::string> split_commas(const std::string& text) {
-    std::vector<std::string> pieces(1);
-    for (const char c : text) {
-        if (c == ',') {
-            pieces.emplace_back();
-        } else {
-            pieces.back() += c;
-        }
-    }
-    return pieces;
-}
-
 void refuse_other_marks(const std::string& option, const std::string& text, Dimension dimension) {
     std::string list, piece;
     for (const char c : text + ' ') {

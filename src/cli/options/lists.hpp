@@ -45,8 +45,6 @@ class FileClaims {
     std::vector<Claim> read_, written_;
 };
 
-[[nodiscard]] std::vector<std::string> split_commas(const std::string& text);
-
 /// Throws UsageError with the list as it should be when `text` is one with other marks: "1 2", "1:2", "1, 2".
 void refuse_other_marks(const std::string& option, const std::string& text, Dimension dimension);
 

@@ -17,6 +17,7 @@
 #include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/progress.hpp"
+#include "ripplenotch/core/spec.hpp"
 #include "ripplenotch/core/visible_text.hpp"
 #include "ripplenotch/evaluate/ledger.hpp"
 #include "ripplenotch/log/format.hpp"
@@ -43,9 +44,8 @@ CLI::Option* single(CLI::Option* option, std::string_view type_name) {
 
 std::string Options::Implementation::names_for_parser(std::string_view names) {
     std::vector<std::string> known, one_letter;
-    for (const std::string& name : split_commas(owned(names))) {
-        (name.size() == 3 && name.starts_with("--") ? one_letter : known).push_back(name);
-    }
+    for (const std::string_view name : split(names, ','))
+        (name.size() == 3 && name.starts_with("--") ? one_letter : known).emplace_back(name);
     for (const std::string& name : one_letter) spelled_out[name] = known.back();
     return fmt::format("{}", fmt::join(known, ","));
 }
@@ -167,29 +167,30 @@ void Options::duration(std::string_view names, std::optional<Seconds>& target, s
     parsed(names, read, "TIME", help);
 }
 
-void Options::orders(std::string_view names, std::vector<StatedOrder>& target, std::string_view help) {
-    const std::string label = owned(names);
-    const auto read = [&target, label, &words = implementation_.words](const std::string& value) {
-        refuse_split_list(words, label, Dimension::none);
-        if (value.find_first_of(" :;") != std::string::npos)
-            refuse_other_marks(label, value, Dimension::none);
-        target.clear();
-        for (const std::string& piece : split_commas(value)) target.push_back(parse_order(piece, label));
+void Options::list(std::string_view names, Dimension dimension, std::string_view help,
+                   std::function<void(std::span<const std::string_view>)> read_pieces) {
+    const auto read = [read_pieces = std::move(read_pieces), dimension, label = owned(names),
+                       &words = implementation_.words](const std::string& value) {
+        refuse_split_list(words, label, dimension);
+        if (value.find_first_of(" :;") != std::string::npos) refuse_other_marks(label, value, dimension);
+        read_pieces(split(value, ','));
     };
-    parsed(names, read, unit_type_name(Dimension::none) + ",...", help);
+    parsed(names, read, unit_type_name(dimension) + ",...", help);
+}
+
+void Options::orders(std::string_view names, std::vector<StatedOrder>& target, std::string_view help) {
+    list(names, Dimension::none, help, [&target, label = owned(names)](const auto& pieces) {
+        target.clear();
+        for (const std::string_view piece : pieces) target.push_back(parse_order(piece, label));
+    });
 }
 
 void Options::numbers(std::string_view names, std::vector<double>& target, Dimension dimension,
                       std::string_view help) {
-    const std::string label = owned(names);
-    const auto read = [&target, dimension, label, &words = implementation_.words](const std::string& value) {
-        refuse_split_list(words, label, dimension);
-        if (value.find_first_of(" :;") != std::string::npos) refuse_other_marks(label, value, dimension);
+    list(names, dimension, help, [&target, dimension, label = owned(names)](const auto& pieces) {
         target.clear();
-        for (const std::string& piece : split_commas(value))
-            target.push_back(parse_quantity(piece, dimension, label));
-    };
-    parsed(names, read, unit_type_name(dimension) + ",...", help);
+        for (const std::string_view piece : pieces) target.push_back(parse_quantity(piece, dimension, label));
+    });
 }
 
 void Options::argument(std::string_view name, std::string& target, bool required, std::string_view help) {
@@ -482,22 +483,22 @@ namespace {
 std::vector<std::string> split_outside_brackets(const std::string& text) {
     std::vector<std::string> pieces;
     int depth = 0;
-    for (const std::string& piece : split_commas(text)) {
+    for (const std::string_view piece : split(text, ',')) {
         if (depth > 0)
-            pieces.back() += "," + piece;
+            pieces.back().append(",").append(piece);
         else
-            pieces.push_back(piece);
+            pieces.emplace_back(piece);
         for (const char c : piece) depth += c == '(' || c == '[' ? 1 : c == ')' || c == ']' ? -1 : 0;
     }
     return pieces;
 }
 
 void read_units(const std::string& text, std::map<std::string, std::string>& units) {
-    for (const std::string& piece : split_commas(text)) {
+    for (const std::string_view piece : split(text, ',')) {
         const std::size_t equals = piece.find('=');
         if (equals == std::string::npos || equals == 0 || equals + 1 == piece.size())
             raise<UsageError>("--unit: '{}' is not COLUMN=UNIT, for example velocity=rad/s", piece);
-        units[piece.substr(0, equals)] = piece.substr(equals + 1);
+        units[owned(piece.substr(0, equals))] = piece.substr(equals + 1);
     }
 }
 
@@ -511,10 +512,10 @@ void read_scale(const std::string& text, std::map<std::string, ColumnScale>& sca
 
 // "motor", "velocity=motor,position=joint"
 void read_sides(const std::string& text, std::map<Role, Shaft>& sides) {
-    for (const std::string& piece : split_commas(text)) {
+    for (const std::string_view piece : split(text, ',')) {
         const std::size_t equals = piece.find('=');
-        const std::string role = equals == std::string::npos ? "" : piece.substr(0, equals);
-        const std::string side = equals == std::string::npos ? piece : piece.substr(equals + 1);
+        const std::string_view role = equals == std::string::npos ? "" : piece.substr(0, equals);
+        const std::string_view side = equals == std::string::npos ? piece : piece.substr(equals + 1);
         const bool known_role = role.empty() || role == "velocity" || role == "position";
         if (!known_role || (side != "motor" && side != "joint"))
             raise<UsageError>("--side: '{}' is none of motor, joint, velocity=motor, position=motor", piece);
@@ -585,7 +586,7 @@ void attach_log_columns(Options& options, ReadOptions& log) {
         "--constant-speed",
         [&log](Text text) {
             log.constant_speeds.clear();
-            for (const std::string& piece : split_commas(text))
+            for (const std::string_view piece : split(text, ','))
                 log.constant_speeds.emplace_back(parse_quantity(piece, Dimension::speed, "--constant-speed"));
             if (log.constant_speeds.size() > 1) return;
             log.constant_speed = log.constant_speeds.front();
@@ -644,6 +645,54 @@ void attach_log_columns(Options& options, ReadOptions& log) {
         "screw's");
     options.flag("--hold-bad-values", log.hold_bad_values,
                  "replace empty cells and nan by the value before, and count them");
+}
+
+namespace {
+
+constexpr std::string_view simulated_option_help =
+    "torque of your own simulation, as a known part of the model: a column of the log, tau_model, or of "
+    "another file, log,file=sim.csv,column=torque; scale=1 states that its size is right, delay=2ms how much "
+    "later it is";
+
+constexpr std::string_view arm_option_help =
+    "rigid bodies of the whole arm: urdf,file=FILE[,tip=LINK], mjcf,file=FILE[,tip=BODY], mdh,file=FILE, "
+    "dh,file=FILE, or axes,word=zyyzyz (which way each axis points); each with [,gravity=0:0:-9.81] and "
+    "[,joints=NAME:NAME IN THE LOG|NAME:=0deg]";
+
+}  // namespace
+
+void attach_gear(Options& options, GearOptions& gear, const GearHelp& help) {
+    const Options::Group group(options, gear_group);
+    options.number("--gear-ratio", gear.ratio, Dimension::none, help.ratio);
+    if (!help.orders.empty()) options.orders("--orders", gear.orders, help.orders);
+    if (!help.joint_file.empty()) options.text("--joint-file", gear.joint_file, "FILE", help.joint_file);
+}
+
+ReadOptions read_options(ReadOptions log, const std::optional<GearAccount>& gear) {
+    if (gear && gear->has_ratio()) log.gear_ratio = gear->ratio.value();
+    return log;
+}
+
+void attach_given(Options& options, GivenOptions& given) {
+    options.text("--simulated", given.simulated, "SPEC", simulated_option_help);
+    options.text("--arm", given.arm, "SPEC", arm_option_help);
+}
+
+void attach_residual(Options& options, ResidualOptions& residual) {
+    options.text("--residual", residual.model, "FILE",
+                 "look into measured less predicted torque: of this model.json, along the log");
+    options.text("--simulated", residual.simulated, "SPEC",
+                 "the same of your own simulation: tau_model (a column) or log,file=sim.csv,column=torque; "
+                 "its scale is fitted unless scale=1 keeps it");
+}
+
+void take_residual(const ResidualOptions& residual, const ReadOptions& reading, std::size_t logs,
+                   const GivenLog& log, const CommonOptions& common, Provenance& provenance) {
+    if (!residual.any()) return;
+    const Residual left = subtract_predicted(residual, reading, logs, log);
+    if (left.model) provenance.inputs.push_back(input_record(*left.model));
+    say(common, fmt::format("{}: {:.4g} Nm rms of torque, {:.4g} less what is predicted", log.path,
+                            left.before_nm, left.after_nm));
 }
 
 namespace {

@@ -20,6 +20,8 @@
 #include "ripplenotch/evaluate/filter_metrics.hpp"
 #include "ripplenotch/log/layout.hpp"
 #include "ripplenotch/log/log.hpp"
+#include "ripplenotch/verdict/gear_choice.hpp"
+#include "ripplenotch/verdict/given_terms.hpp"
 
 namespace CLI {
 class App;
@@ -126,6 +128,8 @@ class Options {
     [[nodiscard]] std::vector<std::string> given(std::string_view group) const;
 
   private:
+    void list(std::string_view names, Dimension dimension, std::string_view help,
+              std::function<void(std::span<const std::string_view>)> read_pieces);
     void names_file(std::string_view names, std::string_view type_name);
     void parsed_number(std::string_view names, Dimension dimension, std::string_view help,
                        std::optional<double> standing, bool above_zero, std::function<void(double)> assign);
@@ -185,6 +189,34 @@ void attach_manner(Options& options, CommonOptions& common);
 void attach_log(Options& options, ReadOptions& log);
 /// The same without --format and --sample-rate, for a command whose own options have these names.
 void attach_log_columns(Options& options, ReadOptions& log);
+
+// Options of what the library decides by: the gear, what is given of a torque, and what is subtracted from
+// it.
+
+/// What an option is for in a command, where that differs; a command has no option whose help is empty.
+struct GearHelp {
+    std::string_view ratio = "motor turns per joint turn";
+    std::string_view orders =
+        "ripple lines in cycles per motor turn, or per turn of the joint, 200/turn,400/turn (default: where "
+        "a gear ratio is known, 1,2)";
+    std::string_view joint_file = "joint.json of identify: gear ratio, orders and amplitudes from there";
+};
+
+void attach_gear(Options& options, GearOptions& gear, const GearHelp& help = {});
+
+/// How a log is read beside this gear: motion that is measured before the gear is told by its ratio, and
+/// divided by it.
+[[nodiscard]] ReadOptions read_options(ReadOptions log, const std::optional<GearAccount>& gear);
+
+/// --simulated and --arm.
+void attach_given(Options& options, GivenOptions& given);
+
+/// --residual and --simulated.
+void attach_residual(Options& options, ResidualOptions& residual);
+
+/// subtract_predicted(), with what it left on standard error (-v) and the model among the inputs.
+void take_residual(const ResidualOptions& residual, const ReadOptions& reading, std::size_t logs,
+                   const GivenLog& log, const CommonOptions& common, Provenance& provenance);
 
 /// Messages for people, on standard error: "ripplenotch: warning: ...". Nothing at all when quiet.
 void warn(const CommonOptions& common, std::string_view sentence);

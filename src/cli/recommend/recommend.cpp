@@ -20,7 +20,6 @@
 #include "cli/options/joint_runs.hpp"
 #include "cli/options/lists.hpp"
 #include "cli/options/options.hpp"
-#include "cli/options/verdict_options.hpp"
 #include "cli/talk.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/gear_account.hpp"

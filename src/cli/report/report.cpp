@@ -19,7 +19,6 @@
 #include <vector>
 
 #include "cli/command.hpp"
-#include "cli/options/verdict_options.hpp"
 #include "cli/run.hpp"
 #include "core/files/byte_sink.hpp"
 #include "document/json/json.hpp"

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <memory>
 #include <optional>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,12 +14,12 @@
 #include "cli/command.hpp"
 #include "cli/options/lists.hpp"
 #include "cli/options/options.hpp"
-#include "cli/options/verdict_options.hpp"
 #include "cli/talk.hpp"
 #include "core/rows/row_facts.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/progress.hpp"
+#include "ripplenotch/core/spec.hpp"
 #include "ripplenotch/document/model_json.hpp"
 #include "ripplenotch/document/simulation_json.hpp"
 #include "ripplenotch/log/log.hpp"
@@ -45,16 +44,13 @@ struct JointModelOptions {
 
 // "1:0.8Nm:0deg" is order, amplitude, phase; the phase may be left out.
 Term parse_ripple(const std::string& text) {
-    std::vector<std::string> pieces;
-    std::istringstream stream(text);
-    for (std::string piece; std::getline(stream, piece, ':');) pieces.push_back(piece);
-    if (pieces.size() == 2) pieces.emplace_back("0deg");
-    if (pieces.size() != 3) {
+    const auto pieces = split(text, ':');
+    if (pieces.size() != 2 && pieces.size() != 3) {
         raise<UsageError>(
             "--ripple: '{}' is not ORDER:AMPLITUDE or ORDER:AMPLITUDE:PHASE, for example 1:0.8Nm:0deg", text);
     }
-    return parse_term(
-        fmt::format("ripple,order={},amplitude_nm={},phase_deg={}", pieces[0], pieces[1], pieces[2]));
+    return parse_term(fmt::format("ripple,order={},amplitude_nm={},phase_deg={}", pieces[0], pieces[1],
+                                  pieces.size() == 3 && !pieces[2].empty() ? pieces[2] : "0deg"));
 }
 
 // With what is given beside the effects; only a command that has a log knows what to do with that, and

@@ -19,7 +19,6 @@
 #include "cli/options/joint_runs.hpp"
 #include "cli/options/options.hpp"
 #include "cli/options/plot_request.hpp"
-#include "cli/options/verdict_options.hpp"
 #include "cli/talk.hpp"
 #include "ripplenotch/analysis/order_map.hpp"
 #include "ripplenotch/analysis/spectrum.hpp"

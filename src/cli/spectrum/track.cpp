@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "cli/options/joint_runs.hpp"
-#include "cli/options/verdict_options.hpp"
 #include "cli/talk.hpp"
 #include "ripplenotch/analysis/sweeps.hpp"
 #include "ripplenotch/analysis/track_report.hpp"

@@ -92,7 +92,6 @@ struct Rounded {
 };
 constexpr Rounded fitted{[](double value) { return finite_or_null(to_digits(value)); }};
 constexpr Rounded six{[](double value) { return six_digits(value); }};
-constexpr Rounded six_or_unknown{[](double value) { return six_digits(value); }, true};
 
 /// Written in steps that suit the largest of its kind: below them is only how a processor rounds.
 struct StepsOf {

@@ -237,10 +237,8 @@ void describe(JsonWriter& json, const DiagnosedJoint& joint) {
     add_model(json, diagnosis.model);
 }
 
-std::string write_diagnosis(const Diagnosis& diagnosis, const GearAccount& gear, const Provenance& provenance,
-                            const ArmAccount* arm, const MjcfAccount* mjcf) {
-    return to_fitted_text(
-        document_of("diagnosis", provenance, DiagnosedJoint{{}, diagnosis, gear, arm, mjcf}));
+std::string write_diagnosis(const DiagnosedJoint& joint, const Provenance& provenance) {
+    return to_fitted_text(document_of("diagnosis", provenance, joint));
 }
 
 std::string write_diagnoses(std::span<const DiagnosedJoint> joints, const Provenance& provenance) {

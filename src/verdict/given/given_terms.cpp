@@ -93,12 +93,6 @@ ArmSource option_of(const StatedArm& arm) { return {arm.chain, arm.stated_joints
 
 }  // namespace
 
-std::vector<std::string> GivenTerms::open() const {
-    std::vector<std::string> names;
-    if (fitted_arm) names.emplace_back("arm.links");
-    return names;
-}
-
 std::shared_ptr<GivenArm> GivenSource::arm(const ReadOptions& reading, const std::string& path,
                                            std::size_t most_rows) {
     if (path == "-") raise<UsageError>("{}", once);
@@ -294,12 +288,10 @@ std::vector<double> stated_torque_along(const GivenOptions& options, const Model
     if (!options.any() && !model.any_given()) return {};
     GivenSource source(options);
     const GivenTerms given = source.read(model, reading, log, nullptr);
-    const auto open = given.open();
-    if (!open.empty())
+    if (given.fitted_arm)
         raise<UsageError>(
-            "the model does not state {}; give the value, or fit it to a log first: diagnose "
-            "--improved-model",
-            fmt::join(open, ", "));
+            "the model does not state arm.links; give the value, or fit it to a log first: diagnose "
+            "--improved-model");
     return known_torque_nm(given.log, log.log.trace.size());
 }
 
