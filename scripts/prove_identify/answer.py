@@ -50,9 +50,9 @@ class Answer:
         return within[-1] if within else self.bound_nm()
 
     def near(self, order, tolerance):
-        """The first line that is, or could be, of this order; None without."""
-        return next((line for line in self.lines for value in (line["order_output"], *(line.get("could_be") or []))
-                     if value is not None and abs(value - order) <= tolerance), None)
+        """The first line that is of this order; None without."""
+        return next((line for line in self.lines if line["order_output"] is not None and abs(line["order_output"] - order) <= tolerance), None)
+
 
 
 def identify(program, *texts, words=()):

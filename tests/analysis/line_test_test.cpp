@@ -80,55 +80,13 @@ std::vector<double> flat_noise(std::size_t bins, int averages, unsigned seed) {
 
 }  // namespace
 
-TEST_CASE("the threshold of a line is the F quantile of the nearest cells, whatever the averages") {
-    for (const int averages : {1, 3, 10}) {
-        double thresholds = 0.0, count = 0.0;
-        for (unsigned seed = 0; seed < 40; ++seed) {
-            const std::vector<double> power = flat_noise(400, averages, 100 + seed);
-            const PowerSpectrum spectrum{power, static_cast<double>(averages), 1.0, 0};
-            const auto floor = noise_floor(spectrum);
-            for (std::size_t bin = 100; bin < 300; bin += 10) {
-                thresholds += line_threshold(spectrum, floor, bin, 0.01).line;
-                count += 1.0;
-            }
-        }
-        // Of 8 cells at 2 to 5 on both sides the lower three quarters count: 6.
-        const double chance = 0.01 / (1.6 * 400.0);
-        const double expected =
-            exceeded(chance, {.averages = static_cast<double>(averages), .cells = 6.0}).ratio;
-        CHECK(thresholds / count > 0.7 * expected);
-        CHECK(thresholds / count < 2.5 * expected);
-    }
-}
-
-TEST_CASE("bins from which a line was removed are no noise: they make no other line significant") {
-    std::vector<double> power = flat_noise(400, 4, 7);
-    std::vector<char> removed(power.size(), 0);
-    for (const std::size_t bin : {196U, 197U, 203U, 204U, 205U}) {
-        power[bin] = 1e-6;
-        removed[bin] = 1;
-    }
-    PowerSpectrum spectrum{power, 4.0, 1.0, 0};
-    const auto floor = noise_floor(spectrum);
-    const double with_holes = line_threshold(spectrum, floor, 200, 0.01).line;
-    spectrum.removed = removed;
-    const double without = line_threshold(spectrum, floor, 200, 0.01).line;
-    for (const std::size_t bin : {196U, 197U, 203U, 204U, 205U}) power[bin] = 1.0;
-    spectrum.removed = {};
-    const double filled = line_threshold(spectrum, floor, 200, 0.01).line;
-    CHECK(std::abs(std::log(without / filled)) < std::abs(std::log(with_holes / filled)) + 1e-9);
-    CHECK(std::abs(std::log(without / filled)) < std::log(2.5));
-}
-
 TEST_CASE("near the low end a spectrum that falls by the fourth power of the frequency has no line") {
     std::size_t lines = 0;
     for (unsigned seed = 0; seed < 200; ++seed) {
         std::vector<double> power = flat_noise(300, 5, 1000 + seed);
         for (std::size_t k = 1; k < power.size(); ++k) power[k] *= 1.0 + 1e4 * std::pow(3.0 / double(k), 4);
-        const PowerSpectrum spectrum{power, 5.0, 1.0, 2, {}, 3};
-        const auto floor = noise_floor(spectrum);
-        for (std::size_t bin = 3; bin < 12; ++bin)
-            lines += power[bin] > line_threshold(spectrum, floor, bin, 0.01).line ? 1 : 0;
+        for (const SignificantPeak& peak : significant_peaks({power, 5.0, 1.0, 2, 3}, 0.01))
+            lines += peak.bin < 12 ? 1 : 0;
     }
     CHECK(lines <= 4);  // 1 % of 200 logs, and as much again
 }

@@ -76,9 +76,8 @@ struct Line {
     std::optional<double> order;         ///< cycles per motor revolution; only with a gear ratio
     std::optional<double> order_output;  ///< cycles per output revolution; not for tones
     std::optional<double> order_output_stderr;
-    std::vector<double> could_be;  ///< other output orders that explain the line about as well, by folding
-    std::optional<double> hz;      ///< for kind tone, and the seen frequency of a single-speed line
-    double amplitude_nm = 0.0;     ///< zero to peak, mean over the stretches that show it
+    std::optional<double> hz;   ///< for kind tone, and the seen frequency of a single-speed line
+    double amplitude_nm = 0.0;  ///< zero to peak, mean over the stretches that show it
     /// Phase in cos(order * motor angle + phase), angle from position where there is one.
     double phase_deg = 0.0;
     bool phase_known = false;
@@ -196,7 +195,7 @@ struct IdentifyOptions {
     std::optional<GearRatio> hint;   ///< checked against the lines
     std::vector<int> hinted_orders;  ///< n at which the strongest line is expected
     double false_alarm = 0.01;       ///< chance that a log of noise gives any line
-    double highest_order = 2560.0;   ///< per output turn, that is searched (StackRule)
+    double highest_order = 2560.0;   ///< per output turn
     std::vector<Doubt> doubts;       ///< reasons against these logs that are known beforehand
 };
 

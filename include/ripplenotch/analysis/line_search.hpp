@@ -3,11 +3,9 @@
 // Lines of a log in any motion: what repeats with the output angle (orders), what repeats with time (tones),
 // and what this motion cannot distinguish.
 
-#include <complex>
 #include <optional>
 #include <vector>
 
-#include "ripplenotch/analysis/alias.hpp"
 #include "ripplenotch/analysis/identification.hpp"
 #include "ripplenotch/analysis/stack.hpp"
 
@@ -20,24 +18,21 @@ struct MotionLine {
     double amplitude_nm = 0.0;                      ///< zero to peak, rms over sweeps, noise subtracted
     double floor_nm = 0.0;                          ///< amplitude of noise alone, rms over sweeps
     double snr = 0.0;                               ///< amplitude_nm / floor_nm
-    double false_alarm = 1.0;  ///< chance that noise shows such a line anywhere on this axis
-    /// Improvement in log-likelihood by a line in angle, or in time (natural units).
-    double gain_angle = 0.0, gain_time = 0.0;
-    std::vector<Fold> folds;  ///< orders beyond half the sample rate whose image this may be, best first
-    double order_seen = 0.0;  ///< the best that output orders below half the sample rate offer
+    double false_alarm = 1.0;                       ///< chance that noise alone gives as much anywhere
     /// Phase in cos(order * output angle + phase), when the sweeps agree on it.
     std::optional<double> phase_deg;
     std::vector<AmplitudeAtSpeed> by_speed;  ///< per sweep
 };
 
 struct MotionLinesOptions {
-    SweepRule sweeps;
-    StackRule stack;
-    double false_alarm = 0.01;     ///< chance that noise gives any line at all, orders and tones together
-    double least_share = 1e-4;     ///< share of the torque's range: smaller lines are not reported
-    double lowest_tone_hz = 10.0;  ///< in motion, which makes slower ones itself
-    double lowest_tone_at_rest_hz = 1.0;
-    std::size_t most_lines = 12;  ///< chosen, not derived: each costs a further pass over all sweeps
+    SweepRule sweeps{.shortest_turns = 0.03, .fewest_samples = 40, .slowest_share = 0.05};
+    double false_alarm = 0.01;   ///< chance that noise gives any line at all, orders and tones together
+    double least_share = 1e-4;   ///< share of the torque's range: smaller lines are not reported
+    double lowest_order = 12.0;  ///< lower ones are those of load and motion, where the travel is short
+    /// Order 16 of a ratio of 160.
+    double highest_order = 2560.0;
+    double lowest_hz = 1.0;
+    std::size_t most_lines = 24;  ///< chosen, not derived: each costs a further pass over all sweeps
 };
 
 struct MotionLines {
@@ -46,8 +41,8 @@ struct MotionLines {
     std::size_t sweeps_left_out = 0;
     double turns = 0.0;  ///< output turns that the sweeps cover
     double resolution_orders = 0.0;
-    std::optional<SearchedOrders> searched;  ///< empty where no sweep allows a search
-    double highest_spectrum_order = 0.0;     ///< lines above the searched orders are found up to here
+    double lowest_order = 0.0, highest_order = 0.0;   ///< between which lines of an order were looked for
+    std::optional<SearchedOrders> searched;           ///< empty where no sweep allows a search
     double slowest_deg_s = 0.0, fastest_deg_s = 0.0;  ///< mean |speed| of the sweeps
     bool absolute_angle = false;
     /// The velocity error of logs without position, if their lines determine it; their angle and lines are
@@ -57,11 +52,10 @@ struct MotionLines {
     double order_share_error = 0.0;
 };
 
-/// Takes the clearest line of both axes that does not depend on a single sweep, assigns it to the axis that
-/// explains more of it, subtracts it sweep by sweep, and searches again, until noise could account for the
-/// residual. So a tone leaves no orders where the speed lingers, nor an order tones. Where the angle is a sum
-/// of velocities, the orders found determine the offset of the velocity, and the search is
-/// repeated with it corrected.
+/// Takes the clearest line of both axes, as the order or the tone that explains more, subtracts it sweep by
+/// sweep, and searches again, until noise could account for what is left. Where the angle is a sum of
+/// velocities, the orders found determine the offset of the velocity; the search is repeated with it
+/// corrected.
 [[nodiscard]] MotionLines find_motion_lines(std::span<const TraceView> logs,
                                             const MotionLinesOptions& options);
 

@@ -17,14 +17,7 @@ struct PowerSpectrum {
     double bins_per_cell =
         1.5;                ///< bins that carry one independent value (1.5 for a Hann window without padding)
     std::size_t first = 0;  ///< bins below are not used
-    std::span<const double> averages_by_bin = {};  ///< when given, instead of `averages`
     std::size_t searched = 0;  ///< bins below, if not below `first`, are noise for others, and not searched
-    /// By bin, not 0 where a line was removed, and the noise with it; empty: none was.
-    std::span<const char> removed = {};
-
-    [[nodiscard]] double averages_at(std::size_t bin) const {
-        return averages_by_bin.empty() ? averages : averages_by_bin[bin];
-    }
 };
 
 /// Mean noise power at each bin: running median over about 40 cells to each side, turned into a mean by the
@@ -51,20 +44,6 @@ struct SignificantPeak {
                                                              std::span<const double> floor,
                                                              double false_alarm);
 
-/// Maxima that stand above the running floor alone: candidates, which may be the flank of something broad, or
-/// the noise in it. `floor` is noise_floor(spectrum).
-[[nodiscard]] std::vector<SignificantPeak> prominent_peaks(const PowerSpectrum& spectrum,
-                                                           std::span<const double> floor, double false_alarm);
-
-/// Powers from which on a maximum at a bin is no noise, and from which on it is a line. They differ near the
-/// low end, where the residual of the motion is no noise either. Infinite where nothing is tested.
-struct LineThreshold {
-    double noise = 0.0, line = 0.0;
-};
-/// `floor` is noise_floor(spectrum).
-[[nodiscard]] LineThreshold line_threshold(const PowerSpectrum& spectrum, std::span<const double> floor,
-                                           std::size_t bin, double false_alarm);
-
 /// Efficiency of a median of exponential values as an estimate of their mean, relative to the mean of as
 /// many: (ln 2)^2.
 inline constexpr double median_efficiency = 0.48;
@@ -74,10 +53,6 @@ inline constexpr double median_efficiency = 0.48;
 struct PowerOverFloor {
     double ratio = 0.0, averages = 1.0, cells = 0.0;
 };
-
-/// The noise-free power, over the mean noise power, of a line that exceeds `threshold` with a probability of
-/// 95 %: its power is noncentral chi-square, here by its mean and variance. `cells` is ignored.
-[[nodiscard]] double detectable_ratio(const PowerOverFloor& threshold);
 
 /// The power over a floor, with the averages and cells of `noise`, that noise exceeds with this chance.
 [[nodiscard]] PowerOverFloor exceeded(double chance, PowerOverFloor noise);

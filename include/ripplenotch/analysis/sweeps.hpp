@@ -79,8 +79,6 @@ struct Sweep {
     std::vector<double> weight;
     std::vector<double> share_turns;  ///< angle that a sample stands for; at standstill seconds
     std::size_t trend_terms = 0;      ///< number of terms in the smooth part removed
-    /// Cosine and sine part of each line that was removed from torque_nm, in the order of the lines.
-    std::vector<std::complex<double>> removed_nm;
     double weight_sum = 0.0, weight_square_sum = 0.0;
     double length_turns = 0.0;
     double duration_s = 0.0;

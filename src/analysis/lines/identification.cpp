@@ -190,17 +190,6 @@ void settle(Identification& result) {
     result.verdict = verdict_sentence(result);
 }
 
-/// The range begins where less than the deviation of what is left would have been found.
-void keep_telling_bounds(SearchedOrders& searched) {
-    const auto first = std::find_if(
-        searched.bounds.begin(), searched.bounds.end(),
-        [&](const SearchedOrders::Bound& bound) { return bound.detectable_nm <= searched.deviation_nm; });
-    if (first == searched.bounds.end()) return;
-    searched.bounds.erase(searched.bounds.begin(), first);
-    searched.lowest_order = searched.bounds.front().from_order;
-    searched.detectable_nm = searched.bounds.front().detectable_nm;
-}
-
 /// Writes finding, grounds, notes, conclusive and verdict from the lines and the ratio already in `result`.
 void conclude(const MotionLines& motion, const IdentifyOptions& options, Identification& result) {
     if (motion.sweeps_left_out > 0) {
@@ -215,8 +204,6 @@ void conclude(const MotionLines& motion, const IdentifyOptions& options, Identif
     }
     result.grounds = grounds_of(motion, options);
     result.searched = motion.searched;
-    if (result.searched && finding_in(result) == RippleFinding::too_noisy)
-        keep_telling_bounds(*result.searched);
     settle(result);
 }
 
@@ -270,29 +257,8 @@ void name_mains(std::span<Line> lines) {
             line.note = fmt::format("{}mains {:.0f} Hz", n > 1.0 ? fmt::format("{:.0f} times ", n) : "", hz);
 }
 
-// Uncertainty of an improvement as a share: the noise below a line is not known better. Chosen, not derived.
-constexpr double floor_doubt = 0.15;
-
-/// Reports which orders above those searched would explain the line about as well, seen folded.
-void list_folds(const MotionLine& found, double highest_searched, double rate_hz, Line& line) {
-    std::vector<Fold> folds = found.folds;
-    std::erase_if(folds, [&](const Fold& fold) { return fold.order_output <= highest_searched; });
-    if (folds.empty()) return;
-    const double best = std::max(folds.front().gain, found.gain_angle);
-    const double decisive = std::max(decisive_nats, floor_doubt * std::max(best, found.gain_time));
-    for (const Fold& fold : folds) {
-        if (fold.gain > best - decisive) line.could_be.push_back(fold.order_output);
-    }
-    if (line.could_be.empty()) return;
-    std::sort(line.could_be.begin(), line.could_be.end());
-    constexpr std::size_t most = 5;  // chosen, not derived: a note that a person reads
-    const std::span listed(line.could_be.data(), std::min(most, line.could_be.size()));
-    line.note += fmt::format("{}or folded at {:.4g} Hz from order {:.4g}", line.note.empty() ? "" : "; ",
-                             rate_hz, fmt::join(listed, ", "));
-}
-
-// Line number `source` of a motion; folds are reported with the rate of the samples.
-Reported from_motion(const MotionLines& motion, std::size_t source, double rate_hz) {
+// Line number `source` of a motion.
+Reported from_motion(const MotionLines& motion, std::size_t source) {
     const MotionLine& found = motion.lines[source];
     Reported reported;
     Line& line = reported.line;
@@ -322,7 +288,6 @@ Reported from_motion(const MotionLines& motion, std::size_t source, double rate_
     }
     if (found.kind == LineKind::unknown)
         line.note = "the speed varies too little to distinguish an order from a tone";
-    if (!tone) list_folds(found, motion.highest_spectrum_order, rate_hz, line);
     return reported;
 }
 
@@ -333,18 +298,11 @@ constexpr double stated_part = 0.9;
 void add_ratio(std::vector<Reported>& reported, const MotionLines& motion, const IdentifyOptions& options,
                Identification& result) {
     RatioQuestion question{options.hint, options.hinted_orders, motion.resolution_orders};
-    if (options.hint) question.lowest = std::min(question.lowest, stated_part * options.hint->value());
-    if (motion.searched) {
-        question.lowest = std::max(question.lowest, motion.searched->lowest_order);
-        // The shares of orders are of lines up to question.highest, which stands where nothing is stated.
-        double highest = motion.searched->highest_order;
-        if (options.hint || !options.hinted_orders.empty()) {
-            for (const MotionLine& line : motion.lines) highest = std::max(highest, line.order_output + 1.0);
-        } else {
-            highest = std::min(question.highest, highest);
-        }
-        question.highest = std::max(highest, 2.0 * question.lowest);
-    }
+    question.lowest = std::max(motion.lowest_order, 1.0);
+    // The shares of orders are of lines up to question.highest, which stands where nothing is stated.
+    const bool stated = options.hint || !options.hinted_orders.empty();
+    question.highest = stated ? motion.highest_order : std::min(question.highest, motion.highest_order);
+    question.highest = std::max(question.highest, 2.0 * question.lowest);
     if (motion.searched && !motion.searched->bounds.empty())
         question.detectable_nm = [&bounds = motion.searched->bounds](double order) {
             const auto next = std::find_if(bounds.begin() + 1, bounds.end(),
@@ -407,14 +365,15 @@ Identification identify_together(std::span<const TraceView> logs, const Identify
     result.sample_rate = mean_sample_rate(logs);
     MotionLinesOptions search;
     search.false_alarm = options.false_alarm;
-    search.stack.highest_order = options.highest_order;
+    search.highest_order = options.highest_order;
+    if (options.hint)
+        search.lowest_order = std::min(search.lowest_order, stated_part * options.hint->value());
     MotionLines motion = find_motion_lines(logs, search);
     if (const std::size_t of_steps = take_off_encoder_lines(logs, search.sweeps, motion.lines); of_steps > 0)
         result.notes.push_back(fmt::format("{} made by the steps of the position's encoder, not listed",
                                            how_many(of_steps, "line")));
     std::vector<Reported> reported;
-    for (std::size_t i = 0; i < motion.lines.size(); ++i)
-        reported.push_back(from_motion(motion, i, result.sample_rate.value()));
+    for (std::size_t i = 0; i < motion.lines.size(); ++i) reported.push_back(from_motion(motion, i));
     result.velocity_error = motion.velocity_error;
     for (const TraceView& log : logs)
         result.velocity_noise = std::max(result.velocity_noise, velocity_noise(log));

@@ -3,509 +3,374 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <iterator>
 
-#include "analysis/motion/line_evidence.hpp"
-#include "analysis/motion/sweep_fit.hpp"
+#include "analysis/lines/line_scan.hpp"
 #include "analysis/motion/velocity_error.hpp"
 #include "analysis/shared_limits.hpp"
-#include "core/process/two_cores.hpp"
-#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 
 namespace {
 
-// Chosen, not derived: share of an improvement that remains once the other line is removed.
-constexpr double kept_share = 0.8;
-constexpr double line_cells = 2.0;  // half width of a line's main lobe, in resolutions
-
-/// The sweeps on both axes, without the lines that were removed from them.
-struct Stacks {
-    Stack angle, time;
-};
-
-Stacks stacked(std::span<const Sweep> sweeps, const MotionLinesOptions& options) {
-    return {stack_sweeps(sweeps, Axis::angle, options.stack),
-            stack_sweeps(sweeps, Axis::time, options.stack)};
-}
-
-struct Candidate {
-    SignificantPeak peak;
-    double gain = 0.0;
-};
-
-bool near_any(std::span<const double> lines, double place, double within) {
-    return std::any_of(lines.begin(), lines.end(),
-                       [&](double line) { return std::abs(place - line) < within; });
-}
-
-/// The lowest order that is above half the sample rate all the time.
-double half_rate_order(std::span<const Sweep> sweeps) {
-    double order = 0.0;
-    for (const Sweep& sweep : sweeps) {
-        if (!sweep.rest()) order = std::max(order, 180.0 * sweep.rate_hz / std::max(sweep.slow_deg_s, 1e-9));
-    }
-    return order;
-}
-
-/// The prominent peak that explains most, apart from lines already found.
-std::optional<Candidate> clearest(std::span<const Sweep> sweeps, const Stack& stack, double false_alarm,
-                                  std::span<const double> taken, double lowest) {
-    const PowerSpectrum spectrum = stack.tested();
-    std::optional<Candidate> best;
-    for (const SignificantPeak& peak : prominent_peaks(spectrum, noise_floor(spectrum), false_alarm)) {
-        const double place = static_cast<double>(peak.bin) * stack.spacing;
-        if (place < lowest || near_any(taken, place, line_cells * stack.resolution)) continue;
-        const double gain = gain_at(stack, peak.bin);
-        if (best && gain <= best->gain) continue;
-        const bool folded = stack.axis == Axis::angle && place > half_rate_order(sweeps);
-        if (!folded || shown_throughout(sweeps, stack, place)) best = Candidate{peak, gain};
-    }
-    return best;
-}
-
-/// The most that any line of the other axis explains where this one could be seen there, from..to on that
-/// axis.
-Candidate best_place_between(const Stack& stack, double from, double to) {
-    Candidate best;
-    const auto last = static_cast<std::size_t>(std::max(0.0, to / stack.spacing)) + 2;
-    const auto begin = static_cast<std::size_t>(std::max(0.0, from / stack.spacing - 1.0));
-    for (std::size_t k = std::max(begin, stack.first); k < std::min(last, stack.ratio.size()); ++k) {
-        const double gain = gain_at(stack, k);
-        if (gain > best.gain) best = {{k, stack.floor_nm[k], 1.0}, gain};
-    }
-    return best;
-}
-
-/// The order at half the sample rate in the most informative sweeps: the lower median over their weights, at
-/// the upper quartile of their speeds.
-double half_rate_of_most(std::span<const Sweep> sweeps, const Stack& stack) {
-    std::vector<std::pair<double, double>> orders;
-    double total = 0.0, below = 0.0;
-    for (std::size_t i = 0; i < sweeps.size(); ++i) {
-        if (sweeps[i].rest()) continue;
-        orders.emplace_back(180.0 * sweeps[i].rate_hz / std::max(sweeps[i].quick_deg_s, 1e-9),
-                            stack.sweep_weights[i]);
-        total += stack.sweep_weights[i];
-    }
-    std::sort(orders.begin(), orders.end());
-    for (const auto& [order, weight] : orders) {
-        below += weight;
-        if (below >= 0.5 * total) return order;
-    }
-    return 0.0;
-}
-
-/// The orders at which a line would have been found, and the largest amplitude that it needs there, to be
-/// found in 95 of 100 logs: it has to be significant, and to recur. Bins near found lines are theirs.
-std::optional<SearchedOrders> searched_orders(std::span<const Sweep> sweeps, const Stack& stack,
-                                              double false_alarm, std::span<const double> taken,
-                                              std::span<const SearchedOrders::Bound> unreported) {
-    constexpr double step = 1.1;  // chosen, not derived: the floor varies slowly along the orders
-    const PowerSpectrum spectrum = stack.tested();
-    const std::vector<double> floor = noise_floor(spectrum);
-    const double chance = false_alarm / stack.tries_factor, highest = half_rate_of_most(sweeps, stack);
-    SearchedOrders searched;
-    for (std::size_t k = std::max<std::size_t>(stack.searched, 1); k < stack.ratio.size();
-         k = std::max(k + 1, static_cast<std::size_t>(step * static_cast<double>(k)))) {
-        const double place = static_cast<double>(k) * stack.spacing;
-        if (place < stack.lowest) continue;
-        if (place > highest) break;
-        if (near_any(taken, place, line_cells * stack.resolution)) continue;
-        const double threshold = line_threshold(spectrum, floor, k, chance).line;
-        if (!std::isfinite(threshold)) {
-            if (searched.detectable_nm > 0.0) break;
-            continue;
-        }
-        const double ratio = std::max(detectable_ratio({.ratio = threshold, .averages = stack.averages[k]}),
-                                      recurring_ratio(sweeps, stack, place));
-        if (!std::isfinite(ratio)) continue;
-        if (!(searched.detectable_nm > 0.0)) searched.lowest_order = place;
-        searched.highest_order = place;
-        const double here_nm = stack.floor_nm[k] * std::sqrt(ratio);
-        searched.detectable_nm = std::max(searched.detectable_nm, here_nm);
-        for (auto& bound : searched.bounds) bound.detectable_nm = std::max(bound.detectable_nm, here_nm);
-        searched.bounds.push_back({place, here_nm});
-    }
-    for (const auto& [order, amplitude_nm] : unreported) {
-        if (order < searched.lowest_order || order > searched.highest_order) continue;
-        searched.detectable_nm = std::max(searched.detectable_nm, amplitude_nm);
-        for (auto& bound : searched.bounds)
-            if (bound.from_order <= order) bound.detectable_nm = std::max(bound.detectable_nm, amplitude_nm);
-    }
-    // Keeps each bound that is less than half of the one before.
-    std::vector<SearchedOrders::Bound> steps;
-    for (const auto& bound : searched.bounds) {
-        if (steps.empty() || bound.detectable_nm < 0.5 * steps.back().detectable_nm) steps.push_back(bound);
-    }
-    searched.bounds = std::move(steps);
-    if (!(searched.detectable_nm > 0.0)) return std::nullopt;
-    return searched;
-}
+constexpr double line_cells = 2.5;  // half width of a line and of what is left of it, in 1 / longest sweep
 
 struct SpeedRange {
     double slow = 0.0, fast = 0.0;
+    double quick = 0.0;  ///< without the fastest quarter of each sweep
+    bool rests = false;
 };
 
 SpeedRange speed_range(std::span<const Sweep> sweeps) {
-    SpeedRange range{1e300, 0.0};
+    SpeedRange range{1e300};
     for (const Sweep& sweep : sweeps) {
+        range.rests = range.rests || sweep.rest();
         if (sweep.rest()) continue;
+        range.quick = std::max(range.quick, sweep.quick_deg_s);
         range.slow = std::min(range.slow, sweep.slow_deg_s);
         range.fast = std::max(range.fast, sweep.fast_deg_s);
     }
-    return range.fast > 0.0 ? range : SpeedRange{};
+    return range.fast > 0.0 ? range : SpeedRange{.rests = range.rests};
 }
 
-/// Output order of a frequency at the mean speed of the heaviest sweep.
-double order_at(std::span<const Sweep> sweeps, const Stack& stack, double hz) {
-    const auto heaviest = std::max_element(stack.sweep_weights.begin(), stack.sweep_weights.end());
-    if (heaviest == stack.sweep_weights.end()) return 0.0;
-    const Sweep& sweep = sweeps[static_cast<std::size_t>(heaviest - stack.sweep_weights.begin())];
-    return 360.0 * hz / std::max(std::abs(sweep.mean_deg_s), 1e-9);
-}
-
-/// A line of one axis and the most that the other axis offers where the first could be seen there.
-struct Rivals {
-    double order = 0.0, hz = 0.0;
-    bool has_order = false, has_hz = false;
-    bool two_lines = false;  ///< both are prominent, the one that was not seen first as well
+struct Peak {
+    double place = 0.0, evidence = 0.0;
+    double top = 0.0;  ///< where the evidence is largest
 };
 
-/// Order or tone, by what explains the line more; unknown where neither does. `two_lines`: at the line's
-/// frequencies there is a line of the other axis as well.
-LineKind judged(std::span<const Sweep> sweeps, const Stacks& stacks, const Rivals& rivals, bool by_angle) {
-    const Stack &angle = stacks.angle, &time = stacks.time;
-    const auto [apart, error] =
-        gain_difference(sweeps, {angle, rivals.has_order ? std::optional(rivals.order) : std::nullopt},
-                        {time, rivals.has_hz ? std::optional(rivals.hz) : std::nullopt});
-    const double decisive = std::max(decisive_nats, error);
-    if (std::abs(apart) > decisive) return apart > 0.0 ? LineKind::order : LineKind::tone;
-    if (!rivals.two_lines) return LineKind::unknown;
-    // Two lines, not one seen twice, when the improvement by each remains after the other is removed.
-    const double order_left = gain_without(sweeps, {Axis::time, rivals.hz}, angle, rivals.order);
-    const double tone_left = gain_without(sweeps, {Axis::angle, rivals.order}, time, rivals.hz);
-    if (order_left < kept_share * gain_of(sweeps, angle, rivals.order) ||
-        tone_left < kept_share * gain_of(sweeps, time, rivals.hz))
-        return LineKind::unknown;
-    return by_angle ? LineKind::order : LineKind::tone;
+ScanRange orders_of(std::span<const Sweep> sweeps, const MotionLinesOptions& options) {
+    // Over two turns and more the load, once and twice a turn, is clear of order 5.
+    constexpr double long_turns = 2.0, lowest_of_long = 5.0;
+    double longest = 0.0;
+    for (const Sweep& sweep : sweeps) longest = std::max(longest, sweep.length_turns);
+    const double lowest =
+        longest >= long_turns ? std::min(lowest_of_long, options.lowest_order) : options.lowest_order;
+    return {lowest, options.highest_order, options.lowest_order};
 }
 
-/// A line that was removed from the sweeps before it is known to be one.
-struct CandidateLine {
-    KnownLine known;
-    Rivals rivals;
-    bool by_angle = false;              ///< the axis on which it was seen first
-    LineKind kind = LineKind::unknown;  ///< when it was seen
-};
-
-/// Lines hide each other: each adds to the noise that is measured near the others. So whatever is prominent
-/// is removed, the clearest first, and then each candidate is tested against the noise that remains when all
-/// of them are removed. Candidates that fail are put back, which raises the noise for the others; what
-/// remains in
-/// the end is significant each by itself.
 class LineSearch {
   public:
-    LineSearch(std::vector<Sweep>& sweeps, std::span<const TraceView> logs, bool absolute_angle,
+    LineSearch(std::span<const Sweep> sweeps, std::span<const TraceView> logs,
                const MotionLinesOptions& options)
-        : sweeps_(sweeps),
-          options_(options),
-          absolute_angle_(absolute_angle),
+        : options_(options),
           range_(speed_range(sweeps)),
-          least_amplitude_(least_amplitude_nm(logs, options.least_share)),
-          stacks_(stacked(sweeps, options)) {
-        std::size_t looks = 0;
-        bool put_back = true;
-        // What was put back may have stood for another: the image of an order for the order itself.
-        while (put_back) {
-            while (looks < 2 * options.most_lines && out_.size() < options.most_lines && remove_clearest())
-                ++looks;
-            put_back = false;
-            while (put_back_insignificant()) put_back = true;
-        }
+          least_nm_(least_amplitude_nm(logs, options.least_share)),
+          angle_(sweeps, logs, Axis::angle, orders_of(sweeps, options)),
+          time_(sweeps, logs, Axis::time, {options.lowest_hz, 1e9, options.lowest_hz}) {
+        score();
+        while (taken_.size() < options.most_lines && take_clearest()) score();
     }
 
-    /// The clearest first. A line that does not recur is none: a burst, or the ripple of another joint that
-    /// passes by. Near the low end a maximum that is no noise may still be motion. Both stay removed, and are
-    /// not reported.
-    [[nodiscard]] std::vector<MotionLine> lines() {
+    /// The clearest first. The noise is known once all that stands out was taken off; what is no line in it
+    /// stays off, and bounds what would have been found.
+    [[nodiscard]] std::vector<MotionLine> lines() const {
         std::vector<MotionLine> lines;
-        for (std::size_t i = 0; i < out_.size(); ++i) {
-            const std::vector<Sweep> sweeps = with_line(sweeps_, out_, i);
-            const auto& [axis, place] = out_[i];
-            MotionLine line = measured(sweeps, i);
-            const bool is_line = shares_of_threshold(sweeps, i).line > 1.0;
-            if (!is_line || !recurs(sweeps, stack_of(axis), place)) {
-                const double order = axis == Axis::angle ? place : line.order_seen;
-                double largest_nm = 0.0;
-                for (const AmplitudeAtSpeed& seen : line.by_speed)
-                    largest_nm = std::max(largest_nm, seen.amplitude_nm);
-                unreported_.push_back({order, largest_nm});
-                if (is_line) once_nm_ = std::max(once_nm_, largest_nm);
-                continue;
-            }
-            if (line.amplitude_nm < least_amplitude_) continue;
-            if (axis == Axis::angle) orders_.push_back(place);
-            lines.push_back(std::move(line));
+        for (const Taken& taken : taken_) {
+            if (!is_line(taken)) continue;
+            lines.push_back(taken.line);
+            lines.back().false_alarm = false_alarm_of(taken);
         }
         return lines;
     }
-    /// The orders among the lines that lines() returned.
-    [[nodiscard]] std::span<const double> orders() const { return orders_; }
-    /// Lines that lines() left out, by order: nothing smaller is claimed to be absent there.
-    [[nodiscard]] std::span<const SearchedOrders::Bound> unreported() const { return unreported_; }
-
-    /// The largest of lines that lines() left out because only one sweep shows it.
-    [[nodiscard]] double once_nm() const { return once_nm_; }
-
-    [[nodiscard]] Stacks& stacks() { return stacks_; }
     [[nodiscard]] const SpeedRange& range() const { return range_; }
-    [[nodiscard]] double least_amplitude() const { return least_amplitude_; }
+    [[nodiscard]] const LineScan& angle() const { return angle_; }
+
+    /// The orders at which a line would have been found, with the amplitude that it needs.
+    [[nodiscard]] std::optional<SearchedOrders> searched() const {
+        constexpr double band = 2.0;  // from one order to its double
+        if (angle_.empty()) return std::nullopt;
+        SearchedOrders searched{
+            angle_.lowest(), angle_.highest(), 0.0, std::max(angle_.deviation_nm(), least_nm_), {}};
+        std::vector<SearchedOrders::Bound> bounds, run;
+        double all_nm = 0.0;
+        for (double from = angle_.lowest(); from < angle_.highest(); from *= band) {
+            const double to = std::min(band * from, angle_.highest());
+            const double found_nm =
+                std::max(angle_.detectable_nm(from, to, false_alarm(), orders_), least_nm_);
+            all_nm = std::max(all_nm, found_nm);
+            // What was seen and is no line may be one.
+            double once_nm = angle_.once_nm(from, to, false_alarm());
+            if (!time_.empty()) once_nm = std::max(once_nm, time_.once_nm(from, to, false_alarm()));
+            if (found_nm > searched.deviation_nm && !(once_nm > searched.deviation_nm)) {
+                run.clear();
+                continue;
+            }
+            double nm = std::max(found_nm, once_nm);
+            for (const Taken& taken : taken_) {
+                if (taken.line.kind != LineKind::tone && taken.line.order_output >= from &&
+                    taken.line.order_output < to && !is_line(taken))
+                    nm = std::max(nm, taken.line.amplitude_nm);
+            }
+            run.push_back({from, nm});
+            if (run.size() > bounds.size()) {
+                bounds = run;
+                searched.highest_order = to;
+            }
+        }
+        if (bounds.empty()) {  // a line would be missed everywhere
+            searched.detectable_nm = all_nm;
+            searched.bounds = {{searched.lowest_order, all_nm}};
+            return searched;
+        }
+        searched.lowest_order = bounds.front().from_order;
+        // What would have been found from each order on.
+        for (std::size_t i = bounds.size() - 1; i-- > 0;)
+            bounds[i].detectable_nm = std::max(bounds[i].detectable_nm, bounds[i + 1].detectable_nm);
+        searched.detectable_nm = bounds.front().detectable_nm;
+        // Only what is less than half of the one before is said.
+        for (const auto& bound : bounds) {
+            if (searched.bounds.empty() || bound.detectable_nm < 0.5 * searched.bounds.back().detectable_nm)
+                searched.bounds.push_back(bound);
+        }
+        return searched;
+    }
 
   private:
-    [[nodiscard]] const Stack& stack_of(Axis axis) const {
-        return axis == Axis::angle ? stacks_.angle : stacks_.time;
-    }
-    [[nodiscard]] double false_alarm() const { return 0.5 * options_.false_alarm; }  // two axes are searched
-    [[nodiscard]] double lowest_tone_hz() const {
-        return range_.fast > 0.0 ? options_.lowest_tone_hz : options_.lowest_tone_at_rest_hz;
-    }
-
-    /// False when nothing is prominent.
-    bool remove_clearest() {
-        const Stack &angle = stacks_.angle, &time = stacks_.time;
-        std::optional<Candidate> order, tone;
-        on_two_cores(2, [&](std::size_t i) {
-            if (i == 0)
-                order = clearest(sweeps_, angle, false_alarm(), taken_orders_, 0.0);
-            else
-                tone = clearest(sweeps_, time, false_alarm(), taken_hz_, lowest_tone_hz());
-        });
-        if (!order && !tone) return false;
-        CandidateLine line;
-        line.by_angle = order && (!tone || order->gain >= tone->gain);
-        line.rivals = rivals_of(line.by_angle ? order->peak.bin : tone->peak.bin, line.by_angle);
-        line.kind = judged(sweeps_, stacks_, line.rivals, line.by_angle);
-        // Slow tones are not looked for, since the motion makes them: what is seen over the angle is an order
-        // or such a tone. Of two tones at two speeds an order may explain half of each: what is seen at both
-        // speeds is a tone.
-        const bool slow = line.rivals.hz < lowest_tone_hz();
-        if (slow && line.kind == LineKind::tone) line.kind = LineKind::unknown;
-        const bool as_tone = line.kind == LineKind::tone || (line.kind == LineKind::unknown && !slow &&
-                                                             at_two_speeds(sweeps_, time, line.rivals.hz) &&
-                                                             recurs(sweeps_, time, line.rivals.hz));
-        const bool as_order = line.rivals.has_order && !as_tone;
-        const Stack& stack = as_order ? angle : time;
-        auto& taken = as_order ? taken_orders_ : taken_hz_;
-        line.known = {stack.axis, as_order ? line.rivals.order : line.rivals.hz};
-        // The residual of a line near itself, because its amplitude changes within a sweep, is no line.
-        const bool rest_of_known = near_any(taken, line.known.place, line_cells * stack.resolution);
-        const std::size_t seen_bin = line.by_angle ? order->peak.bin : tone->peak.bin;
-        (line.by_angle ? taken_orders_ : taken_hz_)
-            .push_back(static_cast<double>(seen_bin) * (line.by_angle ? angle : time).spacing);
-        if (rest_of_known) return true;
-        taken.push_back(line.known.place);
-        candidates_.push_back(line);
-        out_.push_back(line.known);
-        remove_last(sweeps_, out_);
-        stack_again();
-        return true;
-    }
-
-    void stack_again() {
-        stacks_ = stacked(sweeps_, options_);
-        for (const KnownLine& line : out_)
-            (line.axis == Axis::angle ? stacks_.angle : stacks_.time).mark_removed(line.place);
-    }
-
-    /// Where a peak stands on its own axis, and the most that the other axis offers for it.
-    [[nodiscard]] Rivals rivals_of(std::size_t bin, bool by_angle) const {
-        const Stack &angle = stacks_.angle, &time = stacks_.time;
-        const double seen_at = static_cast<double>(bin) * (by_angle ? angle : time).spacing;
-        Candidate other;
-        if (by_angle)
-            other = best_place_between(time, seen_at * range_.slow / 360.0, seen_at * range_.fast / 360.0);
-        else if (range_.fast > 0.0)
-            other = best_place_between(angle, seen_at * 360.0 / range_.fast, seen_at * 360.0 / range_.slow);
-        const std::size_t order_bin = by_angle ? bin : other.peak.bin;
-        const std::size_t hz_bin = by_angle ? other.peak.bin : bin;
-        Rivals rivals;
-        rivals.has_order = order_bin > 0;
-        rivals.has_hz = hz_bin > 0;
-        if (rivals.has_order) rivals.order = refined(sweeps_, angle, order_bin);
-        if (rivals.has_hz) rivals.hz = refined(sweeps_, time, hz_bin);
-        if (rivals.has_order && rivals.has_hz) {
-            const Stack& stack = by_angle ? time : angle;
-            const double place = by_angle ? rivals.hz : rivals.order;
-            const PowerSpectrum spectrum = stack.tested();
-            for (const SignificantPeak& peak :
-                 prominent_peaks(spectrum, noise_floor(spectrum), false_alarm()))
-                rivals.two_lines =
-                    rivals.two_lines ||
-                    std::abs(static_cast<double>(peak.bin) * stack.spacing - place) < stack.resolution;
-        }
-        return rivals;
-    }
-
-    /// Puts back the weakest of the candidates that are not significant, and those with it that are not
-    /// collinear with it: of two collinear candidates neither seems to be needed. False when all are
-    /// significant.
-    bool put_back_insignificant() {
-        std::vector<std::pair<double, std::size_t>> failed;
-        for (std::size_t i = 0; i < out_.size(); ++i)
-            if (const double share = shares_of_threshold(with_line(sweeps_, out_, i), i).noise;
-                !(share > 1.0))
-                failed.emplace_back(share, i);
-        if (failed.empty()) return false;
-        std::sort(failed.begin(), failed.end());
-        std::vector<std::size_t> dropped;
-        for (const auto& [share, i] : failed)
-            if (std::all_of(dropped.begin(), dropped.end(),
-                            [&](std::size_t other) { return apart(sweeps_, out_[i], out_[other]); }))
-                dropped.push_back(i);
-        std::sort(dropped.begin(), dropped.end(), std::greater());
-        for (const std::size_t i : dropped) {
-            out_.erase(out_.begin() + static_cast<std::ptrdiff_t>(i));
-            candidates_.erase(candidates_.begin() + static_cast<std::ptrdiff_t>(i));
-        }
-        on_two_cores(sweeps_.size(), [&](std::size_t i) { fit_out(sweeps_[i], out_); });
-        stack_again();
-        return true;
-    }
-
-    /// The power of a candidate over those from which on it is no noise, and a line, against the noise that
-    /// remains when all candidates are removed. `sweeps` hold it alone.
-    [[nodiscard]] LineThreshold shares_of_threshold(std::span<const Sweep> sweeps,
-                                                    std::size_t candidate) const {
-        const auto& [axis, place] = out_[candidate];
-        const Stack& stack = stack_of(axis);
-        const auto bin = static_cast<std::size_t>(std::lround(place / stack.spacing));
-        if (bin >= stack.ratio.size() || !(stack.averages[bin] > 0.0)) return {};
-        const PowerSpectrum spectrum = stack.tested();
-        const LineThreshold threshold =
-            line_threshold(spectrum, noise_floor(spectrum), bin, false_alarm() / stack.tries_factor);
-        const double power = mean_ratio(sweeps, stack, place);
-        return {power / threshold.noise, power / threshold.line};
-    }
-
-    [[nodiscard]] MotionLine measured(std::span<const Sweep> sweeps, std::size_t candidate) const {
-        const auto& [known, rivals, by_angle, kind] = candidates_[candidate];
-        const Stack &angle = stacks_.angle, &time = stacks_.time;
+    static constexpr double axes = 2.0;  ///< that are searched
+    /// What was taken off, and the evidence of it as an order and as a tone.
+    struct Reading {
+        const LineScan* scan;
+        double place;
+        LineScan::Evidences evidences;
+    };
+    struct Taken {
+        KnownLine known;
         MotionLine line;
-        line.gain_angle = rivals.has_order ? gain_of(sweeps, angle, rivals.order) : 0.0;
-        line.gain_time = rivals.has_hz ? gain_of(sweeps, time, rivals.hz) : 0.0;
-        line.kind = judged(sweeps, stacks_, rivals, by_angle);
-        // A removed line may have taken with it what would be evidence for the other axis.
-        const KnownLine rival = known.axis == Axis::angle ? KnownLine{Axis::time, rivals.hz}
-                                                          : KnownLine{Axis::angle, rivals.order};
-        bool contested = false;
-        for (std::size_t i = 0; i < out_.size(); ++i)
-            contested = contested || (i != candidate && !apart(sweeps, rival, out_[i]));
-        // Nor is a line that was open called a tone because it was removed as one.
-        if (line.kind != kind && (contested || line.kind == LineKind::tone)) line.kind = LineKind::unknown;
-        const bool as_order = known.axis == Axis::angle;
-        if (line.kind == (as_order ? LineKind::tone : LineKind::order)) line.kind = LineKind::unknown;
-        if (line.kind == LineKind::tone && !at_two_speeds(sweeps, time, rivals.hz))
-            line.kind = LineKind::unknown;
-        measure(sweeps, stack_of(known.axis), known.place, line);
-        if (!absolute_angle_) line.phase_deg.reset();
-        if (line.kind == LineKind::unknown && as_order) {
-            line.hz = rivals.hz;
-            line.hz_stderr = time.resolution;
+        std::vector<Reading> readings;
+    };
+    [[nodiscard]] static double false_alarm_of(const Taken& taken) {
+        double chance = 1.0;
+        for (const Reading& reading : taken.readings)
+            chance = std::min(chance, axes * reading.scan->false_alarm_of(reading.place, reading.evidences));
+        return chance;
+    }
+    [[nodiscard]] bool is_line(const Taken& taken) const {
+        return taken.line.amplitude_nm >= least_nm_ && false_alarm_of(taken) < options_.false_alarm;
+    }
+    [[nodiscard]] double false_alarm() const { return options_.false_alarm / axes; }
+
+    void score() {
+        if (!angle_.empty()) angle_scores_ = &angle_.score();
+        if (!time_.empty()) time_scores_ = &time_.score();
+    }
+
+    [[nodiscard]] static bool is_near(double place, const LineScan& scan, std::span<const double> taken) {
+        return std::any_of(taken.begin(), taken.end(),
+                           [&](double line) { return std::abs(line - place) < line_cells / scan.longest(); });
+    }
+
+    /// Of peaks that are about as clear the lowest: at one speed an order and its images look alike.
+    [[nodiscard]] static Peak clearest(const LineScan& scan, const std::vector<double>* scores, double from,
+                                       double to, std::span<const double> taken) {
+        if (scores == nullptr) return {};
+        double most = 0.0;
+        std::vector<Peak> peaks;
+        for (std::size_t k = 0; k < scores->size(); ++k) {
+            const double place = scan.place(k);
+            if ((*scores)[k] <= std::max(0.0, most - decisive_nats) || place < from || place > to) continue;
+            if (is_near(place, scan, taken)) continue;
+            peaks.push_back({place, (*scores)[k]});
+            most = std::max(most, (*scores)[k]);
         }
-        if (angle.ratio.empty()) return line;  // at standstill
-        line.order_seen = rivals.has_order ? rivals.order : order_at(sweeps, angle, rivals.hz);
-        if (line.kind == LineKind::unknown && !as_order) {
-            line.order_output = line.order_seen;
-            line.order_stderr = angle.resolution;
+        const auto lowest = std::find_if(peaks.begin(), peaks.end(), [&](const Peak& peak) {
+            return peak.evidence >= most - decisive_nats;
+        });
+        if (lowest == peaks.end()) return {};
+        // The top of that peak: by evidence, which a strong line has all over its width, and then by power.
+        Peak best = *lowest;
+        for (auto next = lowest; next != peaks.end(); ++next)
+            if (next->place - lowest->place < line_cells / scan.longest() && next->evidence > best.evidence)
+                best = *next;
+        best.top = best.place;
+        best.place = scan.peak_near(best.place);
+        return best;
+    }
+
+    /// False when nothing is a line.
+    bool take_clearest() {
+        constexpr double everywhere = 1e300;
+        Peak order = clearest(angle_, angle_scores_, 0.0, everywhere, orders_);
+        Peak tone = clearest(time_, time_scores_, 0.0, everywhere, tones_);
+        const bool order_is = !angle_.empty() && order.evidence > angle_.threshold(false_alarm());
+        const bool tone_is = !time_.empty() && tone.evidence > time_.threshold(false_alarm());
+        if (!order_is && !tone_is) return false;
+        bool by_angle = order_is && (!tone_is || order.evidence >= tone.evidence);
+        const bool first_by_angle = by_angle;
+        const double first = by_angle ? order.place : tone.place, top = by_angle ? order.top : tone.top;
+        // What another reading explains better may be a line of which the first was a part only, and there is
+        // perhaps one of which that is a part: where one order is twice another's at half the speed.
+        constexpr int most_rounds = 4;
+        Readings best = readings_of(by_angle, first);
+        for (int round = 0; round < most_rounds; ++round) {
+            if (by_angle ? best.margin >= -decisive_nats : best.margin <= decisive_nats) break;
+            by_angle = !by_angle;
+            best = readings_of(by_angle, by_angle ? best.order : best.hz);
         }
-        line.folds =
-            folds_of(sweeps, angle, {.seen = line.order_seen, .highest = options_.stack.highest_order});
+        const LineKind kind = std::abs(best.margin) <= decisive_nats ? LineKind::unknown
+                              : best.margin > 0.0                    ? LineKind::order
+                                                                     : LineKind::tone;
+        by_angle = kind != LineKind::tone;
+        const KnownLine known{by_angle ? Axis::angle : Axis::time, by_angle ? best.order : best.hz};
+        Taken taken{known, measured(known, kind, best.hz), {}};
+        if (is_near(known.place, by_angle ? angle_ : time_, by_angle ? orders_ : tones_) ||
+            is_remainder(taken.line, first_by_angle, first)) {
+            (first_by_angle ? orders_ : tones_).push_back(first);
+            return true;
+        }
+        const auto read = [&](const LineScan& scan, bool over_angle, double place) {
+            if (place > 0.0)
+                taken.readings.push_back(
+                    {&scan, place,
+                     scan.evidences_at(over_angle == first_by_angle && place == first ? top : place)});
+        };
+        read(angle_, true, best.order);
+        read(time_, false, best.hz);
+        taken_.push_back(std::move(taken));
+        if (by_angle) orders_.push_back(best.order);
+        if (kind != LineKind::order) tones_.push_back(best.hz);
+        const MotionLine& line = taken_.back().line;
+        const KnownLine exact{known.axis, by_angle ? line.order_output : line.hz};
+        if (!angle_.empty()) angle_.remove(exact);
+        if (!time_.empty()) time_.remove(exact);
+        return true;
+    }
+
+    /// A line as an order and as a tone, 0 where it is none, and how much more the order explains.
+    struct Readings {
+        double order = 0.0, hz = 0.0, margin = 0.0;
+    };
+    /// Of an order, or of a tone, with what the other axis shows where the line could be seen there, and at
+    /// the speed of the sweep that shows it best: with several lines in that range the clearest may be
+    /// another one.
+    [[nodiscard]] Readings readings_of(bool by_angle, double place) const {
+        const double reach = line_cells / (by_angle ? time_ : angle_).longest();
+        const Sweep& best = (by_angle ? angle_ : time_).strongest_at(place);
+        const double speed = std::abs(best.mean_deg_s) / 360.0;
+        std::vector<double> others;
+        if (by_angle && !time_.empty()) {
+            others = {clearest(time_, time_scores_, place * range_.slow / 360.0 - reach,
+                               place * range_.fast / 360.0 + reach, {})
+                          .place,
+                      place * speed};
+        } else if (!by_angle && range_.fast > 0.0 && !angle_.empty()) {
+            others.push_back(clearest(angle_, angle_scores_, place * 360.0 / range_.fast - reach,
+                                      place * 360.0 / std::max(range_.slow, 1e-9) + reach, {})
+                                 .place);
+            if (speed > 0.0) others.push_back(place / speed);
+        }
+        constexpr double only_reading = 1e300;
+        Readings found = by_angle ? Readings{place, 0.0, only_reading} : Readings{0.0, place, -only_reading};
+        for (const double other : others) {
+            if (!(other > 0.0)) continue;
+            const double margin = by_angle ? margin_of(place, other) : margin_of(other, place);
+            if (by_angle ? margin >= found.margin : margin <= found.margin) continue;
+            found.margin = margin;
+            (by_angle ? found.hz : found.order) = other;
+        }
+        return found;
+    }
+
+    /// Whether a line, first seen at a place of one axis, is what the removal of another left, or the same
+    /// where the sweep that shows it best does not resolve the two.
+    [[nodiscard]] bool is_remainder(const MotionLine& line, bool by_angle, double place) const {
+        constexpr double share = 0.03;  // chosen, not derived: what a removal leaves where the angle is off
+        const Sweep& sweep = (by_angle ? angle_ : time_).strongest_at(place);
+        const double speed = std::abs(sweep.mean_deg_s) / 360.0;
+        const double hz = by_angle ? place * speed : place;
+        return std::any_of(taken_.begin(), taken_.end(), [&](const Taken& taken) {
+            const double there =
+                taken.known.axis == Axis::time ? taken.line.hz : taken.line.order_output * speed;
+            const double cells = std::abs(hz - there) * sweep.duration_s;
+            return cells < line_cells &&
+                   line.amplitude_nm < (cells < 1.0 ? 1.0 : share) * taken.line.amplitude_nm;
+        });
+    }
+
+    /// How much more (natural units) of what is left of the torque an order explains than a tone, each at its
+    /// best near a place. Both are measured over the same rows against one noise, the larger of the two:
+    /// where each had its own, what other lines leave in either would decide instead of the line.
+    [[nodiscard]] double margin_of(double order, double hz) const {
+        // Of a line whose frequency changes by less than it is wide, both show the same.
+        const double spread_hz = order * (range_.quick - range_.slow) / 360.0;
+        if (!range_.rests && spread_hz * time_.longest() < 1.0) return 0.0;
+        LineNoise noise = time_.noise_at(hz);
+        const LineNoise over_angle = angle_.noise_at(order);
+        const std::span<const Sweep> sweeps = time_.sweeps(), turning = angle_.sweeps();
+        LineNoise in_motion{Axis::angle, noise.resolution, std::vector<double>(sweeps.size())};
+        std::size_t next = 0;
+        for (std::size_t i = 0; i < sweeps.size() && next < turning.size(); ++i) {
+            if (turning[next].log != sweeps[i].log || turning[next].first != sweeps[i].first) continue;
+            const double power =
+                over_angle.power[next] * sweeps[i].weight_square_sum / turning[next].weight_square_sum;
+            noise.power[i] = std::max(noise.power[i], power);
+            in_motion.power[i] = noise.power[i];
+            ++next;
+        }
+        const double by_time = explained(sweeps, noise, refined(sweeps, noise, hz, 0.5 / time_.longest()));
+        const double by_angle =
+            explained(sweeps, in_motion, refined(sweeps, in_motion, order, 0.5 / angle_.longest()));
+        return by_angle - by_time;
+    }
+
+    [[nodiscard]] MotionLine measured(const KnownLine& known, LineKind kind, double tone_hz) const {
+        const LineScan& scan = known.axis == Axis::angle ? angle_ : time_;
+        const LineNoise noise = scan.noise_at(known.place);
+        MotionLine line;
+        line.kind = kind;
+        measure(scan.sweeps(), noise,
+                refined(scan.sweeps(), noise, scan.peak_near(known.place), 0.5 / scan.longest()), line);
+        if (kind == LineKind::unknown) {
+            line.hz = tone_hz;
+            line.hz_stderr = hann_cell / time_.longest();
+        }
         return line;
     }
 
-    std::vector<Sweep>& sweeps_;
     const MotionLinesOptions& options_;
-    bool absolute_angle_;
     SpeedRange range_;
-    double least_amplitude_;
-    Stacks stacks_;
-    std::vector<double> taken_orders_, taken_hz_, orders_;
-    std::vector<SearchedOrders::Bound> unreported_;
-    double once_nm_ = 0.0;
-    std::vector<KnownLine> out_;             ///< removed from the sweeps
-    std::vector<CandidateLine> candidates_;  ///< the same, with what is known of each
+    double least_nm_;
+    LineScan angle_, time_;
+    const std::vector<double>*angle_scores_ = nullptr, *time_scores_ = nullptr;
+    std::vector<Taken> taken_;
+    std::vector<double> orders_, tones_;  ///< places that were taken
 };
-
-/// Standard deviation of what is left of the torque in motion, under the weights of the sweeps.
-double deviation_of(std::span<const Sweep> sweeps) {
-    double squares = 0.0, weights = 0.0;
-    for (const Sweep& sweep : sweeps) {
-        if (sweep.rest()) continue;
-        for (std::size_t k = 0; k < sweep.torque_nm.size(); ++k)
-            squares += sweep.weight[k] * sweep.torque_nm[k] * sweep.torque_nm[k];
-        weights += sweep.weight_sum;
-    }
-    return weights > 0.0 ? std::sqrt(squares / weights) : 0.0;
-}
 
 struct MotionSearch {
     MotionLines found;
-    Stack angle;                ///< stack of the residual without the lines
-    std::vector<Sweep> sweeps;  ///< where the angle is not absolute: no line that was found removed
+    std::vector<std::vector<double>> noise;  ///< of each order in `found`, by sweep that moves
 };
 
-/// Tones slower than those that are distinguished from the motion, where the joint is at rest.
-std::vector<MotionLine> slow_tones_at_rest(std::span<const Sweep> sweeps, std::span<const TraceView> logs,
-                                           const MotionLinesOptions& options) {
-    std::vector<Sweep> rests;
-    std::copy_if(sweeps.begin(), sweeps.end(), std::back_inserter(rests),
-                 [](const Sweep& sweep) { return sweep.rest(); });
-    if (rests.empty() || rests.size() == sweeps.size()) return {};  // or all were searched so
-    for (Sweep& rest : rests) fit_out(rest, {});
-    std::vector<MotionLine> tones = LineSearch(rests, logs, false, options).lines();
-    std::erase_if(tones, [&](const MotionLine& tone) { return tone.hz >= options.lowest_tone_hz; });
-    return tones;
+std::vector<const MotionLine*> orders_among(const std::vector<MotionLine>& lines) {
+    std::vector<const MotionLine*> orders;
+    for (const MotionLine& line : lines)
+        if (line.kind == LineKind::order) orders.push_back(&line);
+    return orders;
 }
 
 /// The search for lines in sweeps whose angle is taken as it is.
-MotionSearch search_sweeps(Sweeps cut, std::span<const TraceView> logs, const MotionLinesOptions& options) {
+MotionSearch search_sweeps(const Sweeps& cut, std::span<const TraceView> logs,
+                           const MotionLinesOptions& options) {
     MotionSearch search;
     MotionLines& found = search.found;
-    std::vector<Sweep>& sweeps = cut.pieces;
-    for (const Sweep& sweep : sweeps) (sweep.rest() ? found.rests : found.sweeps) += 1;
+    for (const Sweep& sweep : cut.pieces) {
+        (sweep.rest() ? found.rests : found.sweeps) += 1;
+        found.turns += sweep.length_turns;
+    }
     found.sweeps_left_out = cut.pieces_left_out;
     found.absolute_angle = cut.absolute_angle;
-    if (sweeps.empty()) return search;
-    for (const Sweep& sweep : sweeps) found.turns += sweep.length_turns;
-    std::vector<std::vector<double>> values;  // values before lines were removed
-    for (const Sweep& sweep : sweeps) {
-        if (!cut.absolute_angle) values.push_back(sweep.value);
-    }
-    LineSearch search_of(sweeps, logs, cut.absolute_angle, options);
-    found.slowest_deg_s = search_of.range().slow;
-    found.fastest_deg_s = search_of.range().fast;
-    found.lines = search_of.lines();
-    for (MotionLine& tone : slow_tones_at_rest(sweeps, logs, options)) found.lines.push_back(std::move(tone));
-    const Stack& angle = search_of.stacks().angle;
-    found.resolution_orders = angle.resolution;
-    found.highest_spectrum_order = static_cast<double>(angle.ratio.size()) * angle.spacing;
-    found.searched =
-        searched_orders(sweeps, angle, 0.5 * options.false_alarm, search_of.orders(), search_of.unreported());
-    if (found.searched) {
-        const double least_nm = search_of.least_amplitude();
-        found.searched->deviation_nm = std::max(deviation_of(sweeps), least_nm);
-        found.searched->detectable_nm = std::max(found.searched->detectable_nm, least_nm);
-        for (auto& bound : found.searched->bounds)
-            bound.detectable_nm = std::max(bound.detectable_nm, least_nm);
-        // A line that one sweep shows leaves the whole range open.
-        if (search_of.once_nm() > found.searched->deviation_nm) found.searched->bounds.resize(1);
-    }
-    search.angle = std::move(search_of.stacks().angle);
-    for (std::size_t i = 0; i < values.size(); ++i) sweeps[i].value = std::move(values[i]);
-    if (!cut.absolute_angle) search.sweeps = std::move(sweeps);
+    if (cut.pieces.empty()) return search;
+    const LineSearch lines(cut.pieces, logs, options);
+    found.slowest_deg_s = lines.range().slow;
+    found.fastest_deg_s = lines.range().fast;
+    found.lines = lines.lines();
+    if (!cut.absolute_angle)
+        for (MotionLine& line : found.lines) line.phase_deg.reset();
+    found.searched = lines.searched();
+    if (lines.angle().empty()) return search;
+    found.resolution_orders = hann_cell / lines.angle().longest();
+    found.lowest_order = lines.angle().lowest();
+    found.highest_order = lines.angle().highest();
+    for (const MotionLine* line : orders_among(found.lines))
+        search.noise.push_back(lines.angle().noise_at(line->order_output).power);
     return search;
 }
 
@@ -513,34 +378,26 @@ MotionSearch search_sweeps(Sweeps cut, std::span<const TraceView> logs, const Mo
 // hundredth of its height.
 constexpr double unseen_cycles = 0.02;
 
-/// The orders among the lines, the one that explains most first.
-std::vector<MotionLine*> orders_among(std::vector<MotionLine>& lines) {
-    std::vector<MotionLine*> orders;
-    for (MotionLine& line : lines) {
-        if (line.kind == LineKind::order) orders.push_back(&line);
-    }
-    std::stable_sort(orders.begin(), orders.end(),
-                     [](const MotionLine* a, const MotionLine* b) { return a->gain_angle > b->gain_angle; });
-    return orders;
-}
-
 }  // namespace
 
 MotionLines find_motion_lines(std::span<const TraceView> logs, const MotionLinesOptions& options) {
-    MotionSearch search = search_sweeps(cut_sweeps(logs, options.sweeps), logs, options);
+    Sweeps cut = cut_sweeps(logs, options.sweeps);
+    MotionSearch search = search_sweeps(cut, logs, options);
     MotionLines& found = search.found;
     if (found.absolute_angle) return std::move(found);
-    const std::vector<MotionLine*> lines = orders_among(found.lines);
     std::vector<double> orders;
-    for (const MotionLine* line : lines) orders.push_back(line->order_output);
-    const auto fit = fit_velocity_error(logs, search.sweeps, search.angle, orders);
+    for (const MotionLine* line : orders_among(found.lines)) orders.push_back(line->order_output);
+    std::erase_if(cut.pieces, [](const Sweep& sweep) { return sweep.rest(); });
+    const auto fit = fit_velocity_error(logs, cut.pieces, search.noise, orders);
     if (!fit) return std::move(found);
     MotionLines again;
     if (fit->most_cycles > unseen_cycles)
         again = search_sweeps(cut_sweeps(logs, options.sweeps, fit->error), logs, options).found;
     if (orders_among(again.lines).empty()) {
-        for (std::size_t i = 0; i < fit->order_shares.size(); ++i)
-            lines[i]->order_output *= 1.0 + fit->order_shares[i];
+        std::size_t next = 0;
+        for (MotionLine& line : found.lines)
+            if (line.kind == LineKind::order && next < fit->order_shares.size())
+                line.order_output *= 1.0 + fit->order_shares[next++];
         again = std::move(found);
     }
     again.velocity_error = fit->error;

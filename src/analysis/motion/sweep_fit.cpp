@@ -4,12 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <complex>
 #include <numbers>
 
 #include "core/functions/many_numbers.hpp"
 #include "core/matrices/factorisations.hpp"
-#include "core/process/two_cores.hpp"
 #include "core/vectors/dot.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
@@ -17,17 +15,13 @@ namespace ripplenotch {
 
 namespace {
 
-// Under a Hann window lines so many cycles apart have a thousandth of each other in them.
-constexpr double clear_cycles = 10.0;
-
 /// The smooth part of a piece (constant, slope, and cosines of m pi u by the recurrence of Chebyshev's
-/// polynomials) and cosine and sine of lines, at some of its samples; a row of `length` numbers each.
+/// polynomials) at some of its samples; a row of `length` numbers each.
 class Rows {
   public:
     static constexpr std::size_t length = 256;  // chosen, not derived
 
-    Rows(const Sweep& sweep, std::span<const KnownLine> lines)
-        : sweep_(sweep), lines_(lines), values_(count() * length) {
+    explicit Rows(const Sweep& sweep) : sweep_(sweep), values_(count() * length) {
         const std::size_t n = sweep.turns.size();
         place_.resize((n + length - 1) / length * length);
         for (std::size_t k = 0; k < n; ++k) place_[k] = sweep.progress(k);
@@ -36,7 +30,7 @@ class Rows {
         portable::cos(cosine_, cosine_);
     }
 
-    [[nodiscard]] std::size_t count() const { return sweep_.trend_terms + 2 * lines_.size(); }
+    [[nodiscard]] std::size_t count() const { return sweep_.trend_terms; }
     [[nodiscard]] double* row(std::size_t term) { return values_.data() + term * length; }
 
     /// action(first sample, count) for all samples of the sweep, the rows filled with them.
@@ -45,7 +39,6 @@ class Rows {
         for (std::size_t first = 0; first < sweep_.turns.size(); first += length) {
             const std::size_t here = std::min(length, sweep_.turns.size() - first);
             fill_smooth(first);
-            for (std::size_t i = 0; i < lines_.size(); ++i) fill_line(i, first, here);
             action(first, here);
         }
     }
@@ -72,17 +65,7 @@ class Rows {
         }
     }
 
-    void fill_line(std::size_t line, std::size_t first, std::size_t here) {
-        std::array<double, length> angle{};
-        const auto at = places(sweep_, lines_[line].axis).subspan(first, here);
-        for (std::size_t i = 0; i < here; ++i) angle[i] = full_turn * lines_[line].place * at[i];
-        double* const cosine = row(sweep_.trend_terms + 2 * line);
-        portable::phasors(std::span(angle).first(here), std::span(cosine, length),
-                          std::span(cosine + length, length));
-    }
-
     const Sweep& sweep_;
-    std::span<const KnownLine> lines_;
     std::vector<double> values_;
     std::vector<double> place_, cosine_;  ///< from 0 to 1 along the piece, and cosine of pi times that
 };
@@ -137,72 +120,12 @@ class SmoothProducts {
     std::vector<double> by_slope_;    ///< every term by the slope
 };
 
-/// Adds a line of a known amplitude, cosine and sine part, to the torque.
-void add_line(Sweep& sweep, const KnownLine& line, std::complex<double> amplitude_nm) {
-    const auto at = places(sweep, line.axis);
-    std::array<double, Rows::length> angle{}, cosine{}, sine{};
-    for (std::size_t first = 0; first < at.size(); first += angle.size()) {
-        const std::size_t here = std::min(angle.size(), at.size() - first);
-        for (std::size_t i = 0; i < here; ++i) angle[i] = full_turn * line.place * at[first + i];
-        portable::phasors(std::span(angle).first(here), cosine, sine);
-        for (std::size_t i = 0; i < here; ++i) {
-            const double torque = amplitude_nm.real() * cosine[i] + amplitude_nm.imag() * sine[i];
-            sweep.torque_nm[first + i] += torque;
-            sweep.value[first + i] += sweep.weight[first + i] * torque;
-        }
-    }
-}
-
-/// Least-squares amplitude of a line in the sweep's torque as it is; 0 where the sweep is too short for it.
-std::complex<double> amplitude_of(const Sweep& sweep, const KnownLine& line) {
-    const auto at = places(sweep, line.axis);
-    std::array<double, Rows::length> angle{}, cosine{}, sine{};
-    double cc = 0.0, cs = 0.0, ss = 0.0, xc = 0.0, xs = 0.0;
-    for (std::size_t first = 0; first < at.size(); first += angle.size()) {
-        const std::size_t here = std::min(angle.size(), at.size() - first);
-        for (std::size_t i = 0; i < here; ++i) angle[i] = full_turn * line.place * at[first + i];
-        portable::phasors(std::span(angle).first(here), cosine, sine);
-        for (std::size_t i = 0; i < here; ++i) {
-            const double weight = sweep.weight[first + i], value = sweep.value[first + i];
-            cc += weight * cosine[i] * cosine[i];
-            cs += weight * cosine[i] * sine[i];
-            ss += weight * sine[i] * sine[i];
-            xc += value * cosine[i];
-            xs += value * sine[i];
-        }
-    }
-    const double determinant = cc * ss - cs * cs;
-    if (!(determinant > 1e-6 * cc * ss)) return {};
-    return {(xc * ss - xs * cs) / determinant, (xs * cc - xc * cs) / determinant};
-}
-
-/// Cycles between two lines in a sweep; between an order and a tone, the least that the speeds allow.
-double cycles_apart(const Sweep& sweep, const KnownLine& one, const KnownLine& other) {
-    if (one.axis == other.axis) return std::abs(one.place - other.place) * length_of(sweep, one.axis);
-    const KnownLine& order = one.axis == Axis::angle ? one : other;
-    const double hz = one.axis == Axis::angle ? other.place : one.place;
-    const double slow = order.place * sweep.slow_deg_s / 360.0,
-                 quick = order.place * sweep.quick_deg_s / 360.0;
-    return std::max({0.0, slow - hz, hz - quick}) * sweep.duration_s;
-}
-
-/// True where each line is clear of the smooth part and of the other lines.
-bool clear(const Sweep& sweep, std::span<const KnownLine> lines) {
-    const double smooth_cycles = 0.5 * static_cast<double>(sweep.trend_terms);
-    for (std::size_t i = 0; i < lines.size(); ++i) {
-        if (lines[i].place * length_of(sweep, lines[i].axis) < smooth_cycles + clear_cycles) return false;
-        for (std::size_t j = 0; j < i; ++j)
-            if (cycles_apart(sweep, lines[i], lines[j]) < clear_cycles) return false;
-    }
-    return true;
-}
-
 }  // namespace
 
-void fit_out(Sweep& sweep, std::span<const KnownLine> lines) {
+void take_off_smooth_part(Sweep& sweep) {
     sweep.torque_nm.assign(sweep.measured_nm.begin(), sweep.measured_nm.end());
     sweep.value.resize(sweep.torque_nm.size());
-    Rows rows(sweep, lines);
+    Rows rows(sweep);
     const auto n = static_cast<Eigen::Index>(rows.count());
     Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(n, n);
     Eigen::VectorXd right = Eigen::VectorXd::Zero(n);
@@ -216,12 +139,6 @@ void fit_out(Sweep& sweep, std::span<const KnownLine> lines) {
         smooth.add(weight, rows);
         for (Eigen::Index a = 0; a < n; ++a)
             right[a] += dot(weighed.data(), rows.row(static_cast<std::size_t>(a)), count);
-        for (auto a = static_cast<Eigen::Index>(sweep.trend_terms); a < n; ++a) {
-            const double* const row = rows.row(static_cast<std::size_t>(a));
-            for (std::size_t i = 0; i < Rows::length; ++i) weighed[i] = weight[i] * row[i];
-            for (Eigen::Index b = 0; b <= a; ++b)
-                normal(a, b) += dot(weighed.data(), rows.row(static_cast<std::size_t>(b)), count);
-        }
     });
     smooth.put_into(normal);
     normal.diagonal().array() *= 1.0 + 1e-10;  // line and first cosine are nearly parallel
@@ -233,44 +150,6 @@ void fit_out(Sweep& sweep, std::span<const KnownLine> lines) {
     });
     for (std::size_t k = 0; k < sweep.value.size(); ++k)
         sweep.value[k] = sweep.torque_nm[k] * sweep.weight[k];
-    sweep.removed_nm.clear();
-    for (auto m = static_cast<Eigen::Index>(sweep.trend_terms); m < n; m += 2)
-        sweep.removed_nm.emplace_back(found[m], found[m + 1]);
-}
-
-Sweep without_line(Sweep sweep, const KnownLine& line) {
-    add_line(sweep, line, -amplitude_of(sweep, line));
-    return sweep;
-}
-
-void remove_last(std::vector<Sweep>& sweeps, std::span<const KnownLine> lines) {
-    on_two_cores(sweeps.size(), [&](std::size_t i) {
-        Sweep& sweep = sweeps[i];
-        if (!clear(sweep, lines)) {
-            fit_out(sweep, lines);
-            return;
-        }
-        sweep.removed_nm.push_back(amplitude_of(sweep, lines.back()));
-        add_line(sweep, lines.back(), -sweep.removed_nm.back());
-    });
-}
-
-std::vector<Sweep> with_line(std::vector<Sweep> sweeps, std::span<const KnownLine> lines,
-                             std::size_t restored) {
-    std::vector<KnownLine> others(lines.begin(), lines.end());
-    others.erase(others.begin() + static_cast<std::ptrdiff_t>(restored));
-    on_two_cores(sweeps.size(), [&](std::size_t i) {
-        if (clear(sweeps[i], lines))
-            add_line(sweeps[i], lines[restored], sweeps[i].removed_nm[restored]);
-        else
-            fit_out(sweeps[i], others);
-    });
-    return sweeps;
-}
-
-bool apart(std::span<const Sweep> sweeps, const KnownLine& one, const KnownLine& other) {
-    return std::all_of(sweeps.begin(), sweeps.end(),
-                       [&](const Sweep& sweep) { return cycles_apart(sweep, one, other) >= clear_cycles; });
 }
 
 }  // namespace ripplenotch

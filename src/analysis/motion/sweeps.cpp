@@ -225,7 +225,7 @@ Sweep make_sweep(const TraceView& log, const Planned& plan, std::span<const doub
         sweep.slow_deg_s = shares.quantile(0.25 * sweep.weight_sum);
         sweep.quick_deg_s = shares.quantile(0.75 * sweep.weight_sum);
     }
-    fit_out(sweep, {});
+    take_off_smooth_part(sweep);
     return sweep;
 }
 
@@ -240,8 +240,13 @@ void put_right(const TraceView& log, const VelocityError& error, std::vector<dou
 }
 
 /// The standstill between the runs of a log, in pieces of at most rule.longest_s.
-std::vector<SampleRun> rests_of(const TraceView& log, std::span<const double> speed, double standstill_deg_s,
-                                const SweepRule& rule) {
+std::vector<SampleRun> rests_of(const TraceView& log, const OutputAngle& angle, std::span<const double> speed,
+                                double standstill_deg_s, const SweepRule& rule) {
+    // A joint that creeps further is not at rest: a tenth of the cycle of order 1000.
+    constexpr double most_turns = 1e-4;
+    const auto crept = [&](std::size_t from, std::size_t to) {
+        return angle.absolute && std::abs(angle.turns[to] - angle.turns[from]) > most_turns;
+    };
     // Chosen, not derived: five cycles of the slowest tone that is reported.
     constexpr double shortest_s = 0.5;
     const auto longest = static_cast<std::size_t>(rule.longest_s * log.sample_rate.value());
@@ -250,7 +255,7 @@ std::vector<SampleRun> rests_of(const TraceView& log, std::span<const double> sp
         std::size_t first = run.first;
         for (std::size_t k = run.first; k <= run.end; ++k) {
             const bool still = k < run.end && std::abs(speed[k]) <= standstill_deg_s;
-            if (still && k - first < longest) continue;
+            if (still && k - first < longest && !crept(first, k)) continue;
             if (k > first && log.time_s[k - 1] - log.time_s[first] >= shortest_s) rests.push_back({first, k});
             first = still ? k : k + 1;
         }
@@ -315,7 +320,7 @@ Sweeps cut_sweeps(std::span<const TraceView> logs, const SweepRule& rule, const 
                 if (piece.end - piece.first >= rule.fewest_samples) planned.push_back({i, piece, false});
             }
         }
-        for (const SampleRun& rest : rests_of(log, speeds.back(), still_deg_s, rule)) {
+        for (const SampleRun& rest : rests_of(log, angles.back(), speeds.back(), still_deg_s, rule)) {
             if (rest.end - rest.first >= rule.fewest_samples) planned.push_back({i, rest, true});
         }
         sweeps.absolute_angle = sweeps.absolute_angle && angles.back().absolute;

@@ -353,7 +353,8 @@ DegPerSec velocity_noise(const TraceView& log) {
 }
 
 std::optional<VelocityFit> fit_velocity_error(std::span<const TraceView> logs, std::span<const Sweep> sweeps,
-                                              const Stack& angle, std::span<const double> orders) {
+                                              std::span<const std::vector<double>> noise,
+                                              std::span<const double> orders) {
     orders = orders.first(std::min(orders.size(), most_orders));
     double fastest = 0.0;
     std::vector<double> noise_of_log;
@@ -363,13 +364,11 @@ std::optional<VelocityFit> fit_velocity_error(std::span<const TraceView> logs, s
         const Sweep& sweep = sweeps[i];
         fastest = std::max(fastest, sweep.fast_deg_s);
         for (std::size_t n = 0; n < orders.size(); ++n) {
-            const auto bin = static_cast<std::size_t>(std::lround(orders[n] / angle.spacing));
-            const auto& floors = angle.floors[i];
-            if (bin >= floors.size() || !(floors[bin] > 0.0F)) continue;
+            if (!(noise[n][i] > 0.0)) continue;
             all.push_back(demodulated(logs[sweep.log], sweep, orders[n]));
             all.back().sweep = i;
             all.back().order = n;
-            all.back().noise = static_cast<double>(floors[bin]);
+            all.back().noise = noise[n][i];
             all.back().variance_per_s = noise_of_log[sweep.log] / (360.0 * 360.0);
         }
     }

@@ -7,8 +7,6 @@
 #include <span>
 #include <vector>
 
-#include "ripplenotch/analysis/line_search.hpp"
-#include "ripplenotch/analysis/stack.hpp"
 #include "ripplenotch/analysis/sweeps.hpp"
 
 namespace ripplenotch {
@@ -30,10 +28,12 @@ struct VelocityFit {
 /// speed. The errors (sandwich) include noise of torque, the velocity's noise, and the uncertainty of the
 /// other unknowns. Needs at most four lines, the clearest.
 ///
-/// `sweeps` as cut, no line removed; `angle` is the stack of the same sweeps whose floors are the noise;
-/// `orders` are cycles per output turn. Empty where the power has no clear maximum. Cost O(samples * orders).
+/// `sweeps` as cut, all in motion, no line removed; `noise` has the power of the noise by order and sweep, 0
+/// where a sweep is not used; `orders` are cycles per output turn, the clearest first. Empty where the power
+/// has no clear maximum. Cost O(samples * orders).
 [[nodiscard]] std::optional<VelocityFit> fit_velocity_error(std::span<const TraceView> logs,
-                                                            std::span<const Sweep> sweeps, const Stack& angle,
+                                                            std::span<const Sweep> sweeps,
+                                                            std::span<const std::vector<double>> noise,
                                                             std::span<const double> orders);
 
 }  // namespace ripplenotch

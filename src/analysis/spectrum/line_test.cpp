@@ -142,21 +142,18 @@ std::size_t bins_of(const PowerSpectrum& s, double cells) {
 /// frequency: noise falls no steeper than behind a resonance, so that it is no more than that here. Empty
 /// where too few cells lie around the bin.
 Floors floors_about(const PowerSpectrum& s, std::span<const double> running, std::size_t bin) {
-    const double averages = s.averages_at(bin);
+    const double averages = s.averages;
     const std::size_t below = bin - s.first, above = s.power.size() - 1 - bin;
     const std::size_t guard = bins_of(s, guard_cells), fewest = guard + bins_of(s, fewest_cells);
     Floors floors;
     const auto beyond_guard = [guard](std::size_t room) { return room > guard ? room - guard : 0; };
     if (beyond_guard(below) + beyond_guard(above) < bins_of(s, fewest_cells)) return floors;
     std::vector<double> values;
-    const auto is_noise = [&](std::size_t at) { return s.removed.empty() || s.removed[at] == 0; };
     const auto add_below = [&](std::size_t from, std::size_t to) {
-        for (std::size_t d = from; d <= std::min(to, below); ++d)
-            if (is_noise(bin - d)) values.push_back(s.power[bin - d]);
+        for (std::size_t d = from; d <= std::min(to, below); ++d) values.push_back(s.power[bin - d]);
     };
     const auto add_above = [&](std::size_t from, std::size_t to) {
-        for (std::size_t d = from; d <= std::min(to, above); ++d)
-            if (is_noise(bin + d)) values.push_back(s.power[bin + d]);
+        for (std::size_t d = from; d <= std::min(to, above); ++d) values.push_back(s.power[bin + d]);
     };
     double independent = 1.0;
     const auto floor = [&] {
@@ -169,8 +166,8 @@ Floors floors_about(const PowerSpectrum& s, std::span<const double> running, std
     {
         const std::size_t end = std::min(bins_of(s, far_cells), reach);
         for (std::size_t d = guard; d <= end; ++d) {
-            if (d <= below && is_noise(bin - d)) values.push_back(s.power[bin - d] / running[bin - d]);
-            if (d <= above && is_noise(bin + d)) values.push_back(s.power[bin + d] / running[bin + d]);
+            if (d <= below) values.push_back(s.power[bin - d] / running[bin - d]);
+            if (d <= above) values.push_back(s.power[bin + d] / running[bin + d]);
         }
         if (!values.empty())
             independent = std::clamp(averages_by_scatter(std::move(values)), 1.0, std::max(1.0, averages));
@@ -207,7 +204,6 @@ Floors floors_about(const PowerSpectrum& s, std::span<const double> running, std
     values.clear();
     for (std::size_t d = bins_of(s, inner_from_cells); d <= std::min(bins_of(s, inner_to_cells), above);
          ++d) {
-        if (!is_noise(bin + d)) continue;
         const double rise = static_cast<double>(bin + d) / static_cast<double>(bin);
         values.push_back(s.power[bin + d] * rise * rise * rise * rise);
     }
@@ -264,7 +260,7 @@ std::vector<double> noise_floor(const PowerSpectrum& spectrum) {
         // the median.
         const bool few = static_cast<double>(half) < 0.5 * reach_bins;
         const std::size_t from = middle - half, count = 2 * half + 1;
-        const double averages = spectrum.averages_at(bin);
+        const double averages = spectrum.averages;
         return std::max(few ? quartile(from, count) / quantile_over_mean(averages, -normal_quartile)
                             : median_around.at(from, count) / median_over_mean(averages),
                         1e-300);
@@ -301,7 +297,7 @@ std::vector<SignificantPeak> significant_peaks(const PowerSpectrum& spectrum, st
         if (power[k] < power[k - 1] || power[k] <= power[k + 1]) continue;
         // A cheap sieve with a wide margin: the floors below are seldom less than a quarter of the running
         // one.
-        const double averages = spectrum.averages_at(k), rough = 4.0 * power[k] / floor[k];
+        const double averages = spectrum.averages, rough = 4.0 * power[k] / floor[k];
         if (rough < 2.0 || tries * exceedance({.ratio = rough, .averages = averages, .cells = 1e6}) > 1.0)
             continue;
         const Floors floors = floors_about(spectrum, floor, k);
@@ -324,40 +320,6 @@ std::vector<SignificantPeak> significant_peaks(const PowerSpectrum& spectrum, st
     return peaks;
 }
 
-std::vector<SignificantPeak> prominent_peaks(const PowerSpectrum& spectrum, std::span<const double> floor,
-                                             double false_alarm) {
-    std::vector<SignificantPeak> peaks;
-    const auto& power = spectrum.power;
-    const double tries = tries_of(spectrum);
-    const std::size_t last = power.size() - 1, guard = bins_of(spectrum, guard_cells);
-    std::vector<double> values;
-    for (std::size_t k = std::max(spectrum.first + 1, spectrum.searched); k + 1 < power.size(); ++k) {
-        if (power[k] < power[k - 1] || power[k] <= power[k + 1]) continue;
-        const double averages = spectrum.averages_at(k);
-        const auto chance = [&](const Floor& level) {
-            return tries *
-                   exceedance({.ratio = power[k] / level.power, .averages = averages, .cells = level.cells});
-        };
-        SignificantPeak peak{k, floor[k], chance({floor[k], median_efficiency * 2.0 * far_cells, averages})};
-        // Near the ends the running floor stands on so few cells that the line itself raises it.
-        const std::size_t below = k - spectrum.first, above = last - k;
-        if (peak.false_alarm > false_alarm && std::min(below, above) < bins_of(spectrum, 0.5 * far_cells)) {
-            values.clear();
-            const std::size_t reach = bins_of(spectrum, near_cells);
-            for (std::size_t d = guard; d <= reach; ++d) {
-                if (d <= below) values.push_back(power[k - d]);
-                if (d <= above) values.push_back(power[k + d]);
-            }
-            if (!values.empty()) {
-                const Floor level = floor_from(values, averages, spectrum.bins_per_cell);
-                peak = {k, level.power, chance(level)};
-            }
-        }
-        if (peak.false_alarm <= false_alarm) peaks.push_back(peak);
-    }
-    return peaks;
-}
-
 PowerOverFloor exceeded(double chance, PowerOverFloor noise) {
     const auto is_below = [&](double ratio) {
         noise.ratio = ratio;
@@ -372,34 +334,6 @@ PowerOverFloor exceeded(double chance, PowerOverFloor noise) {
     }
     noise.ratio = high;
     return noise;
-}
-
-LineThreshold line_threshold(const PowerSpectrum& spectrum, std::span<const double> floor, std::size_t bin,
-                             double false_alarm) {
-    constexpr double none = std::numeric_limits<double>::infinity();
-    if (bin <= spectrum.first || bin < spectrum.searched || bin + 1 >= spectrum.power.size())
-        return {none, none};
-    const Floors floors = floors_about(spectrum, floor, bin);
-    if (floors.every.empty()) return {none, none};
-    const double chance = false_alarm / tries_of(spectrum);
-    const auto threshold = [&](const Floor& level) {
-        return level.power * exceeded(chance, {.averages = level.averages, .cells = level.cells}).ratio;
-    };
-    LineThreshold found;
-    for (const Floor& level : floors.every) found.noise = std::max(found.noise, threshold(level));
-    double either = floors.either.empty() ? 0.0 : none;
-    for (const Floor& level : floors.either) either = std::min(either, threshold(level));
-    found.line = std::max(found.noise, either);
-    return found;
-}
-
-double detectable_ratio(const PowerOverFloor& threshold) {
-    // 1 + r - z sqrt((1 + 2 r) / averages) = threshold.ratio, of which the larger root: with u = sqrt(1 + 2
-    // r), u^2 - 2 z u / sqrt(averages) + 1 = 2 threshold.ratio.
-    constexpr double one_sided_95 = 1.645;
-    const double half = one_sided_95 / std::sqrt(threshold.averages);
-    const double u = half + std::sqrt(half * half + std::max(0.0, 2.0 * threshold.ratio - 1.0));
-    return std::max(0.0, 0.5 * (u * u - 1.0));
 }
 
 double excess_scatter(double squares, double freedom) {

@@ -189,10 +189,8 @@ Spectrum SpectrumStream::spectrum(double false_alarm) const {
     for (double& one : power) one /= static_cast<double>(pieces_);
     // A single spectrum of red noise has maxima near its low end that few neighbouring cells do not explain.
     constexpr double unsearched_cells = 5.0;
-    const PowerSpectrum tested{
-        power,     independent_pieces(pieces_),
-        hann_cell, first,
-        {},        first + static_cast<std::size_t>(std::ceil(unsearched_cells * hann_cell))};
+    const PowerSpectrum tested{power, independent_pieces(pieces_), hann_cell, first,
+                               first + static_cast<std::size_t>(std::ceil(unsearched_cells * hann_cell))};
     const std::vector<double> floor = noise_floor(tested);
     const double gain = gain_ / static_cast<double>(pieces_);
     for (std::size_t k = 0; k < bins; ++k) {

@@ -11,6 +11,7 @@
 #include "core/functions/many_numbers.hpp"
 #include "core/process/two_cores.hpp"
 #include "ripplenotch/analysis/fourier.hpp"
+#include "ripplenotch/analysis/line_test.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
@@ -127,12 +128,6 @@ Stacking::Stacking(std::span<const Sweep> sweeps, Axis axis, const StackRule& ru
     mean_length /= weights;
     stack_.spacing = 0.5 / longest;
     stack_.resolution = hann_cell / mean_length;
-    stack_.tries_factor = longest / mean_length;
-    stack_.lowest =
-        std::max(axis == Axis::angle ? rule.lowest_order : rule.lowest_hz, rule.fewest_cycles / mean_length);
-    // Half a cycle lower: the maximum of a line there is seen a little off its place.
-    stack_.searched =
-        static_cast<std::size_t>(std::ceil((stack_.lowest - 0.5 / mean_length) / stack_.spacing));
     const double highest = axis == Axis::angle ? rule.highest_order : half_rate;
     bins_ = static_cast<std::size_t>(highest / stack_.spacing) + 1;
     stack_.floors.resize(sweeps.size());
@@ -168,7 +163,7 @@ void Stacking::add(std::size_t number, Part& part) {
     const auto sums = nonuniform_fourier(places(sweep, stack_.axis), sweep.value, stack_.spacing, reach.end);
     std::vector<double> power(reach.end);
     for (std::size_t k = 0; k < reach.end; ++k) power[k] = std::norm(sums[k]);
-    std::vector<double> floor = noise_floor({power, 1.0, cell, reach.first, {}});
+    std::vector<double> floor = noise_floor({power, 1.0, cell, reach.first});
     const auto clear = static_cast<std::size_t>(clear_of_motion(sweep) / stack_.spacing) + 1;
     if (stack_.axis == Axis::angle && reach.end > clear) {
         // The residual of the motion after the trend folds to around the sample rate, smeared over the cells
@@ -185,7 +180,7 @@ void Stacking::add(std::size_t number, Part& part) {
             reach.end = std::min(reach.end, clear);
             if (too_few()) return;
             power.resize(reach.end);
-            floor = noise_floor({power, 1.0, cell, reach.first, {}});
+            floor = noise_floor({power, 1.0, cell, reach.first});
         }
     }
     const double weight = stack_.sweep_weights[number];
@@ -242,21 +237,6 @@ std::span<const double> places(const Sweep& sweep, Axis axis) {
 
 double length_of(const Sweep& sweep, Axis axis) {
     return axis == Axis::angle ? sweep.length_turns : sweep.duration_s;
-}
-
-PowerSpectrum Stack::tested() const {
-    return {ratio, 1.0, resolution / spacing, first, averages, searched, removed};
-}
-
-void Stack::mark_removed(double place) {
-    // Half width of a Hann line, beyond which hardly any noise is removed.
-    constexpr double half_width_cycles = 1.5;
-    const double reach = half_width_cycles / hann_cell * resolution;
-    removed.resize(ratio.size(), 0);
-    const auto last = static_cast<std::size_t>((place + reach) / spacing);
-    for (auto k = static_cast<std::size_t>(std::ceil(std::max(0.0, place - reach) / spacing));
-         k <= last && k < removed.size(); ++k)
-        removed[k] = 1;
 }
 
 Stack stack_sweeps(std::span<const Sweep> sweeps, Axis axis, const StackRule& rule) {

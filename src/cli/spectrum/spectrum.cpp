@@ -261,9 +261,8 @@ Result order_result(const SpectrumRequest& request, const TraceView& trace, cons
     if (request.segment) raise<UsageError>("--segment belongs to --domain frequency");
     MotionLinesOptions options;
     options.false_alarm = request.false_alarm;
-    OrderSpectrum result{
-        stack_sweeps(cut_sweeps({&trace, 1}, options.sweeps).pieces, Axis::angle, options.stack),
-        find_motion_lines({&trace, 1}, options), doubt};
+    OrderSpectrum result{stack_sweeps(cut_sweeps({&trace, 1}, options.sweeps).pieces, Axis::angle, {}),
+                         find_motion_lines({&trace, 1}, options), doubt};
     if (result.lines.sweeps == 0) {
         raise<DataError>(
             "{}: the joint nowhere moves {} output turns in one direction, so there is no order spectrum",

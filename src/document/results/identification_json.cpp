@@ -78,7 +78,6 @@ void describe(Archive& archive, Is<Line> auto& line) {
     archive("order", line.order);
     archive("order_output", line.order_output);
     archive("order_output_stderr", line.order_output_stderr);
-    archive("could_be", line.could_be, if_there);
     archive("hz", line.hz);
     archive("amplitude_nm", line.amplitude_nm);
     const bool phase_known = archive.known("phase_deg", line.phase_known, line.phase_deg);

@@ -110,7 +110,6 @@ Identification of_the_motor(Identification found, double ratio) {
         line.order = *line.order_output / ratio;
         line.order_output.reset();
         line.order_output_stderr.reset();
-        line.could_be.clear();
         if (line.kind == LineKind::order)
             lines += fmt::format("{}{:.4g} ({:.2g} Nm)", lines.empty() ? "" : ", ", *line.order,
                                  line.amplitude_nm);
