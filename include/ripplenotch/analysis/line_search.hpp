@@ -31,6 +31,7 @@ struct MotionLinesOptions {
     double lowest_order = 12.0;  ///< lower ones are those of load and motion, where the travel is short
     /// Order 16 of a ratio of 160.
     double highest_order = 2560.0;
+    double highest_folded_order = 2560.0;  ///< of those above half the sample rate
     double lowest_hz = 1.0;
     std::size_t most_lines = 24;  ///< chosen, not derived: each costs a further pass over all sweeps
 };

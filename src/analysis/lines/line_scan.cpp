@@ -19,6 +19,9 @@ constexpr double cycles_beside_trend = 3.0;  // in a sweep that counts: its tren
 // In a sweep in motion: slower tones are those of the motion.
 constexpr double cycles_of_motion = 12.0;
 constexpr double top_of_rate = 0.4;  // of the sample rate: an anti-alias filter leaves little above
+// One frequency of a sweep, spread by its speed: an order is distinguished from its image from the first on,
+// and images of slow noise are smooth to the noise on either side from the second on.
+constexpr double distinct_cells = 2.5, smooth_cells = 40.0;
 constexpr double corner_s = 0.01;    // chosen, not derived: corners of the motion are no sharper in a torque
 constexpr double step_cells = 0.3;   // of the sums, in 1 / longest sweep
 constexpr double wide_cells = 20.0, near_cells = 5.0;
@@ -120,6 +123,14 @@ LineScan::LineScan(std::span<const Sweep> sweeps, std::span<const TraceView> log
         const double rate =
             sweep.rate_hz * (axis == Axis::angle ? 360.0 / std::max(quick_of(sweep.speed_deg_s), 1e-9) : 1.0);
         piece.top = top_of_rate * rate;
+        if (axis == Axis::angle && sweep.slow_deg_s > 0.0) {
+            piece.slow_rate = sweep.rate_hz * 360.0 / sweep.slow_deg_s;
+            piece.quick_rate = sweep.rate_hz * 360.0 / sweep.quick_deg_s;
+            piece.cells_per_place =
+                (sweep.quick_deg_s - sweep.slow_deg_s) / std::abs(sweep.mean_deg_s) * piece.length;
+            if (piece.cells_per_place * range.highest_folded > distinct_cells)
+                piece.highest_folded = range.highest_folded;
+        }
         if (axis == Axis::time) piece.origin = logs[sweep.log].time_s[sweep.first] - sweep.time_s.front();
         if (!sweep.rest()) {
             piece.speed = scaled(sweep.speed_deg_s);
@@ -137,7 +148,7 @@ LineScan::LineScan(std::span<const Sweep> sweeps, std::span<const TraceView> log
             piece.corner = scaled(bend);
         }
         longest_ = std::max(longest_, piece.length);
-        top = std::max(top, piece.top);
+        top = std::max({top, piece.top, piece.highest_folded});
         pieces_.push_back(std::move(piece));
         sweeps_.push_back(std::move(copy));
     }
@@ -156,10 +167,18 @@ LineScan::LineScan(std::span<const Sweep> sweeps, std::span<const TraceView> log
     count_ = static_cast<std::size_t>(highest_ / step_) + 1 - first_bin_;
     const double smooth = std::max(range.smooth, cycles_of_lowest / longest_);
     on_two_cores(pieces_.size(), [&](std::size_t i) {
+        pieces_[i].slow_noise = lowest_;
         pieces_[i].splines = splines_of(pieces_[i].length, std::max(smooth, pieces_[i].bottom));
         pieces_[i].in_halves = 0.5 * pieces_[i].length * lowest_ > 2.0;
         take_off(i, {});
     });
+}
+
+bool LineScan::Piece::shows_folded(double place) const {
+    const double cells = cells_per_place * place;
+    if (cells < distinct_cells) return false;
+    return cells > smooth_cells ||
+           std::floor((place - slow_noise) / slow_rate) == std::floor((place + slow_noise) / quick_rate);
 }
 
 double LineScan::threshold(double false_alarm) const {
@@ -519,8 +538,8 @@ LineScan::Summed LineScan::summed(std::span<Spectrum> spectra, bool halves) cons
         if (halves && !piece.in_halves) continue;
         for (int part = 0; part < (halves ? 2 : 1); ++part) {
             const Spectrum& one = spectra[next++];
-            for (std::size_t k = 0; k < count_ && place(k) < piece.top; ++k) {
-                if (place(k) < piece.bottom) continue;
+            for (std::size_t k = 0; k < count_; ++k) {
+                if (!piece.shows(place(k))) continue;
                 const double score = score_at(one.power[k], one.noise, sum.humps, k);
                 sum.scores[k] += score;
                 sum.best[k] = std::max(sum.best[k], score);
@@ -558,8 +577,8 @@ LineScan::OnePhase LineScan::of_one_phase() const {
             any = true;
             const Spectrum& one = whole_[i];
             const double half = 0.5 * one.weight;
-            for (std::size_t k = 0; k < count_ && place(k) < pieces_[i].top; ++k) {
-                if (place(k) < pieces_[i].bottom) continue;
+            for (std::size_t k = 0; k < count_; ++k) {
+                if (!pieces_[i].shows(place(k))) continue;
                 sum[k] += half / one.noise.power[k] * one.sum[k] * turned_to_origin(i, k);
                 information[k] += half * half / one.noise.power[k];
             }

@@ -26,6 +26,9 @@ struct ScanRange {
     double lowest = 0.0, highest = 0.0;
     /// The sweeps' smooth part is taken off up to a fifth of this place.
     double smooth = 0.0;
+    /// Orders above half the sample rate are searched up to here, in sweeps whose speed distinguishes them
+    /// from their images below.
+    double highest_folded = 0.0;
 };
 
 /// The sweeps of a log on one axis. Each sweep's trend, speed and acceleration are taken off first.
@@ -37,7 +40,6 @@ class LineScan {
     [[nodiscard]] double place(std::size_t k) const { return first_ + step_ * static_cast<double>(k); }
     [[nodiscard]] std::size_t count() const { return count_; }
     [[nodiscard]] double lowest() const { return lowest_; }
-    /// Below half the sample rate: above it the slow noise of a steady speed has images, which are no lines.
     [[nodiscard]] double highest() const { return highest_; }
     [[nodiscard]] double longest() const { return longest_; }  ///< sweep, in turns or seconds
     /// The sweeps with what is left of their torque; on the axis of time all have no length in angle.
@@ -84,8 +86,15 @@ class LineScan {
         std::vector<double> speed, bend, corner;  ///< scaled to 1; empty at rest
         double start = 0.0, length = 0.0;
         double bottom = 0.0, top = 0.0;  ///< places at which the sweep counts
+        double highest_folded = 0.0;     ///< and those above half the sample rate
+        double slow_rate = 0.0, quick_rate = 0.0;  ///< place of the sample rate at its lower and upper speed
+        double cells_per_place = 0.0;  ///< over which its speed spreads one frequency
+        double slow_noise = 0.0;       ///< up to here: it has images about multiples of the sample rate
         double origin = 0.0;             ///< of the places, where all sweeps of a log have one
-        [[nodiscard]] bool shows(double place) const { return place >= bottom && place < top; }
+        [[nodiscard]] bool shows(double place) const {
+            return place >= bottom && (place < top || (place < highest_folded && shows_folded(place)));
+        }
+        [[nodiscard]] bool shows_folded(double place) const;
         std::size_t splines = 0;
         bool forward = true, in_halves = false;
     };

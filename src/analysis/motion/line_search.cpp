@@ -44,7 +44,7 @@ ScanRange orders_of(std::span<const Sweep> sweeps, const MotionLinesOptions& opt
     for (const Sweep& sweep : sweeps) longest = std::max(longest, sweep.length_turns);
     const double lowest =
         longest >= long_turns ? std::min(lowest_of_long, options.lowest_order) : options.lowest_order;
-    return {lowest, options.highest_order, options.lowest_order};
+    return {lowest, options.highest_order, options.lowest_order, options.highest_folded_order};
 }
 
 class LineSearch {
