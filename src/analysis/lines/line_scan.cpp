@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "analysis/spectrum/running_median.hpp"
 #include "core/functions/many_numbers.hpp"
@@ -85,6 +86,17 @@ double quick_of(std::span<const double> speed) {
     const auto at = sizes.begin() + std::ssize(sizes) * 9 / 10;
     std::nth_element(sizes.begin(), at, sizes.end());
     return *at;
+}
+
+/// Adds cosine and sine of a line.
+void add_wave(const Sweep& sweep, const KnownLine& line, std::vector<std::vector<double>>& columns) {
+    const auto where = places(sweep, line.axis);
+    std::vector<double> angle(where.size());
+    for (std::size_t k = 0; k < where.size(); ++k) angle[k] = full_turn * line.place * where[k];
+    std::vector<double> cosine(angle.size()), sine(angle.size());
+    portable::phasors(angle, cosine, sine);
+    columns.push_back(std::move(cosine));
+    columns.push_back(std::move(sine));
 }
 
 std::vector<double> scaled(std::span<const double> values) {
@@ -243,11 +255,10 @@ LineNoise LineScan::noise_at(double place) const {
     return noise;
 }
 
-// Least squares of splines, speed and acceleration and of the columns of the line together, each row by what
-// it stands for: what is left never grows.
-void LineScan::take_off(std::size_t number, std::span<const std::vector<double>> line) {
+Eigen::VectorXd LineScan::fit_out(std::size_t number, std::span<const std::vector<double>> line,
+                                  std::span<double> torque_nm) const {
     const Piece& piece = pieces_[number];
-    Sweep& sweep = sweeps_[number];
+    const Sweep& sweep = sweeps_[number];
     const auto place = places(sweep, axis_);
     const std::size_t n = place.size(), splines = piece.splines;
     std::vector<const double*> columns;
@@ -269,7 +280,7 @@ void LineScan::take_off(std::size_t number, std::span<const std::vector<double>>
     std::vector<double> x(columns.size());
     const auto first_column = static_cast<Eigen::Index>(splines);
     for (std::size_t k = 0; k < n; ++k) {
-        const double w = sweep.share_turns[k], y = w * sweep.torque_nm[k];
+        const double w = sweep.share_turns[k], y = w * torque_nm[k];
         const Eigen::Index at = basis(k, b);
         for (std::size_t c = 0; c < columns.size(); ++c) x[c] = columns[c][k];
         for (Eigen::Index i = 0; i < 4; ++i) {
@@ -294,9 +305,54 @@ void LineScan::take_off(std::size_t number, std::span<const std::vector<double>>
         for (Eigen::Index i = 0; i < 4; ++i) sum += b[static_cast<std::size_t>(i)] * found[at + i];
         for (std::size_t c = 0; c < columns.size(); ++c)
             sum += columns[c][k] * found[first_column + static_cast<Eigen::Index>(c)];
-        sweep.torque_nm[k] -= sum;
-        sweep.value[k] = sweep.weight[k] * sweep.torque_nm[k];
+        torque_nm[k] -= sum;
     }
+    return found.tail(std::ssize(line));
+}
+
+void LineScan::take_off(std::size_t number, std::span<const std::vector<double>> line) {
+    Sweep& sweep = sweeps_[number];
+    fit_out(number, line, sweep.torque_nm);
+    for (std::size_t k = 0; k < sweep.value.size(); ++k)
+        sweep.value[k] = sweep.weight[k] * sweep.torque_nm[k];
+}
+
+LineScan::Together LineScan::together(std::span<const KnownLine> lines) const {
+    Together fit{{lines.size(), std::vector<std::complex<double>>(pieces_.size())}, sweeps_};
+    on_two_cores(pieces_.size(), [&](std::size_t i) {
+        std::vector<std::vector<double>> columns;
+        std::vector<std::size_t> shown;
+        for (std::size_t l = 0; l < lines.size(); ++l) {
+            const bool turning = lines[l].axis == Axis::angle;
+            if ((turning && pieces_[i].speed.empty()) ||
+                (lines[l].axis == axis_ && !pieces_[i].shows(lines[l].place)))
+                continue;
+            shown.push_back(l);
+            add_wave(sweeps_[i], lines[l], columns);
+        }
+        Sweep& sweep = fit.rest[i];
+        sweep.torque_nm.assign(sweep.measured_nm.begin(), sweep.measured_nm.end());
+        const Eigen::VectorXd parts = fit_out(i, columns, sweep.torque_nm);
+        for (std::size_t s = 0; s < shown.size(); ++s) {
+            const auto at = static_cast<Eigen::Index>(2 * s);
+            fit.nm[shown[s]][i] = {parts[at], -parts[at + 1]};
+        }
+    });
+    return fit;
+}
+
+double LineScan::refined_alone(const Together& fit, std::span<const KnownLine> lines, std::size_t line) const {
+    std::vector<Sweep> sweeps = fit.rest;
+    for (std::size_t i = 0; i < sweeps.size(); ++i) {
+        Sweep& sweep = sweeps[i];
+        const std::complex<double> nm = fit.nm[line][i];
+        std::vector<std::vector<double>> wave;
+        add_wave(sweep, lines[line], wave);
+        for (std::size_t k = 0; k < sweep.value.size(); ++k)
+            sweep.value[k] =
+                sweep.weight[k] * (sweep.torque_nm[k] + nm.real() * wave[0][k] - nm.imag() * wave[1][k]);
+    }
+    return refined(sweeps, noise_at(lines[line].place), lines[line].place, 1.0 / longest_);
 }
 
 void LineScan::remove(const KnownLine& line) {
@@ -306,11 +362,9 @@ void LineScan::remove(const KnownLine& line) {
         if (line.axis == Axis::angle && piece.speed.empty()) return;
         const auto where = places(sweep, line.axis);
         const std::size_t n = where.size();
-        std::vector<double> angle(n);
-        for (std::size_t k = 0; k < n; ++k) angle[k] = full_turn * line.place * where[k];
-        std::vector<std::vector<double>> columns(2, std::vector<double>(n));
-        portable::phasors(angle, columns[0], columns[1]);
-        if (std::abs(angle.back() - angle.front()) > full_turn * cycles_with_course) {
+        std::vector<std::vector<double>> columns;
+        add_wave(sweep, line, columns);
+        if (std::abs(where.back() - where.front()) * line.place > cycles_with_course) {
             const auto along = places(sweep, axis_);
             for (const std::size_t c : {0U, 1U, 2U, 3U}) {
                 columns.push_back(columns[c]);
@@ -751,7 +805,10 @@ double LineScan::detectable_nm(double from, double to, double false_alarm,
         for (std::size_t i = 0; i < pieces_.size(); ++i)
             if (pieces_[i].shows(place(k)))
                 information += 0.25 * whole_[i].weight * whole_[i].weight / whole_[i].noise.power[k];
-        if (!(information > 0.0)) continue;
+        if (!(information > 0.0)) {  // no sweep shows it
+            amplitudes.push_back(std::numeric_limits<double>::infinity());
+            continue;
+        }
         const double error = 1.0 / std::sqrt(2.0 * information);
         const auto phase = portable::phasor(full_turn * golden_turn * static_cast<double>(t));
         double low = least_errors, high = most_errors;

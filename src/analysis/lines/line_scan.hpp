@@ -9,6 +9,8 @@
 #include <span>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "analysis/motion/line_evidence.hpp"
 #include "ripplenotch/analysis/fourier.hpp"
 #include "ripplenotch/analysis/sweeps.hpp"
@@ -80,6 +82,16 @@ class LineScan {
     [[nodiscard]] double once_nm(double from, double to, double false_alarm) const;
     /// Takes a line of either axis off every sweep, fitted along with the trend.
     void remove(const KnownLine& line);
+    /// All lines and the trend fitted to the measured torque of each sweep together, so that neighbours do not
+    /// leak into each other.
+    struct Together {
+        std::vector<std::vector<std::complex<double>>> nm;  ///< by line and sweep: zero to peak; 0: not shown
+        std::vector<Sweep> rest;                            ///< what is left
+    };
+    [[nodiscard]] Together together(std::span<const KnownLine> lines) const;
+    /// Place of a line in what is left and itself.
+    [[nodiscard]] double refined_alone(const Together& fit, std::span<const KnownLine> lines,
+                                       std::size_t line) const;
 
   private:
     struct Piece {
@@ -126,6 +138,10 @@ class LineScan {
         std::array<std::vector<double>, 2> excess;
     };
 
+    /// Least squares of splines, speed and acceleration and of the columns together, each row by what it
+    /// stands for. Leaves the residual in `torque_nm` and returns the coefficients of the columns.
+    Eigen::VectorXd fit_out(std::size_t piece, std::span<const std::vector<double>> columns,
+                            std::span<double> torque_nm) const;
     void take_off(std::size_t piece, std::span<const std::vector<double>> line);
     [[nodiscard]] Spectrum spectrum_of(std::size_t piece, std::size_t begin, std::size_t end) const;
     [[nodiscard]] Noise noise_of(std::span<const double> power, double length, double bottom) const;

@@ -104,10 +104,8 @@ double jackknife_error(std::span<const Opinion> opinions) {
     return std::sqrt((n - 1.0) / n * std::max(0.0, squares - sum * sum / n));
 }
 
-/// Standard error of the position of the largest summed power, in turns or hertz. First from the noise near
-/// the line (one Newton step, delta method). Where the estimates of the sweeps, or thirds of them when they
-/// are few, scatter more than that noise explains, as with a phase that drifts with speed or load, the error
-/// is widened to their scatter.
+}  // namespace
+
 double place_error(std::span<const Sweep> sweeps, const LineNoise& noise, double place) {
     std::vector<Opinion> whole, parts;
     double variance = 0.0, curve = 0.0;
@@ -124,8 +122,6 @@ double place_error(std::span<const Sweep> sweeps, const LineNoise& noise, double
         std::max(error * std::max(disagreement(whole), disagreement(parts)), jackknife_error(whole)),
         noise.resolution);
 }
-
-}  // namespace
 
 double refined(std::span<const Sweep> sweeps, const LineNoise& noise, double start, double reach) {
     double place = start;
@@ -161,40 +157,42 @@ double explained(std::span<const Sweep> sweeps, const LineNoise& noise, double p
     return sum;
 }
 
-void measure(std::span<const Sweep> sweeps, const LineNoise& noise, double place, MotionLine& line) {
-    double weights = 0.0, power = 0.0, noise_power = 0.0, lengths = 0.0;
-    std::complex<double> together;
+void measure(std::span<const Sweep> sweeps, const LineNoise& noise, double place,
+             std::span<const std::complex<double>> amplitudes, MotionLine& line) {
+    struct Sum {
+        double weights = 0.0, power = 0.0, noise_power = 0.0, lengths = 0.0;
+        std::complex<double> together;
+        [[nodiscard]] double amplitude_nm() const {
+            return weights > 0.0 ? std::sqrt(std::max(power - noise_power, 0.0) / weights) : 0.0;
+        }
+    };
+    Sum moving, resting;
+    line.by_speed.clear();
     for (std::size_t i = 0; i < sweeps.size(); ++i) {
         if (!(noise.power[i] > 0.0)) continue;
         const Sweep& sweep = sweeps[i];
-        const std::complex<double> amplitude =
-            2.0 * fourier_point(places(sweep, noise.axis), sweep.value, place).value / sweep.weight_sum;
+        const double length = std::abs(amplitudes[i]);
         const double floor = 4.0 * noise.power[i] / (sweep.weight_sum * sweep.weight_sum);
         const double weight = sweep.effective_samples();
-        weights += weight;
-        power += weight * std::norm(amplitude);
-        noise_power += weight * floor;
-        together += weight * amplitude;
-        lengths += weight * std::abs(amplitude);
+        Sum& sum = sweep.mean_deg_s == 0.0 ? resting : moving;
+        sum.weights += weight;
+        sum.power += weight * length * length;
+        sum.noise_power += weight * floor;
+        sum.together += weight * amplitudes[i];
+        sum.lengths += weight * length;
         const double hz = noise.axis == Axis::angle ? place * std::abs(sweep.mean_deg_s) / 360.0 : place;
-        line.by_speed.push_back(
-            {sweep.mean_deg_s, hz, std::abs(amplitude), std::abs(amplitude) / std::sqrt(floor)});
+        line.by_speed.push_back({sweep.mean_deg_s, hz, length, length / std::sqrt(floor)});
     }
-    if (!(weights > 0.0)) return;
-    const double error = place_error(sweeps, noise, place);
+    const Sum& sum = resting.amplitude_nm() > moving.amplitude_nm() ? resting : moving;
+    if (!(sum.weights > 0.0)) return;
     if (noise.axis == Axis::angle) {
-        line.order_output = place;
-        line.order_stderr = error;
         // For random phases, two sweeps reach this by chance less than half the time.
         constexpr double agreement = 0.7;
-        if (lengths > 0.0 && std::abs(together) > agreement * lengths)
-            line.phase_deg = portable::arg(together) * degrees_per_radian;
-    } else {
-        line.hz = place;
-        line.hz_stderr = error;
+        if (sum.lengths > 0.0 && std::abs(sum.together) > agreement * sum.lengths)
+            line.phase_deg = portable::arg(sum.together) * degrees_per_radian;
     }
-    line.floor_nm = std::sqrt(noise_power / weights);
-    line.amplitude_nm = std::sqrt(std::max(power - noise_power, 0.0) / weights);
+    line.floor_nm = std::sqrt(sum.noise_power / sum.weights);
+    line.amplitude_nm = sum.amplitude_nm();
     line.snr = line.amplitude_nm / line.floor_nm;
 }
 

@@ -3,6 +3,7 @@
 // Internal to the analysis module: a line's place and amplitude by least squares over the sweeps, each with a
 // phase of its own.
 
+#include <complex>
 #include <span>
 #include <vector>
 
@@ -24,7 +25,15 @@ double refined(std::span<const Sweep> sweeps, const LineNoise& noise, double sta
 /// beyond what noise gives.
 double explained(std::span<const Sweep> sweeps, const LineNoise& noise, double place);
 
-/// Fills in the results of the sweeps for a line at `place`.
-void measure(std::span<const Sweep> sweeps, const LineNoise& noise, double place, MotionLine& line);
+/// Standard error of the position of the largest summed power, in turns or hertz. First from the noise near
+/// the line (one Newton step, delta method). Where the estimates of the sweeps, or thirds of them when they
+/// are few, scatter more than that noise explains, as with a phase that drifts with speed or load, the error
+/// is widened to their scatter.
+double place_error(std::span<const Sweep> sweeps, const LineNoise& noise, double place);
+
+/// Fills in amplitude, phase and their floor of a line at `place`, from its complex amplitude (Nm) in each
+/// sweep. A tone is measured at rest or in motion, where it is larger: some are of one of the two only.
+void measure(std::span<const Sweep> sweeps, const LineNoise& noise, double place,
+             std::span<const std::complex<double>> amplitudes, MotionLine& line);
 
 }  // namespace ripplenotch

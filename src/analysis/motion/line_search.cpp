@@ -64,10 +64,28 @@ class LineSearch {
     /// stays off, and bounds what would have been found.
     [[nodiscard]] std::vector<MotionLine> lines() const {
         std::vector<MotionLine> lines;
+        std::vector<KnownLine> known;
         for (const Taken& taken : taken_) {
             if (!is_line(taken)) continue;
+            known.push_back(taken.known);
             lines.push_back(taken.line);
             lines.back().false_alarm = false_alarm_of(taken);
+        }
+        constexpr int rounds = 2;  // of places, each given the others
+        for (int round = 0; round <= rounds; ++round) {
+            const LineScan::Together over_angle = angle_.together(known), over_time = time_.together(known);
+            std::vector<KnownLine> moved = known;
+            for (std::size_t i = 0; i < lines.size(); ++i) {
+                const bool by_angle = known[i].axis == Axis::angle;
+                const LineScan& scan = by_angle ? angle_ : time_;
+                const LineScan::Together& fit = by_angle ? over_angle : over_time;
+                (by_angle ? lines[i].order_output : lines[i].hz) = known[i].place;
+                if (round < rounds)
+                    moved[i].place = scan.refined_alone(fit, known, i);
+                else
+                    measure(scan.sweeps(), scan.noise_at(known[i].place), known[i].place, fit.nm[i], lines[i]);
+            }
+            known = std::move(moved);
         }
         return lines;
     }
@@ -86,7 +104,7 @@ class LineSearch {
             const double to = std::min(band * from, angle_.highest());
             const double found_nm =
                 std::max(angle_.detectable_nm(from, to, false_alarm(), orders_), least_nm_);
-            all_nm = std::max(all_nm, found_nm);
+            if (std::isfinite(found_nm)) all_nm = std::max(all_nm, found_nm);
             // What was seen and is no line may be one.
             double once_nm = angle_.once_nm(from, to, false_alarm());
             if (!time_.empty()) once_nm = std::max(once_nm, time_.once_nm(from, to, false_alarm()));
@@ -211,6 +229,7 @@ class LineSearch {
         by_angle = kind != LineKind::tone;
         const KnownLine known{by_angle ? Axis::angle : Axis::time, by_angle ? best.order : best.hz};
         Taken taken{known, measured(known, kind, best.hz), {}};
+        taken.known.place = by_angle ? taken.line.order_output : taken.line.hz;
         if (is_near(known.place, by_angle ? angle_ : time_, by_angle ? orders_ : tones_) ||
             is_remainder(taken.line, first_by_angle, first)) {
             (first_by_angle ? orders_ : tones_).push_back(first);
@@ -227,10 +246,8 @@ class LineSearch {
         taken_.push_back(std::move(taken));
         if (by_angle) orders_.push_back(best.order);
         if (kind != LineKind::order) tones_.push_back(best.hz);
-        const MotionLine& line = taken_.back().line;
-        const KnownLine exact{known.axis, by_angle ? line.order_output : line.hz};
-        if (!angle_.empty()) angle_.remove(exact);
-        if (!time_.empty()) time_.remove(exact);
+        if (!angle_.empty()) angle_.remove(taken_.back().known);
+        if (!time_.empty()) time_.remove(taken_.back().known);
         return true;
     }
 
@@ -316,8 +333,16 @@ class LineSearch {
         const LineNoise noise = scan.noise_at(known.place);
         MotionLine line;
         line.kind = kind;
-        measure(scan.sweeps(), noise,
-                refined(scan.sweeps(), noise, scan.peak_near(known.place), 0.5 / scan.longest()), line);
+        const double place =
+            refined(scan.sweeps(), noise, scan.peak_near(known.place), 0.5 / scan.longest());
+        const double error = place_error(scan.sweeps(), noise, place);
+        (known.axis == Axis::angle ? line.order_output : line.hz) = place;
+        (known.axis == Axis::angle ? line.order_stderr : line.hz_stderr) = error;
+        std::vector<std::complex<double>> amplitudes;
+        for (const Sweep& sweep : scan.sweeps())
+            amplitudes.push_back(2.0 * fourier_point(places(sweep, known.axis), sweep.value, place).value /
+                                 sweep.weight_sum);
+        measure(scan.sweeps(), noise, place, amplitudes, line);
         if (kind == LineKind::unknown) {
             line.hz = tone_hz;
             line.hz_stderr = hann_cell / time_.longest();
