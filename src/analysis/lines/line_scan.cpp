@@ -20,9 +20,9 @@ constexpr double cycles_beside_trend = 3.0;  // in a sweep that counts: its tren
 // In a sweep in motion: slower tones are those of the motion.
 constexpr double cycles_of_motion = 12.0;
 constexpr double top_of_rate = 0.4;  // of the sample rate: an anti-alias filter leaves little above
-// One frequency of a sweep, spread by its speed: an order is distinguished from its image from the first on,
-// and images of slow noise are smooth to the noise on either side from the second on.
-constexpr double distinct_cells = 2.5, smooth_cells = 40.0;
+// Orders above half the sample rate have images below, from which a sweep distinguishes them whose speed
+// spreads one frequency so far. Up to here of the rate: the images of slow noise are above.
+constexpr double distinct_cells = 2.5, top_folded_of_rate = 0.75;
 constexpr double corner_s = 0.01;    // chosen, not derived: corners of the motion are no sharper in a torque
 constexpr double step_cells = 0.3;   // of the sums, in 1 / longest sweep
 constexpr double wide_cells = 20.0, near_cells = 5.0;
@@ -135,13 +135,11 @@ LineScan::LineScan(std::span<const Sweep> sweeps, std::span<const TraceView> log
         const double rate =
             sweep.rate_hz * (axis == Axis::angle ? 360.0 / std::max(quick_of(sweep.speed_deg_s), 1e-9) : 1.0);
         piece.top = top_of_rate * rate;
-        if (axis == Axis::angle && sweep.slow_deg_s > 0.0) {
-            piece.slow_rate = sweep.rate_hz * 360.0 / sweep.slow_deg_s;
-            piece.quick_rate = sweep.rate_hz * 360.0 / sweep.quick_deg_s;
-            piece.cells_per_place =
-                (sweep.quick_deg_s - sweep.slow_deg_s) / std::abs(sweep.mean_deg_s) * piece.length;
-            if (piece.cells_per_place * range.highest_folded > distinct_cells)
-                piece.highest_folded = range.highest_folded;
+        if (axis == Axis::angle) {
+            const double spread = (sweep.quick_deg_s - sweep.slow_deg_s) / std::abs(sweep.mean_deg_s);
+            piece.folded_from = std::max(piece.top, distinct_cells / std::max(1e-9, spread * piece.length));
+            piece.folded_to = std::min(range.highest_folded,
+                                       top_folded_of_rate * sweep.rate_hz * 360.0 / sweep.fast_deg_s);
         }
         if (axis == Axis::time) piece.origin = logs[sweep.log].time_s[sweep.first] - sweep.time_s.front();
         if (!sweep.rest()) {
@@ -160,7 +158,7 @@ LineScan::LineScan(std::span<const Sweep> sweeps, std::span<const TraceView> log
             piece.corner = scaled(bend);
         }
         longest_ = std::max(longest_, piece.length);
-        top = std::max({top, piece.top, piece.highest_folded});
+        top = std::max({top, piece.top, piece.folded_from < piece.folded_to ? piece.folded_to : 0.0});
         pieces_.push_back(std::move(piece));
         sweeps_.push_back(std::move(copy));
     }
@@ -173,24 +171,18 @@ LineScan::LineScan(std::span<const Sweep> sweeps, std::span<const TraceView> log
     highest_ = std::min(range.highest, top);
     lowest_ = std::max(range.lowest, cycles_of_lowest / longest_);
     if (!(highest_ > lowest_)) return;
+    everywhere_.top = 1e300;
+    everywhere_.length = longest_;
     step_ = step_cells / longest_;
     first_bin_ = static_cast<std::size_t>(std::ceil(1.0 / step_cells));
     first_ = static_cast<double>(first_bin_) * step_;
     count_ = static_cast<std::size_t>(highest_ / step_) + 1 - first_bin_;
     const double smooth = std::max(range.smooth, cycles_of_lowest / longest_);
     on_two_cores(pieces_.size(), [&](std::size_t i) {
-        pieces_[i].slow_noise = lowest_;
         pieces_[i].splines = splines_of(pieces_[i].length, std::max(smooth, pieces_[i].bottom));
         pieces_[i].in_halves = 0.5 * pieces_[i].length * lowest_ > 2.0;
         take_off(i, {});
     });
-}
-
-bool LineScan::Piece::shows_folded(double place) const {
-    const double cells = cells_per_place * place;
-    if (cells < distinct_cells) return false;
-    return cells > smooth_cells ||
-           std::floor((place - slow_noise) / slow_rate) == std::floor((place + slow_noise) / quick_rate);
 }
 
 double LineScan::threshold(double false_alarm) const {
@@ -256,7 +248,7 @@ LineNoise LineScan::noise_at(double place) const {
 }
 
 Eigen::VectorXd LineScan::fit_out(std::size_t number, std::span<const std::vector<double>> line,
-                                  std::span<double> torque_nm) const {
+                                  std::span<const double> weight, std::span<double> torque_nm) const {
     const Piece& piece = pieces_[number];
     const Sweep& sweep = sweeps_[number];
     const auto place = places(sweep, axis_);
@@ -280,7 +272,7 @@ Eigen::VectorXd LineScan::fit_out(std::size_t number, std::span<const std::vecto
     std::vector<double> x(columns.size());
     const auto first_column = static_cast<Eigen::Index>(splines);
     for (std::size_t k = 0; k < n; ++k) {
-        const double w = sweep.share_turns[k], y = w * torque_nm[k];
+        const double w = weight[k], y = w * torque_nm[k];
         const Eigen::Index at = basis(k, b);
         for (std::size_t c = 0; c < columns.size(); ++c) x[c] = columns[c][k];
         for (Eigen::Index i = 0; i < 4; ++i) {
@@ -312,7 +304,7 @@ Eigen::VectorXd LineScan::fit_out(std::size_t number, std::span<const std::vecto
 
 void LineScan::take_off(std::size_t number, std::span<const std::vector<double>> line) {
     Sweep& sweep = sweeps_[number];
-    fit_out(number, line, sweep.torque_nm);
+    fit_out(number, line, sweep.share_turns, sweep.torque_nm);
     for (std::size_t k = 0; k < sweep.value.size(); ++k)
         sweep.value[k] = sweep.weight[k] * sweep.torque_nm[k];
 }
@@ -332,7 +324,7 @@ LineScan::Together LineScan::together(std::span<const KnownLine> lines) const {
         }
         Sweep& sweep = fit.rest[i];
         sweep.torque_nm.assign(sweep.measured_nm.begin(), sweep.measured_nm.end());
-        const Eigen::VectorXd parts = fit_out(i, columns, sweep.torque_nm);
+        const Eigen::VectorXd parts = fit_out(i, columns, sweep.weight, sweep.torque_nm);
         for (std::size_t s = 0; s < shown.size(); ++s) {
             const auto at = static_cast<Eigen::Index>(2 * s);
             fit.nm[shown[s]][i] = {parts[at], -parts[at + 1]};
@@ -498,16 +490,16 @@ LineScan::Noise LineScan::noise_of(std::span<const double> power, double length,
 }
 
 // Without a hump the rise is 0 but for its error; with one, anything up to highest_hump.
-LineScan::Humps LineScan::humps_of(std::span<Noise* const> noises,
-                                   std::span<const Piece* const> pieces) const {
+LineScan::Humps LineScan::humps_of(const Listed& list) const {
     const std::vector<double> zeros(count_);
     Humps humps{zeros, zeros, zeros};
     for (std::size_t k = 0; k < count_; ++k) {
         double weights = 0.0, sum = 0.0;
-        for (std::size_t i = 0; i < noises.size(); ++i) {
-            if (!pieces[i]->shows(place(k)) || !(noises[i]->rise_variance[k] > 0.0)) continue;
-            weights += 1.0 / noises[i]->rise_variance[k];
-            sum += noises[i]->rise[k] / noises[i]->rise_variance[k];
+        for (std::size_t i = 0; i < list.pieces.size(); ++i) {
+            const Noise& noise = *list.noises[i];
+            if (!list.pieces[i]->shows(place(k)) || !(noise.rise_variance[k] > 0.0)) continue;
+            weights += 1.0 / noise.rise_variance[k];
+            sum += noise.rise[k] / noise.rise_variance[k];
         }
         if (!(sum > 0.0)) continue;
         humps.rise[k] = sum / weights;
@@ -522,17 +514,15 @@ LineScan::Humps LineScan::humps_of(std::span<Noise* const> noises,
 
 // By likelihood under the law of F. Of powers above `large`, which may be those of lines, only the number
 // counts, so that the bulk of the noise tells.
-std::vector<double> LineScan::excess_of(std::span<const std::span<const double>> powers,
-                                        std::span<Noise* const> noises, std::span<const Piece* const> pieces,
-                                        const Humps& humps) const {
+std::vector<double> LineScan::excess_of(const Listed& list, const Humps& humps) const {
     constexpr double large = 1.5;
     std::vector<Evidences> octaves(octave(count_ - 1) + 1);
-    for (std::size_t i = 0; i < powers.size(); ++i) {
-        const Noise& noise = *noises[i];
-        const auto stride = static_cast<std::size_t>(hann_cell / pieces[i]->length / step_);
+    for (std::size_t i = 0; i < list.pieces.size(); ++i) {
+        const Noise& noise = *list.noises[i];
+        const auto stride = static_cast<std::size_t>(hann_cell / list.pieces[i]->length / step_);
         for (std::size_t k = 0; k < count_; k += std::max<std::size_t>(1, stride)) {
-            if (!pieces[i]->shows(place(k)) || !(noise.variance[k] > 0.0)) continue;
-            const double x = powers[i][k] / noise.power[k] * portable::exp(-humps.chance[k] * humps.rise[k]);
+            if (!list.pieces[i]->shows(place(k)) || !(noise.variance[k] > 0.0)) continue;
+            const double x = list.powers[i][k] / noise.power[k] * portable::exp(-humps.chance[k] * humps.rise[k]);
             for (std::size_t e = 0; e < excesses.size(); ++e) {
                 const double m = 1.0 / (noise.variance[k] + excesses.at(e));
                 octaves[octave(k)].at(e) -=
@@ -571,22 +561,24 @@ double LineScan::score_at(double power, const Noise& noise, const Humps& humps, 
                                  humps.chance[k] * portable::exp(least - with));
 }
 
-LineScan::Summed LineScan::summed(std::span<Spectrum> spectra, bool halves) const {
-    const std::vector<double> zeros(count_);
-    Summed sum{zeros, zeros, zeros, zeros, {}, {}};
-    std::vector<Noise*> noises;
-    std::vector<std::span<const double>> powers;
-    std::vector<const Piece*> pieces;
+LineScan::Listed LineScan::listed(std::span<Spectrum> spectra, bool halves) const {
+    Listed list;
     for (const Piece& piece : pieces_) {
         if (halves && !piece.in_halves) continue;
         for (int part = 0; part < (halves ? 2 : 1); ++part) {
-            powers.push_back(spectra[noises.size()].power);
-            noises.push_back(&spectra[noises.size()].noise);
-            pieces.push_back(&piece);
+            Spectrum& one = spectra[list.pieces.size()];
+            list.powers.push_back(one.power);
+            list.noises.push_back(&one.noise);
+            list.pieces.push_back(&piece);
         }
     }
-    sum.humps = humps_of(noises, pieces);
-    sum.excess = excess_of(powers, noises, pieces, sum.humps);
+    return list;
+}
+
+LineScan::Summed LineScan::summed(std::span<Spectrum> spectra, bool halves) const {
+    const std::vector<double> zeros(count_);
+    Summed sum{zeros, zeros, zeros, zeros, {}, {}};
+    sum.humps = humps_of(listed(spectra, halves));
     std::size_t next = 0;
     for (const Piece& piece : pieces_) {
         if (halves && !piece.in_halves) continue;
@@ -620,11 +612,11 @@ std::complex<double> LineScan::turned_to_origin(std::size_t piece, std::size_t k
 }
 
 LineScan::OnePhase LineScan::of_one_phase() const {
-    OnePhase found{std::vector<double>(count_), {}, {}, {}};
+    OnePhase found{std::vector<double>(count_), {}, {}, {}, {}};
     double directions = 0.0;
     for (const bool forward : {true, false}) {
         std::vector<std::complex<double>> sum(count_);
-        std::vector<double> information(count_), power(count_);
+        std::vector<double> information(count_), &power = found.power.at(forward ? 0 : 1);
         bool any = false;
         for (std::size_t i = 0; i < pieces_.size(); ++i) {
             if (pieces_[i].forward != forward) continue;
@@ -639,24 +631,27 @@ LineScan::OnePhase LineScan::of_one_phase() const {
         }
         if (!any) continue;
         directions += 1.0;
+        power.resize(count_);
         for (std::size_t k = 0; k < count_; ++k)
             power[k] = std::norm(sum[k]) / std::max(information[k], 1e-300);
         Noise& noise = found.noise.at(forward ? 0 : 1);
         noise = noise_of(power, longest_, 0.0);
         for (double& one : noise.power) one = std::max(one, 1.0);
-        Piece all;
-        all.top = 1e300;
-        all.length = longest_;
         Humps& humps = found.humps.at(forward ? 0 : 1);
-        const std::array noises{&noise};
-        const std::array<const Piece*, 1> pieces{&all};
-        const std::array<std::span<const double>, 1> powers{power};
-        humps = humps_of(noises, pieces);
-        found.excess.at(forward ? 0 : 1) = excess_of(powers, noises, pieces, humps);
+        humps = humps_of({{power}, {&noise}, {&everywhere_}});
         for (std::size_t k = 0; k < count_; ++k) found.score[k] += score_at(power[k], noise, humps, k);
     }
     for (double& one : found.score) one = tail_of_sum(one, directions);
     return found;
+}
+
+void LineScan::measure_scatter() {
+    free_.excess = excess_of(listed(whole_, false), free_.humps);
+    varying_.excess = excess_of(listed(halves_, true), varying_.humps);
+    for (std::size_t d = 0; d < 2; ++d)
+        if (!locked_.power.at(d).empty())
+            locked_.excess.at(d) = excess_of({{locked_.power.at(d)}, {&locked_.noise.at(d)}, {&everywhere_}},
+                                             locked_.humps.at(d));
 }
 
 const std::vector<double>& LineScan::score() {

@@ -54,6 +54,8 @@ class LineScan {
     /// -ln of the probability that noise alone shows as much at a place, by the best of three tests: any
     /// phase in each sweep, one phase in all sweeps of a direction, any phase in each half of a sweep.
     [[nodiscard]] const std::vector<double>& score();
+    /// After the last score(): how much the noise scatters, which what follows asks for.
+    void measure_scatter();
     /// How much the level of the noise may scatter from place to place (variance of its logarithm), and the
     /// evidence of a line under each.
     static constexpr std::array excesses{0.0, 0.02, 0.05, 0.1, 0.2, 0.4, 0.8};
@@ -82,8 +84,8 @@ class LineScan {
     [[nodiscard]] double once_nm(double from, double to, double false_alarm) const;
     /// Takes a line of either axis off every sweep, fitted along with the trend.
     void remove(const KnownLine& line);
-    /// All lines and the trend fitted to the measured torque of each sweep together, so that neighbours do not
-    /// leak into each other.
+    /// All lines and the trend fitted to the measured torque of each sweep together, under its window, so that
+    /// neighbours do not leak into each other.
     struct Together {
         std::vector<std::vector<std::complex<double>>> nm;  ///< by line and sweep: zero to peak; 0: not shown
         std::vector<Sweep> rest;                            ///< what is left
@@ -98,15 +100,11 @@ class LineScan {
         std::vector<double> speed, bend, corner;  ///< scaled to 1; empty at rest
         double start = 0.0, length = 0.0;
         double bottom = 0.0, top = 0.0;  ///< places at which the sweep counts
-        double highest_folded = 0.0;     ///< and those above half the sample rate
-        double slow_rate = 0.0, quick_rate = 0.0;  ///< place of the sample rate at its lower and upper speed
-        double cells_per_place = 0.0;  ///< over which its speed spreads one frequency
-        double slow_noise = 0.0;       ///< up to here: it has images about multiples of the sample rate
+        double folded_from = 0.0, folded_to = 0.0;  ///< and those above half the sample rate
         double origin = 0.0;             ///< of the places, where all sweeps of a log have one
         [[nodiscard]] bool shows(double place) const {
-            return place >= bottom && (place < top || (place < highest_folded && shows_folded(place)));
+            return (place >= bottom && place < top) || (place >= folded_from && place < folded_to);
         }
-        [[nodiscard]] bool shows_folded(double place) const;
         std::size_t splines = 0;
         bool forward = true, in_halves = false;
     };
@@ -122,6 +120,12 @@ class LineScan {
         Noise noise;
         double weight = 0.0;
     };
+    /// Some spectra, each with its noise and the piece that it is of.
+    struct Listed {
+        std::vector<std::span<const double>> powers;
+        std::vector<Noise*> noises;
+        std::vector<const Piece*> pieces;
+    };
     /// How probable it is at each place that the noise of some spectra has a hump there; its height (ln).
     struct Humps {
         std::vector<double> chance, rise, variance;
@@ -133,28 +137,27 @@ class LineScan {
     };
     struct OnePhase {
         std::vector<double> score;
+        std::array<std::vector<double>, 2> power;
         std::array<Noise, 2> noise;  ///< by direction; empty without
         std::array<Humps, 2> humps;
         std::array<std::vector<double>, 2> excess;
     };
 
-    /// Least squares of splines, speed and acceleration and of the columns together, each row by what it
-    /// stands for. Leaves the residual in `torque_nm` and returns the coefficients of the columns.
+    /// Least squares of splines, speed and acceleration and of the columns together, with a weight for each
+    /// row. Leaves the residual in `torque_nm` and returns the coefficients of the columns.
     Eigen::VectorXd fit_out(std::size_t piece, std::span<const std::vector<double>> columns,
-                            std::span<double> torque_nm) const;
+                            std::span<const double> weight, std::span<double> torque_nm) const;
     void take_off(std::size_t piece, std::span<const std::vector<double>> line);
     [[nodiscard]] Spectrum spectrum_of(std::size_t piece, std::size_t begin, std::size_t end) const;
     [[nodiscard]] Noise noise_of(std::span<const double> power, double length, double bottom) const;
     /// By octaves of place: what of the scatter of the noise is not explained by its estimation.
-    [[nodiscard]] std::vector<double> excess_of(std::span<const std::span<const double>> powers,
-                                                std::span<Noise* const> noises,
-                                                std::span<const Piece* const> pieces,
-                                                const Humps& humps) const;
+    [[nodiscard]] std::vector<double> excess_of(const Listed& list, const Humps& humps) const;
     [[nodiscard]] std::size_t octave(std::size_t k) const;
-    [[nodiscard]] Humps humps_of(std::span<Noise* const> noises, std::span<const Piece* const> pieces) const;
+    [[nodiscard]] Humps humps_of(const Listed& list) const;
     /// -ln of the probability that noise has that power at a place, with a hump there or without.
     [[nodiscard]] static double score_at(double power, const Noise& noise, const Humps& humps, std::size_t k,
                                          double excess = 0.0);
+    [[nodiscard]] Listed listed(std::span<Spectrum> spectra, bool halves) const;
     [[nodiscard]] Summed summed(std::span<Spectrum> spectra, bool halves) const;
     [[nodiscard]] OnePhase of_one_phase() const;
     [[nodiscard]] std::size_t bin_of(double place) const;
@@ -170,6 +173,7 @@ class LineScan {
     Axis axis_;
     std::vector<Sweep> sweeps_;
     std::vector<Piece> pieces_;
+    Piece everywhere_;  ///< stands for all pieces where their sums are added
     double lowest_ = 0.0, highest_ = 0.0, longest_ = 0.0;
     double usual_ = 0.0;  ///< length of a sweep: three of four are longer
     double first_ = 0.0, step_ = 0.0;

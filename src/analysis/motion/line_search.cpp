@@ -58,6 +58,8 @@ class LineSearch {
           time_(sweeps, logs, Axis::time, {options.lowest_hz, 1e9, options.lowest_hz}) {
         score();
         while (taken_.size() < options.most_lines && take_clearest()) score();
+        if (!angle_.empty()) angle_.measure_scatter();
+        if (!time_.empty()) time_.measure_scatter();
     }
 
     /// The clearest first. The noise is known once all that stands out was taken off; what is no line in it
@@ -108,7 +110,8 @@ class LineSearch {
             // What was seen and is no line may be one.
             double once_nm = angle_.once_nm(from, to, false_alarm());
             if (!time_.empty()) once_nm = std::max(once_nm, time_.once_nm(from, to, false_alarm()));
-            if (found_nm > searched.deviation_nm && !(once_nm > searched.deviation_nm)) {
+            if (!std::isfinite(found_nm) ||
+                (found_nm > searched.deviation_nm && !(once_nm > searched.deviation_nm))) {
                 run.clear();
                 continue;
             }
