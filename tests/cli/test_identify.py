@@ -399,7 +399,7 @@ class AnyTravelAnyRatio(Case):
         self.assertTrue(any(abs(order - middle) < 2.0 for order in lines), lines)
 
     def test_a_bound_above_the_noise_itself_is_no_claim(self):
-        path = self.simulated(100, *self.to_and_fro(200, 1.0), rate="77Hz", ripple=(), noise="0.1Nm")
+        path = self.simulated(100, *self.to_and_fro(200, 1.0, times=2), rate="77Hz", ripple=(), noise="0.1Nm")
         done = run("identify", path, "--json", "--require-conclusive")
         self.assertEqual(done.returncode, 5, done.stdout)
         found = json.loads(done.stdout)

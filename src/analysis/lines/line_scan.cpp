@@ -333,6 +333,27 @@ LineScan::Together LineScan::together(std::span<const KnownLine> lines) const {
     return fit;
 }
 
+bool LineScan::shows(const KnownLine& line, std::span<const std::complex<double>> nm) const {
+    const LineNoise noise = noise_at(line.place);
+    double free = 0.0, count = 0.0, locked = 0.0, directions = 0.0;
+    for (const bool forward : {true, false}) {
+        std::complex<double> sum;
+        double information = 0.0;
+        for (std::size_t i = 0; i < pieces_.size(); ++i) {
+            if (!(noise.power[i] > 0.0) || pieces_[i].forward != forward) continue;
+            const double certainty = 0.25 * sweeps_[i].weight_sum * sweeps_[i].weight_sum / noise.power[i];
+            free += certainty * std::norm(nm[i]);
+            count += 1.0;
+            sum += certainty * nm[i];
+            information += certainty;
+        }
+        if (!(information > 0.0)) continue;
+        locked += std::norm(sum) / information;
+        directions += 1.0;
+    }
+    return std::max(tail_of_sum(free, count), tail_of_sum(locked, directions)) > again_evidence;
+}
+
 double LineScan::refined_alone(const Together& fit, std::span<const KnownLine> lines, std::size_t line) const {
     std::vector<Sweep> sweeps = fit.rest;
     for (std::size_t i = 0; i < sweeps.size(); ++i) {

@@ -91,6 +91,8 @@ class LineScan {
         std::vector<Sweep> rest;                            ///< what is left
     };
     [[nodiscard]] Together together(std::span<const KnownLine> lines) const;
+    /// Whether noise alone gives a line's amplitudes in less than one of a hundred, given the others.
+    [[nodiscard]] bool shows(const KnownLine& line, std::span<const std::complex<double>> nm) const;
     /// Place of a line in what is left and itself.
     [[nodiscard]] double refined_alone(const Together& fit, std::span<const KnownLine> lines,
                                        std::size_t line) const;

@@ -65,31 +65,21 @@ class LineSearch {
     /// The clearest first. The noise is known once all that stands out was taken off; what is no line in it
     /// stays off, and bounds what would have been found.
     [[nodiscard]] std::vector<MotionLine> lines() const {
-        std::vector<MotionLine> lines;
-        std::vector<KnownLine> known;
-        for (const Taken& taken : taken_) {
-            if (!is_line(taken)) continue;
-            known.push_back(taken.known);
-            lines.push_back(taken.line);
-            lines.back().false_alarm = false_alarm_of(taken);
+        std::vector<Taken> lines;
+        std::copy_if(taken_.begin(), taken_.end(), std::back_inserter(lines),
+                     [this](const Taken& taken) { return is_line(taken); });
+        // What was left of a line by the removal of another is none, measured together with that.
+        while (true) {
+            measure_together(lines);
+            const auto shown = std::erase_if(lines, [](const Taken& taken) { return !taken.shown; });
+            if (shown == 0) break;
         }
-        constexpr int rounds = 2;  // of places, each given the others
-        for (int round = 0; round <= rounds; ++round) {
-            const LineScan::Together over_angle = angle_.together(known), over_time = time_.together(known);
-            std::vector<KnownLine> moved = known;
-            for (std::size_t i = 0; i < lines.size(); ++i) {
-                const bool by_angle = known[i].axis == Axis::angle;
-                const LineScan& scan = by_angle ? angle_ : time_;
-                const LineScan::Together& fit = by_angle ? over_angle : over_time;
-                (by_angle ? lines[i].order_output : lines[i].hz) = known[i].place;
-                if (round < rounds)
-                    moved[i].place = scan.refined_alone(fit, known, i);
-                else
-                    measure(scan.sweeps(), scan.noise_at(known[i].place), known[i].place, fit.nm[i], lines[i]);
-            }
-            known = std::move(moved);
+        std::vector<MotionLine> found;
+        for (Taken& taken : lines) {
+            taken.line.false_alarm = false_alarm_of(taken);
+            found.push_back(std::move(taken.line));
         }
-        return lines;
+        return found;
     }
     [[nodiscard]] const SpeedRange& range() const { return range_; }
     [[nodiscard]] const LineScan& angle() const { return angle_; }
@@ -128,6 +118,7 @@ class LineSearch {
             }
         }
         if (bounds.empty()) {  // a line would be missed everywhere
+            if (!(all_nm > 0.0)) return std::nullopt;
             searched.detectable_nm = all_nm;
             searched.bounds = {{searched.lowest_order, all_nm}};
             return searched;
@@ -157,7 +148,30 @@ class LineSearch {
         KnownLine known;
         MotionLine line;
         std::vector<Reading> readings;
+        bool shown = true;  ///< measured together with the others
     };
+    /// Places and amplitudes of lines, each given the others.
+    void measure_together(std::vector<Taken>& lines) const {
+        constexpr int rounds = 2;  // of places
+        for (int round = 0; round <= rounds; ++round) {
+            std::vector<KnownLine> known;
+            for (const Taken& taken : lines) known.push_back(taken.known);
+            const LineScan::Together over_angle = angle_.together(known), over_time = time_.together(known);
+            for (std::size_t i = 0; i < lines.size(); ++i) {
+                const bool by_angle = known[i].axis == Axis::angle;
+                const LineScan& scan = by_angle ? angle_ : time_;
+                const LineScan::Together& fit = by_angle ? over_angle : over_time;
+                Taken& taken = lines[i];
+                (by_angle ? taken.line.order_output : taken.line.hz) = known[i].place;
+                if (round < rounds) {
+                    taken.known.place = scan.refined_alone(fit, known, i);
+                    continue;
+                }
+                measure(scan.sweeps(), scan.noise_at(known[i].place), known[i].place, fit.nm[i], taken.line);
+                taken.shown = scan.shows(known[i], fit.nm[i]);
+            }
+        }
+    }
     [[nodiscard]] static double false_alarm_of(const Taken& taken) {
         double chance = 1.0;
         for (const Reading& reading : taken.readings)
