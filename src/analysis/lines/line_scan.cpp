@@ -23,8 +23,8 @@ constexpr double top_of_rate = 0.4;  // of the sample rate: an anti-alias filter
 // Orders above half the sample rate have images below, from which a sweep distinguishes them whose speed
 // spreads one frequency so far. Up to here of the rate: the images of slow noise are above.
 constexpr double distinct_cells = 2.5, top_folded_of_rate = 0.75;
-constexpr double corner_s = 0.01;    // chosen, not derived: corners of the motion are no sharper in a torque
-constexpr double step_cells = 0.3;   // of the sums, in 1 / longest sweep
+constexpr double corner_s = 0.01;   // chosen, not derived: corners of the motion are no sharper in a torque
+constexpr double step_cells = 0.3;  // of the sums, in 1 / longest sweep
 constexpr double wide_cells = 20.0, near_cells = 5.0;
 constexpr double humps_share = 0.05;    // of the places: chosen, not derived
 constexpr double highest_hump = 4.6;    // ln 100
@@ -138,8 +138,8 @@ LineScan::LineScan(std::span<const Sweep> sweeps, std::span<const TraceView> log
         if (axis == Axis::angle) {
             const double spread = (sweep.quick_deg_s - sweep.slow_deg_s) / std::abs(sweep.mean_deg_s);
             piece.folded_from = std::max(piece.top, distinct_cells / std::max(1e-9, spread * piece.length));
-            piece.folded_to = std::min(range.highest_folded,
-                                       top_folded_of_rate * sweep.rate_hz * 360.0 / sweep.fast_deg_s);
+            piece.folded_to =
+                std::min(range.highest_folded, top_folded_of_rate * sweep.rate_hz * 360.0 / sweep.fast_deg_s);
         }
         if (axis == Axis::time) piece.origin = logs[sweep.log].time_s[sweep.first] - sweep.time_s.front();
         if (!sweep.rest()) {
@@ -354,7 +354,8 @@ bool LineScan::shows(const KnownLine& line, std::span<const std::complex<double>
     return std::max(tail_of_sum(free, count), tail_of_sum(locked, directions)) > again_evidence;
 }
 
-double LineScan::refined_alone(const Together& fit, std::span<const KnownLine> lines, std::size_t line) const {
+double LineScan::refined_alone(const Together& fit, std::span<const KnownLine> lines,
+                               std::size_t line) const {
     std::vector<Sweep> sweeps = fit.rest;
     for (std::size_t i = 0; i < sweeps.size(); ++i) {
         Sweep& sweep = sweeps[i];
@@ -543,7 +544,8 @@ std::vector<double> LineScan::excess_of(const Listed& list, const Humps& humps) 
         const auto stride = static_cast<std::size_t>(hann_cell / list.pieces[i]->length / step_);
         for (std::size_t k = 0; k < count_; k += std::max<std::size_t>(1, stride)) {
             if (!list.pieces[i]->shows(place(k)) || !(noise.variance[k] > 0.0)) continue;
-            const double x = list.powers[i][k] / noise.power[k] * portable::exp(-humps.chance[k] * humps.rise[k]);
+            const double x =
+                list.powers[i][k] / noise.power[k] * portable::exp(-humps.chance[k] * humps.rise[k]);
             for (std::size_t e = 0; e < excesses.size(); ++e) {
                 const double m = 1.0 / (noise.variance[k] + excesses.at(e));
                 octaves[octave(k)].at(e) -=

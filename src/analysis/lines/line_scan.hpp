@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include <Eigen/Core>
+#include "core/matrices/linear_algebra.hpp"
 
 #include "analysis/motion/line_evidence.hpp"
 #include "ripplenotch/analysis/fourier.hpp"
@@ -84,8 +84,8 @@ class LineScan {
     [[nodiscard]] double once_nm(double from, double to, double false_alarm) const;
     /// Takes a line of either axis off every sweep, fitted along with the trend.
     void remove(const KnownLine& line);
-    /// All lines and the trend fitted to the measured torque of each sweep together, under its window, so that
-    /// neighbours do not leak into each other.
+    /// All lines and the trend fitted to the measured torque of each sweep together, under its window, so
+    /// that neighbours do not leak into each other.
     struct Together {
         std::vector<std::vector<std::complex<double>>> nm;  ///< by line and sweep: zero to peak; 0: not shown
         std::vector<Sweep> rest;                            ///< what is left
@@ -101,9 +101,9 @@ class LineScan {
     struct Piece {
         std::vector<double> speed, bend, corner;  ///< scaled to 1; empty at rest
         double start = 0.0, length = 0.0;
-        double bottom = 0.0, top = 0.0;  ///< places at which the sweep counts
+        double bottom = 0.0, top = 0.0;             ///< places at which the sweep counts
         double folded_from = 0.0, folded_to = 0.0;  ///< and those above half the sample rate
-        double origin = 0.0;             ///< of the places, where all sweeps of a log have one
+        double origin = 0.0;                        ///< of the places, where all sweeps of a log have one
         [[nodiscard]] bool shows(double place) const {
             return (place >= bottom && place < top) || (place >= folded_from && place < folded_to);
         }

@@ -350,8 +350,7 @@ class LineSearch {
         const LineNoise noise = scan.noise_at(known.place);
         MotionLine line;
         line.kind = kind;
-        const double place =
-            refined(scan.sweeps(), noise, scan.peak_near(known.place), 0.5 / scan.longest());
+        const double place = refined(scan.sweeps(), noise, scan.peak_near(known.place), 0.5 / scan.longest());
         const double error = place_error(scan.sweeps(), noise, place);
         (known.axis == Axis::angle ? line.order_output : line.hz) = place;
         (known.axis == Axis::angle ? line.order_stderr : line.hz_stderr) = error;
