@@ -307,11 +307,10 @@ Figure spectrum_figure(const std::string& source, const Spectrum& spectrum, bool
 
 Figure order_spectrum_figure(const std::string& source, const Stack& stack, const MotionLines& lines) {
     std::vector<double> order, amplitude_nm, floor_nm;
-    for (std::size_t k = stack.first; k < stack.ratio.size(); ++k) {
+    for (std::size_t k = stack.first; k < stack.averages.size(); ++k) {
         order.push_back(static_cast<double>(k) * stack.spacing);
-        const bool seen = stack.averages[k] > 0.0;
-        amplitude_nm.push_back(seen ? stack.amplitude_nm[k] : 0.0);
-        floor_nm.push_back(seen ? stack.floor_nm[k] : 0.0);
+        amplitude_nm.push_back(stack.amplitude_nm[k]);
+        floor_nm.push_back(stack.floor_nm[k]);
     }
     Panel panel{
         .title = "", .x = {"order", "cycles per output turn"}, .y = amplitude_axis(amplitude_nm, floor_nm)};

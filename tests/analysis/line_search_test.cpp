@@ -9,7 +9,6 @@
 #include "analysis/traces.hpp"
 #include "ripplenotch/analysis/identification.hpp"
 #include "ripplenotch/analysis/line_search.hpp"
-#include "ripplenotch/analysis/stack.hpp"
 #include "support/catch.hpp"
 
 using namespace ripplenotch;
@@ -211,29 +210,6 @@ TEST_CASE("what is left of a sweep is at right angles to its smooth part") {
             CHECK(std::abs(with[m]) < 1e-7 * std::sqrt(left * size[m]));
     }
 }
-
-TEST_CASE("each mean of a stack is over the sweeps") {
-    const Moved moved;
-    for (const Axis axis : {Axis::angle, Axis::time}) {
-        const Stack whole = stack_sweeps(moved.sweeps, axis, {});
-        // Against the sweeps one by one, each a stack of its own on the same bins.
-        REQUIRE(whole.floors.size() == moved.sweeps.size());
-        for (std::size_t k = whole.first; k < whole.ratio.size(); k += 37) {
-            double square = 0.0, weight = 0.0;
-            for (std::size_t i = 0; i < moved.sweeps.size(); ++i) {
-                const double floor = static_cast<double>(whole.floors[i][k]),
-                             sum = moved.sweeps[i].weight_sum;
-                if (floor == 0.0) continue;
-                square += whole.sweep_weights[i] * 4.0 * floor / (sum * sum);
-                weight += whole.sweep_weights[i];
-            }
-            // The floors are kept as floats.
-            if (weight > 0.0) CHECK(whole.floor_nm[k] == Approx(std::sqrt(square / weight)).epsilon(1e-6));
-        }
-    }
-}
-
-TEST_CASE("of no sweeps there is no stack") { CHECK(stack_sweeps({}, Axis::angle, {}).ratio.empty()); }
 
 namespace {
 

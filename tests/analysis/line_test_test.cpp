@@ -47,7 +47,7 @@ TEST_CASE("the noise floor is the mean power of the noise and is not raised by a
     for (const double f : floor) average += f / 4000.0;
     CHECK_THAT(average, WithinRel(mean, 0.05));
     CHECK(floor[2000] < 2.0 * mean);
-    const auto peaks = significant_peaks({power, 1.0, 1.0, 0}, 0.01);
+    const auto peaks = significant_peaks({power, 1.0, 1.0, 0}, floor, 0.01);
     REQUIRE(peaks.size() == 1);
     CHECK(peaks[0].bin == 2000);
 }
@@ -60,7 +60,8 @@ TEST_CASE("a broad hump is no line") {
         const double u = (static_cast<double>(k) - 1000.0) / 30.0;
         power[k] = 0.5 * (a * a + b * b) * (1.0 + 100.0 * std::exp(-u * u));
     }
-    CHECK(significant_peaks({power, 1.0, 1.0, 0}, 0.01).empty());
+    const PowerSpectrum spectrum{power, 1.0, 1.0, 0};
+    CHECK(significant_peaks(spectrum, noise_floor(spectrum), 0.01).empty());
 }
 
 namespace {
@@ -80,15 +81,25 @@ std::vector<double> flat_noise(std::size_t bins, int averages, unsigned seed) {
 
 }  // namespace
 
-TEST_CASE("near the low end a spectrum that falls by the fourth power of the frequency has no line") {
+TEST_CASE("noise makes a line in one spectrum of a hundred at most, whatever its averages and its low end") {
     std::size_t lines = 0;
-    for (unsigned seed = 0; seed < 200; ++seed) {
-        std::vector<double> power = flat_noise(300, 5, 1000 + seed);
-        for (std::size_t k = 1; k < power.size(); ++k) power[k] *= 1.0 + 1e4 * std::pow(3.0 / double(k), 4);
-        for (const SignificantPeak& peak : significant_peaks({power, 5.0, 1.0, 2, 3}, 0.01))
-            lines += peak.bin < 12 ? 1 : 0;
+    for (const int averages : {1, 3, 10}) {
+        for (unsigned seed = 0; seed < 200; ++seed) {
+            std::vector<double> power = flat_noise(300, averages, 1000 + seed);
+            // As steep as noise behind a resonance.
+            for (std::size_t k = 1; k < power.size(); ++k)
+                power[k] *= 1.0 + 1e4 * std::pow(3.0 / static_cast<double>(k), 4);
+            const PowerSpectrum spectrum{power, static_cast<double>(averages), 1.0, 3, 8};
+            lines += significant_peaks(spectrum, noise_floor(spectrum), 0.01).size();
+        }
     }
-    CHECK(lines <= 4);  // 1 % of 200 logs, and as much again
+    CHECK(lines <= 12);  // 1 % of 600 logs, and as much again
+}
+
+TEST_CASE("the ratio that is exceeded with a chance has that chance") {
+    for (const double chance : {0.1, 1e-3, 1e-6})
+        CHECK_THAT(exceedance({exceeded(chance, {.averages = 3.0, .cells = 6.0}), 3.0, 6.0}),
+                   WithinRel(chance, 1e-6));
 }
 
 TEST_CASE("a running median is the median of each window, whatever way the window goes") {

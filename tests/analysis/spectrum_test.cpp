@@ -6,6 +6,7 @@
 #include "analysis/traces.hpp"
 #include "ripplenotch/analysis/order_map.hpp"
 #include "ripplenotch/analysis/spectrum.hpp"
+#include "ripplenotch/analysis/stack.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "support/catch.hpp"
 
@@ -142,6 +143,24 @@ TEST_CASE("a spectrum has the same bits however many samples are handed over at 
     CHECK(found.psd_nm2_hz == whole.psd_nm2_hz);
     REQUIRE(found.peaks.size() == whole.peaks.size());
     CHECK(found.peaks.front().phase_deg == whole.peaks.front().phase_deg);
+}
+
+TEST_CASE(
+    "a stack of sweeps has an order at its bin, and the floor of the noise below half the sample rate") {
+    auto signal = tests::shaft(tests::straight(0.2, 0.4, 40000), 1000.0);
+    tests::add_line(signal, {80.0, 0.5, 0.4});
+    tests::add_noise(signal, 0.1, 3);
+    const TraceView log = signal.view();
+    const std::vector<Sweep> sweeps = cut_sweeps({&log, 1}, {}).pieces;
+    const Stack stack = stack_sweeps(sweeps);
+    const auto bin = static_cast<std::size_t>(std::lround(80.0 / stack.spacing));
+    CHECK(stack.amplitude_nm[bin] == Approx(0.5).epsilon(0.1));  // between bins it is lower
+    CHECK(static_cast<double>(stack.averages.size()) * stack.spacing < 1.02 * 500.0 / 0.2);
+    double noise = 0.0;
+    for (const Sweep& sweep : sweeps)
+        noise += 0.1 * std::sqrt(4.0 / sweep.effective_samples()) / static_cast<double>(sweeps.size());
+    CHECK(stack.floor_nm[2 * bin] == Approx(noise).epsilon(0.3));
+    CHECK(stack_sweeps({}).averages.empty());
 }
 
 namespace {

@@ -32,14 +32,10 @@ struct SignificantPeak {
 };
 
 /// Local maxima whose false_alarm is at most the one requested, in bin order. Each is compared with the
-/// largest of four floors: 2 to 5, 3 to 12 and 3 to 40 cells away, and the one below it. So the flank of a
-/// broad resonance is no line, and neither is the noise inside a narrow one. Near the low end the lower floor
-/// is the power just outside of the main lobe, or that of a spectrum as steep as behind a resonance. The
-/// floor is estimated from few cells, which the test allows for: the ratio follows an F distribution. Maxima
-/// with fewer than 4 cells around them are not tested.
-[[nodiscard]] std::vector<SignificantPeak> significant_peaks(const PowerSpectrum& spectrum,
-                                                             double false_alarm);
-/// The same where noise_floor(spectrum) is at hand.
+/// larger of two floors, 2 to 5 and 3 to 40 cells away: so the flank of a broad resonance is no line, and
+/// neither is the noise inside a narrow one. The floor is estimated from few cells, which the test allows
+/// for: the ratio follows an F distribution. Maxima with fewer than 4 cells around them are not tested.
+/// `floor` is noise_floor(spectrum).
 [[nodiscard]] std::vector<SignificantPeak> significant_peaks(const PowerSpectrum& spectrum,
                                                              std::span<const double> floor,
                                                              double false_alarm);
@@ -55,7 +51,7 @@ struct PowerOverFloor {
 };
 
 /// The power over a floor, with the averages and cells of `noise`, that noise exceeds with this chance.
-[[nodiscard]] PowerOverFloor exceeded(double chance, PowerOverFloor noise);
+[[nodiscard]] double exceeded(double chance, PowerOverFloor noise);
 
 /// Chance that noise exceeds that ratio.
 [[nodiscard]] double exceedance(const PowerOverFloor& seen);

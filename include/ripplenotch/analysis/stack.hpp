@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Spectra of many sweeps on one grid, against output angle or against time, each sweep normalized by its own
-// noise before they are averaged.
+// The spectrum over the output angle: sums over each sweep, stacked.
 
 #include <cstddef>
 #include <span>
@@ -12,36 +11,32 @@
 namespace ripplenotch {
 
 enum class Axis {
-    angle,  ///< bins are output orders: cycles per output turn
-    time,   ///< bins are hertz
+    angle,  ///< places are output orders: cycles per output turn
+    time,   ///< places are hertz
 };
 
+/// By bin, from `first` on; the order of a bin is its number times the spacing.
 struct Stack {
-    Axis axis = Axis::angle;
-    double spacing = 0.0;               ///< between bins, in orders or hertz
-    double resolution = 0.0;            ///< 1.5 / weighted mean length of the sweeps: width of a Hann line
-    std::vector<double> ratio;          ///< power over noise, weighted mean over sweeps: 1 is noise
-    std::vector<double> averages;       ///< independent averages behind each bin; 0 where no sweep reaches
-    std::vector<double> amplitude_nm;   ///< zero to peak, rms over sweeps
-    std::vector<double> floor_nm;       ///< amplitude of noise alone, rms over sweeps
-    std::vector<double> sweep_weights;  ///< effective samples
-    std::vector<std::vector<float>> floors;  ///< per sweep and bin: mean noise power |S|^2; 0 where not used
-    std::size_t first = 0;                   ///< lowest bin in use
+    double spacing = 0.0;
+    double resolution = 0.0;           ///< 1.5 / weighted mean length of the sweeps: width of a Hann line
+    std::size_t first = 0;             ///< lowest bin in use
+    std::vector<double> averages;      ///< independent averages; 0 where no sweep reaches
+    std::vector<double> amplitude_nm;  ///< zero to peak, rms over sweeps
+    std::vector<double> floor_nm;      ///< amplitude of noise alone, rms over sweeps
 };
 
-struct StackRule {
-    /// Per output turn: order 8 of a ratio of 320, the highest in catalogues.
-    double highest_order = 2560.0;
-};
-
-/// A sweep takes part up to half its sample rate at its slower speeds (lower quartile), beyond which lines
-/// fold back. O(samples + sweeps * bins * log bins).
-[[nodiscard]] Stack stack_sweeps(std::span<const Sweep> sweeps, Axis axis, const StackRule& rule);
+/// Each sweep that moves counts from three cycles in it, which its trend leaves, to half its sample rate, and
+/// by its information. O(samples + sweeps * bins * log bins).
+[[nodiscard]] Stack stack_sweeps(std::span<const Sweep> sweeps);
 
 /// The places of a sweep's samples on an axis: output turns, or seconds from its middle.
-[[nodiscard]] std::span<const double> places(const Sweep& sweep, Axis axis);
+[[nodiscard]] inline std::span<const double> places(const Sweep& sweep, Axis axis) {
+    return axis == Axis::angle ? sweep.turns : sweep.time_s;
+}
 
 /// Length of a sweep on an axis: turns or seconds.
-[[nodiscard]] double length_of(const Sweep& sweep, Axis axis);
+[[nodiscard]] inline double length_of(const Sweep& sweep, Axis axis) {
+    return axis == Axis::angle ? sweep.length_turns : sweep.duration_s;
+}
 
 }  // namespace ripplenotch

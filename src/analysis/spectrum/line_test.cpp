@@ -17,14 +17,11 @@ namespace {
 // noise raises a false alarm somewhat less often than allowed.
 constexpr double tries_per_cell = 1.6;
 
-constexpr double lobe_cells = 4.0 / 3.0;    // half of a Hann line's main lobe: two cycles
-constexpr double fewest_below_cells = 2.0;  // chosen, not derived
-constexpr double guard_cells = 3.0;         // the main lobe of a Hann line and its first side lobe
-constexpr double near_cells = 12.0;  // chosen, not derived: distance from a line, for a floor that slopes
+constexpr double guard_cells = 3.0;  // the main lobe of a Hann line and its first side lobe
 constexpr double far_cells = 40.0;   // chosen, not derived: for a median that is known better
-constexpr double inner_from_cells = 2.0;  // noise through a lightly damped resonance is only a few cells wide
-constexpr double inner_to_cells = 5.0;    // chosen, not derived
-constexpr double fewest_cells = 4.0;      // chosen, not derived
+// Noise through a lightly damped resonance is only a few cells wide.
+constexpr double inner_from_cells = 2.0, inner_to_cells = 5.0;
+constexpr double fewest_cells = 4.0;  // chosen, not derived
 
 /// Continued fraction of the incomplete beta function, by the modified method of Lentz.
 double beta_fraction(double x, double a, double b) {
@@ -57,23 +54,9 @@ double incomplete_beta(double x, double a, double b) {
     return 1.0 - front * beta_fraction(1.0 - x, b, a) / b;
 }
 
-/// Independent averages behind a floor that rises above the noise around it. Noise is averaged over sweeps,
-/// but the residual of the motion itself (the torque of an acceleration, the transient response of a
-/// resonance) is the same in all of them. With the noise 1 and the floor 1 + m, the variance of a mean of
-/// `averages` sweeps is 1 / averages + m^2.
-double averages_of(double averages, double floor_over_noise) {
-    const double common = std::max(0.0, floor_over_noise - 1.0);
-    return (1.0 + common) * (1.0 + common) / (1.0 / averages + common * common);
-}
-
-/// A floor near a bin, from how many cells it is known, and how many independent averages noise has there.
+/// A floor near a bin, and from how many cells it is known.
 struct Floor {
-    double power = 0.0, cells = 0.0, averages = 1.0;
-};
-
-/// A line exceeds every floor of the first list, and one of the second where there are any.
-struct Floors {
-    std::vector<Floor> every, either;
+    double power = 0.0, cells = 0.0;
 };
 
 constexpr double normal_quartile = 0.6745;  // upper quartile of the normal distribution
@@ -84,24 +67,6 @@ double quantile_over_mean(double averages, double normal) {
     const double variance = 1.0 / (9.0 * averages);
     const double cube_root = 1.0 - variance + normal * std::sqrt(variance);
     return cube_root * cube_root * cube_root;
-}
-
-/// Independent averages behind values of noise over their floor, by their scatter below the median, where
-/// lines are not seen. The residual of a motion in each of its repetitions scatters as a single one does. The
-/// cube root of a mean of n exponentials has the mean 1 - s^2 and the deviation s, s^2 = 1 / (9 n).
-double averages_by_scatter(std::vector<double> values) {
-    const auto at = [&](double share) {
-        const auto place =
-            values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-        std::nth_element(values.begin(), place, values.end());
-        return *place;
-    };
-    const double middle = at(0.5), lower = at(0.25);
-    if (!(middle > 0.0) || !(lower < middle)) return std::numeric_limits<double>::infinity();
-    const double spread =
-        (1.0 - portable::exp(portable::log(lower / middle) / 3.0)) / normal_quartile;  // s / (1 - s^2)
-    const double deviation = 0.5 * (std::sqrt(1.0 + 4.0 * spread * spread) - 1.0) / spread;
-    return 1.0 / (9.0 * deviation * deviation);
 }
 
 constexpr double uncensored_share =
@@ -128,87 +93,32 @@ Floor floor_from(std::vector<double>& values, double averages, double bins_per_c
     double sum = static_cast<double>(values.size() - kept) * *last;
     for (auto value = values.begin(); value <= last; ++value) sum += *value;
     return {sum / static_cast<double>(kept) / censored_expectation(averages),
-            static_cast<double>(kept) / bins_per_cell, averages};
+            static_cast<double>(kept) / bins_per_cell};
 }
 
 std::size_t bins_of(const PowerSpectrum& s, double cells) {
     return static_cast<std::size_t>(std::ceil(cells * s.bins_per_cell));
 }
 
-/// The floors about a bin: around it on both sides, near and far, and below it, since spectra of motion fall
-/// steeply from their low end. Both sides shrink alike near an end of the spectrum: one flank of a steep
-/// floor would bias the estimate. Near the low end no cells lie below. Either what lies just outside of the
-/// main lobe there (few cells) has to do, or what lies nearest above, raised by the fourth power of the
-/// frequency: noise falls no steeper than behind a resonance, so that it is no more than that here. Empty
-/// where too few cells lie around the bin.
-Floors floors_about(const PowerSpectrum& s, std::span<const double> running, std::size_t bin) {
-    const double averages = s.averages;
+/// The floors around a bin, near and far. Both sides shrink alike near an end of the spectrum, where one
+/// flank of a steep floor would bias the estimate, down to so few cells that the other side alone has to do.
+/// Empty where too few cells lie around the bin.
+std::vector<Floor> floors_about(const PowerSpectrum& s, std::size_t bin) {
     const std::size_t below = bin - s.first, above = s.power.size() - 1 - bin;
-    const std::size_t guard = bins_of(s, guard_cells), fewest = guard + bins_of(s, fewest_cells);
-    Floors floors;
+    const std::size_t guard = bins_of(s, guard_cells), fewest = bins_of(s, fewest_cells);
     const auto beyond_guard = [guard](std::size_t room) { return room > guard ? room - guard : 0; };
-    if (beyond_guard(below) + beyond_guard(above) < bins_of(s, fewest_cells)) return floors;
-    std::vector<double> values;
-    const auto add_below = [&](std::size_t from, std::size_t to) {
-        for (std::size_t d = from; d <= std::min(to, below); ++d) values.push_back(s.power[bin - d]);
-    };
-    const auto add_above = [&](std::size_t from, std::size_t to) {
-        for (std::size_t d = from; d <= std::min(to, above); ++d) values.push_back(s.power[bin + d]);
-    };
-    double independent = 1.0;
-    const auto floor = [&] {
-        Floor found = floor_from(values, averages, s.bins_per_cell);
-        found.averages = averages_of(independent, found.power / running[bin]);
-        return found;
-    };
+    std::vector<Floor> floors;
+    if (beyond_guard(below) + beyond_guard(above) < fewest) return floors;
     const std::size_t shorter = std::min(below, above), longer = std::max(below, above);
-    const std::size_t reach = shorter >= fewest ? shorter : std::min(bins_of(s, near_cells), longer);
-    {
-        const std::size_t end = std::min(bins_of(s, far_cells), reach);
-        for (std::size_t d = guard; d <= end; ++d) {
-            if (d <= below) values.push_back(s.power[bin - d] / running[bin - d]);
-            if (d <= above) values.push_back(s.power[bin + d] / running[bin + d]);
+    for (const auto& [from, to] : {std::pair{inner_from_cells, inner_to_cells}, {guard_cells, far_cells}}) {
+        const std::size_t reach = std::min(bins_of(s, to), shorter >= guard + fewest ? shorter : longer);
+        std::vector<double> values;
+        for (std::size_t d = bins_of(s, from); d <= reach; ++d) {
+            if (d <= below) values.push_back(s.power[bin - d]);
+            if (d <= above) values.push_back(s.power[bin + d]);
         }
-        if (!values.empty())
-            independent = std::clamp(averages_by_scatter(std::move(values)), 1.0, std::max(1.0, averages));
+        if (!values.empty()) floors.push_back(floor_from(values, s.averages, s.bins_per_cell));
     }
-    for (const auto& [from, to] :
-         {std::pair{inner_from_cells, inner_to_cells}, {guard_cells, near_cells}, {guard_cells, far_cells}}) {
-        values.clear();
-        const std::size_t end = std::min(bins_of(s, to), reach);
-        add_below(bins_of(s, from), end);
-        add_above(bins_of(s, from), end);
-        if (!values.empty()) floors.every.push_back(floor());
-    }
-    // Where the nearest cells are above those further out, the noise rises towards the bin: by as much again.
-    if (below >= fewest && floors.every.size() > 1 && floors.every[0].power > floors.every[1].power)
-        floors.every[0].power *= floors.every[0].power / floors.every[1].power;
-    values.clear();
-    if (below >= fewest) {
-        add_below(guard, bins_of(s, near_cells));
-        if (!values.empty()) floors.every.push_back(floor());
-        return floors;
-    }
-    // The residual of the motion is the same in all repetitions: one average, over a floor that is known as
-    // well as the noise is.
-    const auto add_limit = [&] {
-        if (values.empty()) return;
-        Floor limit = floor_from(values, averages, s.bins_per_cell);
-        limit.cells *= independent;
-        limit.averages = 1.0;
-        floors.either.push_back(limit);
-    };
-    // The trend takes noise with it just above the first bins.
-    if (below >= bins_of(s, lobe_cells + fewest_below_cells)) add_below(bins_of(s, lobe_cells), below);
-    add_limit();
-    values.clear();
-    for (std::size_t d = bins_of(s, inner_from_cells); d <= std::min(bins_of(s, inner_to_cells), above);
-         ++d) {
-        const double rise = static_cast<double>(bin + d) / static_cast<double>(bin);
-        values.push_back(s.power[bin + d] * rise * rise * rise * rise);
-    }
-    add_limit();
-    if (floors.either.empty()) floors.every.clear();
     return floors;
 }
 
@@ -283,44 +193,34 @@ std::vector<double> noise_floor(const PowerSpectrum& spectrum) {
     return floor;
 }
 
-std::vector<SignificantPeak> significant_peaks(const PowerSpectrum& spectrum, double false_alarm) {
-    return significant_peaks(spectrum, noise_floor(spectrum), false_alarm);
-}
-
 std::vector<SignificantPeak> significant_peaks(const PowerSpectrum& spectrum, std::span<const double> floor,
                                                double false_alarm) {
     std::vector<SignificantPeak> peaks;
     const auto& power = spectrum.power;
     if (power.size() < spectrum.first + 8) return peaks;
     const double tries = tries_of(spectrum);
+    const auto chance_over = [&](std::size_t k, const Floor& level) {
+        return tries *
+               exceedance(
+                   {.ratio = power[k] / level.power, .averages = spectrum.averages, .cells = level.cells});
+    };
     for (std::size_t k = std::max(spectrum.first + 1, spectrum.searched); k + 1 < power.size(); ++k) {
         if (power[k] < power[k - 1] || power[k] <= power[k + 1]) continue;
         // A cheap sieve with a wide margin: the floors below are seldom less than a quarter of the running
         // one.
-        const double averages = spectrum.averages, rough = 4.0 * power[k] / floor[k];
-        if (rough < 2.0 || tries * exceedance({.ratio = rough, .averages = averages, .cells = 1e6}) > 1.0)
-            continue;
-        const Floors floors = floors_about(spectrum, floor, k);
-        if (floors.every.empty()) continue;
-        const auto chance_over = [&](const Floor& level) {
-            return tries *
-                   exceedance(
-                       {.ratio = power[k] / level.power, .averages = level.averages, .cells = level.cells});
-        };
+        if (chance_over(k, {0.25 * floor[k], 1e6}) > 1.0) continue;
         SignificantPeak peak{k, 0.0, 0.0};
-        for (const Floor& level : floors.every) {
+        const std::vector<Floor> floors = floors_about(spectrum, k);
+        for (const Floor& level : floors) {
             peak.floor = std::max(peak.floor, level.power);
-            peak.false_alarm = std::max(peak.false_alarm, chance_over(level));
+            peak.false_alarm = std::max(peak.false_alarm, std::min(1.0, chance_over(k, level)));
         }
-        double least = floors.either.empty() ? 0.0 : 1.0;
-        for (const Floor& level : floors.either) least = std::min(least, chance_over(level));
-        peak.false_alarm = std::min(1.0, std::max(peak.false_alarm, least));
-        if (peak.false_alarm <= false_alarm) peaks.push_back(peak);
+        if (!floors.empty() && peak.false_alarm <= false_alarm) peaks.push_back(peak);
     }
     return peaks;
 }
 
-PowerOverFloor exceeded(double chance, PowerOverFloor noise) {
+double exceeded(double chance, PowerOverFloor noise) {
     const auto is_below = [&](double ratio) {
         noise.ratio = ratio;
         return exceedance(noise) > chance;
@@ -328,12 +228,11 @@ PowerOverFloor exceeded(double chance, PowerOverFloor noise) {
     double high = 1.0;
     while (is_below(high) && high < 1e100) high *= 2.0;
     double low = 0.5 * high;
-    for (int halving = 0; halving < 20; ++halving) {
+    for (int halving = 0; halving < 50; ++halving) {
         const double middle = 0.5 * (low + high);
         (is_below(middle) ? low : high) = middle;
     }
-    noise.ratio = high;
-    return noise;
+    return high;
 }
 
 double excess_scatter(double squares, double freedom) {

@@ -128,8 +128,7 @@ RippleEstimate estimate_of(double value, const OrderSegments& order, std::size_t
     // logarithm of the noise, estimated from the bins to one side, in this log and in the one that the limit
     // applies to: the A^2 at which the lower percentile of the power is the threshold solves a quadratic.
     const double level =
-        exceeded(ripple_false_alarm / tries, {.averages = averages, .cells = median_efficiency * noise.bins})
-            .ratio;
+        exceeded(ripple_false_alarm / tries, {.averages = averages, .cells = median_efficiency * noise.bins});
     const double above = level - noise.power / std::max(noise.along_slope, 1e-300);
     const double known = 0.5 * median_efficiency * noise.bins * averages;
     const double spread = normal_99 * normal_99 / averages;

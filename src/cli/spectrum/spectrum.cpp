@@ -90,7 +90,7 @@ std::string frequency_csv(const Spectrum& s) {
 std::string order_csv(const Stack& stack) {
     std::string text = "order_output,amplitude_nm,floor_nm,averages\n";
     const double amplitude_nm = largest_of(stack.amplitude_nm);
-    for (std::size_t k = stack.first; k < stack.ratio.size(); ++k) {
+    for (std::size_t k = stack.first; k < stack.averages.size(); ++k) {
         append_cells(text, {static_cast<double>(k) * stack.spacing,
                             to_digits_in_row({stack.amplitude_nm[k], amplitude_nm}),
                             to_digits_in_row({stack.floor_nm[k], amplitude_nm}), stack.averages[k]});
@@ -261,7 +261,7 @@ Result order_result(const SpectrumRequest& request, const TraceView& trace, cons
     if (request.segment) raise<UsageError>("--segment belongs to --domain frequency");
     MotionLinesOptions options;
     options.false_alarm = request.false_alarm;
-    OrderSpectrum result{stack_sweeps(cut_sweeps({&trace, 1}, options.sweeps).pieces, Axis::angle, {}),
+    OrderSpectrum result{stack_sweeps(cut_sweeps({&trace, 1}, options.sweeps).pieces),
                          find_motion_lines({&trace, 1}, options), doubt};
     if (result.lines.sweeps == 0) {
         raise<DataError>(
