@@ -177,6 +177,8 @@ LineScan::LineScan(std::span<const Sweep> sweeps, std::span<const TraceView> log
     first_bin_ = static_cast<std::size_t>(std::ceil(1.0 / step_cells));
     first_ = static_cast<double>(first_bin_) * step_;
     count_ = static_cast<std::size_t>(highest_ / step_) + 1 - first_bin_;
+    for (std::size_t k = 0; k < count_; ++k) ln_place_.push_back(place(k));
+    portable::log(ln_place_, ln_place_);
     const double smooth = std::max(range.smooth, cycles_of_lowest / longest_);
     on_two_cores(pieces_.size(), [&](std::size_t i) {
         pieces_[i].splines = splines_of(pieces_[i].length, std::max(smooth, pieces_[i].bottom));
@@ -468,10 +470,11 @@ LineScan::Noise LineScan::noise_of(std::span<const double> power, double length,
     std::vector<std::size_t> from;
     for (std::size_t k = 0; k < power.size(); k += apart) {
         if (place(k) < bottom || !(power[k] > 0.0)) continue;
-        x.push_back(portable::log(place(k)));
-        y.push_back(portable::log(power[k]));
+        x.push_back(ln_place_[k]);
+        y.push_back(power[k]);
         from.push_back(k);
     }
+    portable::log(y, y);
     const std::vector<double> zeros(power.size());
     Noise noise{std::vector<double>(power.size(), 1e300), zeros, zeros, zeros};
     if (x.empty()) return noise;
@@ -503,11 +506,12 @@ LineScan::Noise LineScan::noise_of(std::span<const double> power, double length,
         const auto value = [&](std::size_t s) {
             return fits.at(s)[i].first + part * (fits.at(s)[next].first - fits.at(s)[i].first);
         };
-        noise.power[k] = portable::exp(value(0));
+        noise.power[k] = value(0);
         noise.variance[k] = fits[0][i].second;
         noise.rise[k] = value(1) - value(0);
         noise.rise_variance[k] = fits[1][i].second + fits[0][i].second;
     }
+    portable::many_exp(std::span(noise.power).subspan(from.front()));
     return noise;
 }
 
@@ -584,6 +588,34 @@ double LineScan::score_at(double power, const Noise& noise, const Humps& humps, 
                                  humps.chance[k] * portable::exp(least - with));
 }
 
+// score_at() of all places, by many logarithms at once.
+std::vector<double> LineScan::scores(std::span<const double> power, const Noise& noise,
+                                     const Humps& humps) const {
+    std::vector<double> without(count_), with(count_), part(count_);
+    for (std::size_t k = 0; k < count_; ++k) part[k] = -humps.rise[k];
+    portable::many_exp(part);
+    for (std::size_t k = 0; k < count_; ++k) {
+        const double x = power[k] / noise.power[k];
+        without[k] = 1.0 + x * noise.variance[k];
+        with[k] = 1.0 + x * part[k] * (noise.variance[k] + humps.variance[k]);
+    }
+    portable::log(without, without);
+    portable::log(with, with);
+    for (std::size_t k = 0; k < count_; ++k) {
+        without[k] /= std::max(noise.variance[k], 1e-300);
+        with[k] /= std::max(noise.variance[k] + humps.variance[k], 1e-300);
+        part[k] = -std::min(std::abs(with[k] - without[k]), 600.0);
+    }
+    portable::many_exp(part);
+    for (std::size_t k = 0; k < count_; ++k) {
+        const double chance = humps.chance[k];
+        part[k] = with[k] > without[k] ? 1.0 - chance + chance * part[k] : (1.0 - chance) * part[k] + chance;
+    }
+    portable::log(part, part);
+    for (std::size_t k = 0; k < count_; ++k) part[k] = std::min(with[k], without[k]) - part[k];
+    return part;
+}
+
 LineScan::Listed LineScan::listed(std::span<Spectrum> spectra, bool halves) const {
     Listed list;
     for (const Piece& piece : pieces_) {
@@ -607,11 +639,11 @@ LineScan::Summed LineScan::summed(std::span<Spectrum> spectra, bool halves) cons
         if (halves && !piece.in_halves) continue;
         for (int part = 0; part < (halves ? 2 : 1); ++part) {
             const Spectrum& one = spectra[next++];
+            const std::vector<double> score = scores(one.power, one.noise, sum.humps);
             for (std::size_t k = 0; k < count_; ++k) {
                 if (!piece.shows(place(k))) continue;
-                const double score = score_at(one.power[k], one.noise, sum.humps, k);
-                sum.scores[k] += score;
-                sum.best[k] = std::max(sum.best[k], score);
+                sum.scores[k] += score[k];
+                sum.best[k] = std::max(sum.best[k], score[k]);
                 sum.sweeps[k] += 1.0;
             }
         }
@@ -662,7 +694,8 @@ LineScan::OnePhase LineScan::of_one_phase() const {
         for (double& one : noise.power) one = std::max(one, 1.0);
         Humps& humps = found.humps.at(forward ? 0 : 1);
         humps = humps_of({{power}, {&noise}, {&everywhere_}});
-        for (std::size_t k = 0; k < count_; ++k) found.score[k] += score_at(power[k], noise, humps, k);
+        const std::vector<double> score = scores(power, noise, humps);
+        for (std::size_t k = 0; k < count_; ++k) found.score[k] += score[k];
     }
     for (double& one : found.score) one = tail_of_sum(one, directions);
     return found;

@@ -159,6 +159,8 @@ class LineScan {
     /// -ln of the probability that noise has that power at a place, with a hump there or without.
     [[nodiscard]] static double score_at(double power, const Noise& noise, const Humps& humps, std::size_t k,
                                          double excess = 0.0);
+    [[nodiscard]] std::vector<double> scores(std::span<const double> power, const Noise& noise,
+                                             const Humps& humps) const;
     [[nodiscard]] Listed listed(std::span<Spectrum> spectra, bool halves) const;
     [[nodiscard]] Summed summed(std::span<Spectrum> spectra, bool halves) const;
     [[nodiscard]] OnePhase of_one_phase() const;
@@ -180,6 +182,7 @@ class LineScan {
     double usual_ = 0.0;  ///< length of a sweep: three of four are longer
     double first_ = 0.0, step_ = 0.0;
     std::size_t count_ = 0, first_bin_ = 0;
+    std::vector<double> ln_place_;  ///< logarithm of each place
     std::vector<Spectrum> whole_, halves_;
     Summed free_, varying_;
     OnePhase locked_;

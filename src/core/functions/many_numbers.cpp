@@ -74,6 +74,18 @@ struct Exponentials {
     }
 };
 
+struct Logarithms {
+    template <class Lanes>
+    RIPPLENOTCH_INLINED static void run(const double* from, std::size_t fours, double* to) {
+        for (std::size_t k = 0; k < fours * lane_count; k += lane_count) {
+            Lanes x;
+            load(x, from + k);
+            to_logarithm(x);
+            store(to + k, x);
+        }
+    }
+};
+
 struct HyperbolicTangents {
     template <class Lanes>
     RIPPLENOTCH_INLINED static void run(const double* from, std::size_t fours, double* to) {
@@ -136,6 +148,13 @@ void exp(std::span<const double> x, std::span<double> value) {
     const std::size_t fours = fast ? x.size() / lane_count : 0;
     in_lanes<Exponentials>(x.data(), fours, value.data());
     for (std::size_t k = fours * lane_count; k < x.size(); ++k) value[k] = exp(x[k]);
+}
+
+void log(std::span<const double> x, std::span<double> value) {
+    const bool fast = all_are(x, [](double number) { return (number > 1e-300) & (number < 1e300); });
+    const std::size_t fours = fast ? x.size() / lane_count : 0;
+    in_lanes<Logarithms>(x.data(), fours, value.data());
+    for (std::size_t k = fours * lane_count; k < x.size(); ++k) value[k] = log(x[k]);
 }
 
 void tanh(std::span<const double> x, std::span<double> value) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Exponentials, powers and phasors of many numbers at once: the bits of ripplenotch/core/portable_math.hpp
-// for each, several times faster. Further spans are as long as the first, or longer; exp, tanh and pow may
+// Exponentials, logarithms, powers and phasors of many numbers at once: the bits of ripplenotch/core/portable_math.hpp
+// for each, several times faster. Further spans are as long as the first, or longer; exp, log, tanh and pow may
 // write over what they read.
 
 #include <algorithm>
@@ -12,6 +12,7 @@
 namespace ripplenotch::portable {
 
 void exp(std::span<const double> x, std::span<double> value);
+void log(std::span<const double> x, std::span<double> value);
 void tanh(std::span<const double> x, std::span<double> value);
 void pow(std::span<const double> x, double p, std::span<double> value);
 /// Cosines and sines of angles in radians, those of phasor().
