@@ -397,7 +397,8 @@ TEST_CASE("many phasors at once have the bits of each alone") {
     }
 }
 
-TEST_CASE("many exponentials, hyperbolic tangents and powers at once have the bits of each alone") {
+TEST_CASE(
+    "many exponentials, logarithms, hyperbolic tangents and powers at once have the bits of each alone") {
     std::mt19937_64 random(12);
     const auto same = [](const std::vector<double>& numbers, const std::vector<double>& values, auto one) {
         for (std::size_t k = 0; k < numbers.size(); ++k) {
@@ -417,6 +418,8 @@ TEST_CASE("many exponentials, hyperbolic tangents and powers at once have the bi
                 const Width here(wide);
                 portable::exp(numbers, values);
                 same(numbers, values, [](double x) { return portable::exp(x); });
+                portable::log(sizes, values);
+                same(sizes, values, [](double x) { return portable::log(x); });
                 portable::tanh(numbers, values);
                 same(numbers, values, [](double x) { return portable::tanh(x); });
                 for (const double p : {0.1, 0.5, 0.7, 1.0, 2.0, 3.999, -1.5, 7.3}) {

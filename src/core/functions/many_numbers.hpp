@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Exponentials, logarithms, powers and phasors of many numbers at once: the bits of ripplenotch/core/portable_math.hpp
-// for each, several times faster. Further spans are as long as the first, or longer; exp, log, tanh and pow may
-// write over what they read.
+// Exponentials, logarithms, powers and phasors of many numbers at once: the bits of
+// ripplenotch/core/portable_math.hpp for each, several times faster. Further spans are as long as the first,
+// or longer; exp, log, tanh and pow may write over what they read.
 
 #include <algorithm>
 #include <array>
