@@ -145,26 +145,56 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 5> command_g
      {"trend", "Fleets"},
      {"report", "Report"}}};
 
-// The library hides options by taking their names away, which command lines that are printed need.
+// What `--help` shows: a screen of 40 lines of 100 columns. Each option has the first clause of its
+// description, and those of a form of the command ("--track: ...") are left to `--help-all`. The library
+// hides options by taking their names away, which command lines that are printed need.
 class ShortHelp : public CLI::Formatter {
   public:
+    ShortHelp() { column_width(help_column); }
     std::string make_group(std::string group, bool is_positional,
                            std::vector<const CLI::Option*> options) const override {
-        return group == reading_group ? "" : CLI::Formatter::make_group(group, is_positional, options);
+        if (group == reading_group) return "";
+        std::erase_if(options, [](const CLI::Option* option) {
+            return option->check_name("--help") || option->get_description().rfind("--", 0) == 0;
+        });
+        return CLI::Formatter::make_group(group, is_positional, options);
     }
+    std::string make_option_desc(const CLI::Option* option) const override {
+        constexpr std::size_t room = 100 - help_column;
+        const std::string& whole = option->get_description();
+        std::string first = whole.substr(0, whole.find("; "));
+        const auto is_open = [&] {
+            return std::count(first.begin(), first.end(), '(') > std::count(first.begin(), first.end(), ')');
+        };
+        while (first.size() > room || is_open()) {
+            const std::size_t end = first.find_last_of(is_open() ? "(" : ",:(", first.size() - 2);
+            if (end == std::string::npos || end < shortest_clause) break;
+            first.resize(first[end - 1] == ' ' ? end - 1 : end);
+        }
+        return first;
+    }
+    std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const override {
+        std::string text = CLI::Formatter::make_help(app, std::move(name), mode);
+        for (std::size_t at = text.find("\n\n\n"); at != std::string::npos; at = text.find("\n\n\n"))
+            text.erase(at, 1);
+        return text;
+    }
+
+  private:
+    static constexpr std::size_t help_column = 40, shortest_clause = 14;
 };
 
 // How a log is read fills half a page, which is shown only where it is asked for.
-void hide_reading(CLI::App& command) {
+void shorten_help(CLI::App& command) {
     const auto options = command.get_options();
-    if (std::none_of(options.begin(), options.end(),
-                     [](const CLI::Option* option) { return option->get_group() == reading_group; }))
-        return;
+    const bool reads = std::any_of(options.begin(), options.end(), [](const CLI::Option* option) {
+        return option->get_group() == reading_group;
+    });
     command.formatter(std::make_shared<ShortHelp>());
-    command.footer(
-        fmt::format("How the log is read (--format, --joint, --columns, --unit, --scale, --side, --from, "
-                    "--to, ...): {} {} {}\n\n{}",
-                    tool_name, command.get_name(), whole_help, command.get_footer()));
+    command.footer(fmt::format(
+        "{}: {} {} {}\n\n{}",
+        reads ? "How the log is read (--columns, --unit, --joint, ...), and all else" : "All of each option",
+        tool_name, command.get_name(), whole_help, command.get_footer()));
 }
 
 // The options of all commands, or of those that the words name.
@@ -190,7 +220,7 @@ void declare(CLI::App& app, const CommandWords& words, bool all, bool whole, std
             for (const auto& check : parsed.after_parse) check();
             parsed.check_files();
         });
-        if (!whole) hide_reading(*sub);
+        if (!whole) shorten_help(*sub);
     }
 }
 

@@ -4,18 +4,46 @@
 // without names.
 #include <fmt/format.h>
 
+#include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <numbers>
 #include <string>
 #include <string_view>
+#include <vector>
 
-#include "benchmark.hpp"
 #include "ripplenotch/core/number.hpp"
 
 namespace ripplenotch::bench {
 namespace {
 
 enum class Format { six, shortest, npy };
+
+struct Sample {
+    double time_s, velocity_deg_s, torque_nm;
+};
+
+/// Samples of a joint, 2000 a second: speed through all bands of a table up to 166 deg/s, ripple at orders 1
+/// and 2 of a gear of 40, noise from a linear congruential generator. Joints differ in where their motion
+/// begins.
+class BenchSignal {
+  public:
+    explicit BenchSignal(std::size_t joint) : joint_(static_cast<double>(joint)), seed_(joint + 1) {}
+    Sample next() {
+        const double t = static_cast<double>(count_++) / 2000.0, at = t + 10.0 * joint_;
+        const double speed = 166.0 * std::sin(0.314 * at) * std::sin(0.17 * at + 1.0);
+        motor_ += 40.0 * speed * std::numbers::pi / 180.0 / 2000.0;
+        seed_ = seed_ * 16807 % 2147483647;
+        const double noise = static_cast<double>(seed_) / 2147483647.0 - 0.5;
+        return {t, speed,
+                speed / 52.0 + 0.8 * std::sin(motor_) + 0.35 * std::sin(2.0 * motor_ + 1.0) + 0.2 * noise};
+    }
+
+  private:
+    double joint_, motor_ = 0.0;
+    std::uint64_t seed_, count_ = 0;
+};
 
 std::string head(Format format, std::size_t joints, std::size_t rows) {
     if (format == Format::npy) {
@@ -51,7 +79,7 @@ void append(std::string& text, double value, Format format) {
 
 void append_row(std::string& text, std::vector<BenchSignal>& joints, Format format) {
     for (std::size_t j = 0; j < joints.size(); ++j) {
-        const BenchSignal::Sample sample = joints[j].next();
+        const Sample sample = joints[j].next();
         if (j == 0) {
             if (format == Format::six)
                 append_fixed(text, sample.time_s, 4);

@@ -5,9 +5,8 @@ import csv
 import io
 import json
 import math
-import unittest
 
-from commands import COMMANDS, GEAR, OF_A_LOG, Case, SharedCase, asked, ended
+from commands import GEAR, OF_A_LOG, Case, SharedCase, asked, ended
 
 # Those that take several joints, with what each gives: a document with `joints`, or CSV with a column `joint`.
 LISTS = {
@@ -269,7 +268,3 @@ class Columns(Case):
                            ("temperature_degc", "not used: its name"), ("note_19", "not used: its name")):
             self.assertRegex(listed, rf"(?m)^ +\d+  {name} +{said}")
         self.assertRegex(listed, r"(?m)^ +\d+  j2_torque_percent +not used: ")
-
-
-if __name__ == "__main__":
-    unittest.main()

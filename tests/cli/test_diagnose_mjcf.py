@@ -85,30 +85,6 @@ class Joint(Case):
 class Written(Joint):
     RATE = "250Hz"  # what is written is read here, not driven along the log
 
-    def test_values_are_those_of_the_model_in_units_of_rad(self):
-        self.logged(*EFFECTS)
-        self.model()
-        found = self.diagnosed("improved.xml")
-        self.assertEqual(found["mjcf"]["not_held"], [])
-        values = {entry["effect"]: entry for entry in found["model"]["effects"] if entry["effect"] != "ripple"}
-        joint = self.root("improved.xml").find(".//joint")
-        steps = [joint, self.root("improved.xml").find(".//tendon/fixed")]
-        self.assertAlmostEqual(sum(float(step.get("frictionloss")) for step in steps), values["coulomb-friction"]["torque_nm"], 5)
-        self.assertAlmostEqual(float(joint.get("damping")), math.degrees(values["viscous-friction"]["coefficient_nm_per_deg_s"]), 5)
-        body = self.root("improved.xml").find(".//inertial")
-        place = [float(word) for word in body.get("pos").split()]
-        mass = float(body.get("mass"))
-        self.assertAlmostEqual(9.81 * mass * math.hypot(place[0], place[2]), values["gravity"]["amplitude_nm"], 5)
-        self.assertAlmostEqual(math.degrees(math.atan2(place[2], place[0])), values["gravity"]["phase_deg"], 3)
-        self.assertAlmostEqual(float(joint.get("armature")) + mass * (place[0] ** 2 + place[2] ** 2),
-                               values["inertia"]["inertia_kgm2"], 5)
-        poles = sorted(float(motor.get("cogging").split()[1]) for motor in self.root("improved.xml").iter("dcmotor") if motor.get("cogging"))
-        self.assertEqual(poles, [3, 100, 200])
-        stiffness, damping, sliding, sticking, _ = map(float, self.root("improved.xml").find(".//dcmotor[@lugre]").get("lugre").split())
-        self.assertAlmostEqual(sliding, values["hysteresis"]["torque_nm"], 5)
-        self.assertEqual((damping, sticking), (0.0, sliding))
-        self.assertAlmostEqual(math.degrees(sliding / stiffness), values["hysteresis"]["width_deg"], 4)
-
     def test_what_has_no_place_is_in_the_story_the_json_and_the_file(self):
         self.logged("inertia,inertia_kgm2=0.45", "offset,torque_nm=0.5", "delay,delay_s=6ms")
         self.model()
@@ -121,12 +97,6 @@ class Written(Joint):
         for part in found["mjcf"]["not_held"]:
             self.assertIn(f"not held: {part['effect']}: {part['reason']}", comment)
             self.assertIn(f"improved.mjcf: not held: {part['effect']}: {part['reason']}", story)
-
-    def test_other_kinds_of_names_are_refused(self):
-        self.logged("inertia,inertia_kgm2=0.45")
-        self.model()
-        refused = self.run_tool("diagnose", "log.csv", "--model", "model.json", "--improved-model", "improved.csv", code=2)
-        self.assertIn("name it .json, .xml or .mjcf", refused.stderr)
 
 
 @unittest.skipUnless(MUJOCO, "no node with @mujoco/mujoco; RIPPLENOTCH_MUJOCO names a folder that has it")

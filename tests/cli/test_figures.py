@@ -54,7 +54,7 @@ class Figures(Case):
         names = [json.loads((FIGURES / f"{name}.json").read_text())["name"] for name in shown]
         for name, command in listed:
             self.assertIn(name, names, f"docs/figures/README.md has no picture of figure {name}")
-            help_text = run(command, "--help").stdout
+            help_text = run(command, "--help-all").stdout
             self.assertRegex(help_text, rf"as a picture \([^)]*\b{name}\b", command)
         self.assertEqual(set(names), {name for name, _ in listed}, "src/figure/figures.def")
 

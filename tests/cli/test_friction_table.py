@@ -74,16 +74,6 @@ class FrictionTable(Case):
                         low, high = value["ci95"]
                         self.assertLess(abs(value["value"] - viscous_difference), high - low)
 
-    def test_the_story_has_every_value_its_unit_and_what_was_not_examined(self):
-        done = self.table(table(both_ways(SPEEDS), random.Random(6)))
-        self.assertEqual((done.returncode, done.stderr), (0, ""))
-        self.assertIn("Friction: coulomb-friction, viscous-friction; residual", done.stdout)
-        self.assertRegex(done.stdout, r"torque_nm = 0\.\d+ \[0\.\d+, 0\.\d+\] Nm")
-        self.assertRegex(done.stdout, r"coefficient_nm_per_deg_s = 0\.0\d+ \[0\.0\d+, 0\.0\d+\] Nm/\(deg/s\)")
-        self.assertIn("24 rows from 0.5 to 90 deg/s, 12 in positive and 12 in negative direction", done.stdout)
-        self.assertIn("would be found at Stribeck speeds of", done.stdout)
-        self.assertIn("not examined: load-friction", done.stdout)
-
     def test_without_slow_rows_or_with_one_direction_that_is_said(self):
         fast = self.found(table(both_ways([60, 70, 80, 90]), random.Random(7)))
         self.assertIn("stribeck-friction", [one["effect"] for one in fast["undecidable"]])

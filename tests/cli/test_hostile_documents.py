@@ -4,7 +4,6 @@
 import json
 
 from commands import SOURCE, TOOL, Case, ended, good, sanitized
-from commands import SOURCE, TOOL, Case, sanitized
 from prove_trust import documents
 
 LONGEST_S = 10.0 if sanitized(TOOL) else 2.0  # a sanitizer takes time of its own: 2.1 s were seen

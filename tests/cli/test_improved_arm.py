@@ -3,7 +3,6 @@
 
 import hashlib
 import json
-import unittest
 
 from commands import SharedCase, ended, good
 from test_diagnose_arm import DH, DOWN, write_log

@@ -1,42 +1,23 @@
 # SPDX-License-Identifier: MIT
 """ripplenotch map as users meet it, from a log to a map to a filter without delay."""
 
-import functools
 import json
 import math
-import random
 import shutil
 import subprocess
 import unittest
 
 import commands
 from commands import ended, run
+from logs import map_log, to_and_fro
 
 GEAR = ["--gear-ratio", "100", "--orders", "1,2"]
 
 
-@functools.cache
-def motion(seed):
-    """Row by row: time, velocity, position, slow torque, the motor's angle in rad, noise."""
-    draw, position, before, rows = random.Random(seed), 3.0, None, []
-    for k in range(20000):
-        t = k / 1000.0
-        v = 80 * math.sin(0.9 * t + seed) + 30 * math.sin(0.37 * t)
-        position += 0.0 if before is None else (before + v) / 2000.0
-        before = v
-        rows.append((t, v, position, 6 * math.sin(0.5 * t), math.radians(100 * position), draw.gauss(0, 0.05)))
-    return rows
-
-
-def write_log(path, seed, shift_deg=0.0, ripple=1.0, header="time_s,velocity_deg_s,torque_nm,position_deg", torque=True):
-    """Ripple of 0.8 Nm (order 1, phase 30 deg) and 0.5 Nm (order 2) at a gear ratio of 100; returns the slow torque."""
-    with open(path, "w") as file:
-        file.write(header + "\n")
-        for t, v, position, slow, theta, noise in motion(seed):
-            nm = slow + ripple * (0.8 * math.cos(theta + math.radians(30)) + 0.5 * math.cos(2 * theta)) + noise
-            cells = [t, v, nm, position + shift_deg]
-            file.write(",".join(f"{cell:.6f}" for cell in cells[:len(header.split(","))]) + "\n")
-    return [row[3] for row in motion(seed)]
+def write_log(path, seed, **more):
+    """The slow torque of a log that is written."""
+    path.write_text(map_log(seed, **more))
+    return [row[3] for row in to_and_fro(seed)]
 
 
 class Case(commands.Case):
@@ -50,81 +31,13 @@ class Case(commands.Case):
 
 
 class Maps(Case):
-    def test_a_log_gives_the_ripple_that_it_was_made_with(self):
-        write_log(self.log, 1)
-        found, text = self.made(self.log)
-        self.assertEqual((found["finding"], found["conclusive"], found["orders"]), ("mapped", True, [1, 2]))
-        first, second = found["coefficients"]
-        for one, amplitude, phase in (first, 0.8, 30.0), (second, 0.5, 0.0):
-            for part, truth in ("cosine", amplitude * math.cos(math.radians(phase))), ("sine", -amplitude * math.sin(math.radians(phase))):
-                self.assertAlmostEqual(one[f"{part}_nm"], truth, delta=2 * one[f"{part}_ci95_nm"])
-        self.assertIn("Cross-validated: order 1 falls from", text)
-        self.assertIn("noise limit", text)
-
-    def test_the_same_log_gives_the_same_bytes(self):
-        write_log(self.log, 1)
-        self.made(self.log)
-        before = self.map.read_bytes()
-        self.made(self.log)
-        self.assertEqual(self.map.read_bytes(), before)
-
-    def test_without_ripple_the_map_is_empty_with_a_bound_and_no_filter_takes_it(self):
-        write_log(self.log, 1, ripple=0.0)
-        found, text = self.made(self.log)
-        self.assertEqual((found["finding"], found["conclusive"], found["orders"], found["coefficients"]), ("nothing", True, [], []))
-        self.assertRegex(text, "the map is empty. An amplitude of [0-9.]+ Nm of order 1, [0-9.]+ Nm of order 2 would have been found")
-        for one in found["left_out"]:
-            self.assertLess(one["detectable_nm"], 0.05)
-        out = self.folder / "out.csv"
-        for method in "map", "oscillator":
-            ended(3, run("filter", self.log, "--method", f"{method},map={self.map}", "-o", out),
-                  f"map.json: the map is empty: method {method} has no order to filter by it")
-            self.assertFalse(out.exists())
-
-    def test_a_map_of_other_orders_than_asked_is_an_error(self):
-        write_log(self.log, 1)
-        self.made(self.log)
-        ended(3, run("filter", self.log, "--method", f"oscillator,map={self.map}", "--gear-ratio", "100", "--orders", "4", "-o", self.folder / "out.csv"),
-              "map.json: the map holds none of the orders asked for")
-
-    def test_a_second_of_one_speed_is_enough(self):
-        ended(0, run("simulate", "--gear-ratio", "100", "--ripple", "1:0.8Nm:30deg", "--ripple", "2:0.5Nm", "--motion", "constant,speed=40deg/s,duration=1.5s",
-                     "--sample-rate", "1kHz", "--noise", "0.05Nm", "--seed", "4", "-o", self.log))
-        found, _ = self.made(self.log)
-        self.assertEqual((found["finding"], found["orders"]), ("mapped", [1, 2]))
-
-    def test_a_log_that_does_not_agree_is_named(self):
-        logs = [self.folder / f"{i}.csv" for i in range(3)]
-        for i, log in enumerate(logs):
-            write_log(log, i + 1, shift_deg=0.6 if i == 1 else 0.0)
-        found, text = self.made(*logs)
-        self.assertFalse(found["conclusive"])
-        self.assertIn("The logs disagree", text)
-        ended(5, run("map", *logs, *GEAR, "--require-conclusive"))
-
-    def test_a_log_without_a_position_is_not_conclusive(self):
-        write_log(self.log, 1, header="time_s,velocity_deg_s,torque_nm")
-        done = run("map", self.log, *GEAR, "--require-conclusive")
-        self.assertEqual(done.returncode, 5, done.stdout + done.stderr)
-
-    def test_a_log_without_units_is_read_by_what_turns_with_the_motor(self):
-        write_log(self.log, 1, header="time,velocity,torque,position")
-        done = run("map", self.log, *GEAR, "--require-conclusive", "--json")
-        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
-        self.assertAlmostEqual(json.loads(done.stdout)["left_out"][0]["ripple_nm"], 0.8, delta=0.02)
-        self.assertIn("no unit is stated", done.stderr)
-
-    def test_who_states_no_gear_is_told_so(self):
-        write_log(self.log, 1)
-        ended(2, run("map", self.log), "map needs to know where the ripple is")
-
     def wide_log(self, shares):
         """A log of one joint for each share, j1 first, which has that share of ripple of 0.8 and 0.3 Nm (orders 1 and 2)."""
         wide = self.folder / "wide.csv"
         with open(wide, "w") as file:
             file.write("time_s," + ",".join(f"j{j + 1}_{name}" for j in range(len(shares))
                                             for name in ("velocity_deg_s", "torque_nm", "position_deg")) + "\n")
-            for t, v, position, slow, theta, noise in motion(1):
+            for t, v, position, slow, theta, noise in to_and_fro(1):
                 cells = [t]
                 for share in shares:
                     cells += [v, slow + share * (0.8 * math.cos(theta) + 0.3 * math.cos(2 * theta)) + noise, position]
@@ -174,45 +87,6 @@ class Maps(Case):
 
 
 class Compensators(Case):
-    def filtered(self, method):
-        out = self.folder / "out.csv"
-        ended(0, run("filter", self.log, "--method", method, "-o", out, "--force"))
-        return [float(line.split(",")[2]) for line in out.read_text().split("\n")[1:] if line]
-
-    def rms(self, method, slow, first=0):
-        out = self.filtered(method)
-        return math.sqrt(sum((a - b) ** 2 for a, b in zip(out[first:], slow[first:])) / (len(out) - first))
-
-    def test_a_map_of_one_log_takes_the_ripple_out_of_another_without_delay(self):
-        write_log(self.log, 1)
-        self.made(self.log)
-        slow = write_log(self.log, 2)
-        self.assertLess(self.rms(f"map,map={self.map}", slow), 0.055)  # the noise is 0.05 Nm
-        self.assertLess(self.rms(f"oscillator,map={self.map}", slow), 0.03)
-
-    def test_after_an_encoder_swap_the_zero_is_found(self):
-        write_log(self.log, 1)
-        self.made(self.log)
-        slow = write_log(self.log, 2, shift_deg=1.3)
-        self.assertGreater(self.rms(f"map,map={self.map}", slow), 0.3)
-        self.assertLess(self.rms(f"oscillator,map={self.map},zero=unknown", slow, 500), 0.03)
-
-    def test_the_method_is_told_by_its_file_and_the_file_is_among_the_inputs(self):
-        write_log(self.log, 1)
-        self.made(self.log)
-        metrics = self.folder / "metrics.json"
-        ended(0, run("filter", self.log, "--method", f"map,map={self.map}", "-o", self.folder / "x.csv", "--metrics", metrics))
-        told = json.loads(metrics.read_text())
-        self.assertEqual(told["method"], f"map,map={self.map}")
-        self.assertIn(str(self.map), [one["name"] for one in told["inputs"]])
-
-    def test_a_map_of_another_joint_is_refused_by_name(self):
-        write_log(self.log, 1)
-        self.made(self.log)
-        for words in ("--gear-ratio", "101"), ("--gear-ratio", "101", "--orders", "1,2"):
-            ended(2, run("filter", self.log, "--method", f"oscillator,map={self.map}", *words, "-o", self.folder / "y.csv"),
-                  "map.json is the map of a joint of gear ratio 100, not of 101")
-
     def test_a_map_of_a_joint_of_another_name_and_a_faster_log_are_told(self):
         write_log(self.log, 1)
         found, _ = self.made(self.log)
@@ -255,34 +129,6 @@ class Compensators(Case):
         self.assertAlmostEqual(mapped, 0.05, delta=0.005)  # the noise
         self.assertLess(followed, 0.03)
 
-    def test_a_map_is_drawn_with_its_intervals(self):
-        write_log(self.log, 1)
-        picture = self.folder / "map.figure.json"
-        ended(0, run("map", self.log, *GEAR, "-o", self.map, "--plot", picture))
-        panels = json.loads(picture.read_text())["panels"]
-        self.assertEqual([panel["y"]["unit"] for panel in panels], ["Nm", "deg"])
-        for panel, truths in zip(panels, ((0.8, 0.5), (30.0, 0.0)), strict=True):
-            for truth, curve, ribbon in zip(truths, panel["curves"], panel["ribbons"], strict=True):
-                self.assertTrue(all(low <= y <= high for low, y, high in zip(ribbon["low"], curve["y"], ribbon["high"], strict=True)))
-                self.assertAlmostEqual(curve["y"][0], truth, delta=2 * (ribbon["high"][0] - ribbon["low"][0]))
-        write_log(self.log, 1, ripple=0.0)
-        ended(3, run("map", self.log, *GEAR, "--plot", self.folder / "empty.json"), "there is nothing to draw")
-
-    def test_compare_takes_maps_beside_others(self):
-        write_log(self.log, 1)
-        self.made(self.log)
-        done = ended(0, run("compare", self.log, "--method", f"map,map={self.map}", "--method", f"oscillator,map={self.map}",
-                            "--method", "tracking,gear-ratio=100,orders=1:2"))
-        self.assertIn("map.json", done.stdout)
-
-    def test_report_shows_a_map(self):
-        write_log(self.log, 1)
-        self.made(self.log)
-        page = self.folder / "page.html"
-        ended(0, run("report", self.map, "-o", page, "-q"))
-        self.assertIn("Cross-validated: order 1 falls from", page.read_text())
-        self.assertIn("Ripple over speed", page.read_text())
-
 
 HARNESS = """#include <stdio.h>
 #include "ripple_map.h"
@@ -306,13 +152,6 @@ class Exports(Case):
         done = ended(0, run("export", self.map, "--to", to, "-o", path))
         return path, done
 
-    def test_every_target_is_read_back_and_says_how_far_off_it_is(self):
-        for to, name in (("fourier", "a.csv"), ("c-header", "a.h"), ("beckhoff-ax8000", "b.csv"), ("lut", "c.csv"),
-                         ("moteus,kt=0.1", "d.txt")):
-            text = self.exported(to, name)[1].stdout
-            self.assertIn("largest error", text)
-            self.assertLess(float(text.split("largest error")[1].split()[0]), 0.01, to)
-
     @unittest.skipUnless(shutil.which("cc"), "there is no C compiler")
     def test_the_exported_c_is_the_method(self):
         self.check_exported_c()
@@ -321,7 +160,7 @@ class Exports(Case):
     def test_the_exported_c_is_the_method_with_both_combs(self):
         with open(self.log, "w") as file:
             file.write("time_s,velocity_deg_s,torque_nm,position_deg\n")
-            for t, v, position, slow, theta, noise in motion(1):
+            for t, v, position, slow, theta, noise in to_and_fro(1):
                 second = 2 * (theta + math.radians(position))
                 file.write(f"{t},{v},{slow + 0.8 * math.cos(theta) + 0.4 * math.cos(second) + 0.3 * math.sin(2 * theta) + noise},{position}\n")
         self.assertEqual(self.made(self.log)[0]["form"]["second_comb"], 1)

@@ -106,11 +106,3 @@ class Code(Case):
                 text = self.export(method, to=f"c-header,precision={precision}").stdout
                 self.assertIn("1000000 samples", text)
                 self.assertLess(float(text.split("largest difference")[1].split()[0]), most, f"{method} in {precision}")
-
-    def test_what_is_not_written_is_refused_by_name(self):
-        for more, said in (("gain=scheduled", "gain=scheduled"), ("angle=velocity", "angle=velocity"), ("rest=0Nm", "rest"), ("cosines=1:1,sines=1:1,zero=unknown", "zero=unknown"),
-                           ("cosines=1:1,sines=1:1,return=0.5", "a return below one period")):
-            self.assertIn(said, self.export(f"oscillator,gear-ratio=100,orders=1:2,{more}", code=2).stderr)
-        self.assertIn("use c-header", self.export("tracking,gear-ratio=100,orders=1", to="scipy", code=2).stderr)
-        self.export("tracking,gear-ratio=100,orders=1", "--tolerance", "1")
-        self.assertIn("tolerance 1e-09 %", self.export("tracking,gear-ratio=100,orders=1", "--tolerance", "1e-9", code=1).stderr)

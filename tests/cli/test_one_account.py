@@ -7,7 +7,6 @@ import resource
 import unittest
 
 from commands import ACCOUNTS, DATA, GEAR, LOGS, TOOL, SharedCase, asked_for_json, ended, run, sanitized
-from commands import DATA, LOGS, TOOL, SharedCase, run, sanitized
 import hard_logs
 
 MOST_BYTES = 2 << 30

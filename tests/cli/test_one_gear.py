@@ -5,7 +5,6 @@ import csv
 import json
 
 from commands import DATA, TAKES_A_GEAR, asked
-from commands import asked, DATA
 from test_gear_methods import MOVE, Case, joint
 
 PAPER_60, PAPER_90 = DATA / "paper_60deg_s.csv", DATA / "paper_90deg_s.csv"
@@ -65,31 +64,13 @@ class SameSources(Commands):
                     sources.add(said["source"])
             self.assertEqual(len(sources), 1, f"{words}: {sources}")
 
-    def test_the_source_of_each_half_is_named(self):
-        for words, source in (
-                (["--gear-ratio", 100], "--gear-ratio, orders by default"),
-                (["--gear-ratio", 100, "--orders", "1"], "--gear-ratio, --orders"),
-                (["--joint-file", "joint.json"], "joint.json"),
-                (["--joint-file", "joint.json", "--orders", "1"], "joint.json, orders from --orders"),
-                (["--gear-ratio", 50, "--joint-file", "joint.json"], "--gear-ratio, orders from joint.json")):
-            self.assertEqual(self.json_said("spectrum --track", words)[1]()["source"], source)
-        _, gear = self.filtered_by("tracking,gear-ratio=100", ["--joint-file", "joint.json"])
-        self.assertEqual(gear()["source"], "method tracking, orders from joint.json")
-
     def test_verbose_says_the_gear_everywhere(self):
         for name, done, _ in self.every(["--gear-ratio", 100, "-v"]):
             self.assertIn("gear ratio 100, orders 1, 2 (--gear-ratio, orders by default)", done.stderr, name)
 
-    def test_a_gear_that_nobody_says_is_null(self):
-        for ask in (self.filtered_by, self.compared_by):
-            for words in ([], ["-q"]):
-                done, gear = ask("lowpass,cutoff=13rad/s", words)
-                self.assertEqual((done.returncode, gear()), (0, None))
-        self.assertIsNone(self.json_said("spectrum --map order", [])[1]())
-
     def test_every_command_has_all_three_options_and_tells_the_default(self):
         for command in ("filter", "compare", "spectrum", "design"):
-            text = " ".join(self.good(command, "--help").stdout.split())
+            text = " ".join(self.good(command, "--help-all").stdout.split())
             for piece in ("--gear-ratio NUMBER", "--orders NUMBER,...", "--joint-file FILE", "(default:"):
                 self.assertIn(piece, text, command)
 
@@ -125,51 +106,6 @@ class SameRefusals(Commands):
                                               r"joint: 100/turn\n$")
 
 
-class OtherGears(Commands):
-    def setUp(self):
-        super().setUp()
-        self.good("design", "--gear-ratio", 100, "--orders", "1,2", "--sample-rate", "1kHz", "--speed", "18:180:18", "-o",
-                  "table.json")
-        (self.folder / "other.json").write_text(joint().replace('"value": 100.0', '"value": 160.0'))
-
-    def both(self, method, words):
-        yield self.filtered_by(method, words)
-        yield self.compared_by(method, words)
-
-    def test_a_table_for_another_gear_is_refused_with_both_named(self):
-        for words, source in ((["--gear-ratio", 160], "--gear-ratio, orders from table.json"),
-                              (["--joint-file", "other.json"], "other.json")):
-            for done, _ in self.both("switching,table=table.json", words):
-                self.assertEqual(done.returncode, 2)
-                self.assertIn("method switching: its filter is for gear ratio 100 (table.json), and the ripple would be "
-                              f"measured for 160 ({source})", done.stderr)
-                self.assertFalse((self.folder / "out.csv").exists())
-
-    def test_100_and_101_are_two_gears_but_an_estimate_of_100_is_100(self):
-        for ratio, code in ((101, 2), (99, 2), (100.2, 0), (99.98, 0)):
-            for done, _ in self.both("switching,table=table.json", ["--gear-ratio", ratio]):
-                self.assertEqual(done.returncode, code, done.stderr)
-
-    def test_a_table_for_a_doubtful_gear_holds_as_far_as_it_was_designed_for(self):
-        (self.folder / "wide.json").write_text(joint().replace("[99.9, 100.1]", "[98, 102]"))
-        self.good("design", "wide.json", "--sample-rate", "1kHz", "--speed", "18:180:18", "-o", "doubt.json")
-        for done, _ in self.both("switching,table=doubt.json", ["--gear-ratio", 101]):
-            self.assertEqual(done.returncode, 0, done.stderr)
-
-    def test_a_methods_key_against_the_option_is_refused_too(self):
-        for done, _ in self.both("tracking,gear-ratio=100,orders=1:2", ["--gear-ratio", 160]):
-            self.assertEqual(done.returncode, 2)
-            self.assertIn("method tracking: its filter is for gear ratio 100, and the ripple would be measured for 160 "
-                          "(--gear-ratio, orders from method tracking)", done.stderr)
-
-    def test_a_key_wins_over_the_joint_file_and_a_joint_file_over_the_table(self):
-        _, gear = self.filtered_by("tracking,gear-ratio=50,orders=2", ["--joint-file", "joint.json"])
-        self.assertEqual((gear()["ratio"], gear()["orders"]), (50, [2]))
-        (self.folder / "near.json").write_text(joint(ratio=100.1, orders=(1.0, 3.0)))
-        _, gear = self.filtered_by("switching,table=table.json", ["--joint-file", "near.json"])
-        self.assertEqual((gear()["ratio"], gear()["orders"]), (100.1, [1, 3]))
-
-
 class InEveryDocument(Commands):
     """Each command that knows a gear says it in its JSON as `gear`: ratio, orders, source."""
 
@@ -187,31 +123,6 @@ class InEveryDocument(Commands):
                 self.assertEqual(list(gear), ["ratio", "orders", "source"])
                 self.assertAlmostEqual(gear["ratio"], 100, delta=0.001)
                 self.assertEqual(gear["orders"], [1, 2])
-
-    def test_what_identify_found_is_what_the_next_command_takes(self):
-        self.good("identify", PAPER_90, PAPER_60, "-o", "found.json")
-        found = json.loads((self.folder / "found.json").read_text())["gear"]
-        self.assertEqual(found.pop("source"), "found in the log")
-        for name, done, gear in self.every(["--joint-file", "found.json"]):
-            with self.subTest(command=name):
-                self.assertEqual(done.returncode, 0, done.stderr)
-                taken = gear()
-                self.assertEqual(taken.pop("source"), "found.json")
-                self.assertEqual(taken, found)
-
-    def test_nothing_found_is_no_gear(self):
-        self.good("simulate", "--gear-ratio", 100, "--motion", "constant,speed=60deg/s,duration=3s", "--sample-rate", "1kHz",
-                  "--noise", "0.05Nm", "-o", "flat.csv")
-        self.assertIsNone(self.said("identify", "flat.csv", "--json"))
-
-    def test_a_model_is_its_own_source(self):
-        words = ["simulate", "--motion", "constant,speed=60deg/s,duration=1s", "--sample-rate", "1kHz", "-o", "out.csv",
-                 "--force", "--json"]
-        for more, gear in ((["--gear-ratio", 50], {"ratio": 50, "orders": [], "source": "--gear-ratio"}),
-                           (["--gear-ratio", 50, "--ripple", "2:0.1Nm"],
-                            {"ratio": 50, "orders": [2], "source": "--gear-ratio, --ripple"}),
-                           (["--model", MODEL], {"ratio": 100, "orders": [1, 2], "source": str(MODEL)})):
-            self.assertEqual(self.said(*words, *more), gear)
 
 
 class BeforeTheGear(Commands):

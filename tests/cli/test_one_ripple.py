@@ -135,18 +135,6 @@ class Law(Case):
     def test_on_the_logs_of_the_project(self):
         self.check_all(DATA, [(path.name, None, 100) for path in sorted(DATA.glob("paper_*.csv"))])
 
-    def test_a_filter_measures_the_torque_before_it_as_the_estimate_does(self):
-        for path in sorted(DATA.glob("paper_*.csv")):
-            with self.subTest(log=path.name):
-                stated = ["--gear-ratio", 100, "--orders", "1,2"]
-                before = self.told("filter", path, *stated, "--method", "none", "-o", "/dev/null", "--json")
-                features = self.told("features", path, *stated)
-                for one in before["orders"]:
-                    value = features[f"ripple_{one['order']:g}_amplitude_nm"]
-                    low, high = features.get(f"ripple_{one['order']:g}_amplitude_ci95_nm") or (None, None)
-                    self.assertTrue(low <= one["raw_nm"] <= high, f"{one} is not within {low} to {high} around {value}")
-                self.assertEqual(before["orders"] == [], "rest" in path.name)
-
     @unittest.skipUnless(LOGS.is_dir(), "no logs of real robots here (RIPPLENOTCH_LOGS)")
     def test_on_logs_of_real_robots(self):
         self.check_all(LOGS, REAL)

@@ -4,11 +4,10 @@
 import itertools
 import json
 import math
-import unittest
 
 import commands
 from arm_log import write_arm_log
-from commands import LOGS, SOURCE, ended, run
+from commands import ended, run
 
 
 def rows(path, joint):
@@ -107,28 +106,3 @@ class Removed(Case):
         ended(3, run("filter", alone, "--method", f"map,map={made}", "-o", self.folder / "out.csv"),
               "the map also holds ripple of the motor of j2, and the log has no joint of that name")
         self.assertFalse((self.folder / "out.csv").exists())
-
-    def test_a_map_without_other_motors_is_refused_by_the_option(self):
-        ended(0, run("map", SOURCE / "data/paper_120deg_s.csv", "--gear-ratio", "100", "-o", self.folder / "own.json"))
-        ended(3, run("filter", SOURCE / "data/paper_120deg_s.csv", "--method", "none", "--other-motors", self.folder / "own.json"),
-              "holds no ripple of the motors of other joints")
-
-
-@unittest.skipUnless(LOGS.is_dir(), "the logs of real robots are not here")
-class Robots(Case):
-    def test_panda_joints_1_and_3_are_in_each_others_torque(self):
-        log = LOGS / "gpl3/panda_gaz_all.csv"
-        for sensor, motor in ("1", "3"), ("3", "1"):
-            done = ended(0, run("map", log, "--joint", f"panda_joint{sensor}", "--to", "12.6s", "--gear-ratio", "120", "--orders", "1,2,4", "--json", "-q"))
-            found = json.loads(done.stdout)["others"]
-            self.assertEqual([f"panda_joint{motor}"], [one["joint"] for one in found if one["finding"] == "mapped"])
-
-    def test_nothing_is_claimed_of_a_robot_without_harmonic_drives(self):
-        for log in "kuka_kr300_trajA_all.csv", "kuka_kr300_trajB_all.csv":
-            for joint in self.found(LOGS / log)["joints"]:
-                for motor in joint.get("other_motors", []):
-                    self.assertFalse(any(at["found"] for at in motor["orders"]), f"{joint['joint']}, {motor['joint']}")
-
-
-if __name__ == "__main__":
-    unittest.main()

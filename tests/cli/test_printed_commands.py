@@ -106,7 +106,3 @@ class Help(Printed):
                 with self.subTest(example):
                     self.paste(example.strip())
         self.assertGreater(seen, 5)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -4,7 +4,6 @@
 import json
 
 from commands import COMMANDS, DATA, WRITES_A_LOG, asked, ended
-from commands import COMMANDS
 from test_filter_joints import wide_log
 from test_gear_methods import MOVE, Case
 
@@ -34,17 +33,6 @@ class NamesOfJson(Told):
                 self.good(*words, "-o", "by_name.json", "--force")
                 self.assertEqual((self.folder / "by_name.json").read_text(), expected)
                 json.loads(expected)
-
-    def test_what_cannot_be_json_is_refused_under_such_a_name(self):
-        self.refused(["filter", MOVE, *LOW, "-o", "x.csv", "--metrics", "x.npy"], "metrics", ".json")
-        self.refused(["filter", MOVE, *LOW, "-o", "x.json"], "a log is not written as JSON; name it .csv, .npy, .mat or .h5")
-        self.refused(["simulate", "--gear-ratio", 100, "--ripple", "1:1Nm", "--motion", "constant,speed=60deg/s,duration=1s",
-                      "--sample-rate", "1kHz", "-o", "x.json"], "a log is not written as JSON")
-        self.good("design", "--gear-ratio", 100, "--sample-rate", "1kHz", "--speed", "18:90:18", "-o", "t.json")
-        self.refused(["report", "t.json", "-o", "x.json"], "a report is an HTML page")
-        self.refused(["export", "t.json", "--to", "c-header", "-o", "x.json"], "c-header is no JSON")
-        self.good("export", "t.json", "--to", "json", "-o", "x.json")
-        self.good("filter", MOVE, *LOW, "--output-format", "csv", "-o", "stated.json")
 
 
 class NamesOfOtherKinds(Told):
@@ -106,31 +94,6 @@ class NamesOfOtherKinds(Told):
                     self.assertFalse(path.exists())
             self.assertTrue(fitting, words)
 
-    def test_names_that_promise_nothing_are_free(self):
-        for name in ("run", "run.log", "run.dat", "run.2"):
-            self.good("compare", MOVE, *LOW, "-o", name)
-
-
-class Attenuations(Told):
-    """--min-attenuation is one option with a unit; where nothing is left to choose it checks."""
-
-    DESIGN = ["design", "--gear-ratio", 100, "--sample-rate", "1kHz"]
-
-    def test_the_old_spelling_is_told_the_new_one(self):
-        for words in ([*self.DESIGN, "--speed", "18:180:18"], ["filter", MOVE, *LOW], ["compare", MOVE, *LOW]):
-            self.refused([*words, "--min-attenuation-db", "20"], "no option --min-attenuation-db (did you mean --min-attenuation?)")
-
-    def test_a_unit_or_none_is_the_same(self):
-        goal = [*self.DESIGN, "--speed", "18:180"]
-        self.assertEqual(self.good(*goal, "--min-attenuation", "20").stdout, self.good(*goal, "--min-attenuation", "20dB").stdout)
-        self.refused([*goal, "--min-attenuation", "20Hz"], "--min-attenuation")
-
-    def test_where_bands_and_q_are_stated_the_table_is_written_and_what_is_too_weak_is_told(self):
-        stated = [*self.DESIGN, "--speed", "18:180:18", "--q", 1]
-        done = self.run_tool(*stated, "--min-attenuation", "10dB")
-        self.assertEqual((done.returncode, done.stdout), (1, self.good(*stated).stdout))
-        self.assertRegex(done.stderr, r"band 1 \(18-36 deg/s\) attenuates order 1 by as little as \d\.\d dB, less than --min-attenuation 10dB")
-
 
 class Lists(Told):
     def test_a_list_with_other_marks_is_refused_with_the_list_as_it_should_be(self):
@@ -146,31 +109,6 @@ class Lists(Told):
     def test_a_log_whose_name_is_a_number_is_a_log(self):
         (self.folder / "2").write_bytes(MOVE.read_bytes())
         self.good("spectrum", "--track", "--gear-ratio", "100", "--orders", "1", "2")
-
-    def test_a_list_inside_a_method_has_colons(self):
-        self.refused(["filter", MOVE, "--method", "fixed,centers=25Hz,50Hz"],
-                     "'50Hz' is not KEY=VALUE; a list is written with colons: centers=25Hz:50Hz")
-        self.refused(["filter", MOVE, "--method", "fixed,centers"], "'centers' is not KEY=VALUE\n")
-
-
-class Delays(Told):
-    DESIGN = ["design", "--gear-ratio", 100, "--sample-rate", "1kHz", "--speed", "18:180"]
-
-    def test_a_bare_number_is_refused_by_every_command(self):
-        for words in ([*self.DESIGN, "--max-delay", "20"], ["filter", MOVE, *LOW, "--max-delay", "20"],
-                      ["compare", MOVE, *LOW, "--max-delay", "20"]):
-            self.refused(words, "--max-delay 20: ms or s? write --max-delay 20ms or --max-delay 20s")
-
-    def test_seconds_and_milliseconds_mean_what_they_say(self):
-        self.assertEqual(self.good(*self.DESIGN, "--max-delay", "40ms").stdout,
-                         self.good(*self.DESIGN, "--max-delay", "0.04s").stdout)
-
-    def test_where_bands_and_q_are_stated_the_table_is_written_and_what_is_too_slow_is_told(self):
-        stated = ["design", "--gear-ratio", 100, "--sample-rate", "1kHz", "--speed", "18:180:18", "--q", 1]
-        done = self.run_tool(*stated, "--max-delay", "20ms")
-        self.assertEqual((done.returncode, done.stdout), (1, self.good(*stated).stdout))
-        self.assertIn("band 1 (18-36 deg/s) delays by 31.8 ms, more than --max-delay 20ms", done.stderr)
-        self.assertNotIn("band 2", done.stderr)
 
 
 class Joints(Told):
@@ -217,14 +155,6 @@ class RawLogs(Told):
         for words in (["-o", "log.csv"], ["-o", "./log.csv"], ["-o", "alias.csv"]):
             self.refused(["filter", "log.csv", *LOW, *words, "--force"], "name another file")
             self.assertEqual((self.folder / "log.csv").read_bytes(), self.raw)
-
-
-class Segments(Told):
-    def test_a_segment_longer_than_the_log_is_told(self):
-        done = self.good("spectrum", PAPER_90, "--segment", "60s", "-o", "s.csv", "--force")
-        self.assertIn("--segment 60 s:", done.stderr)
-        self.assertIn("s long, so all of it is one piece", done.stderr)
-        self.assertEqual(self.good("spectrum", PAPER_90, "--segment", "1s", "-o", "s.csv", "--force").stderr, "")
 
 
 class Belief(Told):

@@ -7,7 +7,6 @@ import itertools
 import json
 import shlex
 import struct
-import unittest
 
 from commands import Case, ended, run
 from test_log_dialects import RATE, RATIO, ROWS
@@ -307,7 +306,3 @@ class CountsAndPerMille(Case):
                                ("torque", "is not COLUMN=FACTOR"), ("torque=0Nm", "does not begin with a number")):
             with self.subTest(scale=scale):
                 ended(2, run("identify", "-", "-q", *self.SCALES, "--scale", scale, stdin=text), message)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -128,9 +128,6 @@ class Terminals(unittest.TestCase):
             os.close(ours)
         return done
 
-    def test_binary_to_a_terminal_is_refused(self):
-        ended(2, self.on_terminal(["filter", str(LOG), "--method", LOWPASS, "--output-format", "npy"]), b"terminal")
-
     def test_waiting_for_someone_to_type_a_log_is_refused(self):
         ended(2, self.on_terminal(["info", "-"], stdin_is_terminal=True), b"terminal")
 

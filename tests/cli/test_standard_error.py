@@ -7,9 +7,7 @@ import re
 import subprocess
 
 from commands import OF_A_LOG, TOOL, Case, asked_for_json, ended
-from commands import TOOL, Case
 
-ESCAPE = "\x1b]0;x\x07"
 ACTING = [chr(c) for c in (*range(0x20), 0x7F, *range(0x80, 0xA0), 0x202E, 0x2028) if c != 0x0A]
 
 

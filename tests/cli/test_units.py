@@ -5,7 +5,6 @@ that works; nothing is wrong with exit code 0."""
 import json
 import math
 import re
-import unittest
 
 from commands import SOURCE, Case, ended
 
@@ -168,11 +167,6 @@ class Names(Reading):
         self.assertNotEqual(done.returncode, 0)
         self.assertIn("--columns torque=current_A", done.stderr)
 
-    def test_info_says_in_its_first_lines_what_is_assumed(self):
-        (self.folder / "log.csv").write_text("t,v,tau\n0,1,2\n0.001,1.1,2.1\n0.002,1.2,2.2\n")
-        lines = self.run_tool("info", "log.csv").stdout.split("\n")[:3]
-        self.assertRegex("\n".join(lines), r"Assumed: unit of 'v' .* is rad/s; or the speed is in deg/s .*--unit velocity=")
-
     def test_names_are_read_in_time_linear_in_the_columns(self):
         names = ["time_s", *(f"j{j}_{what}" for j in range(166) for what in ("q", "dq", "tau"))]
         text = ",".join(names) + "\n" + "".join(
@@ -305,7 +299,3 @@ ASKED = {
                ["--scale", "velocity=1deg/s/100", "--scale", "position=1deg/100"], "--scale velocity="),
     "days from zero": (table(["time", *four()[1:]], time=1 / 86400, digits=15), ["--unit", "time=d"], "--unit time=d"),
 }
-
-
-if __name__ == "__main__":
-    unittest.main()

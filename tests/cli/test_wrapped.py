@@ -8,6 +8,7 @@ import struct
 import subprocess
 import termios
 import threading
+import unittest
 
 from commands import DATA, GEAR, TOOL, SharedCase
 
@@ -84,3 +85,20 @@ class Verdicts(SharedCase):
                 found = [line for line in lines if line.startswith(("shoulder: ", "elbow: "))]
                 self.assertEqual(len(found), 2)
                 self.assertLessEqual(max(map(len, found)), 70)
+
+
+class Width(unittest.TestCase):
+    def test_no_line_is_wider_than_a_hundred_columns_but_what_is_there_to_be_copied(self):
+        fixed = [f"oscillator,gear-ratio=100,orders=1:2,amplitudes={a}:0.5,phases={a}12345:0.012345678" for a in (0.7, 0.8)]
+        move = str(DATA / "paper_move_2s.csv")
+        text = on_terminal(100, "compare", move, "--gear-ratio", "100", "--orders", "1,2", "--truth", move, "--crossover", "12Hz", "--max-delay", "40ms",
+                           *(word for name in (*fixed, "lowpass,cutoff=13rad/s,order=1", "fixed,centers=25Hz:50Hz,q=0.25", "lowpass,cutoff=1.894387654321Hz,order=1")
+                             for word in ("--method", name)), code=1)
+        self.assertNotIn("-0.0 ", text)
+        told = [line for line in text.split("\n") if " is --method " not in line]
+        self.assertLessEqual(max(map(len, told)), 100, text)
+        for letter, method in zip("AB", fixed):
+            self.assertIn(f"\noscillator {letter} is --method {method}\n", text)
+            self.assertIn(f"\noscillator {letter}  ", text)
+        for figure in ("to 0.5 %", "lag at 12 Hz", "order 2", "residual", "error"):
+            self.assertIn(figure, text)

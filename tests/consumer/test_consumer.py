@@ -9,8 +9,9 @@ import subprocess
 import tempfile
 import unittest
 
-SOURCE = pathlib.Path(os.environ["RIPPLENOTCH_SOURCE"])
-CMAKE = os.environ["CMAKE_COMMAND"]
+from commands import SOURCE
+
+CMAKE = os.environ.get("CMAKE_COMMAND", "cmake")
 
 
 def known():
@@ -45,7 +46,3 @@ class Consumers(unittest.TestCase):
             # A notch of Q 1/4 by the bilinear transform: b0 = (1 + k^2) / (1 + 4 k + k^2), k = tan(pi 25 / 1000).
             k = math.tan(math.pi * 25 / 1000)
             self.assertEqual(done.stdout, f"1000 Hz, {(1 + k * k) / (1 + 4 * k + k * k):.6f}\n", done.stderr)
-
-
-if __name__ == "__main__":
-    unittest.main()

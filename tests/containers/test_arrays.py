@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Arrays in NPZ, MAT and HDF5, written by NumPy, SciPy, Octave and h5py."""
 
+import commands  # noqa: F401  first: it runs a file that is started by hand
 import os
 import shutil
 import struct

@@ -5,7 +5,6 @@ import re
 import unittest
 
 from commands import COMMANDS, SOURCE, ended, run
-from commands import SOURCE, run
 
 
 # kind, which is its folder of docs -> (the list, the pattern of its lines)

@@ -3,9 +3,11 @@
 
 import collections
 import functools
+import os
 import re
 import shutil
 import subprocess
+import sys
 import unittest
 
 from commands import SOURCE
@@ -165,3 +167,12 @@ class Format(unittest.TestCase):
         self.assertGreater(len(files), 400)
         done = subprocess.run(["clang-format", "--dry-run", "-Werror", *files], cwd=SOURCE, capture_output=True, text=True)
         self.assertEqual((done.returncode, done.stderr), (0, ""))
+
+
+class ByHand(unittest.TestCase):
+    def test_a_file_of_tests_that_is_started_alone_runs_them(self):
+        """Without what ctest says in the environment: `python3 tests/cli/test_map.py`."""
+        bare = {name: value for name, value in os.environ.items() if not name.startswith("RIPPLENOTCH")}
+        for path in sorted((SOURCE / "tests").glob("*/test_*.py")):
+            done = subprocess.run([sys.executable, "-B", path, "-k", "no_such_test"], capture_output=True, text=True, env=bare)
+            self.assertRegex(done.stdout + done.stderr, r"(?im)^ran 0 tests|^skipped", path.name)

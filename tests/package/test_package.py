@@ -106,7 +106,3 @@ class Agreement(unittest.TestCase):
     def test_versions_are_those_of_the_project(self):
         self.assertEqual(re.match(r"ripplenotch \((.+)-\d+\)", (DEBIAN / "changelog").read_text())[1], PROJECT_VERSION)
         self.assertEqual(re.search(r"^version: (.+)$", (SOURCE / "CITATION.cff").read_text(), re.M)[1], PROJECT_VERSION)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """A short case of each study of the proof; all of it is scripts/prove-diagnose. See docs/studies."""
 
+import commands  # noqa: F401  first: it runs a file that is started by hand
 import unittest
 
 import prove  # first: it skips without numpy

@@ -335,7 +335,3 @@ class Page(unittest.TestCase):
         done = doctest.testfile(str(SOURCE / "docs/python.md"), module_relative=False, optionflags=doctest.NORMALIZE_WHITESPACE)
         self.assertGreater(done.attempted, 8)
         self.assertEqual(done.failed, 0)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -10,10 +10,14 @@ import sys
 import tempfile
 import unittest
 
-TOOL = os.environ["RIPPLENOTCH"]
-SOURCE = pathlib.Path(os.environ["RIPPLENOTCH_SOURCE"])
+# A test that is started by hand (python3 tests/cli/test_map.py) takes what was built last, and runs its tests: see the end.
+SOURCE = pathlib.Path(os.environ.get("RIPPLENOTCH_SOURCE", pathlib.Path(__file__).resolve().parents[2]))
+BUILT = sorted(SOURCE.glob("build/*/ripplenotch"), key=lambda path: path.stat().st_mtime)
+TOOL = os.environ.get("RIPPLENOTCH", str(BUILT[-1]) if BUILT else "ripplenotch")
+for name, value in (("BUILD", str(pathlib.Path(TOOL).parent)), ("MODULE", str(SOURCE / "build/python/python")), ("LACKS", ""), ("CXX", "c++")):
+    os.environ.setdefault(f"RIPPLENOTCH_{name}", value)
 DATA = SOURCE / "data"
-LOGS = pathlib.Path(os.environ.get("RIPPLENOTCH_LOGS", "no-such-folder"))  # real logs, which few have
+LOGS = pathlib.Path(os.environ.get("RIPPLENOTCH_LOGS", SOURCE.parent / "shared/logs"))  # real logs, which few have
 SHORT = os.environ.get("RIPPLENOTCH_SHORT") == "1"  # what takes long is left to scripts/nightly
 # Exported C is compiled as strictly as firmware compiles it, where there is a compiler.
 COMPILER = shutil.which(os.environ.get("CC", "cc"))
@@ -168,3 +172,9 @@ class SharedCase(Case):
 
     def setUp(self):
         pass
+
+
+BY_HAND = pathlib.Path(getattr(sys.modules["__main__"], "__file__", None) or "").resolve()
+if BY_HAND.name.startswith("test_") and "--update" not in sys.argv:
+    sys.path[:0] = [str(BY_HAND.parent), str(SOURCE / "tests/support")]
+    unittest.main(module=BY_HAND.stem)

@@ -147,7 +147,10 @@ struct ViewColumn {
 ViewColumn column_of(std::string title, std::string unit, std::optional<double> MethodFigures::*value,
                      int decimals, bool with_next = false) {
     return {std::move(title), std::move(unit),
-            [value, decimals](const MethodFigures& figures) { return cell_text(figures.*value, decimals); },
+            [value, decimals](const MethodFigures& figures) {
+                const bool large = figures.*value && std::abs(*(figures.*value)) >= 1000.0;
+                return cell_text(figures.*value, large ? 0 : decimals);
+            },
             with_next};
 }
 
@@ -290,7 +293,7 @@ std::string conditions(const CommonOptions& common, const Comparison& comparison
         }
         text = paragraph(common, on);
         on = comparison.fastest > DegPerSec(0.0)
-                 ? fmt::format("Settling and delays: at {:.6g} deg/s, on", comparison.speed.value())
+                 ? fmt::format("Settling and delays: at {:.4g} deg/s, on", comparison.speed.value())
                  : "Settling and delays: on";
     } else {
         on = fmt::format("At {:.6g} deg/s, sampled at {:.6g} Hz, on", comparison.speed.value(),

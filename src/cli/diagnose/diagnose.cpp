@@ -185,7 +185,7 @@ std::function<ExitCode()> attach_diagnose(Options& options) {
     attach_gear(options, request->gear,
                 {.ratio = "motor turns per joint turn, instead of --model", .orders = "", .joint_file = ""});
     options.flag("--friction-table", request->friction_table,
-                 "LOG is a table of constant speeds and the torque that each took, without time: its "
+                 "LOG is a table of speeds and torques, without time: its "
                  "Coulomb, viscous and Stribeck friction; needs no --model");
     options.text("--validate", request->validate, "OTHER",
                  "another log, on which the improved model is checked");
@@ -200,7 +200,7 @@ std::function<ExitCode()> attach_diagnose(Options& options) {
     options.text("--effect", request->effect, "NAME",
                  "explain one effect (equation, parameters, symptom, look-alikes), and end; needs no LOG");
     options.number("--smoothing", request->smoothing, Dimension::time,
-                   "window in which the log's velocity is fitted to give speed and acceleration");
+                   "window of the fit to the log's velocity, which gives speed and acceleration");
     attach_conclusive(options, request->require_conclusive,
                       "exit with 5 unless the log is explained in the end");
     attach_plot(options, request->plot, request->common);

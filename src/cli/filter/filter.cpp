@@ -125,7 +125,7 @@ std::vector<std::string> filter_summary(const FilterMetrics& metrics) {
     std::vector<std::string> lines;
     const Recording& recording = stream.recording;
     lines.push_back(
-        fmt::format("{}: {}, {} at {:.6g} Hz (measured {:.6g} Hz), {}, {}, angle from {}", metrics.source,
+        fmt::format("{}: {}, {} at {:.5g} Hz (measured {:.5g} Hz), {}, {}, angle from {}", metrics.source,
                     metrics.method, how_many(recording.rows(), "row"), metrics.sample_rate.value(),
                     recording.clock.mean_rate.value(), how_many(recording.clock.gap_count, "gap"),
                     how_many(recording.held.count, "held sample"), source_name(recording.angle.source())));
@@ -469,10 +469,9 @@ std::function<ExitCode()> attach_filter(Options& options) {
     options.text("--metrics", request->metrics, "FILE",
                  "JSON about attenuation, residual, delays, switches, gaps");
     options.writes("--metrics");
-    options.text(
-        "--other-motors", request->how.other_motors, "FILE",
-        "map.json: the ripple of other joints' motors that it holds is subtracted first; a method with "
-        "map= takes that of its map");
+    options.text("--other-motors", request->how.other_motors, "FILE",
+                 "first subtracts the ripple of other joints' motors in this map.json; a method with "
+                 "map= takes that of its map");
     attach_gear(options, request->how.gear);
     options.number("--crossover", request->crossover, Dimension::frequency,
                    "the control loop's: phase lag and gain there, for -v and the metrics, e.g. 12Hz");

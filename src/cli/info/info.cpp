@@ -69,7 +69,7 @@ std::string clock_text(const LogInfo& log) {
     std::string text;
     if (std::abs(mean / nominal - 1.0) > rate_worth_a_word)
         text = fmt::format("{:.6g} Hz typical, ", nominal);
-    text += fmt::format("{:.6g} Hz mean; step {} ms median, {} to {} ms; jitter {} ms rms; ", mean,
+    text += fmt::format("{:.5g} Hz mean; step {} ms median, {} to {} ms; jitter {} ms rms; ", mean,
                         figure(1e3 * clock.usual_step.value()), figure(1e3 * clock.shortest_step.value()),
                         figure(1e3 * clock.longest_step.value()),
                         figure(1e3 * rounded_jitter(clock.jitter, clock.usual_step)));

@@ -122,18 +122,29 @@ std::string upper(std::string text) {
     return text;
 }
 
-// Text as it flows; a line with an example stands by itself.
-std::string paragraphs(const std::string& text) {
-    std::string page;
-    std::istringstream lines(text);
-    bool after_example = false;
+// A description in two parts: text as it flows, and lines to be typed as they are.
+struct Described {
+    std::string text, examples;
+};
+Described described(const std::string& description) {
+    Described parts;
+    std::istringstream lines(description);
+    bool goes_on = false;
     for (std::string line; std::getline(lines, line);) {
-        const bool example = line.starts_with("Example");
-        if (example || after_example) page += ".PP\n";
-        page += plain_roff(line) + "\n";
-        after_example = example;
+        const std::size_t behind = line.find(": ripplenotch ");
+        if (behind != std::string::npos) {
+            std::string before = line.substr(0, behind);
+            if (before.ends_with("Example")) before.erase(before.size() - std::string_view("Example").size());
+            if (!before.empty()) parts.text += plain_roff(before) + "\n";
+            line.erase(0, behind + 2);
+        }
+        goes_on = line.starts_with("ripplenotch ") || line.starts_with("cat ") ||
+                  (goes_on && (line.starts_with("-") || line.starts_with(" ")));
+        if (goes_on && line.starts_with("-")) parts.examples.insert(parts.examples.size() - 1, " \\e");
+        (goes_on ? parts.examples : parts.text) += plain_roff(line) + "\n";
     }
-    return page;
+    if (!parts.examples.empty()) parts.examples = ".SH EXAMPLES\n.nf\n" + parts.examples + ".fi\n";
+    return parts;
 }
 
 std::string argument_in_synopsis(const OptionEntry& argument) {
@@ -180,7 +191,7 @@ std::string head(const CommandEntry* command, std::string_view summary) {
 std::string program_page(const Reference& reference) {
     std::string page = head(nullptr, reference.program.summary);
     page += bold(tool_name) + " " + slanted("COMMAND") + " [" + slanted("OPTION") + "...] [" +
-            slanted("ARGUMENT") + "...]\n.SH DESCRIPTION\n" + paragraphs(reference.program.description) +
+            slanted("ARGUMENT") + "...]\n.SH DESCRIPTION\n" + described(reference.program.description).text +
             ".SH COMMANDS\n";
     for (const CommandEntry& command : reference.commands)
         page += fmt::format(".TP\n\\fB{}\\fR(1)\n{}\n", plain_roff(page_name(&command)),
@@ -196,8 +207,9 @@ std::string man_page(const Reference& reference, const CommandEntry* command) {
     page += bold(fmt::format("{} {}", tool_name, command->name)) + " [" + slanted("OPTION") + "...]";
     for (const OptionEntry& option : command->options)
         if (option.is_argument) page += " " + argument_in_synopsis(option);
-    page += "\n.SH DESCRIPTION\n" + paragraphs(command->description);
-    page += options_section(*command, true) + options_section(*command, false) + exit_section();
+    const Described about = described(command->description);
+    page += "\n.SH DESCRIPTION\n" + about.text + options_section(*command, true) +
+            options_section(*command, false) + about.examples + exit_section();
     return page + fmt::format(".SH SEE ALSO\n\\fB{}\\fR(1)\n", tool_name);
 }
 

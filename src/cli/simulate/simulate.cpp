@@ -316,17 +316,17 @@ std::function<ExitCode()> attach_simulate(Options& options) {
     options.number("--sample-rate", o->log_options.sample_rate, Dimension::frequency,
                    "samples per second; with a LOG, instead of its own time");
     options.number("--smoothing", o->smoothing, Dimension::time,
-                   "window in which a LOG's velocity is fitted to give speed and acceleration");
+                   "window of the fit to a LOG's velocity, which gives speed and acceleration");
     options.number("--noise", o->noise, Dimension::torque, "rms of noise on the torque");
     options.number("--noise-correlation", o->noise_correlation, Dimension::none,
-                   "of the torque's noise with that of the sample before; 0 is white");
+                   "--noise: its correlation with that of the sample before; 0 is white");
     options.number("--velocity-noise", o->velocity_noise, Dimension::speed,
                    "rms of white noise on the velocity");
     options.count("--seed", o->seed, 0, 2147483647, "which noise; the same seed gives the same bytes");
     options.number(
         "--decimals", o->decimals, Dimension::none,
         "decimals of every column but time (default: as many as needed to read the same number back)");
-    options.flag("--faults", o->faults, "let spikes and dropouts of the model act along a LOG too");
+    options.flag("--faults", o->faults, "--model: let spikes and dropouts act along a LOG too");
     options.flag("--no-position", o->no_position, "leave the position column out");
     options.text("--format", o->format, "NAME",
                  fmt::format("format of what is written: {} (default: by the extension of -o, else csv)",

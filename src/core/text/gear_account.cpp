@@ -83,7 +83,8 @@ std::string order_in_words(Order order, GearRatio ratio) {
     if (const std::size_t slash = other.find('/'); slash != std::string::npos)
         return fmt::format("order {} of the other spline ({})", other.substr(0, slash),
                            other.substr(slash + 1));
-    return text.ends_with(per_turn_mark) ? text : "order " + text;
+    if (!text.ends_with(per_turn_mark)) return "order " + text;
+    return fmt::format("{:.5g}{}", order.value() * (ratio == no_ratio ? 1.0 : ratio.value()), per_turn_mark);
 }
 
 }  // namespace ripplenotch
