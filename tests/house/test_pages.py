@@ -93,7 +93,7 @@ class Pages(unittest.TestCase):
             page = SOURCE / "docs" / kind / "README.md"
             for name in names:
                 one_page = (SOURCE / "docs" / kind / f"{name}.md").is_file()
-                self.assertTrue(one_page or f"| `{name}` |" in page.read_text(), f"docs/{kind} has no page and no row of {name}")
+                self.assertTrue(one_page or f"`{name}`" in page.read_text(), f"docs/{kind} has no page and no row of {name}")
 
     def test_a_page_of_a_command_names_every_option_of_its_help(self):
         common = (SOURCE / "docs" / "commands" / "README.md").read_text()

@@ -302,13 +302,13 @@ TEST_CASE("what is expected holds no chance, and what is chance goes with its se
     }
 }
 
-TEST_CASE("the page of effects lists the catalogue, in its order and with its sides") {
+TEST_CASE("the page of effects lists the catalogue by its sides") {
     std::ifstream file(fmt::format("{}/docs/effects/README.md", source_folder()));
     std::string page((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
-    std::size_t at = 0;
     for (const Effect* effect : catalogue()) {
         CAPTURE(effect->name);
-        at = page.find(fmt::format("| `{}` | {} | ", effect->name, side_name(effect->side)), at);
-        REQUIRE(at != std::string::npos);
+        const std::size_t line = page.find(fmt::format("**{}**: ", side_name(effect->side)));
+        REQUIRE(line != std::string::npos);
+        CHECK(page.find(fmt::format("`{}`", effect->name), line) < page.find('\n', line));
     }
 }
