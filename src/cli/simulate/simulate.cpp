@@ -327,7 +327,7 @@ std::function<ExitCode()> attach_simulate(Options& options) {
         "--decimals", o->decimals, Dimension::none,
         "decimals of every column but time (default: as many as needed to read the same number back)");
     options.flag("--faults", o->faults, "--model: let spikes and dropouts act along a LOG too");
-    options.flag("--no-position", o->no_position, "leave the position column out");
+    options.flag("--no-position", o->no_position, "--motion: leave the position column out");
     options.text("--format", o->format, "NAME",
                  fmt::format("format of what is written: {} (default: by the extension of -o, else csv)",
                              written_log_formats()));
