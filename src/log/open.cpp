@@ -76,7 +76,7 @@ const LogFormat* told_format(const std::string& path, std::optional<std::string_
     const std::string extension = dot == std::string::npos ? "" : lower_case(path.substr(dot));
     for (const LogFormat* format : log_formats()) {
         const auto& known = format->extensions;
-        if (std::find(known.begin(), known.end(), extension) != known.end()) return format;
+        if (std::ranges::find(known, extension) != known.end()) return format;
     }
     check_output_name(path, "a log", written_extensions());
     return nullptr;
@@ -217,8 +217,7 @@ std::unique_ptr<LogReader> open_log(std::unique_ptr<ByteSource> source, const Re
     if (options.range.given() && !layout.outside)
         raise<UsageError>("{}: --from and --to: rows of a log in format {} are read all or none",
                           layout.source, format.name);
-    if (std::any_of(layout.columns.begin(), layout.columns.end(),
-                    [](const Column& column) { return column.shift != 0.0; }))
+    if (std::ranges::any_of(layout.columns, [](const Column& column) { return column.shift != 0.0; }))
         reader = std::make_unique<ShiftedColumns>(std::move(reader));
     if (layout.velocity_from_position) return std::make_unique<DerivedVelocity>(std::move(reader));
     if (layout.constant_speed) {
@@ -239,7 +238,7 @@ std::unique_ptr<LogWriter> rewrite_log(const std::string& path, const LogReader&
     auto sink = std::make_unique<ByteSink>(path, overwrite, format.binary);
     // The cells of a torque with an offset are not its multiples.
     const std::vector<JointColumns> joints = reader.layout().all_chosen();
-    const bool shifted = std::any_of(joints.begin(), joints.end(), [&](const JointColumns& joint) {
+    const bool shifted = std::ranges::any_of(joints, [&](const JointColumns& joint) {
         return joint.torque && reader.layout().columns[*joint.torque].shift != 0.0;
     });
     const bool same = reader.layout().format == format.name && format.rewrite != nullptr && !shifted;

@@ -137,8 +137,11 @@ class LinesInRange final : public ByteSource, public RowsInRange {
         : ByteSource(Name{whole->layout().source}),
           RowsInRange(options, whole->layout(), whole->dialect().data_line - 1),
           whole_(std::move(whole)),
-          row_(whole_->dialect(), time_columns(whole_->layout()),
-               stamp_rule(whole_->layout(), whole_->dialect().rules.decimal_mark)),
+          parser_({whole_->dialect().rules,
+                   whole_->dialect().columns,
+                   time_columns(whole_->layout()),
+                   {},
+                   stamp_rule(whole_->layout(), whole_->dialect().rules.decimal_mark)}),
           lines_(whole_->head()) {
         while (!has_enough() && add_lines()) {
         }
@@ -175,13 +178,15 @@ class LinesInRange final : public ByteSource, public RowsInRange {
     bool keeps_text(std::string_view line) {
         line = line_content(line);
         std::optional<double> time;
-        if (row_.parse(line)) {
-            time = row_.value(time_slot);
-            if (whole_->layout().time_is_steps) time = sum_ = first_ ? 0.0 : sum_ + *time;
-            first_ = false;
-            if (whole_->layout().time_as_text && !std::exchange(stamped_, true))
-                first_stamp(
-                    clock_text(row_.cell(line, *whole_->layout().chosen.time), whole_->layout().stamp_form));
+        if (parser_.parse_any(line, row_, split_, [](const auto&...) { return std::nullopt; })) {
+            const Layout& layout = whole_->layout();
+            const bool first = std::exchange(first_, false);
+            time = row_.values[time_slot];
+            if (layout.time_is_steps) time = sum_ = first ? 0.0 : sum_ + *time;
+            if (layout.time_as_text && first) {
+                split_cells(line, parser_.plan().rules.delimiter, split_);
+                first_stamp(clock_text(split_.cells[*layout.chosen.time].of(line), layout.stamp_form));
+            }
         } else if (is_no_row(line)) {
             return keeps_line();
         }
@@ -189,11 +194,12 @@ class LinesInRange final : public ByteSource, public RowsInRange {
     }
 
     std::unique_ptr<CsvReader> whole_;
-    TextRow row_;
+    RowParser parser_;
+    ParsedRow row_;
+    CellSplit split_;
     RowBlock block_;
     std::string lines_;
     std::size_t given_ = 0;  ///< of lines_
-    bool stamped_ = false;   ///< the first row has been seen
     bool first_ = true;      ///< no row has been seen
     double sum_ = 0.0;       ///< of time steps
     bool unended_ = false;   ///< the bytes before ended within a line

@@ -27,7 +27,7 @@ using Catch::Contains;
 
 TEST_CASE("numbers read the quick way are correctly rounded", "[log]") {
     std::mt19937_64 random(21);
-    const RowParser parser({',', '.'}, 1, {{0, 0}});
+    const RowParser parser({{',', '.'}, 1, {{0, 0}}});
     for (int round = 0; round < 200000; ++round) {
         std::string text;
         if (random() % 2 == 0) text += '-';
@@ -38,24 +38,24 @@ TEST_CASE("numbers read the quick way are correctly rounded", "[log]") {
         }
         ParsedRow row;
         INFO(text);
-        REQUIRE(parser.parse(text.data(), text.data() + text.size(), row));
+        REQUIRE(parser.parse(text, row));
         REQUIRE(row.values[0] == *parse_number(text));
         REQUIRE(std::signbit(row.values[0]) == std::signbit(*parse_number(text)));
     }
 }
 
 TEST_CASE("a row that is not plain is left to the careful way", "[log]") {
-    const RowParser parser({',', '.'}, 3, {{0, 0}, {2, 2}});
+    const RowParser parser({{',', '.'}, 3, {{0, 0}, {2, 2}}});
     for (const std::string text :
          {"", "1", "1,2", "1,2,3,4", "a,2,3", "1,2,x", "1,2,", ",2,3", "1,2,nan", "1,2,inf", "1,\"2\",3",
           "1,2,\"3\"", "1 2,2,3", "1,2,3 4", "--1,2,3", "1,2,3e", "1,2,.", "1,2,-", "1,2,1e999"}) {
         ParsedRow row;
         INFO(text);
-        CHECK_FALSE(parser.parse(text.data(), text.data() + text.size(), row));
+        CHECK_FALSE(parser.parse(text, row));
     }
     const std::string good = "1, anything at all , -2.50e1 ";
     ParsedRow row;
-    REQUIRE(parser.parse(good.data(), good.data() + good.size(), row));
+    REQUIRE(parser.parse(good, row));
     CHECK(row.values[2] == -25.0);
     CHECK(std::string(row.torques[0].begin, row.torques[0].end) == "-2.50e1");
 }
@@ -65,8 +65,8 @@ namespace {
 constexpr double no_time = std::numeric_limits<double>::quiet_NaN();
 
 /// Three columns, all wanted: velocity, torque, position.
-QuickRows three_columns(char delimiter = ',', char mark = '.') {
-    return QuickRows({{delimiter, mark},
+RowParser three_columns(char delimiter = ',', char mark = '.') {
+    return RowParser({{delimiter, mark},
                       3,
                       {{0, velocity_slot}, {1, torque_slot}, {2, position_slot}},
                       std::vector<double>(4, 1.0)});
@@ -110,7 +110,7 @@ struct Taken {
 
 Taken taken(const std::string& text, bool wide) {
     const Width here(wide);
-    const QuickRows quick = three_columns();
+    const RowParser quick = three_columns();
     Taken result;
     result.block.bytes = text;
     result.end = quick.read(result.block, 0, no_time);
@@ -202,7 +202,7 @@ TEST_CASE("rows are taken at once up to the first that is not certainly right, w
                 RowBlock block;
                 for (int i = 0; i < before; ++i) block.bytes += good;
                 block.bytes += bad + good;
-                const QuickRows quick = three_columns();
+                const RowParser quick = three_columns();
                 CHECK(quick.read(block, 0, no_time) == static_cast<std::size_t>(before) * good.size());
                 CHECK(block.size() == static_cast<std::size_t>(before));
             }
@@ -219,7 +219,7 @@ TEST_CASE("a delimiter within quotes is none, in columns that nobody reads as we
         const Width here(wide);
         RowBlock block;
         block.bytes = text;
-        const QuickRows quick(
+        const RowParser quick(
             {{',', '.'}, 4, {{0, velocity_slot}, {3, torque_slot}}, std::vector<double>(4, 1.0)});
         CHECK(quick.read(block, 0, no_time) == end);
         CHECK(block.size() == 40);
@@ -229,7 +229,7 @@ TEST_CASE("a delimiter within quotes is none, in columns that nobody reads as we
 TEST_CASE("taking goes on behind a row that was taken otherwise, and keeps what it has", "[log]") {
     RowBlock block;
     block.bytes = "1,2,3\n4,5\n6,7,8\n9,10,11\n";
-    const QuickRows quick = three_columns();
+    const RowParser quick = three_columns();
     CHECK(quick.read(block, 0, no_time) == 6);
     CHECK(quick.read(block, 10, no_time) == block.bytes.size());
     CHECK(block.joints[0].torque_nm == std::vector<double>{2, 7, 10});
@@ -239,7 +239,7 @@ TEST_CASE("taking goes on behind a row that was taken otherwise, and keeps what 
 TEST_CASE("time that runs backward ends what is taken at once", "[log]") {
     for (const bool wide : widths()) {
         const Width here(wide);
-        const QuickRows quick(
+        const RowParser quick(
             {{',', '.'}, 2, {{0, time_slot}, {1, torque_slot}}, std::vector<double>(4, 1.0)});
         RowBlock block;
         block.bytes = "1,5\n2,5\n2,6\n1.999,7\n3,8\n";
@@ -252,7 +252,7 @@ TEST_CASE("time that runs backward ends what is taken at once", "[log]") {
 TEST_CASE("decimal commas, semicolons and wide rows are taken at once as well", "[log]") {
     RowBlock block;
     block.bytes = "1,5;-2,25;3\n4;5,125;6\n";
-    const QuickRows quick = three_columns(';', ',');
+    const RowParser quick = three_columns(';', ',');
     CHECK(quick.read(block, 0, no_time) == block.bytes.size());
     CHECK(block.joints[0].torque_nm == std::vector<double>{-2.25, 5.125});
     // 400 columns of 30 characters: a row longer than the stretch that is searched at once is left alone.
@@ -262,10 +262,10 @@ TEST_CASE("decimal commas, semicolons and wide rows are taken at once as well", 
         for (int column = 0; column < 399; ++column) rows.bytes += std::string(29, 'x') + ",";
         rows.bytes += "7.5\n";
     }
-    const std::size_t taken = QuickRows(plan).read(rows, 0, no_time);
+    const std::size_t taken = RowParser(plan).read(rows, 0, no_time);
     CHECK((taken == 0 || taken == rows.bytes.size()));
     const NarrowVectors here;
-    CHECK(QuickRows(plan).read(rows, taken, no_time) == rows.bytes.size());
+    CHECK(RowParser(plan).read(rows, taken, no_time) == rows.bytes.size());
     CHECK(rows.joints[0].torque_nm == std::vector<double>{7.5, 7.5, 7.5});
 }
 

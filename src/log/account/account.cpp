@@ -63,7 +63,7 @@ const WrapWatch::Turn* WrapWatch::found() const {
         return count_ >= 3 && !turn.ruled_out && turn.unwrapper && range >= 0.9 * turn.period &&
                range <= 1.0001 * turn.period;
     };
-    const auto turn = std::find_if(turns_.begin(), turns_.end(), fits);
+    const auto turn = std::ranges::find_if(turns_, fits);
     return turn == turns_.end() ? nullptr : &*turn;
 }
 
@@ -179,9 +179,8 @@ JointAngle::Judgement JointAngle::judge(const std::vector<Piece>& pieces) {
     using Verdict = AngleFacts::Verdict;
     if (velocity < frozen_share * position) return {Verdict::unrelated, std::nullopt};
     const double factor = median_of(ratios), magnitude = std::abs(factor);
-    const auto alike = std::count_if(ratios.begin(), ratios.end(), [=](double ratio) {
-        return std::abs(ratio - factor) <= alike_within * magnitude;
-    });
+    const auto alike = std::ranges::count_if(
+        ratios, [=](double ratio) { return std::abs(ratio - factor) <= alike_within * magnitude; });
     if (magnitude > 0.0 && static_cast<double>(alike) >= alike_share * static_cast<double>(ratios.size())) {
         if (magnitude < 1.0 / farthest_factor || magnitude > farthest_factor)
             return {Verdict::scaled, factor};

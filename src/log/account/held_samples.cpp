@@ -135,7 +135,7 @@ HeldCounter::Way HeldCounter::way() const {
 bool HeldCounter::torque_is_coarse() const {
     if (changes_.size() < fewest_changes) return true;
     std::vector<double> changes = changes_;
-    return median_in(changes) < coarse_steps * *std::min_element(changes.begin(), changes.end());
+    return median_in(changes) < coarse_steps * *std::ranges::min_element(changes);
 }
 
 HeldSamples HeldCounter::held() const {

@@ -179,8 +179,7 @@ bool counts_rows(const std::vector<double>& values) {
 }
 
 bool runs_forward(const std::vector<double>& values) {
-    return values.size() > 1 && std::is_sorted(values.begin(), values.end()) &&
-           values.front() < values.back();
+    return values.size() > 1 && std::ranges::is_sorted(values) && values.front() < values.back();
 }
 
 std::string labels(const ColumnFacts& facts, const std::vector<std::size_t>& columns) {
@@ -194,8 +193,7 @@ std::optional<std::string> name_before(const std::string& name, std::span<const 
     const std::string text = lower_case(name);
     std::size_t begin = text.size();
     while (begin > 0 && std::isalpha(static_cast<unsigned char>(text[begin - 1])) != 0) --begin;
-    if (std::find(words.begin(), words.end(), std::string_view(text).substr(begin)) == words.end())
-        return std::nullopt;
+    if (std::ranges::find(words, std::string_view(text).substr(begin)) == words.end()) return std::nullopt;
     return text.substr(0, begin);
 }
 
@@ -231,9 +229,9 @@ bool holds_steps(const ColumnFacts& facts, std::size_t column) {
     if (!facts.sums_steps || facts.names.empty()) return false;
     std::string name = lower_case(split_unit(facts.meanings()[column]).name);
     std::erase_if(name, [](char c) { return c == '_' || c == ' ' || c == '-' || c == '.'; });
-    if (std::find(words.begin(), words.end(), name) == words.end()) return false;
+    if (std::ranges::find(words, name) == words.end()) return false;
     const auto values = finite_values(facts, column);
-    return !values.empty() && *std::min_element(values.begin(), values.end()) >= 0.0 && !runs_forward(values);
+    return !values.empty() && *std::ranges::min_element(values) >= 0.0 && !runs_forward(values);
 }
 
 void take_steps(const ColumnFacts& facts, std::size_t column, Layout& layout) {
@@ -310,7 +308,7 @@ void refuse_clocks(const ColumnFacts& facts, const Clocks& clocks, const ReadOpt
 // A file without a clock whose head says how long a row is.
 bool use_step_of_head(const ColumnFacts& facts, const Clocks& clocks, Layout& layout) {
     const auto is_empty = [&](std::size_t column) { return finite_values(facts, column).empty(); };
-    if (!facts.row_step_s || !std::all_of(clocks.broken.begin(), clocks.broken.end(), is_empty)) return false;
+    if (!facts.row_step_s || !std::ranges::all_of(clocks.broken, is_empty)) return false;
     layout.stated_rate = Hertz(1.0 / *facts.row_step_s);
     layout.inferences.push_back({"time",
                                  fmt::format("{} s a row", *facts.row_step_s),

@@ -135,8 +135,7 @@ Clock::Clock(std::string source, std::span<const double> opening_s, std::optiona
         limit_s_ = gap_steps / stated->value();
         return;
     }
-    timed_ = !opening_s.empty() &&
-             std::all_of(opening_s.begin(), opening_s.end(), [](double t) { return std::isfinite(t); });
+    timed_ = !opening_s.empty() && std::ranges::all_of(opening_s, [](double t) { return std::isfinite(t); });
     if (timed_) open(opening_s);
     facts_.refusal = refusal(opening_s.size());
 }

@@ -119,8 +119,7 @@ struct Word {
 };
 
 bool is_digits(std::string_view text) {
-    return !text.empty() &&
-           std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
+    return !text.empty() && std::ranges::all_of(text, [](unsigned char c) { return std::isdigit(c) != 0; });
 }
 
 // q_dot and theta_dot are one symbol each.
@@ -154,8 +153,7 @@ bool cut_compound(std::string_view text, std::vector<std::string_view>& parts) {
 void push_word(std::vector<Word>& words, const Word& word) {
     std::vector<std::string_view> parts;
     const bool known = sense_of(word.text).meanings != 0;
-    if (known || !cut_compound(word.text, parts) ||
-        std::none_of(parts.begin(), parts.end(), [](std::string_view part) {
+    if (known || !cut_compound(word.text, parts) || std::ranges::none_of(parts, [](std::string_view part) {
             return sense_of(part).role() != Role::other || sense_of(part).is(Meaning::current);
         }))
         parts = {word.text};
@@ -244,10 +242,9 @@ NamedObject drive_object(std::string_view name) {
         unsigned index = 0;
         std::from_chars(name.data() + at, name.data() + at + 4, index, 16);
         if (index < first_index || index > last_index) continue;
-        const auto* const object =
-            std::find_if(drive_objects.begin(), drive_objects.end(), [index](const DriveObject& known) {
-                return known.index == first_index + (index - first_index) % next_axis;
-            });
+        const auto* const object = std::ranges::find_if(drive_objects, [index](const DriveObject& known) {
+            return known.index == first_index + (index - first_index) % next_axis;
+        });
         if (object == drive_objects.end()) continue;
         // The sub-index: ":00", "_00", ".0".
         if (end < name.size() && std::string_view(":_.").find(name[end]) != std::string_view::npos) {
@@ -283,8 +280,8 @@ struct Named {
 Named quantity_of(const std::vector<Word>& words, bool linear_axis) {
     Named found;
     bool current = false;
-    const bool of_current = std::any_of(words.begin(), words.end(),
-                                        [](const Word& word) { return word.sense.is(Meaning::current); });
+    const bool of_current =
+        std::ranges::any_of(words, [](const Word& word) { return word.sense.is(Meaning::current); });
     for (std::size_t i = 0; i < words.size(); ++i) {
         const Sense& sense = words[i].sense;
         if (linear_axis && sense.is(Meaning::force)) return {Role::torque, false, i, 0};
@@ -299,7 +296,7 @@ Named quantity_of(const std::vector<Word>& words, bool linear_axis) {
 
 // A time column is called so and little else: "actual_execution_time" is not the clock of the log.
 bool is_clock_name(const std::vector<Word>& left) {
-    return std::all_of(left.begin(), left.end(), [](const Word& word) {
+    return std::ranges::all_of(left, [](const Word& word) {
         return word.sense.is(Meaning::general) || word.sense.is(Meaning::clock);
     });
 }
@@ -315,7 +312,7 @@ std::string_view without_number(std::string_view name) {
 
 // A speed in m/s, or a unit in brackets, is that of a linear axis; then so are "pos_m" and "force_N".
 void read_linear_axis(const std::vector<std::string>& names, std::vector<ColumnName>& columns) {
-    const bool linear = std::any_of(columns.begin(), columns.end(), [](const ColumnName& column) {
+    const bool linear = std::ranges::any_of(columns, [](const ColumnName& column) {
         const auto usual = usual_unit(column.unit, column.role);
         return column.role != Role::torque && usual && is_linear_unit(column.role, *usual);
     });
@@ -377,7 +374,7 @@ void follow_conventions(const std::vector<std::string>& names, std::vector<Colum
                           [&](std::string_view pattern) { any = any || follows(of_column, pattern); });
             return any;
         };
-        if (!known.beside.empty() && std::none_of(words.begin(), words.end(), [&](const std::string& other) {
+        if (!known.beside.empty() && std::ranges::none_of(words, [&](const std::string& other) {
                 return follows(other, known.beside);
             }))
             continue;
@@ -405,17 +402,16 @@ void drop_unasked(const KnownColumns& known, bool joint_asked, std::vector<Joint
     if (forced.by_place || !torque || !moves) return;
     const std::string of_torque = joint_key(known.names[*torque].joint);
     const auto is_unasked = [&](const JointGroup& group) {
-        return group.key != of_torque &&
-               std::all_of(motion_roles.begin(), motion_roles.end(),
-                           [&](Role role) { return forced.column_of(role) || !group.has(role); });
+        return group.key != of_torque && std::ranges::all_of(motion_roles, [&](Role role) {
+                   return forced.column_of(role) || !group.has(role);
+               });
     };
-    if (joint_asked && std::all_of(groups.begin(), groups.end(), is_unasked) &&
-        !joint_of_forced(known).empty())
+    if (joint_asked && std::ranges::all_of(groups, is_unasked) && !joint_of_forced(known).empty())
         groups.clear();
     if (joint_asked) return;
     groups.erase(std::remove_if(groups.begin(), groups.end(), is_unasked), groups.end());
-    const bool distinct = std::any_of(groups.begin(), groups.end(),
-                                      [&](const JointGroup& group) { return group.key == of_torque; });
+    const bool distinct =
+        std::ranges::any_of(groups, [&](const JointGroup& group) { return group.key == of_torque; });
     if (groups.size() > 1 && !distinct) groups.clear();
 }
 
@@ -445,7 +441,7 @@ std::vector<JointGroup> collect_groups(const KnownColumns& known, bool merge) {
         labels.push_back(column_label(known.facts.names, c));
         const std::string& name = known.facts.names[c];
         const bool plain = name.find_first_of(" ,=()[]'\"&;") == std::string::npos &&
-                           std::count(known.facts.names.begin(), known.facts.names.end(), name) == 1;
+                           std::ranges::count(known.facts.names, name) == 1;
         choices.push_back(
             fmt::format("--columns {}={}", role_name(role), plain ? name : std::to_string(c + 1)));
     }
@@ -507,13 +503,12 @@ void share_torques(std::vector<JointGroup>& groups) {
 bool is_known_word(std::string_view text) {
     const std::vector<Word> words = split_words(text);
     return !words.empty() &&
-           std::all_of(words.begin(), words.end(), [](const Word& word) { return word.sense.meanings != 0; });
+           std::ranges::all_of(words, [](const Word& word) { return word.sense.meanings != 0; });
 }
 
 const Convention* ColumnName::convention(Role as) const {
-    const auto found = std::find_if(conventions.begin(), conventions.end(), [as](const Convention* known) {
-        return as == Role::other || known->role == as;
-    });
+    const auto found = std::ranges::find_if(
+        conventions, [as](const Convention* known) { return as == Role::other || known->role == as; });
     return found == conventions.end() ? nullptr : *found;
 }
 
@@ -549,8 +544,8 @@ ColumnName read_column_name(std::string_view name, bool linear_axis) {
     column.rank = quantity.rank;
     column.current = quantity.current || (object != nullptr && object->meaning == Meaning::current);
     column.reference = object != nullptr && object->meaning == Meaning::reference;
-    const bool of_current = std::any_of(words.begin(), words.end(),
-                                        [](const Word& word) { return word.sense.is(Meaning::current); });
+    const bool of_current =
+        std::ranges::any_of(words, [](const Word& word) { return word.sense.is(Meaning::current); });
     bool foreign = false, filtered = false;
     std::vector<Word> left;
     for (std::size_t i = 0; i < words.size(); ++i) {
@@ -625,9 +620,8 @@ std::vector<ColumnName> read_column_names(const std::vector<std::string>& names,
     for (std::size_t c = 0; c < names.size(); ++c) {
         ColumnName& column = columns[c];
         const std::string& bare = column.bare;
-        const auto* const symbol = std::find_if(symbols.begin(), symbols.end(), [&](const Symbol& known) {
-            return known.text == without_number(bare);
-        });
+        const auto* const symbol = std::ranges::find_if(
+            symbols, [&](const Symbol& known) { return known.text == without_number(bare); });
         // Columns that were taken as symbols are no longer what they were, and no rivals of each other.
         const auto has = [&](Role role) {
             return measured[role] > (!column.reference && column.role == role ? 1U : 0U);
@@ -713,7 +707,7 @@ std::vector<JointGroup> group_joints(const KnownColumns& known, bool joint_asked
         const std::string joint = joint_of_forced(known);
         groups.push_back({joint_key(joint), joint, {}});
     }
-    if (std::none_of(groups.begin(), groups.end(), complete) && groups.size() > 1 && !joint_asked) {
+    if (std::ranges::none_of(groups, complete) && groups.size() > 1 && !joint_asked) {
         // "motor_torque" and "link_velocity": one joint whose columns are named after different
         // things.
         std::array<std::size_t, 3> counts{};
@@ -722,14 +716,13 @@ std::vector<JointGroup> group_joints(const KnownColumns& known, bool joint_asked
         }
         // "tau_motor_side" and "tau_sensor" with them: torques of the one joint that moves, to be chosen
         // from.
-        const bool numbered = std::any_of(groups.begin(), groups.end(), [](const JointGroup& group) {
-            return number_of(group.key).has_value();
-        });
+        const bool numbered = std::ranges::any_of(
+            groups, [](const JointGroup& group) { return number_of(group.key).has_value(); });
         if (counts[0] <= 1 && counts[2] <= 1 && (counts[1] <= 1 || !numbered))
             groups = collect_groups(known, true);
     }
     share_torques(groups);
-    const bool any_complete = std::any_of(groups.begin(), groups.end(), complete);
+    const bool any_complete = std::ranges::any_of(groups, complete);
     if (any_complete) {
         const auto rest = std::stable_partition(groups.begin(), groups.end(), complete);
         incomplete.assign(std::make_move_iterator(rest), std::make_move_iterator(groups.end()));

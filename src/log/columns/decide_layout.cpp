@@ -99,8 +99,7 @@ std::string what_is_missing(const JointGroup& joint) {
 
 bool holds(const JointGroup& joint, Role role, std::size_t column) {
     const auto found = joint.candidates.find(role);
-    return found != joint.candidates.end() &&
-           std::find(found->second.begin(), found->second.end(), column) != found->second.end();
+    return found != joint.candidates.end() && std::ranges::find(found->second, column) != found->second.end();
 }
 
 std::string why_unused(const KnownColumns& known, std::size_t column, const std::vector<JointGroup>& joints,
@@ -123,7 +122,7 @@ std::string why_unused(const KnownColumns& known, std::size_t column, const std:
             return fmt::format("the {} of {}: {}", role,
                                joint.name.empty() ? "a joint without name" : joint.name,
                                what_is_missing(joint));
-    const bool rivalled = std::any_of(joints.begin(), joints.end(), [&](const JointGroup& joint) {
+    const bool rivalled = std::ranges::any_of(joints, [&](const JointGroup& joint) {
         return holds(joint, name.role, column) && joint.candidates.at(name.role).size() > 1;
     });
     return rivalled ? fmt::format("another column is the {} by its name", role)
@@ -244,8 +243,8 @@ class Decision {
         const std::vector<std::string> asked =
             options_.joint ? select_joints(source_, *options_.joint, names) : names;
         for (const std::string& joint : asked) {
-            const auto lacking = std::find_if(incomplete_.begin(), incomplete_.end(),
-                                              [&](const JointGroup& group) { return group.name == joint; });
+            const auto lacking = std::ranges::find_if(
+                incomplete_, [&](const JointGroup& group) { return group.name == joint; });
             if (lacking == incomplete_.end())
                 layout_.asked.push_back(joint);
             else
@@ -378,8 +377,8 @@ class Decision {
     }
 
     const JointGroup* group_named(const std::string& name) const {
-        const auto at = std::find_if(groups_.begin(), groups_.end(),
-                                     [&](const JointGroup& group) { return group.name == name; });
+        const auto at =
+            std::ranges::find_if(groups_, [&](const JointGroup& group) { return group.name == name; });
         return at == groups_.end() ? nullptr : &*at;
     }
 
@@ -418,7 +417,7 @@ class Decision {
         }
         if (groups.empty() && refusal_) std::rethrow_exception(refusal_);
         for (const JointGroup& group : groups_) {
-            const auto place = std::find(groups.begin(), groups.end(), &group) - groups.begin();
+            const auto place = std::ranges::find(groups, &group) - groups.begin();
             const auto number = static_cast<std::size_t>(place);
             give_roles(group, number == groups.size() ? nullptr
                               : number == 0           ? &layout_.chosen
@@ -528,8 +527,8 @@ class Decision {
     bool shares_joint(std::size_t c) const {
         for (const JointColumns& joint : layout_.all_chosen()) {
             const std::array columns = {joint.velocity, joint.torque, joint.position};
-            if (std::find(columns.begin(), columns.end(), c) == columns.end()) continue;
-            return std::any_of(columns.begin(), columns.end(), [&](const auto& other) {
+            if (std::ranges::find(columns, c) == columns.end()) continue;
+            return std::ranges::any_of(columns, [&](const auto& other) {
                 return other && *other != c && joint_key(names_[*other].joint) == joint_key(names_[c].joint);
             });
         }
@@ -604,7 +603,7 @@ class Decision {
         const auto holds = [c](const JointColumns& chosen) {
             return chosen.time == c || chosen.velocity == c || chosen.torque == c || chosen.position == c;
         };
-        return holds(layout_.chosen) || std::any_of(layout_.others.begin(), layout_.others.end(), holds);
+        return holds(layout_.chosen) || std::ranges::any_of(layout_.others, holds);
     }
 
     void report_repeated_names() {
@@ -634,7 +633,7 @@ class Decision {
 }  // namespace
 
 std::optional<std::size_t> Forced::column_of(Role role) const {
-    const auto at = std::find(roles.begin(), roles.end(), std::optional<Role>(role));
+    const auto at = std::ranges::find(roles, std::optional<Role>(role));
     if (at == roles.end()) return std::nullopt;
     return static_cast<std::size_t>(at - roles.begin());
 }

@@ -83,9 +83,8 @@ std::optional<double> scale_of(const Moves& moves) {
     }
     if (!(usual > 0.0) || ratios.size() < fewest) return std::nullopt;
     const double middle = median_of(ratios);
-    const auto same = std::count_if(ratios.begin(), ratios.end(), [middle](double ratio) {
-        return std::abs(ratio - middle) < alike * std::abs(middle);
-    });
+    const auto same = std::ranges::count_if(
+        ratios, [middle](double ratio) { return std::abs(ratio - middle) < alike * std::abs(middle); });
     if (static_cast<double>(same) < most * static_cast<double>(ratios.size())) return std::nullopt;
     return std::abs(middle);
 }
@@ -218,7 +217,7 @@ class Inference {
     // then.
     std::vector<MotionReading>::const_iterator likeliest(const std::vector<MotionReading>& readings) const {
         const bool named = options_.takes_motor_units || side_is_said();
-        return std::find_if(readings.begin(), readings.end(), [named](const MotionReading& one) {
+        return std::ranges::find_if(readings, [named](const MotionReading& one) {
             const bool motor = one.velocity.side == Shaft::motor || one.position.side == Shaft::motor;
             return named || !motor || one.ratio;
         });
@@ -294,7 +293,7 @@ class Inference {
                 return known.changes_side == other.changes_side &&
                        std::abs(known.velocity_factor / other.velocity_factor - 1.0) < same_speed;
             };
-            if (same(OtherReading{}) || std::any_of(found.begin(), found.end(), same)) continue;
+            if (same(OtherReading{}) || std::ranges::any_of(found, same)) continue;
             found.push_back(std::move(other));
         }
         return found;
@@ -502,8 +501,8 @@ std::vector<MotionColumns> motions_of(const KnownColumns& known, const std::vect
     const std::vector<JointColumns> all = layout.all_chosen();
     for (const JointColumns& joint : all) add(joint.joint, joint.velocity, joint.position, true);
     for (const JointGroup& group : groups) {
-        const bool chosen = std::any_of(all.begin(), all.end(),
-                                        [&](const JointColumns& joint) { return joint.joint == group.name; });
+        const bool chosen =
+            std::ranges::any_of(all, [&](const JointColumns& joint) { return joint.joint == group.name; });
         if (!chosen)
             add(group.name, only_column(known, group, Role::velocity),
                 only_column(known, group, Role::position), false);

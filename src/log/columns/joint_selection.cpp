@@ -93,7 +93,7 @@ class Selection {
     /// By its name, else by "3", "j3" or "joint3" for each other, else by the number that its name ends in.
     std::optional<std::size_t> place_of(const std::string& word) const {
         const auto find = [&](const auto& is_meant) -> std::optional<std::size_t> {
-            const auto at = std::find_if(joints_.begin(), joints_.end(), is_meant);
+            const auto at = std::ranges::find_if(joints_, is_meant);
             if (at == joints_.end()) return std::nullopt;
             return static_cast<std::size_t>(at - joints_.begin());
         };
@@ -102,11 +102,11 @@ class Selection {
         const std::string key = joint_key(word);
         if (const auto alike = find([&](const std::string& joint) { return joint_key(joint) == key; }))
             return alike;
-        if (!std::all_of(word.begin(), word.end(), is_ascii_digit)) return std::nullopt;
+        if (!std::ranges::all_of(word, is_ascii_digit)) return std::nullopt;
         const auto ends_in_it = [&](const std::string& joint) {
             return letters_of(joint).size() + word.size() == joint.size() && joint.ends_with(word);
         };
-        if (std::count_if(joints_.begin(), joints_.end(), ends_in_it) != 1) return std::nullopt;
+        if (std::ranges::count_if(joints_, ends_in_it) != 1) return std::nullopt;
         return find(ends_in_it);
     }
 

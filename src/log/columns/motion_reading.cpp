@@ -142,8 +142,7 @@ std::vector<Candidate> candidates(const std::optional<MotionColumn>& column, con
     if (!column) return {{{"", 1.0, Family::degrees, 0.0}, false}};
     std::vector<Candidate> found;
     const Column& read = layout.columns[column->column];
-    const auto known =
-        std::find_if(units.begin(), units.end(), [&](const MotionUnit& u) { return u.name == read.unit; });
+    const auto known = std::ranges::find_if(units, [&](const MotionUnit& u) { return u.name == read.unit; });
     if (column->unit_is_stated)
         found.push_back(
             {{read.unit, read.factor, known == units.end() ? Family::degrees : known->family, 0.0}, false});
@@ -185,7 +184,7 @@ class Scoring {
                 }
             }
         }
-        std::stable_sort(found_.begin(), found_.end(), [](const MotionReading& a, const MotionReading& b) {
+        std::ranges::stable_sort(found_, [](const MotionReading& a, const MotionReading& b) {
             return a.against_header != b.against_header ? b.against_header : a.cost < b.cost;
         });
         return std::move(found_);

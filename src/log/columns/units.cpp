@@ -286,9 +286,8 @@ NameAndUnit split_unit(std::string_view column_name, Role role, bool linear_axis
         const std::size_t from = whole.rfind(open);
         if (from == std::string_view::npos || from == 0 || whole.empty() || whole.back() != close) continue;
         const std::string_view inside = padded(whole.substr(from + 1, whole.size() - from - 2));
-        const bool index = !inside.empty() && std::all_of(inside.begin(), inside.end(), [](unsigned char c) {
-            return std::isdigit(c) != 0;
-        });
+        const bool index = !inside.empty() &&
+                           std::ranges::all_of(inside, [](unsigned char c) { return std::isdigit(c) != 0; });
         // An address, as "(P:00A305h)", is no unit.
         if (inside.find(':') != std::string_view::npos)
             return {std::string(padded(whole.substr(0, from))), "", false};
@@ -403,8 +402,7 @@ bool counts_only(const std::vector<double>& values) {
         if (before && value != *before && steps.size() < most_steps) steps.insert(value - *before);
         before = value;
     }
-    const bool rounded =
-        std::any_of(steps.begin(), steps.end(), [&](double step) { return steps.count(step + 1.0) > 0; });
+    const bool rounded = std::ranges::any_of(steps, [&](double step) { return steps.count(step + 1.0) > 0; });
     return different.size() >= fewest && rounded;
 }
 

@@ -59,7 +59,7 @@ std::string path_around(const std::string& path) {
 std::string without_empty_words(const std::string& path) {
     constexpr std::array empty_words = {"value", "Value", "data", "Data", "values", "Values", "signals"};
     std::string rest = path;
-    while (std::find(empty_words.begin(), empty_words.end(), last_word(rest)) != empty_words.end() &&
+    while (std::ranges::find(empty_words, last_word(rest)) != empty_words.end() &&
            path_around(rest).size() > 0)
         rest = path_around(rest);
     return rest;
@@ -279,9 +279,8 @@ void join_arrays(const std::shared_ptr<StoredBytes>& file, const ArrayGroup& bas
                  const std::function<bool(const std::string& path)>& asked, const ReadOptions& options,
                  ColumnLog& log) {
     std::vector<ArrayColumn> columns = columns_of(base, style);
-    const auto clock_column = std::find_if(columns.begin(), columns.end(), [&](const ArrayColumn& column) {
-        return column.array == base.clock;
-    });
+    const auto clock_column =
+        std::ranges::find_if(columns, [&](const ArrayColumn& column) { return column.array == base.clock; });
     std::rotate(columns.begin(), clock_column, clock_column + 1);
     std::vector<SideColumn> sides;
     for (const ArrayGroup* other : others) {
@@ -352,7 +351,7 @@ std::vector<const ArrayGroup*> asked_groups(const std::string& source, const std
         found.insert(asked.torque_in(group, style) ? found.begin() : found.end(), &group);
     }
     const bool joined = found.size() > 1;
-    if (joined && std::any_of(found.begin(), found.end(), [](const ArrayGroup* g) { return !g->clock; })) {
+    if (joined && std::ranges::any_of(found, [](const ArrayGroup* g) { return !g->clock; })) {
         raise<UsageError>(
             "--columns: {} of {} has {} rows, {} has {}: their clocks differ; name arrays of one length, or "
             "each with its own time",
@@ -382,7 +381,7 @@ const ArrayGroup* choose_group(const std::vector<ArrayGroup>& groups, PathStyle 
     int best = -1;
     const auto is_parameter = [&](const ArrayGroup& group) {
         return group.rows < fewest_rows_of_signal &&
-               std::any_of(groups.begin(), groups.end(), [&](const ArrayGroup& other) {
+               std::ranges::any_of(groups, [&](const ArrayGroup& other) {
                    return other.rows >= times_longer * group.rows &&
                           column_names_tell(columns_of(other, style)) > 0;
                });
@@ -426,10 +425,10 @@ ColumnLog columns_of_arrays(const std::shared_ptr<StoredBytes>& file, const std:
     const auto reads = [&](const StoredArray& array) {
         if (chosen.empty()) return false;
         const auto& whole = chosen.front()->arrays;
-        if (std::find(whole.begin(), whole.end(), &array) != whole.end()) return true;
+        if (std::ranges::find(whole, &array) != whole.end()) return true;
         return std::any_of(chosen.begin() + 1, chosen.end(), [&](const ArrayGroup* group) {
             const auto columns = columns_of(*group, style);
-            return std::any_of(columns.begin(), columns.end(), [&](const ArrayColumn& column) {
+            return std::ranges::any_of(columns, [&](const ArrayColumn& column) {
                 return column.array == &array && asked.has(column.path);
             });
         });

@@ -292,7 +292,7 @@ class Hdf5TableWriter final : public TableWriter {
         ::H5Pset_chunk(creation.id(), 1, &chunk);
         ::H5Pset_obj_track_times(creation.id(), false);
         for (std::string name : names_) {
-            std::replace(name.begin(), name.end(), '/', '_');
+            std::ranges::replace(name, '/', '_');
             datasets_.emplace_back(::H5Dcreate2(scratch_.file.id(), name.c_str(), H5T_IEEE_F64LE, space.id(),
                                                 H5P_DEFAULT, creation.id(), H5P_DEFAULT),
                                    ::H5Dclose);
@@ -453,7 +453,7 @@ class Hdf5Walk {
     void add_array(const std::string& path, ArrayShape shape, const std::shared_ptr<Hdf5Handle>& dataset,
                    const Hdf5Memory& memory, const std::vector<std::uint64_t>& dimensions,
                    const std::string& unit) {
-        const auto longest = std::max_element(dimensions.begin(), dimensions.end());
+        const auto longest = std::ranges::max_element(dimensions);
         const auto time_dimension = static_cast<std::size_t>(longest - dimensions.begin());
         StoredArray array{path, shape, memory.field, unit, {}, ""};
         array.open = [file = file_, dataset, memory, rank = dimensions.size(),
@@ -495,7 +495,7 @@ class Hdf5Walk {
     std::string path_of(const std::string& name) const {
         if (!matlab_) return "/" + name;
         std::string path = name;
-        std::replace(path.begin(), path.end(), '/', '.');
+        std::ranges::replace(path, '/', '.');
         return path;
     }
     void add_other(const std::string& name, const std::string& shape, const std::string& what) {

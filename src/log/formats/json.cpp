@@ -257,13 +257,12 @@ class RowColumns {
 
 bool is_list_of_objects(const Json& json) {
     return json.is_array() && !json.empty() &&
-           std::all_of(json.begin(), json.end(), [](const Json& one) { return one.is_object(); });
+           std::ranges::all_of(json, [](const Json& one) { return one.is_object(); });
 }
 
 bool is_list_of_numbers(const Json& json) {
-    return json.is_array() && !json.empty() && std::all_of(json.begin(), json.end(), [](const Json& one) {
-               return is_number(one) || one.is_null();
-           });
+    return json.is_array() && !json.empty() &&
+           std::ranges::all_of(json, [](const Json& one) { return is_number(one) || one.is_null(); });
 }
 
 /// The longest list of objects, and lists of numbers by their length.

@@ -236,7 +236,7 @@ class MatWalk {
     std::uint32_t word(StoredBytes& bytes, std::uint64_t at) const {
         std::array<unsigned char, 4> raw{};
         bytes.read_at(at, reinterpret_cast<char*>(raw.data()), raw.size());
-        if (big_endian_ != (std::endian::native == std::endian::big)) std::reverse(raw.begin(), raw.end());
+        if (big_endian_ != (std::endian::native == std::endian::big)) std::ranges::reverse(raw);
         return std::bit_cast<std::uint32_t>(raw);
     }
     Element element_at(StoredBytes& bytes, std::uint64_t at) const {

@@ -105,8 +105,7 @@ RawLayout parse_raw_layout(const std::string& text) {
             layout.record_size += static_cast<std::size_t>(bytes);
             continue;
         }
-        const auto type =
-            std::find_if(types.begin(), types.end(), [&](const RawType& one) { return one.name == word; });
+        const auto type = std::ranges::find_if(types, [&](const RawType& one) { return one.name == word; });
         if (type == types.end()) complain(whole, fmt::format("'{}' is no type of numbers", word));
         field.kind = type->kind;
         field.size = type->size;
@@ -142,8 +141,8 @@ std::vector<std::string> layouts_that_fit(const RawLayout& layout, std::uint64_t
         const std::size_t size = parse_raw_layout(shorter).record_size;
         if (bytes % size == 0) candidates.push_back({layout.record_size - size, shorter});
     }
-    std::stable_sort(candidates.begin(), candidates.end(),
-                     [](const Candidate& a, const Candidate& b) { return a.distance < b.distance; });
+    std::ranges::stable_sort(candidates,
+                             [](const Candidate& a, const Candidate& b) { return a.distance < b.distance; });
     std::vector<std::string> texts;
     for (std::size_t i = 0; i < std::min<std::size_t>(2, candidates.size()); ++i)
         texts.push_back(candidates[i].text);

@@ -110,7 +110,7 @@ class Rosbag2Messages final : public MessageSource {
         const std::string head = file_->text_at(0, head_size);
         const auto number = [&](std::size_t at, std::size_t size) {
             std::string bytes = head.substr(at, size);
-            std::reverse(bytes.begin(), bytes.end());  // the most significant byte first
+            std::ranges::reverse(bytes);  // the most significant byte first
             return little_endian(bytes);
         };
         const std::uint64_t page = number(16, 2) == 1 ? largest_page : number(16, 2), pages = number(28, 4);

@@ -136,8 +136,8 @@ class SchemaParser {
     }
     RosType type_of(std::string_view word, const std::string& inside, int depth) {
         RosType type;
-        const auto primitive = std::find_if(primitives.begin(), primitives.end(),
-                                            [&](const Primitive& one) { return one.name == word; });
+        const auto primitive =
+            std::ranges::find_if(primitives, [&](const Primitive& one) { return one.name == word; });
         if (primitive != primitives.end()) {
             type.number = primitive->kind;
             type.size = primitive->size;

@@ -247,13 +247,13 @@ class TopicChoice {
         return true;
     }
     bool is_named(const std::string& path) const {
-        return std::any_of(options_.columns.begin(), options_.columns.end(), [&](const std::string& entry) {
+        return std::ranges::any_of(options_.columns, [&](const std::string& entry) {
             const std::size_t equals = entry.find('=');
             return equals != std::string::npos && entry.substr(equals + 1) == path;
         });
     }
     bool is_asked(std::size_t channel, std::string_view role = "") const {
-        return std::any_of(options_.columns.begin(), options_.columns.end(), [&](const std::string& entry) {
+        return std::ranges::any_of(options_.columns, [&](const std::string& entry) {
             const std::size_t equals = entry.find('=');
             return equals != std::string::npos && (role.empty() || entry.substr(0, equals) == role) &&
                    entry.substr(equals + 1).starts_with(source_->channels()[channel].topic + ".");
@@ -304,8 +304,8 @@ class TopicChoice {
     }
     bool takes_header(std::size_t chosen) const {
         const Topic& topic = topics_[chosen];
-        const auto stamp = std::find_if(topic.layout.leaves.begin(), topic.layout.leaves.end(),
-                                        [](const MessageLeaf& leaf) { return leaf.clock; });
+        const auto stamp =
+            std::ranges::find_if(topic.layout.leaves, [](const MessageLeaf& leaf) { return leaf.clock; });
         const bool has = stamp != topic.layout.leaves.end();
         if (options_.clock == "log") return false;
         if (options_.clock == "header") {

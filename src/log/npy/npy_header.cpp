@@ -19,14 +19,14 @@ template <class Word>
 Word load_word(const char* bytes, bool big_endian) {
     std::array<unsigned char, sizeof(Word)> raw{};
     std::memcpy(raw.data(), bytes, sizeof(Word));
-    if (big_endian != (std::endian::native == std::endian::big)) std::reverse(raw.begin(), raw.end());
+    if (big_endian != (std::endian::native == std::endian::big)) std::ranges::reverse(raw);
     return std::bit_cast<Word>(raw);
 }
 
 template <class Word>
 void store_word(char* bytes, bool big_endian, Word value) {
     auto raw = std::bit_cast<std::array<unsigned char, sizeof(Word)>>(value);
-    if (big_endian != (std::endian::native == std::endian::big)) std::reverse(raw.begin(), raw.end());
+    if (big_endian != (std::endian::native == std::endian::big)) std::ranges::reverse(raw);
     std::memcpy(bytes, raw.data(), sizeof(Word));
 }
 
@@ -282,8 +282,7 @@ class HeaderText {
             header_.rows = shape_[0];
         }
         const auto is_number = [](const NpyField& field) { return field.kind != '\0'; };
-        if (header_.record_size == 0 ||
-            std::none_of(header_.fields.begin(), header_.fields.end(), is_number)) {
+        if (header_.record_size == 0 || std::ranges::none_of(header_.fields, is_number)) {
             raise<DataError>(
                 "{}: read no column of numbers, expected floats or integers; save the array with a numeric "
                 "type",

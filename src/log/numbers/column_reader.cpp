@@ -39,7 +39,7 @@ std::string left_out_of(const std::vector<ContentEntry>& contents) {
 std::vector<std::string> texts_of(const std::vector<ColumnInfo>& info, std::string ColumnInfo::*text) {
     std::vector<std::string> texts;
     for (const ColumnInfo& column : info) texts.push_back(column.*text);
-    const bool any = std::any_of(texts.begin(), texts.end(), [](const auto& one) { return !one.empty(); });
+    const bool any = std::ranges::any_of(texts, [](const auto& one) { return !one.empty(); });
     return any ? texts : std::vector<std::string>();
 }
 
@@ -195,7 +195,7 @@ bool ColumnReader::fetch(RowBlock& block) {
         std::vector<double>& numbers = numbers_of(block, slot);
         // Columns that the log has not.
         const bool wanted =
-            std::any_of(wanted_.begin(), wanted_.end(), [slot](const auto& one) { return one.slot == slot; });
+            std::ranges::any_of(wanted_, [slot](const auto& one) { return one.slot == slot; });
         if (wanted || !is_position(slot)) numbers.resize(good, not_a_number);
         if (wanted && good > 0) before_[slot] = numbers.back();
         if (factors_[slot] != 1.0)

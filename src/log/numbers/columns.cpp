@@ -18,7 +18,7 @@ void append_rows(const NumberRows& from, const std::vector<std::size_t>& rows, N
 }
 
 std::size_t Columns::row_bytes() const {
-    const auto wanted = static_cast<std::size_t>(std::count(wanted_.begin(), wanted_.end(), true));
+    const auto wanted = static_cast<std::size_t>(std::ranges::count(wanted_, true));
     return sizeof(double) * std::max<std::size_t>(1, wanted);
 }
 

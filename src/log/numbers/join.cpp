@@ -189,7 +189,7 @@ void join_columns(ColumnLog& log, double ns_per_unit, std::vector<SideColumn> si
                   const ReadOptions& options) {
     const std::string how = options.join.value_or("linear");
     const bool counted =
-        log.columns->info()[0].whole && std::all_of(sides.begin(), sides.end(), [&](const SideColumn& side) {
+        log.columns->info()[0].whole && std::ranges::all_of(sides, [&](const SideColumn& side) {
             return side.columns->info()[0].whole && side.ns_per_unit == ns_per_unit;
         });
     std::vector<Side> opened;

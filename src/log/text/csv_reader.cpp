@@ -27,7 +27,7 @@ bool read_up_to(ByteSource& source, std::string& bytes, std::size_t size) {
 }
 
 std::size_t line_ends(std::string_view bytes) {
-    return static_cast<std::size_t>(std::count(bytes.begin(), bytes.end(), '\n'));
+    return static_cast<std::size_t>(std::ranges::count(bytes, '\n'));
 }
 
 // The careful way through a row of a text log, for what the quick ways are not sure of: quoted and empty
@@ -38,12 +38,6 @@ std::string shown_cell(std::string_view text) {
 }
 
 }  // namespace
-
-std::string dialect_options(const TextDialect& dialect) {
-    const std::string name = delimiter_name(dialect.rules.delimiter);
-    return fmt::format("--delimiter {} --decimal {}{}", name == ";" ? "';'" : name,
-                       dialect.rules.decimal_mark, dialect.has_header ? "" : " --no-header");
-}
 
 TextOpening::TextOpening(std::unique_ptr<ByteSource> from, std::string first_bytes,
                          const ReadOptions& options)
@@ -66,8 +60,27 @@ CsvReader::CsvReader(TextOpening opening, const ReadOptions& options)
       options_(options),
       dialect_(std::move(opening.dialect)),
       source_ended_(opening.ended) {
-    std::string first_bytes = std::move(opening.bytes);
-    layout_ = decide_layout(source_->name(), "csv", facts_of(first_bytes), options);
+    decide(opening.bytes);
+    head_ = opening.bytes.substr(0, dialect_.data_offset);
+    ahead_ = std::move(opening.bytes);
+    ahead_at_ = dialect_.data_offset;
+    line_ = dialect_.data_line;
+    plan_columns();
+}
+
+// `opening` may be read on while the layout is decided.
+void CsvReader::decide(std::string& opening) {
+    dialect_.motion_sample = [this, &opening](const Layout& layout, const std::vector<MotionPlace>& places,
+                                              std::size_t bytes) {
+        if (!source_ended_ && opening.size() < bytes) source_ended_ = read_up_to(*source_, opening, bytes);
+        MotionSample sample = text_motion_sample(std::string_view(opening).substr(dialect_.data_offset),
+                                                 dialect_, layout, places);
+        sample.whole = source_ended_;
+        return sample;
+    };
+    layout_ = decide_layout(source_->name(), "csv", dialect_, options_);
+    dialect_.motion_sample = nullptr;
+    dialect_.sample.clear();
     layout_.change_all([&](Layout& layout) {
         layout.outside = rows_outside(*source_);
         if (dialect_.head_lines == 0) return;
@@ -82,37 +95,6 @@ CsvReader::CsvReader(TextOpening opening, const ReadOptions& options)
              fmt::format("--skip-lines {}", dialect_.head_lines),
              {}});
     });
-    head_ = first_bytes.substr(0, dialect_.data_offset);
-    ahead_ = std::move(first_bytes);
-    ahead_at_ = dialect_.data_offset;
-    line_ = dialect_.data_line;
-    plan_columns();
-}
-
-// `opening` may be read on while the layout is decided.
-ColumnFacts CsvReader::facts_of(std::string& opening) {
-    ColumnFacts facts;
-    facts.names = dialect_.names;
-    facts.units = dialect_.units;
-    facts.columns = dialect_.columns;
-    facts.sample = std::move(dialect_.sample);
-    facts.first_counts = dialect_.first_counts;
-    facts.clock_texts = dialect_.clock_texts;
-    facts.stamp_forms = dialect_.stamp_forms;
-    facts.sums_steps = true;
-    facts.scales = dialect_.scales;
-    facts.row_step_s = dialect_.row_step_s;
-    facts.row_step_key = dialect_.row_step_key;
-    facts.dialect_options = dialect_options(dialect_);
-    facts.motion_sample = [this, &opening](const Layout& layout, const std::vector<MotionPlace>& places,
-                                           std::size_t bytes) {
-        if (!source_ended_ && opening.size() < bytes) source_ended_ = read_up_to(*source_, opening, bytes);
-        MotionSample sample = text_motion_sample(std::string_view(opening).substr(dialect_.data_offset),
-                                                 dialect_, layout, places);
-        sample.whole = source_ended_;
-        return sample;
-    };
-    return facts;
 }
 
 // At once. A log that was read whole, to see how it is written, needs no more room.
@@ -134,12 +116,10 @@ std::size_t CsvReader::next_bytes(char* into, std::size_t size) {
 
 void CsvReader::plan_columns() {
     before_ = row_ = ParsedRow(1 + layout_.others.size());
-    std::fill(before_.values.begin(), before_.values.end(), not_a_number);
-    std::vector<WantedColumn> wanted = wanted_columns(layout_);
-    std::vector<double> factors = slot_factors(layout_, wanted);
-    std::sort(wanted.begin(), wanted.end(), [](const auto& a, const auto& b) { return a.column < b.column; });
-    quick_.emplace(RowPlan{dialect_.rules, dialect_.columns, std::move(wanted), std::move(factors),
-                           stamp_rule(layout_, dialect_.rules.decimal_mark)});
+    std::ranges::fill(before_.values, not_a_number);
+    const std::vector<WantedColumn> wanted = wanted_columns(layout_);
+    parser_.emplace(RowPlan{dialect_.rules, dialect_.columns, wanted, slot_factors(layout_, wanted),
+                            stamp_rule(layout_, dialect_.rules.decimal_mark)});
 }
 
 bool CsvReader::next(RowBlock& block) {
@@ -182,7 +162,7 @@ bool CsvReader::fetch(RowBlock& block) {
 
 // Rows whose times are sums are taken one by one.
 void CsvReader::parse(RowBlock& block) const {
-    if (!layout_.time_is_steps) block.parsed_bytes = quick_->read(block, 0, not_a_number);
+    if (!layout_.time_is_steps) block.parsed_bytes = parser_->read(block, 0, not_a_number);
 }
 
 void CsvReader::accept(RowBlock& block) {
@@ -220,7 +200,7 @@ std::size_t CsvReader::accept_from(RowBlock& block, std::size_t begin) {
     // A row that needed care is seldom alone.
     if (!plain_row_ || end_mark_seen_ || layout_.time_is_steps || next == block.bytes.size()) return next;
     const std::size_t before = block.size();
-    const std::size_t taken = quick_->read(block, next, before_.values[time_slot]);
+    const std::size_t taken = parser_->read(block, next, before_.values[time_slot]);
     note_quick_rows(block, before);
     return taken;
 }
@@ -232,7 +212,7 @@ bool CsvReader::continues(const RowBlock& block) const {
     if (end_mark_seen_) return false;
     if (!layout_.chosen.time) return true;
     ParsedRow first(block.joints.size());
-    static_cast<void>(quick_->parse(std::string_view(block.bytes).substr(0, block.row_end[0]), first));
+    static_cast<void>(parser_->parse(std::string_view(block.bytes).substr(0, block.row_end[0]), first));
     return !(first.values[time_slot] < before_.values[time_slot]);
 }
 
@@ -249,7 +229,7 @@ void CsvReader::note_quick_rows(RowBlock& block, std::size_t before) {
     bytes_without_row_ = 0;
     const std::string_view bytes(block.bytes.data(), block.row_end.back());
     const std::size_t line_end = bytes.rfind('\n');
-    if (quick_->parse(bytes.substr(line_end == std::string_view::npos ? 0 : line_end + 1), row_))
+    if (parser_->parse(bytes.substr(line_end == std::string_view::npos ? 0 : line_end + 1), row_))
         std::swap(before_, row_);
 }
 
@@ -258,7 +238,7 @@ bool CsvReader::accept_line(RowBlock& block, std::size_t begin, std::size_t end)
     const char* const base = block.bytes.data();
     if (end > begin && base[end - 1] == '\r') --end;
     const std::string_view line(base + begin, end - begin);
-    plain_row_ = quick_->parse(line, row_);
+    plain_row_ = parser_->parse(line, row_);
     if (!plain_row_) {
         if (is_no_row(line)) {
             refuse_controls(line);
@@ -294,14 +274,14 @@ void CsvReader::append_row(RowBlock& block, ParsedRow& row) {
         complain(1, time_backward({before, time, layout_.time_origin}));
     }
     if (layout_.chosen.time)
-        block.time_s.push_back(time * quick_->plan().factors[time_slot]);
+        block.time_s.push_back(time * parser_->plan().factors[time_slot]);
     else
         block.time_s.push_back(layout_.stated_rate ? static_cast<double>(rows_) / layout_.stated_rate->value()
                                                    : not_a_number);
     for (std::size_t j = 0; j < block.joints.size(); ++j) {
         const auto number = [&](RowSlot of_first) {
             const std::size_t slot = slot_of(of_first, j);
-            return row.values[slot] * quick_->plan().factors[slot];
+            return row.values[slot] * parser_->plan().factors[slot];
         };
         const JointColumns& columns = j == 0 ? layout_.chosen : layout_.others[j - 1];
         JointRows& joint = block.joints[j];
@@ -314,7 +294,7 @@ void CsvReader::append_row(RowBlock& block, ParsedRow& row) {
 }
 
 void CsvReader::refuse_controls(std::string_view line) const {
-    const auto* const found = std::find_if(line.begin(), line.end(), is_control);
+    const auto* const found = std::ranges::find_if(line, is_control);
     if (found == line.end()) return;
     complain(static_cast<std::size_t>(found - line.begin()) + 1,
              fmt::format("read the byte 0x{:02x}, expected text; the file is damaged here, remove the line",
@@ -336,7 +316,7 @@ void CsvReader::parse_carefully(std::string_view line, RowBlock& block, ParsedRo
                              cut ? "the last line is cut off: remove it, e.g. with head -n -1"
                                  : "correct or remove the line"));
     }
-    static_cast<void>(quick_->parser().parse_cells(
+    static_cast<void>(parser_->parse_cells(
         line, split_, row, [&](const Cell& cell, const WantedColumn& wanted, std::optional<double> number) {
             return other_number(line, cell, wanted, number, block);
         }));
@@ -367,7 +347,7 @@ double CsvReader::other_number(std::string_view line, const Cell& cell, const Wa
     complain(cell.begin + 1,
              fmt::format("read {} in {}, expected a {}; {}",
                          text.empty() ? std::string("nothing") : "'" + shown_cell(text) + "'", name,
-                         (slot == time_slot && !wanted.fraction && quick_->plan().stamp.text) ||
+                         (slot == time_slot && !wanted.fraction && parser_->plan().stamp.text) ||
                                  (slot == time_slot && text.find(':') != std::string_view::npos)
                              ? fmt::format("time of day or a date and time such as {}", stamp_forms)
                          : number && std::isfinite(*number) ? "number from -1e30 to 1e30"

@@ -14,9 +14,6 @@
 
 namespace ripplenotch {
 
-/// "--delimiter ';' --decimal ,", as people type it.
-[[nodiscard]] std::string dialect_options(const TextDialect& dialect);
-
 /// A text log of which as much has been read as tells how it is written.
 struct TextOpening {
     TextOpening(std::unique_ptr<ByteSource> source, std::string first_bytes, const ReadOptions& options);
@@ -47,7 +44,7 @@ class CsvReader : public LogReader {
     [[nodiscard]] const TextDialect& dialect() const { return dialect_; }
 
   private:
-    [[nodiscard]] ColumnFacts facts_of(std::string& opening);
+    void decide(std::string& opening);
     [[nodiscard]] std::size_t most_to_come() const;
     std::size_t next_bytes(char* into, std::size_t size);
     void plan_columns();
@@ -79,7 +76,7 @@ class CsvReader : public LogReader {
     std::size_t line_ = 1;            ///< number of the line being read
     std::size_t rows_ = 0;
     std::size_t bytes_without_row_ = 0;
-    std::optional<QuickRows> quick_;
+    std::optional<RowParser> parser_;
     ParsedRow before_, row_;  ///< as in the file; `before_` is the row before
     CellSplit split_;
 };

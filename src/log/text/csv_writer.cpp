@@ -152,8 +152,7 @@ std::string appended_name(const std::string& wanted, const std::string& torque_n
 std::vector<std::string> appended_names(const Layout& layout, const WriteOptions& options) {
     std::vector<std::string> names;
     const auto taken = [&](const std::string& name) {
-        return std::any_of(layout.columns.begin(), layout.columns.end(),
-                           [&](const Column& column) { return column.name == name; });
+        return std::ranges::any_of(layout.columns, [&](const Column& column) { return column.name == name; });
     };
     for (const JointColumns& joint : layout.all_chosen()) {
         const std::string wanted =
@@ -180,8 +179,8 @@ CsvWriter::CsvWriter(std::unique_ptr<ByteSink> sink, const CsvReader& reader, co
     }
     // Appended columns stand in the order of the joints.
     if (!options.append)
-        std::sort(plan_.joints.begin(), plan_.joints.end(),
-                  [&](std::size_t a, std::size_t b) { return columns[a] < columns[b]; });
+        std::ranges::sort(plan_.joints,
+                          [&](std::size_t a, std::size_t b) { return columns[a] < columns[b]; });
     sink_->expect(reader.source_bytes());
     write_head(reader);
 }

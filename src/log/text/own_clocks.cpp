@@ -9,6 +9,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <optional>
 #include <set>
@@ -28,7 +29,6 @@
 #include "log/text/csv_reader.hpp"
 #include "log/text/text_cells.hpp"
 #include "log/text/text_dialect.hpp"
-#include "log/text/text_header.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/trace.hpp"
@@ -37,14 +37,30 @@ namespace ripplenotch {
 
 namespace {
 
+constexpr std::size_t most_names = 4096;
+
 /// Lines with their numbers, cut into cells; blank ones and comments are passed over.
 class Lines {
   public:
     /// From the byte `at`, in front of which there are `number` lines.
     Lines(std::string_view bytes, std::string source, std::size_t at = 0, std::size_t number = 0)
         : bytes_(bytes), source_(std::move(source)), at_(at), number_(number) {}
-    bool next();
-    [[nodiscard]] std::vector<std::string> cells(char delimiter) const;
+    bool next() {
+        while (at_ < bytes_.size()) {
+            const std::size_t end = std::min(bytes_.find('\n', at_), bytes_.size());
+            line_ = line_content(bytes_.substr(at_, end - at_));
+            at_ = end + 1;
+            if (number_++ == 0 && line_.starts_with("\xef\xbb\xbf")) line_.remove_prefix(3);
+            if (!is_blank_line(line_) && !is_comment_line(line_)) return true;
+        }
+        return false;
+    }
+    /// Without empty ones at the end.
+    [[nodiscard]] std::vector<std::string> cells(char delimiter) const {
+        std::vector<std::string> texts = cell_texts(line_, delimiter);
+        while (texts.size() > 1 && texts.back().empty()) texts.pop_back();
+        return texts;
+    }
     void split(char delimiter) { split_cells(line_, delimiter, split_); }
     /// Of the line that was split; empty behind the end of a short one.
     [[nodiscard]] std::string_view cell(std::size_t column) const {
@@ -52,9 +68,13 @@ class Lines {
     }
     [[nodiscard]] std::size_t cell_count() const { return split_.cells.size(); }
     [[nodiscard]] std::string_view line() const { return line_; }
-    [[nodiscard]] std::size_t number() const { return number_; }
     /// `cell`: of the line, whose place is told; or text of something else.
-    [[noreturn]] void complain(const std::string& sentence, std::string_view cell = {}) const;
+    [[noreturn]] void complain(const std::string& sentence, std::string_view cell = {}) const {
+        const bool inside =
+            !cell.empty() && cell.data() >= line_.data() && cell.data() < line_.data() + line_.size();
+        raise<DataError>("{}:{}:{} {}", source_, number_,
+                         inside ? fmt::format("{}:", cell.data() - line_.data() + 1) : "", sentence);
+    }
 
   private:
     std::string_view bytes_, line_;
@@ -62,6 +82,30 @@ class Lines {
     std::size_t at_ = 0, number_ = 0;
     CellSplit split_;
 };
+
+// A number, with a comma for its decimals where that separates no cells.
+std::optional<double> number_in(std::string_view text, char delimiter) {
+    const auto number = parse_number(text);
+    return number || delimiter == ',' ? number : parse_number(text, ',');
+}
+
+// The same, or a date or time of day in seconds since `origin_s`, the second of the first that was read.
+std::optional<double> number_or_time_in(std::string_view text, char delimiter, StampForm form,
+                                        std::optional<std::int64_t>& origin_s) {
+    if (const auto number = number_in(text, delimiter)) return number;
+    const auto stamp = clock_text(text, form);
+    if (!stamp) return std::nullopt;
+    if (!origin_s) origin_s = stamp->whole_s;
+    return since(stamp->whole_s, *origin_s) + stamp->fraction_s;
+}
+
+// Appends a whole number as it is; false, and 0, where it is something else.
+bool add_count(std::string_view text, std::vector<std::int64_t>& counts) {
+    std::int64_t& count = counts.emplace_back(0);
+    const char* const end = text.data() + text.size();
+    const auto whole = std::from_chars(text.data(), end, count);
+    return whole.ec == std::errc() && whole.ptr == end;
+}
 
 /// One number over time.
 struct Signal {
@@ -78,18 +122,80 @@ class Signals {
     std::vector<Signal> all;
 
     /// The one of this name, which is added where there is none.
-    std::size_t index_of(const std::string& name, const std::string& unit);
+    std::size_t index_of(const std::string& name, const std::string& unit) {
+        const auto [found, added] = places_.try_emplace(name, all.size());
+        if (added && all.size() == most_names)
+            lines_.complain("read more than 4096 signals, expected the name of one in each row");
+        if (added) all.push_back({name, "", unit, {}, {}});
+        return found->second;
+    }
     /// Cells of numbers with either decimal mark, or of dates and times of day.
-    void add(std::size_t signal, std::string_view time, std::string_view value, char delimiter);
+    void add(std::size_t signal, std::string_view time, std::string_view value, char delimiter) {
+        Signal& one = all[signal];
+        const auto number = number_or_time_in(time, delimiter, form_, origin_s_);
+        if (!number)
+            lines_.complain(fmt::format(
+                "read '{}' in '{}', expected a number, or a time such as {}; correct or remove the line",
+                time, time_name_, stamp_forms));
+        const auto read = number_in(value, delimiter);
+        if (!read)
+            lines_.complain(fmt::format("read '{}' in '{}', expected a number; correct or remove the line",
+                                        value, one.name),
+                            value);
+        if (!one.values.empty() && *number < one.time.values.back())
+            lines_.complain(
+                fmt::format("read the time {} of '{}' after {}, expected time to run forward; sort the log",
+                            time, one.name, shortest(one.time.values.back())));
+        all_whole_ = add_count(time, one.time.counts) && all_whole_;
+        one.time.values.push_back(*number);
+        one.values.push_back(*read);
+    }
     /// "time [s]" where the times are dates or times of day.
     [[nodiscard]] std::string time_name() const { return origin_s_ ? "time [s]" : time_name_; }
     /// In columns: those with the times of the signal `base` with it, the others joined to them. `clock`: how
     /// the column of times is called.
     [[nodiscard]] ColumnLog columns(const std::string& source, ColumnInfo clock, std::size_t base,
-                                    const ReadOptions& options);
+                                    const ReadOptions& options) {
+        clock.whole = all_whole_;
+        const double unit_ns = ns_per_unit(clock);
+        std::vector<ColumnInfo> info = {clock};
+        NumberRows numbers = {all[base].time};
+        std::vector<SideColumn> sides;
+        for (Signal& signal : all) {
+            const ColumnInfo own{signal.name, signal.read_as, signal.unit, false, true};
+            ColumnNumbers values{std::move(signal.values), {}};
+            if (signal.time.values == numbers[0].values) {
+                info.push_back(own);
+                numbers.push_back(std::move(values));
+            } else {
+                sides.push_back(
+                    {std::make_unique<HeldColumns>(source, std::vector{clock, own},
+                                                   NumberRows{std::move(signal.time), std::move(values)}),
+                     1, unit_ns, "value"});
+            }
+        }
+        ColumnLog log;
+        log.format = "csv";
+        log.columns = std::make_unique<HeldColumns>(source, std::move(info), std::move(numbers));
+        if (!sides.empty()) join_columns(log, unit_ns, std::move(sides), options);
+        return log;
+    }
 
   private:
-    [[nodiscard]] double ns_per_unit(const ColumnInfo& clock) const;
+    // As the clock says, else so that the longest time fits.
+    [[nodiscard]] double ns_per_unit(const ColumnInfo& clock) const {
+        constexpr double most_ns = 9e18, seconds = 1e9;
+        const std::string written = clock.unit.empty() ? split_unit(clock.path).unit : clock.unit;
+        if (const auto unit = written.empty() ? std::nullopt : usual_unit(written, Role::time))
+            return seconds * role_factor(Role::time, *unit).value_or(1.0);
+        double longest = 1.0;
+        for (const Signal& signal : all)
+            for (const double time : {signal.time.values.front(), signal.time.values.back()})
+                longest = std::max(longest, std::abs(time));
+        double unit_ns = seconds;
+        while (unit_ns > 1.0 && unit_ns * longest > most_ns) unit_ns /= 10.0;
+        return unit_ns;
+    }
 
     const Lines& lines_;
     std::string time_name_;
@@ -98,120 +204,6 @@ class Signals {
     std::optional<std::int64_t> origin_s_;
     bool all_whole_ = true;  ///< the times
 };
-
-constexpr std::size_t most_names = 4096;
-
-bool Lines::next() {
-    while (at_ < bytes_.size()) {
-        const std::size_t end = std::min(bytes_.find('\n', at_), bytes_.size());
-        line_ = line_content(bytes_.substr(at_, end - at_));
-        at_ = end + 1;
-        if (number_++ == 0 && line_.starts_with("\xef\xbb\xbf")) line_.remove_prefix(3);
-        if (!is_blank_line(line_) && !is_comment_line(line_)) return true;
-    }
-    return false;
-}
-
-std::vector<std::string> Lines::cells(char delimiter) const {
-    std::vector<std::string> texts = cell_texts(line_, delimiter);
-    while (texts.size() > 1 && texts.back().empty()) texts.pop_back();
-    return texts;
-}
-
-void Lines::complain(const std::string& sentence, std::string_view cell) const {
-    const bool inside =
-        !cell.empty() && cell.data() >= line_.data() && cell.data() < line_.data() + line_.size();
-    raise<DataError>("{}:{}:{} {}", source_, number_,
-                     inside ? fmt::format("{}:", cell.data() - line_.data() + 1) : "", sentence);
-}
-
-// A number, with a comma for its decimals where that separates no cells.
-std::optional<double> number_in(std::string_view text, char delimiter) {
-    auto number = parse_number(text);
-    if (!number && delimiter != ',') number = parse_number(text, ',');
-    return number;
-}
-
-std::size_t Signals::index_of(const std::string& name, const std::string& unit) {
-    const auto [found, added] = places_.try_emplace(name, all.size());
-    if (added && all.size() == most_names)
-        lines_.complain("read more than 4096 signals, expected the name of one in each row");
-    if (added) all.push_back({name, "", unit, {}, {}});
-    return found->second;
-}
-
-void Signals::add(std::size_t signal, std::string_view time, std::string_view value, char delimiter) {
-    auto number = number_in(time, delimiter);
-    if (!number) {
-        const auto stamp = clock_text(time, form_);
-        if (!stamp)
-            lines_.complain(fmt::format(
-                "read '{}' in '{}', expected a number, or a time such as {}; correct or remove the line",
-                time, time_name_, stamp_forms));
-        if (!origin_s_) origin_s_ = stamp->whole_s;
-        number = since(stamp->whole_s, *origin_s_) + stamp->fraction_s;
-    }
-    const auto read = number_in(value, delimiter);
-    if (!read)
-        lines_.complain(fmt::format("read '{}' in '{}', expected a number; correct or remove the line", value,
-                                    all[signal].name),
-                        value);
-    Signal& one = all[signal];
-    if (!one.values.empty() && *number < one.time.values.back())
-        lines_.complain(
-            fmt::format("read the time {} of '{}' after {}, expected time to run forward; sort "
-                        "the log",
-                        time, one.name, shortest(one.time.values.back())));
-    std::int64_t count = 0;
-    const char* const end = time.data() + time.size();
-    const auto whole = std::from_chars(time.data(), end, count);
-    all_whole_ = all_whole_ && whole.ec == std::errc() && whole.ptr == end;
-    one.time.values.push_back(*number);
-    one.time.counts.push_back(count);
-    one.values.push_back(*read);
-}
-
-// As the clock says, else so that the longest time fits.
-double Signals::ns_per_unit(const ColumnInfo& clock) const {
-    constexpr double most_ns = 9e18, seconds = 1e9;
-    const std::string written = clock.unit.empty() ? split_unit(clock.path).unit : clock.unit;
-    if (const auto unit = written.empty() ? std::nullopt : usual_unit(written, Role::time))
-        return seconds * role_factor(Role::time, *unit).value_or(1.0);
-    double longest = 1.0;
-    for (const Signal& signal : all)
-        for (const double time : {signal.time.values.front(), signal.time.values.back()})
-            longest = std::max(longest, std::abs(time));
-    double unit_ns = seconds;
-    while (unit_ns > 1.0 && unit_ns * longest > most_ns) unit_ns /= 10.0;
-    return unit_ns;
-}
-
-ColumnLog Signals::columns(const std::string& source, ColumnInfo clock, std::size_t base,
-                           const ReadOptions& options) {
-    clock.whole = all_whole_;
-    const double unit_ns = ns_per_unit(clock);
-    std::vector<ColumnInfo> info = {clock};
-    NumberRows numbers = {all[base].time};
-    std::vector<SideColumn> sides;
-    for (Signal& signal : all) {
-        const ColumnInfo own{signal.name, signal.read_as, signal.unit, false, true};
-        ColumnNumbers values{std::move(signal.values), {}};
-        if (signal.time.values == numbers[0].values) {
-            info.push_back(own);
-            numbers.push_back(std::move(values));
-        } else {
-            sides.push_back(
-                {std::make_unique<HeldColumns>(source, std::vector{clock, own},
-                                               NumberRows{std::move(signal.time), std::move(values)}),
-                 1, unit_ns, "value"});
-        }
-    }
-    ColumnLog log;
-    log.format = "csv";
-    log.columns = std::make_unique<HeldColumns>(source, std::move(info), std::move(numbers));
-    if (!sides.empty()) join_columns(log, unit_ns, std::move(sides), options);
-    return log;
-}
 
 using Words = std::span<const std::string_view>;
 constexpr std::array<std::string_view, 10> signal_words = {
@@ -226,7 +218,7 @@ constexpr std::array<std::string_view, 5> name_keys = {"variable", "name", "vari
 
 bool is_one_of(Words words, std::string_view text) {
     const std::string lower = lower_case(text);
-    return std::find(words.begin(), words.end(), lower) != words.end();
+    return std::ranges::find(words, lower) != words.end();
 }
 
 /// Which columns of a tidy table are what, by its header.
@@ -323,8 +315,8 @@ std::vector<std::string> head_cells(const Lines& lines) {
 std::size_t base_of(const std::vector<Signal>& signals, const ReadOptions& options) {
     const auto rank = [&](const Signal& signal) {
         const ColumnName name = read_column_name(signal.name);
-        const bool asked = std::find(options.columns.begin(), options.columns.end(),
-                                     "torque=" + signal.name) != options.columns.end();
+        const bool asked =
+            std::ranges::find(options.columns, "torque=" + signal.name) != options.columns.end();
         return std::tuple(asked, name.role == Role::torque && !name.reference, signal.values.size());
     };
     std::size_t base = 0;
@@ -340,16 +332,6 @@ ColumnLog as_columns(const std::string& source, Signals signals, const std::stri
     ColumnLog log = signals.columns(source, clock, base_of(signals.all, options), options);
     log.inferences.push_back({"shape", fmt::format("{} signals as columns", count), shape, "", {}});
     return log;
-}
-
-std::string whole_text(ByteSource& source, std::string bytes) {
-    std::size_t have = bytes.size();
-    for (std::size_t size = std::max<std::size_t>(2 * have, 1 << 20);; size *= 2) {
-        have = read_on(source, bytes, have, size);
-        if (have < size) break;
-    }
-    bytes.resize(have);
-    return bytes;
 }
 
 ColumnLog tidy_columns(const std::string& source, std::string_view bytes, const LongHeader& header,
@@ -439,8 +421,8 @@ bool has_one_clock(std::string_view text, const TextDialect& dialect) {
     while (next_row(rows, dialect)) {
         if (rows.cell_count() != dialect.columns) return false;
         const std::string_view first = rows.cell(*clocks.begin());
-        const bool same = std::all_of(clocks.begin(), clocks.end(),
-                                      [&](std::size_t clock) { return rows.cell(clock) == first; });
+        const bool same =
+            std::ranges::all_of(clocks, [&](std::size_t clock) { return rows.cell(clock) == first; });
         if (same && half_step) continue;
         const auto time = number(*clocks.begin());
         if (!time) return same;  // the reader of text says what is wrong
@@ -484,8 +466,8 @@ ColumnLog own_columns(const std::string& source, std::string_view text, const Cs
     const TextDialect& dialect = table.dialect();
     const std::vector<OwnColumn> read = columns_read(table.layout(), dialect);
     // The torque's own rows, which are then not interpolated, unless another clock is named.
-    const bool names_time = std::any_of(options.columns.begin(), options.columns.end(),
-                                        [](const std::string& entry) { return entry.starts_with("time="); });
+    const bool names_time = std::ranges::any_of(
+        options.columns, [](const std::string& entry) { return entry.starts_with("time="); });
     std::size_t base = 0;
     for (std::size_t k = read.size(); names_time && k-- > 0;)
         if (read[k].clock == table.layout().chosen.time) base = k;
@@ -499,7 +481,7 @@ ColumnLog own_columns(const std::string& source, std::string_view text, const Cs
     };
     for (const OwnColumn& one : read) {
         const std::string& name = dialect.names[one.column];
-        const bool repeated = std::count(dialect.names.begin(), dialect.names.end(), name) > 1;
+        const bool repeated = std::ranges::count(dialect.names, name) > 1;
         signals.all.push_back({repeated ? fmt::format("{} (column {})", name, one.column + 1) : name,
                                name,
                                unit_of(one.column),
@@ -536,7 +518,7 @@ ColumnLog own_columns(const std::string& source, std::string_view text, const Cs
             asked.push_back(fmt::format("{}={}", role_name(read[k].role), signals.all[k].name));
     }
     ColumnLog log = signals.columns(source, std::move(times), base, options);
-    log.options = dialect_options(dialect) + (log.options.empty() ? "" : " ") + log.options;
+    log.options = dialect.dialect_options + (log.options.empty() ? "" : " ") + log.options;
     log.asked = std::move(asked);
     return log;
 }
@@ -556,7 +538,7 @@ class ListTable {
     ColumnLog log(const std::string& source) {
         ColumnLog log;
         log.format = "csv";
-        log.options = dialect_options(dialect_);
+        log.options = dialect_.dialect_options;
         log.columns = std::make_unique<HeldColumns>(source, std::move(info_), std::move(numbers_));
         return log;
     }
@@ -573,14 +555,10 @@ class ListTable {
                 fmt::format("read '{}' in '{}', expected as many numbers as in the first row: {}; "
                             "correct or remove the line",
                             cell.substr(0, 40), name, std::max<std::size_t>(1, lengths_[column])));
-        if (!list) {
-            auto number = number_in(cell, dialect_.rules.delimiter);
-            if (const auto stamp = number ? std::nullopt : clock_text(cell, dialect_.stamp_forms[column])) {
-                if (!origin_s_) origin_s_ = stamp->whole_s;
-                number = since(stamp->whole_s, *origin_s_) + stamp->fraction_s;
-            }
-            return add(place, name, column, cell, number);
-        }
+        if (!list)
+            return add(
+                place, name, column, cell,
+                number_or_time_in(cell, dialect_.rules.delimiter, dialect_.stamp_forms[column], origin_s_));
         for (std::size_t i = 0; i < length; ++i)
             add(place, fmt::format("{}[{}]", name, i), column, "", (*list)[i]);
     }
@@ -592,12 +570,8 @@ class ListTable {
             whole_.push_back(true);
             numbers_.emplace_back();
         }
-        std::int64_t count = 0;
-        const char* const end = cell.data() + cell.size();
-        const auto whole = std::from_chars(cell.data(), end, count);
-        whole_[place] = whole_[place] && whole.ec == std::errc() && whole.ptr == end;
+        whole_[place] = add_count(cell, numbers_[place].counts) && whole_[place];
         numbers_[place].values.push_back(number.value_or(not_a_number));
-        numbers_[place].counts.push_back(count);
         ++place;
     }
 
@@ -647,15 +621,16 @@ bool may_be_long(std::string_view first_bytes) {
     if (last.size() == 2 && read_column_name(last[0]).role == Role::time)
         return head.size() > 1 && is_one_of(value_words, last[1]);
     std::string ignored;
-    return std::any_of(head.begin(), head.end(),
-                       [](const auto& cells) { return cells.size() == 1 || cells.size() == 2; }) &&
+    return std::ranges::any_of(head,
+                               [](const auto& cells) { return cells.size() == 1 || cells.size() == 2; }) &&
            last.size() == 1 && !name_in_head(head, ignored).empty() && lines.next() && pair_in(lines);
 }
 
 std::unique_ptr<LogReader> open_long(std::unique_ptr<ByteSource> source, std::string first_bytes,
                                      const ReadOptions& options) {
     const std::string name = source->name();
-    std::string bytes = whole_text(*source, std::move(first_bytes));
+    std::string bytes = std::move(first_bytes);
+    bytes.resize(read_on(*source, bytes, bytes.size(), std::numeric_limits<std::size_t>::max()));
     if (const auto header = long_header(first_line_of(bytes)))
         return read_columns(tidy_columns(name, bytes, *header, options), options);
     if (has_blocks(bytes)) return read_columns(block_columns(name, bytes, options), options);

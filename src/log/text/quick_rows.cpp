@@ -5,12 +5,12 @@
 #include <array>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <utility>
 
 #include "core/text/number.hpp"
 #include "core/vectors/bytes.hpp"
 #include "core/vectors/lanes.hpp"
-#include "log/table_writer.hpp"
 #include "log/text/row_edges.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/trace.hpp"
@@ -81,29 +81,112 @@ const char* read_short_decimal(const char* at, const char* end, char decimal_mar
 // A cell that nobody reads is passed on as it is, but for what no text has.
 bool needs_care(char c) { return c == '"' || is_control(c); }
 
+// A part of a time.
+double part(double number, const WantedColumn& wanted) {
+    return wanted.fraction ? seconds_per_nanosecond * number : number;
+}
+
+/// Writes rows behind those that the block has. They are put together in a place of their own and then
+/// appended: making the block's vectors longer first would fill them for nothing.
+class RowSink {
+  public:
+    RowSink(RowBlock& block, std::size_t begin, const RowPlan& plan)
+        : block_(block), plan_(plan), numbers_(plan.factors.size()), places_(2 * plan.joints() + 1) {
+        block.joints.resize(plan.joints());
+        // As many rows as the first one's length lets expect, and some.
+        const std::size_t left = block.bytes.size() - begin;
+        const std::size_t length = std::min(block.bytes.find('\n', begin), block.bytes.size()) - begin;
+        reserve(block.size() + left / (length + 1) + left / (16 * (length + 1)) + 16);
+    }
+
+    /// Until commit(), numbers() and the places may be used for so many rows.
+    void make_room(std::size_t rows) {
+        if (rows <= room_) return;
+        room_ = rows;
+        for (auto& numbers : numbers_) numbers.resize(rows, std::numeric_limits<double>::quiet_NaN());
+        for (auto& places : places_) places.resize(rows);
+    }
+    /// The numbers of the rows in the making, as in the file.
+    [[nodiscard]] double* numbers(std::size_t slot) { return numbers_[slot].data(); }
+    /// Offsets from the block's first byte.
+    [[nodiscard]] std::uint32_t* torque_begins(std::size_t joint) { return places_[2 * joint].data(); }
+    [[nodiscard]] std::uint32_t* torque_ends(std::size_t joint) { return places_[2 * joint + 1].data(); }
+    [[nodiscard]] std::uint32_t* row_ends() { return places_.back().data(); }
+    /// A whole row, whose line begins at offset `begin` of the block's bytes, which begin at `text`.
+    void set(std::size_t row, const ParsedRow& parsed, std::size_t begin, const char* text) {
+        for (const WantedColumn& wanted : plan_.wanted)
+            numbers(wanted.slot)[row] = parsed.values[wanted.slot];
+        const auto offset = [&](const char* at) {
+            return static_cast<std::uint32_t>(at == nullptr ? begin : static_cast<std::size_t>(at - text));
+        };
+        for (std::size_t joint = 0; joint < parsed.torques.size(); ++joint) {
+            torque_begins(joint)[row] = offset(parsed.torques[joint].begin);
+            torque_ends(joint)[row] = offset(parsed.torques[joint].end);
+        }
+        row_ends()[row] = offset(parsed.content_end);
+    }
+    /// Turns the numbers of the first `rows` into the tool's units and appends them.
+    void commit(std::size_t rows) {
+        for (std::size_t slot = 0; slot < plan_.factors.size(); ++slot) {
+            if (!stored(slot)) continue;
+            double* const first = numbers(slot);
+            const double factor = plan_.factors[slot];
+            if (factor != 1.0) std::for_each_n(first, rows, [factor](double& value) { value *= factor; });
+            append(numbers_of(block_, slot), numbers_[slot], rows);
+        }
+        for (std::size_t joint = 0; joint < block_.joints.size(); ++joint) {
+            append(block_.joints[joint].torque_begin, places_[2 * joint], rows);
+            append(block_.joints[joint].torque_end, places_[2 * joint + 1], rows);
+        }
+        append(block_.row_end, places_.back(), rows);
+    }
+
+  private:
+    /// Positions that the log has not leave their vector empty; other numbers are then not a number.
+    [[nodiscard]] bool stored(std::size_t slot) const {
+        return !is_position(slot) || plan_.column_of(slot).has_value();
+    }
+    template <typename T>
+    static void append(std::vector<T>& to, const std::vector<T>& from, std::size_t rows) {
+        to.insert(to.end(), from.begin(), from.begin() + static_cast<std::ptrdiff_t>(rows));
+    }
+    void reserve(std::size_t size) {
+        if (block_.time_s.capacity() >= size) return;
+        for (std::size_t slot = 0; slot < plan_.factors.size(); ++slot)
+            if (stored(slot)) numbers_of(block_, slot).reserve(size);
+        for (JointRows& joint : block_.joints) {
+            joint.torque_begin.reserve(size);
+            joint.torque_end.reserve(size);
+        }
+        block_.row_end.reserve(size);
+    }
+
+    RowBlock& block_;
+    const RowPlan& plan_;
+    std::vector<std::vector<double>> numbers_;        ///< by slot
+    std::vector<std::vector<std::uint32_t>> places_;  ///< of the torques by joint, then of the rows' ends
+    std::size_t room_ = 0;
+};
+
 }  // namespace
 
 std::optional<CellNumber> RowParser::number(std::string_view text, const WantedColumn& wanted) const {
-    if (!in_parts(wanted) || wanted.fraction) return rules_.number(text, wanted.column);
-    const auto time = read_stamp(text, stamp_);
+    if (!in_parts(wanted) || wanted.fraction) return plan_.rules.number(text, wanted.column);
+    const auto time = read_stamp(text, plan_.stamp);
     return time ? std::optional(CellNumber{*time, text.size(), {}}) : std::nullopt;
-}
-
-void RowParser::add(double number, const WantedColumn& wanted, double& time) {
-    time += wanted.fraction ? seconds_per_nanosecond * number : number;
 }
 
 bool RowParser::parse_cells(std::string_view line, const CellSplit& split, ParsedRow& row,
                             const Other& other) const {
     row.values[time_slot] = nothing_yet;
-    for (const WantedColumn& wanted : wanted_) {
+    for (const WantedColumn& wanted : plan_.wanted) {
         const Cell& cell = split.cells[wanted.column];
         const auto read = number(cell.of(line), wanted);
         std::optional<double> value = read ? std::optional(read->value) : std::nullopt;
         if (!value || !is_reading(*value)) value = other(cell, wanted, value);
         if (!value) return false;
         if (wanted.slot == time_slot)
-            add(*value, wanted, row.values[time_slot]);
+            row.values[time_slot] += part(*value, wanted);
         else
             row.values[wanted.slot] = *value;
         if (is_torque(wanted.slot)) {
@@ -116,27 +199,34 @@ bool RowParser::parse_cells(std::string_view line, const CellSplit& split, Parse
     return true;
 }
 
-bool RowParser::parse(const char* at, const char* end, ParsedRow& row) const {
-    const bool first_is_read = !wanted_.empty() && wanted_.front().column == 0;
-    if (!first_is_read && is_no_row({at, static_cast<std::size_t>(end - at)})) return false;
-    const char delimiter = rules_.delimiter;
+bool RowParser::parse_any(std::string_view line, ParsedRow& row, CellSplit& split, const Other& other) const {
+    if (parse(line, row)) return true;
+    split_cells(line, plan_.rules.delimiter, split);
+    return split.cells.size() == plan_.columns && parse_cells(line, split, row, other);
+}
+
+bool RowParser::parse(std::string_view line, ParsedRow& row) const {
+    const bool first_is_read = !plan_.wanted.empty() && plan_.wanted.front().column == 0;
+    if (careful_ || (!first_is_read && is_no_row(line))) return false;
+    const char *at = line.data(), *end = at + line.size();
+    const char delimiter = plan_.rules.delimiter;
     const bool runs = delimiter == ' ';
     if (runs) {
         while (at < end && is_blank(*at)) ++at;
         while (end > at && is_blank(end[-1])) --end;
     }
     std::size_t column = 0;
-    if (stamp_.careful) row.values[time_slot] = nothing_yet;
+    if (plan_.stamp.careful) row.values[time_slot] = nothing_yet;
     const auto at_cell_end = [&](const char* p) {
         return p == end || *p == delimiter || (runs && *p == '\t');
     };
-    for (auto wanted = wanted_.begin();; ++column) {
-        if (wanted != wanted_.end() && wanted->column == column) {
+    for (auto wanted = plan_.wanted.begin();; ++column) {
+        if (wanted != plan_.wanted.end() && wanted->column == column) {
             while (!runs && at < end && *at == ' ' && delimiter != '\t') ++at;
             double& value = row.values[wanted->slot];
             ParsedRow::Place place{at, nullptr};
             const bool stamp = in_parts(*wanted);
-            const char* stop = stamp ? nullptr : read_short_decimal(at, end, rules_.decimal_mark, value);
+            const char* stop = stamp ? nullptr : read_short_decimal(at, end, plan_.rules.decimal_mark, value);
             if (stop == nullptr || !at_cell_end(stop)) {
                 stop = at;
                 while (!at_cell_end(stop)) ++stop;
@@ -144,10 +234,7 @@ bool RowParser::parse(const char* at, const char* end, ParsedRow& row) const {
                 while (content > at && is_blank(content[-1])) --content;
                 const auto read = number({at, static_cast<std::size_t>(content - at)}, *wanted);
                 if (!read || !is_reading(read->value)) return false;
-                if (stamp)
-                    add(read->value, *wanted, value);
-                else
-                    value = read->value;
+                value = stamp ? value + part(read->value, *wanted) : read->value;
                 place.end = at + read->size;
             } else {
                 place.end = stop;
@@ -166,7 +253,7 @@ bool RowParser::parse(const char* at, const char* end, ParsedRow& row) const {
         while (runs && at < end && is_blank(*at)) ++at;
     }
     row.content_end = end;
-    return column + 1 == columns_;
+    return column + 1 == plan_.columns;
 }
 
 namespace {
@@ -187,8 +274,8 @@ constexpr std::size_t bytes_before = 33;  // of a cell's end that the vectors lo
 /// One stretch on its way into a block.
 class Stretch {
   public:
-    Stretch(RowSink& sink, const RowPlan& plan, const RowParser& parser)
-        : sink_(sink), plan_(plan), parser_(parser), parsed_(plan.joints()) {}
+    Stretch(RowSink& sink, const RowParser& parser)
+        : sink_(sink), plan_(parser.plan()), parser_(parser), parsed_(plan_.joints()) {}
 
     /// Takes the rows of bytes[begin, ...) and returns where it stopped; `begin` itself when it took none.
     std::size_t read(std::string_view bytes, std::size_t begin, double& time_before) {
@@ -290,7 +377,7 @@ class Stretch {
     std::size_t mend(std::size_t rows) {
         for (std::size_t row = 0; row < rows; ++row) {
             if (odd_[row] == 0) continue;
-            if (!parser_.parse(text_ + row_begin(row), text_ + row_end(row), parsed_)) return row;
+            if (!parser_.parse({text_ + row_begin(row), text_ + row_end(row)}, parsed_)) return row;
             sink_.set(row, parsed_, begin_ + row_begin(row), text_ - begin_);
         }
         return rows;
@@ -318,14 +405,14 @@ class Stretch {
     std::array<std::uint8_t, stretch_bytes> odd_;
 };
 
-// As QuickRows::take, where there are wide vectors and for rows whose delimiter is one character. `parser`
+// As RowParser::read, where there are wide vectors and for rows whose delimiter is one character. `parser`
 // reads rows with cells that the vectors cannot: longer than 32 characters, with an exponent, padded with
 // blanks.
-std::size_t read_rows_by_vectors(RowBlock& block, std::size_t begin, double time_before, const RowPlan& plan,
+std::size_t read_rows_by_vectors(RowBlock& block, std::size_t begin, double time_before,
                                  const RowParser& parser) {
     const std::string_view bytes = block.bytes;
-    RowSink sink(block, begin, plan);
-    Stretch stretch(sink, plan, parser);
+    RowSink sink(block, begin, parser.plan());
+    Stretch stretch(sink, parser);
     while (begin < bytes.size()) {
         const std::size_t from = begin;
         begin = stretch.read(bytes, begin, time_before);
@@ -338,9 +425,7 @@ std::size_t read_rows_by_vectors(RowBlock& block, std::size_t begin, double time
 
 #else
 
-std::size_t read_rows_by_vectors(RowBlock&, std::size_t begin, double, const RowPlan&, const RowParser&) {
-    return begin;
-}
+std::size_t read_rows_by_vectors(RowBlock&, std::size_t begin, double, const RowParser&) { return begin; }
 
 #endif
 
@@ -354,20 +439,21 @@ CarefulRows::CarefulRows() noexcept : before_(all_careful) { all_careful = true;
 
 CarefulRows::~CarefulRows() { all_careful = before_; }
 
-QuickRows::QuickRows(RowPlan plan)
+RowParser::RowParser(RowPlan plan)
     : plan_(std::move(plan)),
-      parser_(plan_.rules, plan_.columns, plan_.wanted, plan_.stamp),
       careful_(all_careful),
       vectorised_(wide_vectors() && !plan_.stamp.careful && plan_.rules.delimiter != ' ' &&
-                  plan_.columns > 0) {}
-
-std::size_t QuickRows::read(RowBlock& block, std::size_t begin, double time_before) const {
-    if (careful_) return begin;
-    return vectorised_ ? read_rows_by_vectors(block, begin, time_before, plan_, parser_)
-                       : read_by_parser(block, begin, time_before);
+                  plan_.columns > 0) {
+    std::ranges::sort(plan_.wanted, {}, &WantedColumn::column);
 }
 
-std::size_t QuickRows::read_by_parser(RowBlock& block, std::size_t begin, double time_before) const {
+std::size_t RowParser::read(RowBlock& block, std::size_t begin, double time_before) const {
+    if (careful_) return begin;
+    return vectorised_ ? read_rows_by_vectors(block, begin, time_before, *this)
+                       : read_by_lines(block, begin, time_before);
+}
+
+std::size_t RowParser::read_by_lines(RowBlock& block, std::size_t begin, double time_before) const {
     const char* const text = block.bytes.data();
     const std::size_t size = block.bytes.size();
     constexpr std::size_t rows_at_once = 128;
@@ -381,7 +467,7 @@ std::size_t QuickRows::read_by_parser(RowBlock& block, std::size_t begin, double
         if (found == nullptr) break;
         const char* end = found;
         if (end > text + begin && end[-1] == '\r') --end;
-        if (!parser_.parse(text + begin, end, row)) break;
+        if (!parse({text + begin, end}, row)) break;
         if (timed && row.values[time_slot] < time_before) break;
         time_before = row.values[time_slot];
         sink.set(rows++, row, begin, text);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Many well-formed rows of numbers at once, from any thread. Stops at the first row that it is not sure of.
+// Rows of a text log into numbers, one by one or many at once.
 
 #include <cstddef>
 #include <functional>
@@ -56,10 +56,6 @@ inline constexpr double seconds_per_nanosecond = 1e-9;
 /// What the numbers of each slot are multiplied with to be in the tool's units.
 [[nodiscard]] std::vector<double> slot_factors(const Layout& layout, const std::vector<WantedColumn>& wanted);
 
-// The quick way through a row of numbers: finds the wanted cells, reads them, counts all cells. It accepts
-// only what is certainly well formed; whatever else is left to the careful way, which also finds the words
-// for what is wrong.
-
 /// The numbers of a row and the places of the torque cells.
 struct ParsedRow {
     struct Place {
@@ -76,42 +72,11 @@ struct ParsedRow {
 /// What a time that comes in parts begins with: a time of -0 stays one.
 constexpr double nothing_yet = -0.0;
 
-class RowParser {
-  public:
-    /// `wanted` sorted by column.
-    RowParser(CellRules rules, std::size_t columns, std::vector<WantedColumn> wanted, StampRule stamp = {})
-        : rules_(rules), columns_(columns), wanted_(std::move(wanted)), stamp_(stamp) {}
-
-    /// True when every wanted cell held a plain finite number and the row has the right number of cells,
-    /// without quotes. `row` has room for the slots that are wanted.
-    [[nodiscard]] bool parse(const char* begin, const char* end, ParsedRow& row) const;
-
-    /// What stands for the number of a cell that holds none, or one that is no reading; may throw.
-    using Other = std::function<std::optional<double>(const Cell& cell, const WantedColumn& wanted,
-                                                      std::optional<double> number)>;
-    /// The careful way, of a line that is cut into as many cells as a row has; false where `other` gives
-    /// none.
-    [[nodiscard]] bool parse_cells(std::string_view line, const CellSplit& split, ParsedRow& row,
-                                   const Other& other) const;
-
-  private:
-    [[nodiscard]] std::optional<CellNumber> number(std::string_view text, const WantedColumn& wanted) const;
-    [[nodiscard]] bool in_parts(const WantedColumn& wanted) const {
-        return stamp_.careful && wanted.slot == time_slot;
-    }
-    static void add(double number, const WantedColumn& wanted, double& time);
-
-    CellRules rules_;
-    std::size_t columns_;
-    std::vector<WantedColumn> wanted_;
-    StampRule stamp_;
-};
-
 /// What rows look like and where their numbers go.
 struct RowPlan {
     CellRules rules;
     std::size_t columns = 0;
-    std::vector<WantedColumn> wanted;  ///< sorted by column
+    std::vector<WantedColumn> wanted;
     std::vector<double> factors =
         std::vector<double>(slot_count(1), 1.0);  ///< into the tool's units, by slot
 
@@ -127,7 +92,7 @@ struct RowPlan {
     }
 };
 
-/// While it lives, readers that are made take every row the careful way: a test holds the quick ways to it.
+/// While it lives, parsers that are made take every row the careful way: a test holds the quick ways to it.
 class CarefulRows {
   public:
     CarefulRows() noexcept;
@@ -139,27 +104,44 @@ class CarefulRows {
     bool before_;
 };
 
-class QuickRows {
+/// Rows of text into numbers. The quick ways accept only what is certainly well formed; whatever else is left
+/// to the careful way, which also finds the words for what is wrong.
+class RowParser {
   public:
-    explicit QuickRows(RowPlan plan);
+    explicit RowParser(RowPlan plan);
 
-    /// Appends the rows of block.bytes from offset `begin` to the block, as long as each is certainly well
-    /// formed and its time not before the one above it (`time_before`, in the file's unit). Returns where it
-    /// stopped: the beginning of a line, or the end. The numbers are those of RowParser, bit for bit.
+    /// With the columns that are wanted in the order of the file.
+    [[nodiscard]] const RowPlan& plan() const { return plan_; }
+
+    /// Many at once: appends the rows of block.bytes from offset `begin` to the block, as long as each is
+    /// certainly well formed and its time not before the one above it (`time_before`, in the file's unit).
+    /// Returns where it stopped: the beginning of a line, or the end. The numbers are those of parse(), bit
+    /// for bit.
     std::size_t read(RowBlock& block, std::size_t begin, double time_before) const;
 
-    [[nodiscard]] const RowPlan& plan() const { return plan_; }
-    [[nodiscard]] const RowParser& parser() const { return parser_; }
-    /// One row, not appended.
-    [[nodiscard]] bool parse(std::string_view line, ParsedRow& row) const {
-        return !careful_ && parser_.parse(line.data(), line.data() + line.size(), row);
-    }
+    /// One line. True when every wanted cell held a plain finite number and the row has the right number of
+    /// cells, without quotes. `row` has room for the slots that are wanted.
+    [[nodiscard]] bool parse(std::string_view line, ParsedRow& row) const;
+
+    /// What stands for the number of a cell that holds none, or one that is no reading; may throw.
+    using Other = std::function<std::optional<double>(const Cell& cell, const WantedColumn& wanted,
+                                                      std::optional<double> number)>;
+    /// The careful way, of a line that is cut into as many cells as a row has; false where `other` gives
+    /// none.
+    [[nodiscard]] bool parse_cells(std::string_view line, const CellSplit& split, ParsedRow& row,
+                                   const Other& other) const;
+    /// The quick way, else the careful one; false where the line has not as many cells as a row, too.
+    [[nodiscard]] bool parse_any(std::string_view line, ParsedRow& row, CellSplit& split,
+                                 const Other& other) const;
 
   private:
-    std::size_t read_by_parser(RowBlock& block, std::size_t begin, double time_before) const;
+    [[nodiscard]] std::optional<CellNumber> number(std::string_view text, const WantedColumn& wanted) const;
+    [[nodiscard]] bool in_parts(const WantedColumn& wanted) const {
+        return plan_.stamp.careful && wanted.slot == time_slot;
+    }
+    std::size_t read_by_lines(RowBlock& block, std::size_t begin, double time_before) const;
 
     RowPlan plan_;
-    RowParser parser_;
     bool careful_, vectorised_;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The head of a TwinCAT Scope export.
-#include "log/text/text_header.hpp"
+#include "log/text/text_dialect.hpp"
 
 #include <algorithm>
 #include <array>
@@ -32,33 +32,41 @@ std::optional<double> scope_number(std::string_view cell) {
 
 class Head {
   public:
-    Head(std::string_view bytes, const std::vector<TextLine>& content, char delimiter)
-        : bytes_(bytes), content_(content), delimiter_(delimiter) {}
+    Head(const TextLines& lines, char delimiter) : lines_(lines), delimiter_(delimiter) {}
 
     [[nodiscard]] std::vector<std::string> cells(std::size_t line) const {
-        return cell_texts(content_[line].of(bytes_), delimiter_);
+        return lines_.cells(line, delimiter_);
     }
-
     [[nodiscard]] bool is_names(std::size_t line) const {
-        const std::string_view text = content_[line].of(bytes_);
+        const std::string_view text = lines_.line(line);
         return text.size() > name_key.size() + 1 && text.starts_with(name_key) &&
                text[name_key.size()] == delimiter_;
     }
-
     [[nodiscard]] bool is_row(std::size_t line) const {
         const std::vector<std::string> row = cells(line);
         return !row.empty() && scope_number(row.front()).has_value();
     }
-
     [[nodiscard]] bool is_key(std::size_t line) const {
         const std::vector<std::string> found = cells(line);
-        return !found.empty() && std::find(keys.begin(), keys.end(), found.front()) != keys.end();
+        return !found.empty() && std::ranges::find(keys, found.front()) != keys.end();
     }
 
+    /// Finds both; false where there are none, or lines of something else between them: a head that begins
+    /// with "Name" by chance.
+    bool find_lines() {
+        const std::size_t end = std::min(lines_.content.size(), most_lines);
+        for (first_row = 1; first_row < end && !is_row(first_row); ++first_row)
+            if (is_names(first_row)) names_line = first_row;
+        if (first_row >= end) return false;
+        for (std::size_t line = names_line + 1; line < first_row; ++line)
+            if (!is_key(line)) return false;
+        return true;
+    }
+    std::size_t names_line = 0, first_row = 0;  ///< of the lines of content
+
     /// What the head says under `key` of each column, as cells; empty where there is no such line.
-    [[nodiscard]] std::vector<std::string> under(std::string_view key, std::size_t from,
-                                                 std::size_t end) const {
-        for (std::size_t line = from; line < end; ++line) {
+    [[nodiscard]] std::vector<std::string> under(std::string_view key) const {
+        for (std::size_t line = names_line + 1; line < first_row; ++line) {
             std::vector<std::string> found = cells(line);
             if (!found.empty() && found.front() == key) return found;
         }
@@ -66,8 +74,7 @@ class Head {
     }
 
   private:
-    std::string_view bytes_;
-    const std::vector<TextLine>& content_;
+    const TextLines& lines_;
     char delimiter_;
 };
 
@@ -100,10 +107,10 @@ constexpr std::array scale_keys = {ScaleKey{"ScaleFactor", true, false}, ScaleKe
                                    ScaleKey{"Unit ScaleFactor", true, true},
                                    ScaleKey{"Unit Offset", false, true}};
 
-void read_scales(const Head& head, std::size_t shift, ScopeHeader& found) {
+void read_scales(const Head& head, std::size_t shift, TextDialect& found) {
     found.scales.assign(found.names.size(), {});
     for (const ScaleKey& key : scale_keys) {
-        const std::vector<std::string> cells = head.under(key.key, found.names_line + 1, found.first_row);
+        const std::vector<std::string> cells = head.under(key.key);
         for (std::size_t c = 0; c < found.names.size() && c + shift < cells.size(); ++c) {
             const auto number = scope_number(cells[c + shift]);
             if (!number || *number == (key.factor ? 1.0 : 0.0)) continue;
@@ -115,9 +122,8 @@ void read_scales(const Head& head, std::size_t shift, ScopeHeader& found) {
     }
 }
 
-std::optional<double> common_step(const Head& head, const ScopeHeader& found, const std::string& source) {
-    const std::vector<std::string> cells =
-        head.under("SampleTime[ms]", found.names_line + 1, found.first_row);
+std::optional<double> common_step(const Head& head, const std::string& source) {
+    const std::vector<std::string> cells = head.under("SampleTime[ms]");
     std::optional<double> step_ms;
     for (std::size_t c = 1; c < cells.size(); ++c) {
         const auto number = scope_number(cells[c]);
@@ -135,7 +141,7 @@ std::optional<double> common_step(const Head& head, const ScopeHeader& found, co
 
 // "Name A Name B": a column of times for each channel. "Name A B": times that A and B share.
 void read_channels(const std::vector<std::string>& names, const std::vector<std::string>& units,
-                   double first_time, ScopeHeader& found) {
+                   double first_time, TextDialect& found) {
     found.clock_of.assign(names.size(), 0);
     found.names.assign(names.size(), "");
     found.units.assign(names.size(), "");
@@ -151,28 +157,24 @@ void read_channels(const std::vector<std::string>& names, const std::vector<std:
 
 }  // namespace
 
-std::optional<ScopeHeader> scope_header(std::string_view bytes, const std::vector<TextLine>& content,
-                                        const std::string& source) {
-    const std::string_view first = content.front().of(bytes);
+std::optional<TextDialect> scope_header(const TextLines& lines, const std::string& source) {
+    const std::string_view first = lines.line(0);
     constexpr std::string_view separators = "\t;,: ";
     if (!first.starts_with(name_key) || first.size() <= name_key.size() + 1 ||
         separators.find(first[name_key.size()]) == std::string_view::npos)
         return std::nullopt;
-    ScopeHeader found;
-    found.delimiter = first[name_key.size()];
-    const Head head(bytes, content, found.delimiter);
-    const std::size_t end = std::min(content.size(), most_lines);
-    for (found.first_row = 1; found.first_row < end && !head.is_row(found.first_row); ++found.first_row)
-        if (head.is_names(found.first_row)) found.names_line = found.first_row;
-    if (found.first_row >= end) return std::nullopt;
-    // Lines of something else: a head that begins with "Name" by chance.
-    for (std::size_t line = found.names_line + 1; line < found.first_row; ++line)
-        if (!head.is_key(line)) return std::nullopt;
-    std::vector<std::string> names = head.cells(found.names_line);
-    const std::vector<std::string> row = head.cells(found.first_row);
-    std::vector<std::string> units = head.under("Unit", found.names_line + 1, found.first_row);
-    const bool twice = std::count(names.begin(), names.end(), name_key) > 1;
-    const bool says_more = found.first_row > found.names_line + 1;
+    TextDialect found;
+    found.rules.delimiter = first[name_key.size()];
+    Head head(lines, found.rules.delimiter);
+    if (!head.find_lines()) return std::nullopt;
+    found.has_header = true;
+    found.row_step_key = "SampleTime[ms]";
+    found.header_end = lines.content[head.names_line].end;
+    found.head_lines = lines.content[head.first_row].number - 1;
+    std::vector<std::string> names = head.cells(head.names_line), units = head.under("Unit");
+    const std::vector<std::string> row = head.cells(head.first_row);
+    const bool twice = std::ranges::count(names, name_key) > 1;
+    const bool says_more = head.first_row > head.names_line + 1;
     // A delimiter at the end of the rows alone, or of the head alone.
     if (names.size() + 1 == row.size() && row.back().empty()) names.emplace_back();
     if (names.size() == row.size() + 1 && names.back().empty()) names.pop_back();
@@ -182,24 +184,25 @@ std::optional<ScopeHeader> scope_header(std::string_view bytes, const std::vecto
         for (std::string& unit : units) unit = scope_unit(unit);
         units.resize(found.names.size());
         found.units = units;
-        found.row_step_s = common_step(head, found, source);
+        found.row_step_s = common_step(head, source);
         read_scales(head, 1, found);
         return found;
     }
+    const bool names_alone = !says_more && head.names_line == 0 && !twice;
     if (names.size() != row.size()) {
-        if (!says_more && found.names_line == 0 && !twice) return std::nullopt;
+        if (names_alone) return std::nullopt;
         raise<DataError>(
             "{}:{}: read a row of {} cells under {} of a TwinCAT Scope export, expected as many; {}", source,
-            content[found.first_row].number, row.size(), names.size(),
-            found.delimiter == ','
+            lines.content[head.first_row].number, row.size(), names.size(),
+            found.rules.delimiter == ','
                 ? "a comma that separates cells cannot mark decimals too: export again with another separator"
                 : "correct the head, or export again");
     }
     // "Name" alone over names may be a column of names; over times it runs forward.
     const auto first_time = scope_number(row.front());
-    if (!says_more && found.names_line == 0 && !twice) {
+    if (names_alone) {
         const std::vector<std::string> next =
-            found.first_row + 1 < content.size() ? head.cells(found.first_row + 1) : row;
+            head.first_row + 1 < lines.content.size() ? head.cells(head.first_row + 1) : row;
         const auto second_time = scope_number(next.front());
         if (!second_time || !(*second_time > *first_time)) return std::nullopt;
     }

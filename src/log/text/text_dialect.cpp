@@ -1,20 +1,21 @@
 // SPDX-License-Identifier: MIT
 #include "log/text/text_dialect.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <set>
-#include <span>
 #include <utility>
 
 #include "log/clock/stamp.hpp"
 #include "log/columns/column_name.hpp"
 #include "log/rows_in_range.hpp"
 #include "log/text/own_clocks.hpp"
-#include "log/text/text_header.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/trace.hpp"
@@ -28,102 +29,75 @@ constexpr std::size_t rows_sampled = 2000;   // evidence for counters and consta
 
 bool has_digits(std::string_view text) { return text.find_first_of("0123456789") != std::string_view::npos; }
 
-// Lines at the top that may be names and units: neither is evidence of how numbers are written.
-std::size_t lines_put_aside(std::string_view bytes, const std::vector<TextLine>& content) {
-    if (content.size() == 1) return 0;
-    return content.size() == 2 || has_digits(content[1].of(bytes)) ? 1 : 2;
-}
-
 [[noreturn]] void refuse_header_only(const TextLine& header, const std::string& source) {
     raise<DataError>(
         "{}:{}: read only a header, expected rows of numbers under it; check what wrote the file", source,
         header.number);
 }
 
-struct GuessedRules {
-    CellRules rules;
-    std::size_t columns = 0;  ///< cells in a row; 0 when no reading makes rows of it
-    std::size_t numbers = 0;  ///< numeric cells in a row, on average, rounded up
-};
-
-// How well lines read with these rules: rows of equal width, nearly all numbers.
+/// How well lines read with these rules: rows of equal width, nearly all numbers.
 struct Score {
     CellRules rules;
-    std::size_t columns = 0;
-    double consistent = 0.0;  // share of lines with the commonest number of cells
-    double numeric = 0.0;     // share of the cells in them that are numbers or empty
-    std::size_t numbers = 0;  // numeric cells in a line, on average, rounded
-    [[nodiscard]] double value() const {
-        if (columns == 0 || numbers == 0) return 0.0;
-        return consistent * numeric * (columns > 1 ? 1.0 : 0.5);
-    }
+    std::size_t columns = 0;  ///< the commonest number of cells
+    std::size_t numbers = 0;  ///< numeric cells in such a line, on average, rounded up
+    double value = 0.0;
 };
 
-// The commonest number of cells, and how many lines have it. Between widths that are equally common, the one
-// that the first line has too.
-std::pair<std::size_t, std::size_t> commonest(std::vector<std::size_t> widths, std::size_t first) {
-    std::sort(widths.begin(), widths.end());
-    std::size_t width = 0, best = 0;
-    for (std::size_t i = 0; i < widths.size();) {
-        const auto end = std::upper_bound(widths.begin(), widths.end(), widths[i]);
-        const auto count = static_cast<std::size_t>(end - widths.begin()) - i;
-        if (count > best || (count == best && widths[i] == first)) best = count, width = widths[i];
-        i += count;
-    }
-    return {width, best};
-}
-
-Score score(std::string_view bytes, const TextLine& first, const std::vector<TextLine>& rows,
-            CellRules rules) {
-    Score result{rules};
-    std::vector<std::size_t> widths;
+// Of the lines from `aside` on. Between widths that are equally common, the one that the first line has too.
+Score score(const TextLines& lines, std::size_t aside, const CellRules& rules) {
+    struct Counts {
+        std::size_t lines = 0, good = 0, numbers = 0;  // good: cells that are numbers or empty
+    };
+    std::map<std::size_t, Counts> widths;
     CellSplit split;
-    for (const TextLine& line : rows) {
-        split_cells(line.of(bytes), rules.delimiter, split);
-        widths.push_back(split.cells.size());
-    }
-    split_cells(first.of(bytes), rules.delimiter, split);
-    const auto [columns, best] = commonest(widths, split.cells.size());
-    result.columns = columns;
-    std::size_t cells = 0, good = 0, numbers = 0;
-    for (std::size_t k = 0; k < rows.size(); ++k) {
-        if (widths[k] != result.columns) continue;
-        const std::string_view line = rows[k].of(bytes);
+    const std::size_t end = std::min(lines.content.size(), lines_compared);
+    for (std::size_t k = aside; k < end; ++k) {
+        const std::string_view line = lines.line(k);
         split_cells(line, rules.delimiter, split);
+        Counts& counts = widths[split.cells.size()];
+        ++counts.lines;
         for (const Cell& cell : split.cells) {
             const bool number = cell_number(cell.of(line), rules.decimal_mark).has_value();
-            ++cells;
-            good += number || cell.begin == cell.end;
-            numbers += number;
+            counts.good += number || cell.begin == cell.end;
+            counts.numbers += number;
         }
     }
-    if (cells == 0) return result;
-    result.consistent = static_cast<double>(best) / static_cast<double>(rows.size());
-    result.numeric = static_cast<double>(good) / static_cast<double>(cells);
-    result.numbers = (numbers + best - 1) / best;
+    split_cells(lines.line(0), rules.delimiter, split);
+    Score result{rules};
+    Counts best;
+    for (const auto& [width, counts] : widths) {
+        if (counts.lines > best.lines || (counts.lines == best.lines && width == split.cells.size()))
+            best = counts, result.columns = width;
+    }
+    if (best.numbers == 0) return result;
+    result.numbers = (best.numbers + best.lines - 1) / best.lines;
+    const double consistent = static_cast<double>(best.lines) / static_cast<double>(end - aside);
+    const double numeric = static_cast<double>(best.good) / static_cast<double>(result.columns * best.lines);
+    result.value = consistent * numeric * (result.columns > 1 ? 1.0 : 0.5);
     return result;
 }
 
 // How the cells are separated and the decimals marked: the reading under which most lines are rows of equally
-// many numbers. `first` may be a header; `rows` are the lines compared. What `options` state is taken as
-// stated.
-GuessedRules guess_rules(std::string_view bytes, const TextLine& first, const std::vector<TextLine>& rows,
-                         const ReadOptions& options) {
+// many numbers. What `options` state is taken as stated.
+Score guess_rules(const TextLines& lines, const ByteSource& source, const ReadOptions& options) {
     // In order of preference between equals. A comma that separates can mark decimals only inside quotes.
     const std::array candidates = {CellRules{'\t', '.'}, CellRules{';', '.'},  CellRules{',', '.'},
                                    CellRules{' ', '.'},  CellRules{'\t', ','}, CellRules{';', ','},
                                    CellRules{' ', ','},  CellRules{',', ','}};
-    const bool quotes = bytes.find('"') != std::string_view::npos;
+    const bool quotes = lines.bytes.find('"') != std::string_view::npos;
+    // Lines at the top that may be names and units: neither is evidence of how numbers are written.
+    const std::size_t count = lines.content.size();
+    const std::size_t aside = count == 1 ? 0 : count == 2 || has_digits(lines.line(1)) ? 1 : 2;
     Score best;
-    const auto consider = [&](CellRules rules) {
-        const Score now = score(bytes, first, rows, rules);
+    const auto consider = [&](const CellRules& rules) {
+        const Score now = score(lines, aside, rules);
         // More columns win between readings that are equally good: "1,5;2,5" is two numbers, not one.
-        const double margin = now.value() - best.value();
+        const double margin = now.value - best.value;
         if (margin > 1e-9 ||
             (margin > -1e-9 && now.columns > best.columns && now.columns > 1 && best.columns <= 1))
             best = now;
     };
-    for (CellRules rules : candidates) {
+    for (const CellRules& rules : candidates) {
         if (rules.delimiter == ',' && rules.decimal_mark == ',' && !quotes) continue;
         if (options.delimiter && rules.delimiter != *options.delimiter) continue;
         if (options.decimal_mark && rules.decimal_mark != *options.decimal_mark) continue;
@@ -133,24 +107,13 @@ GuessedRules guess_rules(std::string_view bytes, const TextLine& first, const st
         for (const char mark : {'.', ','})
             if (options.decimal_mark.value_or(mark) == mark) consider({*options.delimiter, mark});
     }
-    return {best.rules, best.columns, best.numbers};
-}
-
-GuessedRules rules_of(std::string_view bytes, const std::vector<TextLine>& content, const ByteSource& source,
-                      const ReadOptions& options) {
-    const std::size_t aside = lines_put_aside(bytes, content);
-    const auto last = static_cast<std::ptrdiff_t>(std::min(content.size(), lines_compared));
-    const GuessedRules rules =
-        guess_rules(bytes, content.front(),
-                    {content.begin() + static_cast<std::ptrdiff_t>(aside), content.begin() + last}, options);
-    if (rules.columns > 0 && rules.numbers > 0) return rules;
-    const TextLine& first = content.front();
-    if (content.size() <= 2 && has_letters(first.of(bytes)) && !has_digits(content.back().of(bytes)))
-        refuse_header_only(first, source.name());
+    if (best.columns > 0 && best.numbers > 0) return best;
+    if (count <= 2 && has_letters(lines.line(0)) && !has_digits(lines.line(count - 1)))
+        refuse_header_only(lines.content.front(), source.name());
     raise<DataError>(
         "{}:{}:1: read '{}', expected numbers separated by comma, semicolon, tab or blanks; state how it is "
         "written with --delimiter and --decimal",
-        source.name(), number_in_file(source, content[aside].number), content[aside].of(bytes).substr(0, 40));
+        source.name(), number_in_file(source, lines.content[aside].number), lines.line(aside).substr(0, 40));
 }
 
 // The first form by which all texts are times and run forward; of several such, that of the shortest time,
@@ -183,50 +146,53 @@ StampForm form_of(const std::vector<std::string_view>& texts) {
     return best;
 }
 
-void look_at_sample(std::string_view bytes, std::span<const TextLine> rows, TextDialect& dialect) {
+// What the first cells of a column are: numbers, perhaps with a unit, or dates and times of day.
+void look_at_column(std::size_t c, const std::vector<std::string_view>& cells, TextDialect& dialect) {
+    const char mark = dialect.rules.decimal_mark;
+    const std::string_view first = cells.front();
+    bool clocks = !parse_number(first, mark) && clock_text(first), any_number = false;
+    const auto of_first = clocks ? std::nullopt : cell_number(first, mark);
+    const std::string unit(of_first ? of_first->unit : "");
+    if (!clocks) std::from_chars(first.data(), first.data() + first.size(), dialect.first_counts[c]);
+    for (const std::string_view cell : cells) {
+        const auto plain = parse_number(cell, mark);
+        any_number = any_number || plain;
+        clocks = clocks && (plain || clock_text(cell));
+        const auto number = plain ? CellNumber{*plain, 0, unit} : cell_number(cell, mark);
+        dialect.sample[c].push_back(number && number->unit == unit ? number->value : not_a_number);
+    }
+    dialect.clock_texts[c] = clocks;
+    if (!unit.empty()) {
+        dialect.rules.units.resize(dialect.columns);
+        dialect.rules.units[c] = unit;
+        dialect.units.resize(dialect.columns);
+        if (dialect.units[c].empty()) dialect.units[c] = unit;
+    }
+    if (!clocks || any_number) return;
+    dialect.stamp_forms[c] = form_of(cells);
+    std::ranges::transform(cells, dialect.sample[c].begin(), [&](std::string_view text) {
+        const auto time = clock_text(text, dialect.stamp_forms[c]);
+        return time ? static_cast<double>(time->whole_s) + time->fraction_s : not_a_number;
+    });
+}
+
+// Of the lines from the first row on.
+void look_at_sample(const TextLines& lines, std::size_t first_row, TextDialect& dialect) {
     dialect.sample.assign(dialect.columns, {});
     dialect.clock_texts.assign(dialect.columns, false);
     dialect.stamp_forms.assign(dialect.columns, {});
     dialect.first_counts.assign(dialect.columns, 0);
-    std::vector<std::vector<std::string_view>> texts(dialect.columns);
-    std::vector<std::string> units(dialect.columns);  // behind the numbers of the first row
+    std::vector<std::vector<std::string_view>> cells(dialect.columns);
     CellSplit split;
-    for (std::size_t k = 0; k < rows.size() && k < rows_sampled; ++k) {
-        const std::string_view line = rows[k].of(bytes);
-        split_cells(line, dialect.rules.delimiter, split);
+    for (std::size_t k = first_row; k < std::min(lines.content.size(), first_row + rows_sampled); ++k) {
+        split_cells(lines.line(k), dialect.rules.delimiter, split);
         if (split.cells.size() != dialect.columns) continue;
-        for (std::size_t c = 0; c < dialect.columns; ++c) {
-            const std::string_view cell = split.cells[c].of(line);
-            std::optional<double> value = parse_number(cell, dialect.rules.decimal_mark);
-            if (k == 0) dialect.has_lists |= list_in(cell).has_value();
-            if (k == 0) std::from_chars(cell.data(), cell.data() + cell.size(), dialect.first_counts[c]);
-            if (!value && (k == 0 || dialect.clock_texts[c])) {
-                dialect.clock_texts[c] = clock_text(cell).has_value();
-                if (dialect.clock_texts[c]) texts[c].push_back(cell);
-                if (k == 0 && dialect.clock_texts[c]) dialect.first_counts[c] = 0;
-            }
-            const auto number = value ? std::nullopt : cell_number(cell, dialect.rules.decimal_mark);
-            if (number && k == 0 && !dialect.clock_texts[c]) units[c] = number->unit;
-            if (number && number->unit == units[c]) value = number->value;
-            dialect.sample[c].push_back(value.value_or(std::numeric_limits<double>::quiet_NaN()));
-        }
+        for (std::size_t c = 0; c < dialect.columns; ++c)
+            cells[c].push_back(split.cells[c].of(lines.line(k)));
     }
-    for (std::size_t c = 0; c < dialect.columns; ++c) {
-        if (units[c].empty()) continue;
-        dialect.rules.units.resize(dialect.columns);
-        dialect.rules.units[c] = units[c];
-        dialect.units.resize(dialect.columns);
-        if (dialect.units[c].empty()) dialect.units[c] = units[c];
-    }
-    for (std::size_t c = 0; c < dialect.columns; ++c) {
-        if (!dialect.clock_texts[c] || texts[c].size() != dialect.sample[c].size()) continue;
-        dialect.stamp_forms[c] = form_of(texts[c]);
-        dialect.sample[c].clear();
-        for (const std::string_view text : texts[c]) {
-            const auto time = clock_text(text, dialect.stamp_forms[c]);
-            dialect.sample[c].push_back(time ? static_cast<double>(time->whole_s) + time->fraction_s
-                                             : std::numeric_limits<double>::quiet_NaN());
-        }
+    for (std::size_t c = 0; c < dialect.columns && !cells[c].empty(); ++c) {
+        dialect.has_lists = dialect.has_lists || list_in(cells[c].front());
+        look_at_column(c, cells[c], dialect);
     }
 }
 
@@ -234,7 +200,7 @@ void look_at_sample(std::string_view bytes, std::span<const TextLine> rows, Text
 // signals, as exports write runs that were recorded apart. Only the first keeps it.
 void take_repeated_clocks(TextDialect& dialect) {
     std::vector<std::string>& names = dialect.names;
-    if (std::count(names.begin(), names.end(), names.empty() ? "" : names.front()) < 2 ||
+    if (std::ranges::count(names, names.empty() ? "" : names.front()) < 2 ||
         read_column_name(names.front()).role != Role::time)
         return;
     dialect.clock_of.assign(names.size(), 0);
@@ -252,7 +218,7 @@ bool has_own_rows(const TextDialect& dialect) {
     for (std::size_t c = 0; c < std::min(dialect.names.size(), dialect.sample.size()); ++c) {
         const std::vector<double>& numbers = dialect.sample[c];
         const auto empty = static_cast<std::size_t>(
-            std::count_if(numbers.begin(), numbers.end(), [](double number) { return std::isnan(number); }));
+            std::ranges::count_if(numbers, [](double number) { return std::isnan(number); }));
         if (numbers.size() < many || 3 * empty < numbers.size() || empty + 2 > numbers.size()) continue;
         const Role role = read_column_name(dialect.names[c]).role;
         if (role != Role::other && role != Role::time) return true;
@@ -260,29 +226,12 @@ bool has_own_rows(const TextDialect& dialect) {
     return false;
 }
 
-// Only the rows are left in `content`.
-void take_scope_header(const ScopeHeader& scope, std::vector<TextLine>& content, ReadOptions& known,
-                       TextDialect& dialect) {
-    if (!known.delimiter) known.delimiter = scope.delimiter;
-    dialect.has_header = true;
-    dialect.names = scope.names;
-    dialect.units = scope.units;
-    dialect.clock_of = scope.clock_of;
-    dialect.scales = scope.scales;
-    dialect.row_step_s = scope.row_step_s;
-    dialect.row_step_key = "SampleTime[ms]";
-    dialect.header_end = content[scope.names_line].end;
-    dialect.head_lines = content[scope.first_row].number - 1;
-    content.erase(content.begin(), content.begin() + static_cast<std::ptrdiff_t>(scope.first_row));
-}
-
 // "LabVIEW Measurement", and below it "Separator" and its name.
-std::optional<char> labview_delimiter(std::string_view bytes, const std::vector<TextLine>& content) {
-    if (!content.front().of(bytes).starts_with("LabVIEW Measurement")) return std::nullopt;
-    for (const TextLine& line : content) {
-        const std::string_view text = line.of(bytes);
-        if (text.starts_with("Separator\tTab")) return '\t';
-        if (text.starts_with("Separator,Comma")) return ',';
+std::optional<char> labview_delimiter(const TextLines& lines) {
+    if (!lines.line(0).starts_with("LabVIEW Measurement")) return std::nullopt;
+    for (std::size_t k = 1; k < lines.content.size(); ++k) {
+        if (lines.line(k).starts_with("Separator\tTab")) return '\t';
+        if (lines.line(k).starts_with("Separator,Comma")) return ',';
     }
     return std::nullopt;
 }
@@ -300,15 +249,15 @@ void refuse_binary(std::string_view bytes, const ByteSource& source) {
             "{}:1:1: read UTF-16 text, expected UTF-8; convert it, e.g. with iconv -f UTF-16 -t UTF-8",
             source.name());
     }
-    for (std::size_t i = 0; i < bytes.size(); ++i) {
-        if (!is_control(bytes[i])) continue;
-        const auto byte = static_cast<unsigned char>(bytes[i]);
-        const TextPlace place = place_of(bytes, i);
-        raise<DataError>(
-            "{}:{}:{}: read the byte 0x{:02x}, expected text; this is not a text log, state which format it "
-            "has with --format, or export it as CSV",
-            source.name(), number_in_file(source, place.line), place.column, byte);
-    }
+    const auto* const found = std::ranges::find_if(bytes, is_control);
+    if (found == bytes.end()) return;
+    const std::string_view before(bytes.begin(), found);
+    const auto line = static_cast<std::size_t>(std::ranges::count(before, '\n')) + 1;
+    raise<DataError>(
+        "{}:{}:{}: read the byte 0x{:02x}, expected text; this is not a text log, state which format it has "
+        "with --format, or export it as CSV",
+        source.name(), number_in_file(source, line), before.size() - (before.rfind('\n') + 1) + 1,
+        static_cast<unsigned char>(*found));
 }
 
 // Complete lines; the last, unfinished one counts only when the file ends there.
@@ -319,8 +268,8 @@ std::vector<TextLine> lines_of(std::string_view bytes, bool whole, std::size_t f
     for (std::size_t begin = from; begin < bytes.size(); ++number) {
         const std::size_t at = bytes.find('\n', begin);
         if (at == std::string_view::npos && !whole) break;
-        TextLine line{begin, at == std::string_view::npos ? bytes.size() : at, 0, number};
-        line.next = at == std::string_view::npos ? bytes.size() : at + 1;
+        TextLine line{begin, std::min(at, bytes.size()), 0, number};
+        line.next = std::min(line.end + 1, bytes.size());
         if (line.end > line.begin && bytes[line.end - 1] == '\r') --line.end;
         lines.push_back(line);
         begin = line.next;
@@ -341,73 +290,14 @@ std::optional<char> stated_delimiter(std::string_view line) {
                                                             : std::nullopt;
 }
 
-std::vector<WantedColumn> by_column(std::vector<WantedColumn> wanted) {
-    std::sort(wanted.begin(), wanted.end(),
-              [](const WantedColumn& a, const WantedColumn& b) { return a.column < b.column; });
-    return wanted;
-}
-
-}  // namespace
-
-std::string delimiter_name(char delimiter) {
-    if (delimiter == '\t') return "tab";
-    if (delimiter == ' ') return "space";
-    return std::string(1, delimiter);
-}
-
-TextPlace place_of(std::string_view bytes, std::size_t offset) {
-    TextPlace place;
-    for (std::size_t i = 0; i < offset && i < bytes.size(); ++i) {
-        if (bytes[i] == '\n') {
-            ++place.line;
-            place.column = 1;
-        } else {
-            ++place.column;
-        }
-    }
-    return place;
-}
-
-TextDialect sniff_text(std::string_view bytes, bool whole, const ByteSource& source,
-                       const ReadOptions& options) {
-    TextLines lines = opening_lines(bytes, whole, source, options.skip_lines);
-    TextDialect dialect;
-    ReadOptions known = options;
-    if (!known.delimiter) known.delimiter = lines.delimiter;
-    if (!known.delimiter) known.delimiter = labview_delimiter(bytes, lines.content);
-    std::optional<ScopeHeader> scope;
-    if (options.header.value_or(true)) scope = scope_header(bytes, lines.content, source.name());
-    if (scope) take_scope_header(*scope, lines.content, known, dialect);
-    const GuessedRules rules = rules_of(bytes, lines.content, source, known);
-    dialect.rules = rules.rules;
-    dialect.columns = rules.columns;
-    std::size_t row = 0;
-    if (scope) {
-        dialect.columns = dialect.names.size();
-    } else {
-        const Preamble preamble = find_preamble(bytes, lines.content, dialect.rules, dialect.columns);
-        dialect.row_step_s = preamble.row_step_s;
-        if (preamble.lines > 0) dialect.head_lines = lines.content[preamble.lines].number - 1;
-        lines.content.erase(lines.content.begin(),
-                            lines.content.begin() + static_cast<std::ptrdiff_t>(preamble.lines));
-        row = read_header(bytes, lines, source.name(), options, dialect);
-        if (dialect.units.empty()) dialect.units = preamble.units;
-    }
-    if (row >= lines.content.size()) refuse_header_only(lines.content.front(), source.name());
-    dialect.data_offset = lines.content[row].begin;
-    dialect.data_line = lines.content[row].number;
-    look_at_sample(bytes, std::span(lines.content).subspan(row), dialect);
-    if (!scope) take_repeated_clocks(dialect);
-    const std::set<std::size_t> clocks(dialect.clock_of.begin(), dialect.clock_of.end());
-    dialect.own_clocks = clocks.size() > 1 || (has_own_rows(dialect) && !options.hold_bad_values);
-    return dialect;
-}
-
+// The opening of a file, all of it when `whole`; its first `skip_lines` lines count for nothing.
+// Throws DataError that begins with the name of `source`: for an empty file, bytes that no text has, UTF-16,
+// a line longer than longest_line, nothing but comments.
 TextLines opening_lines(std::string_view bytes, bool whole, const ByteSource& source,
                         std::size_t skip_lines) {
     refuse_binary(bytes, source);
     const std::size_t start = bytes.substr(0, 3) == utf8_mark ? 3 : 0;
-    TextLines opening;
+    TextLines opening{bytes, {}, {}, {}};
     if (bytes.find('\n') == std::string_view::npos && bytes.find('\r') != std::string_view::npos)
         raise<DataError>(
             "{}:1: read lines that end in CR alone, expected LF or CR LF; convert it: tr '\\r' '\\n' < FILE "
@@ -422,12 +312,12 @@ TextLines opening_lines(std::string_view bytes, bool whole, const ByteSource& so
     }
     std::size_t kept = 0;
     for (const TextLine& line : lines) {
-        if (line.number <= skip_lines || is_blank_line(line.of(bytes))) continue;
+        if (line.number <= skip_lines || is_blank_line(opening.text(line))) continue;
         if (kept == 0 && !opening.delimiter) {
-            opening.delimiter = stated_delimiter(line.of(bytes));
+            opening.delimiter = stated_delimiter(opening.text(line));
             if (opening.delimiter) continue;
         }
-        if (!is_comment_line(line.of(bytes))) {
+        if (!is_comment_line(opening.text(line))) {
             lines[kept++] = line;
         } else if (kept == 0) {
             opening.comments.push_back(line);
@@ -442,29 +332,55 @@ TextLines opening_lines(std::string_view bytes, bool whole, const ByteSource& so
     return opening;
 }
 
-TextRow::TextRow(const TextDialect& dialect, std::vector<WantedColumn> wanted, StampRule stamp,
-                 std::size_t joints, bool lenient)
-    : rules_(dialect.rules),
-      columns_(dialect.columns),
-      parser_(rules_, columns_, by_column(std::move(wanted)), stamp),
-      lenient_(lenient),
-      row_(joints) {}
-
-bool TextRow::parse(std::string_view line) {
-    return parser_.parse(line.data(), line.data() + line.size(), row_) || parse_carefully(line);
+// "--delimiter ';' --decimal ,", as people type it.
+std::string options_of(const TextDialect& dialect) {
+    const char delimiter = dialect.rules.delimiter;
+    const std::string name = delimiter == '\t'  ? "tab"
+                             : delimiter == ' ' ? "space"
+                             : delimiter == ';' ? "';'"
+                                                : std::string(1, delimiter);
+    return fmt::format("--delimiter {} --decimal {}{}", name, dialect.rules.decimal_mark,
+                       dialect.has_header ? "" : " --no-header");
 }
 
-std::string_view TextRow::cell(std::string_view line, std::size_t column) {
-    split_cells(line, rules_.delimiter, split_);
-    return split_.cells.size() == columns_ ? split_.cells[column].of(line) : std::string_view();
-}
+}  // namespace
 
-// Quoted cells.
-bool TextRow::parse_carefully(std::string_view line) {
-    split_cells(line, rules_.delimiter, split_);
-    return split_.cells.size() == columns_ && parser_.parse_cells(line, split_, row_, [this](const auto&...) {
-        return lenient_ ? std::optional(std::numeric_limits<double>::quiet_NaN()) : std::nullopt;
-    });
+TextDialect sniff_text(std::string_view bytes, bool whole, const ByteSource& source,
+                       const ReadOptions& options) {
+    TextLines lines = opening_lines(bytes, whole, source, options.skip_lines);
+    const auto drop = [&lines](std::size_t count) {
+        lines.content.erase(lines.content.begin(),
+                            lines.content.begin() + static_cast<std::ptrdiff_t>(count));
+    };
+    ReadOptions known = options;
+    if (!known.delimiter) known.delimiter = lines.delimiter;
+    if (!known.delimiter) known.delimiter = labview_delimiter(lines);
+    std::optional<TextDialect> scope;
+    if (options.header.value_or(true)) scope = scope_header(lines, source.name());
+    TextDialect dialect = scope.value_or(TextDialect());
+    drop(static_cast<std::size_t>(std::ranges::count_if(
+        lines.content, [&](const TextLine& line) { return line.number <= dialect.head_lines; })));
+    if (scope && !known.delimiter) known.delimiter = dialect.rules.delimiter;
+    const Score rules = guess_rules(lines, source, known);
+    dialect.rules = rules.rules;
+    dialect.columns = scope ? dialect.names.size() : rules.columns;
+    std::size_t row = 0;
+    if (!scope) {
+        const std::size_t preamble = find_preamble(lines, dialect);
+        if (preamble > 0) dialect.head_lines = lines.content[preamble].number - 1;
+        drop(preamble);
+        row = read_header(lines, source.name(), options, dialect);
+    }
+    if (row >= lines.content.size()) refuse_header_only(lines.content.front(), source.name());
+    dialect.data_offset = lines.content[row].begin;
+    dialect.data_line = lines.content[row].number;
+    look_at_sample(lines, row, dialect);
+    if (!scope) take_repeated_clocks(dialect);
+    const std::set<std::size_t> clocks(dialect.clock_of.begin(), dialect.clock_of.end());
+    dialect.own_clocks = clocks.size() > 1 || (has_own_rows(dialect) && !options.hold_bad_values);
+    dialect.sums_steps = true;
+    dialect.dialect_options = options_of(dialect);
+    return dialect;
 }
 
 MotionSample text_motion_sample(std::string_view bytes, const TextDialect& dialect, const Layout& layout,
@@ -474,7 +390,11 @@ MotionSample text_motion_sample(std::string_view bytes, const TextDialect& diale
         if (places[j].velocity) wanted.push_back({*places[j].velocity, slot_of(velocity_slot, j)});
         if (places[j].position) wanted.push_back({*places[j].position, slot_of(position_slot, j)});
     }
-    TextRow row(dialect, wanted, stamp_rule(layout, dialect.rules.decimal_mark), places.size(), true);
+    const RowParser parser(
+        {dialect.rules, dialect.columns, wanted, {}, stamp_rule(layout, dialect.rules.decimal_mark)});
+    const auto lenient = [](const auto&...) { return std::optional(not_a_number); };
+    ParsedRow row(places.size());
+    CellSplit split;
     const bool timed = layout.chosen.time.has_value();
     std::size_t lines = 0;
     double sum = 0.0;
@@ -485,15 +405,15 @@ MotionSample text_motion_sample(std::string_view bytes, const TextDialect& diale
         const std::string_view line = line_content(bytes.substr(begin, found - begin));
         begin = found + 1;
         ++lines;
-        if (!row.parse(line)) continue;
-        if (layout.time_is_steps && !sample.time.empty()) sum += row.value(time_slot);
+        if (!parser.parse_any(line, row, split, lenient)) continue;
+        if (layout.time_is_steps && !sample.time.empty()) sum += row.values[time_slot];
         sample.time.push_back(layout.time_is_steps ? sum
-                              : timed              ? row.value(time_slot)
+                              : timed              ? row.values[time_slot]
                                                    : static_cast<double>(lines));
         for (std::size_t j = 0; j < places.size(); ++j) {
             auto& [velocity, position] = sample.joints[j];
-            if (places[j].velocity) velocity.push_back(row.value(slot_of(velocity_slot, j)));
-            if (places[j].position) position.push_back(row.value(slot_of(position_slot, j)));
+            if (places[j].velocity) velocity.push_back(row.values[slot_of(velocity_slot, j)]);
+            if (places[j].position) position.push_back(row.values[slot_of(position_slot, j)]);
         }
     }
     return sample;
