@@ -8,11 +8,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <exception>
 #include <utility>
 
 #include "core/text/lower_case.hpp"
 #include "log/clock/stamp.hpp"
-#include "log/columns/motion_reading.hpp"
 #include "log/formats.hpp"
 #include "log/unpack/unpacked_source.hpp"
 #include "ripplenotch/core/error.hpp"
@@ -94,6 +95,116 @@ void require_built(const LogFormat& format, const std::string& source) {
         "{}: read a log in format {}, and this build was made without {}; install it and build again", source,
         format.name, format.lacks);
 }
+
+/// A reader whose rows are those of another one, changed.
+class ChangedRows : public LogReader {
+  public:
+    explicit ChangedRows(std::unique_ptr<LogReader> reader) : reader_(std::move(reader)) {}
+    [[nodiscard]] const Layout& layout() const override { return reader_->layout(); }
+    [[nodiscard]] std::string_view head() const override { return reader_->head(); }
+    [[nodiscard]] const LogReader& base() const override { return reader_->base(); }
+
+  protected:
+    std::unique_ptr<LogReader> reader_;
+};
+
+/// With the slope of the position as the velocity of joints that have none: central differences from row to
+/// row, one-sided at both ends of the log. A step of more than half a turn is taken as a wrap.
+class DerivedVelocity final : public ChangedRows {
+  public:
+    explicit DerivedVelocity(std::unique_ptr<LogReader> reader) : ChangedRows(std::move(reader)) {
+        const std::vector<JointColumns> joints = layout().all_chosen();
+        for (std::size_t j = 0; j < joints.size(); ++j) {
+            if (joints[j].velocity || !joints[j].position) continue;
+            const Column& position = layout().columns[*joints[j].position];
+            joints_.push_back({j, 360.0 / position.motor_ratio.value_or(1.0), std::nullopt});
+        }
+    }
+
+    bool next(RowBlock& block) override {
+        if (!std::exchange(begun_, true)) look_ahead();
+        if (!more_) {
+            if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
+            return false;
+        }
+        std::swap(block, ahead_);
+        look_ahead();
+        for (Joint& joint : joints_)
+            if (block.size() > 0) derive(block, joint);
+        return true;
+    }
+
+  private:
+    struct Point {
+        double time_s = 0.0, position_deg = 0.0;
+    };
+    struct Joint {
+        std::size_t place;
+        double turn_deg;              ///< where the position would wrap
+        std::optional<Point> before;  ///< the last row of the block before
+    };
+    // What is wrong in the block ahead must not keep the rows before it from being passed on.
+    void look_ahead() {
+        try {
+            do {
+                more_ = reader_->next(ahead_);
+            } while (more_ && ahead_.size() == 0 && ahead_.bytes.empty());
+        } catch (...) {
+            failure_ = std::current_exception();
+            ahead_.clear();
+            more_ = false;
+        }
+    }
+    void derive(RowBlock& block, Joint& joint) const {
+        const auto point = [&joint](const RowBlock& from, std::size_t row) {
+            return Point{from.time_s[row], from.joints[joint.place].position_deg[row]};
+        };
+        const std::size_t size = block.size();
+        double slope = 0.0;
+        for (std::size_t i = 0; i < size; ++i) {
+            const Point here = point(block, i);
+            const Point first = i > 0 ? point(block, i - 1) : joint.before.value_or(here);
+            const bool another = more_ && ahead_.size() > 0;
+            const Point last = i + 1 < size ? point(block, i + 1) : another ? point(ahead_, 0) : here;
+            const double passed = last.time_s - first.time_s;
+            double moved = last.position_deg - first.position_deg;
+            moved -= joint.turn_deg * std::round(moved / joint.turn_deg);
+            if (passed > 0.0) slope = moved / passed;
+            block.joints[joint.place].velocity_deg_s[i] = slope;
+        }
+        joint.before = point(block, size - 1);
+    }
+
+    std::vector<Joint> joints_;  ///< without a velocity of their own
+    RowBlock ahead_;             ///< the block after the one that is passed on
+    bool begun_ = false, more_ = false;
+    std::exception_ptr failure_;  ///< of the block ahead; for when its turn comes
+};
+
+/// With the shifts of the columns added, and a speed that was stated as the velocity of all joints.
+class StatedRows final : public ChangedRows {
+  public:
+    using ChangedRows::ChangedRows;
+
+    bool next(RowBlock& block) override {
+        if (!reader_->next(block)) return false;
+        const std::vector<JointColumns> joints = layout().all_chosen();
+        for (std::size_t j = 0; j < joints.size(); ++j) {
+            JointRows& rows = block.joints[j];
+            const auto shift = [this](std::optional<std::size_t> column, std::vector<double>& values) {
+                const double by = column ? layout().columns[*column].shift : 0.0;
+                for (double& value : values)
+                    if (by != 0.0) value += by;
+            };
+            shift(joints[j].velocity, rows.velocity_deg_s);
+            shift(joints[j].torque, rows.torque_nm);
+            shift(joints[j].position, rows.position_deg);
+            if (const auto speed = layout().constant_speed)
+                rows.velocity_deg_s.assign(block.size(), speed->value());
+        }
+        return true;
+    }
+};
 
 }  // namespace
 
@@ -217,13 +328,10 @@ std::unique_ptr<LogReader> open_log(std::unique_ptr<ByteSource> source, const Re
     if (options.range.given() && !layout.outside)
         raise<UsageError>("{}: --from and --to: rows of a log in format {} are read all or none",
                           layout.source, format.name);
-    if (std::ranges::any_of(layout.columns, [](const Column& column) { return column.shift != 0.0; }))
-        reader = std::make_unique<ShiftedColumns>(std::move(reader));
-    if (layout.velocity_from_position) return std::make_unique<DerivedVelocity>(std::move(reader));
-    if (layout.constant_speed) {
-        const DegPerSec speed = *layout.constant_speed;
-        return std::make_unique<ConstantVelocity>(std::move(reader), speed);
-    }
+    const bool shifted =
+        std::ranges::any_of(layout.columns, [](const Column& column) { return column.shift != 0.0; });
+    if (shifted || layout.constant_speed) reader = std::make_unique<StatedRows>(std::move(reader));
+    if (reader->layout().velocity_from_position) return std::make_unique<DerivedVelocity>(std::move(reader));
     return reader;
 }
 

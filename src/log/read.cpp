@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <tuple>
 #include <utility>
 
 #include "log/account/account.hpp"
@@ -15,6 +16,18 @@
 namespace ripplenotch {
 
 namespace {
+
+void append(std::vector<double>& to, std::span<const double> from) {
+    to.insert(to.end(), from.begin(), from.end());
+}
+
+void append(Trace& trace, const TraceView& rows, bool begins_run) {
+    if (begins_run && trace.size() > 0) trace.run_starts.push_back(trace.size());
+    append(trace.time_s, rows.time_s);
+    append(trace.velocity_deg_s, rows.velocity_deg_s);
+    append(trace.torque_nm, rows.torque_nm);
+    append(trace.position_deg, rows.position_deg);
+}
 
 /// The rows of a pass, kept for the next one as long as they are not too many.
 class KeptParts {
@@ -28,34 +41,15 @@ class KeptParts {
             parts_.clear();
             return;
         }
-        parts_.push_back({copy_of(rows.time_s), copy_of(rows.velocity_deg_s), copy_of(rows.torque_nm),
-                          copy_of(rows.position_deg), !rows.run_starts.empty()});
+        append(parts_.emplace_back(), rows, false);
+        parts_.back().run_starts.assign(rows.run_starts.begin(), rows.run_starts.end());
     }
-
     [[nodiscard]] bool whole() const { return numbers_ <= most_numbers_ && !parts_.empty(); }
-
-    /// The parts as they were added, but for the rate.
-    template <class Use>
-    void replay(Hertz sample_rate, const Use& use) const {
-        static constexpr std::array<std::size_t, 1> at_first_row = {0};
-        for (const Part& part : parts_) {
-            TraceView rows{sample_rate, part.time_s, part.velocity_deg_s, part.torque_nm, part.position_deg};
-            if (part.begins_run) rows.run_starts = at_first_row;
-            use(rows);
-        }
-    }
+    [[nodiscard]] const std::vector<Trace>& parts() const { return parts_; }
 
   private:
-    struct Part {
-        std::vector<double> time_s, velocity_deg_s, torque_nm, position_deg;
-        bool begins_run;
-    };
-    static std::vector<double> copy_of(std::span<const double> numbers) {
-        return {numbers.begin(), numbers.end()};
-    }
-
     std::size_t most_numbers_, numbers_ = 0;
-    std::vector<Part> parts_;
+    std::vector<Trace> parts_;
 };
 
 // Few and long: half a minute at 1 kHz, in which a slow joint still turns and lines stand apart.
@@ -89,17 +83,8 @@ class PieceTaker {
     [[nodiscard]] std::size_t end_of(std::size_t piece) const { return begin_of(piece) + in_piece_; }
 
     void take(const TraceView& rows, std::size_t first, std::size_t count, bool begins_piece) {
-        const bool begins_run = begins_piece || (first == 0 && !rows.run_starts.empty());
-        if (begins_run && trace_.size() > 0) trace_.run_starts.push_back(trace_.size());
-        const TraceView part = rows.part(first, count);
-        const auto append = [](std::vector<double>& to, std::span<const double> from) {
-            to.insert(to.end(), from.begin(), from.end());
-        };
-        append(trace_.time_s, part.time_s);
-        append(trace_.velocity_deg_s, part.velocity_deg_s);
-        append(trace_.torque_nm, part.torque_nm);
-        if (part.has_position()) trace_.position_deg.reserve(in_piece_ * most_pieces);
-        append(trace_.position_deg, part.position_deg);
+        if (rows.has_position()) trace_.position_deg.reserve(in_piece_ * most_pieces);
+        append(trace_, rows.part(first, count), begins_piece || (first == 0 && !rows.run_starts.empty()));
     }
 
     std::size_t rows_, in_piece_;
@@ -114,41 +99,23 @@ std::optional<Log> read_pieces(const std::shared_ptr<const Spool>& log, const Re
     LogPasses passes(log, options, joint);
     passes.keep_rows(most_bytes_kept);
     passes.first([](const TraceView&) {});
-    if (passes.facts().rows <= most_rows) return std::nullopt;
-    Log part;
-    PieceTaker taker(passes.facts().rows, most_rows, part.trace);
-    passes.second([&](const TraceView& rows) { taker.add(rows); });
-    const LogFacts& facts = passes.facts();
-    part.layout = passes.layout();
-    part.layout.chosen = part.layout.all_chosen()[joint];
-    part.layout.others.clear();
-    part.trace.source = part.layout.source;
-    part.trace.joint = part.layout.chosen.joint;
-    part.trace.sample_rate = facts.sample_rate;
-    part.recording = passes.recording();
+    const std::size_t rows = passes.facts().rows;
+    if (rows <= most_rows) return std::nullopt;
+    Trace trace;
+    PieceTaker taker(rows, most_rows, trace);
+    passes.second([&](const TraceView& part) { taker.add(part); });
+    Log part = passes.log();
+    std::tie(trace.source, trace.joint, trace.sample_rate) =
+        std::tie(part.trace.source, part.trace.joint, part.trace.sample_rate);
+    part.trace = std::move(trace);
     part.recording.looked_at = LookedAt{part.trace.size(), most_pieces};
     part.recording.warnings.push_back(
         {"looked at in part",
          fmt::format("{}: of {} rows {} are examined, in {} evenly spaced pieces; --from and --to select a "
                      "part that is read whole",
-                     part.layout.source, facts.rows, part.trace.size(), most_pieces),
+                     part.layout.source, rows, part.trace.size(), most_pieces),
          true});
-    part.held_bad_values = facts.held_bad_values;
-    part.clock_factor = facts.clock_factor;
-    part.position_range_deg = facts.position_range_deg;
     return part;
-}
-
-void append(std::vector<double>& to, std::span<const double> from) {
-    to.insert(to.end(), from.begin(), from.end());
-}
-
-void append(Trace& trace, const TraceView& rows, bool begins_run) {
-    if (begins_run && trace.size() > 0) trace.run_starts.push_back(trace.size());
-    append(trace.time_s, rows.time_s);
-    append(trace.velocity_deg_s, rows.velocity_deg_s);
-    append(trace.torque_nm, rows.torque_nm);
-    append(trace.position_deg, rows.position_deg);
 }
 
 // The position as it was logged has been looked at; from here on it is the joint's, or there is none. One
@@ -187,12 +154,13 @@ void finish(Log& log, const Account& account, const LogReader& reader, std::size
             std::minmax_element(log.trace.position_deg.begin(), log.trace.position_deg.end());
         log.position_range_deg.emplace(*low, *high);
     }
-    if (period) log.layout.warnings.push_back({"wrapped position", wrap_in_words(*period), true});
+    if (period) log.layout.warn("wrapped position", wrap_in_words(*period), true);
     settle_angle(log);
 }
 
 // Empty where there are more than `most_rows`.
-std::vector<Log> read_all_joints(LogReader& reader, const ReadOptions& options, std::size_t most_rows) {
+std::vector<Log> read_all_joints(LogReader& reader, const ReadOptions& options,
+                                 std::size_t most_rows = all_rows) {
     Opening opening = read_opening(reader);
     Account account(reader.layout(), opening);
     std::vector<Log> logs(reader.layout().all_chosen().size());
@@ -208,10 +176,6 @@ std::vector<Log> read_all_joints(LogReader& reader, const ReadOptions& options, 
     if (options.needs_torque) account.clock().require();
     for (std::size_t j = 0; j < logs.size(); ++j) finish(logs[j], account, reader, j);
     return logs;
-}
-
-std::vector<Log> read_all_joints(LogReader& reader, const ReadOptions& options) {
-    return read_all_joints(reader, options, all_rows);
 }
 
 // By the size of the file and of its first rows. Where it is wrong, the log is read once more.
@@ -239,8 +203,8 @@ Log in_part(const std::shared_ptr<const Spool>& spool, const ReadOptions& option
 
 class LogPasses::Work {
   public:
-    Work(std::shared_ptr<const Spool> log, ReadOptions options, std::size_t joint)
-        : spool_(std::move(log)),
+    Work(std::shared_ptr<const Spool> spool, ReadOptions options, std::size_t joint)
+        : spool_(std::move(spool)),
           options_(std::move(options)),
           joint_(joint),
           reader_(open_log(spool_->open(), options_)) {}
@@ -248,9 +212,8 @@ class LogPasses::Work {
     void first(const Use& use);
     void second(const Use& use);
 
-    Layout layout;
+    Log log;
     LogFacts facts;
-    Recording recording;
     KeptParts kept{0};
 
   private:
@@ -281,14 +244,14 @@ Account LogPasses::Work::run(const Use& use) {
         for (const RunPart& part : account.add(block)) {
             if (!part.usable || part.count == 0) continue;
             TraceView rows = view_of(block, joint_, part.first, part.count);
-            rows.sample_rate = facts.sample_rate;
+            rows.sample_rate = log.trace.sample_rate;
             if (part.begins_run) rows.run_starts = at_first_row;
             use(rows);
         }
     }
     if (options_.needs_torque) account.clock().require();
-    if (facts.rows == 0) layout = reader_->layout();
-    facts.held_bad_values = held_bad_values;
+    if (facts.rows == 0) log.layout = reader_->layout();
+    log.held_bad_values = held_bad_values;
     reader_.reset();
     return account;
 }
@@ -309,15 +272,19 @@ void LogPasses::Work::first(const Use& use) {
         use(rows);
     });
     facts.rows = rows_;
-    recording = account.recording(layout, joint_);
+    log.recording = account.recording(log.layout, joint_);
+    log.layout.chosen = log.layout.all_chosen()[joint_];
+    log.layout.others.clear();
+    log.trace.source = log.layout.source;
+    log.trace.joint = log.layout.chosen.joint;
+    log.trace.sample_rate = log.recording.clock.mean_rate;
+    const AngleFacts& angle = log.recording.angle;
     const auto rows = static_cast<double>(facts.rows);
     facts.mean_s = sum_s_ / rows;
-    const bool by_position = recording.angle.source() == AngleFacts::Source::position;
-    const double sign = recording.angle.verdict == AngleFacts::Verdict::reversed ? -1.0 : 1.0;
+    const bool by_position = angle.source() == AngleFacts::Source::position;
+    const double sign = angle.verdict == AngleFacts::Verdict::reversed ? -1.0 : 1.0;
     if (by_position && has_position_) facts.mean_position_deg = sign * wrap_.sum() / rows;
-    facts.sample_rate = recording.clock.mean_rate;
-    if (const auto period = wrap_.period())
-        layout.warnings.push_back({"wrapped position", wrap_in_words(*period), true});
+    if (const auto period = wrap_.period()) log.layout.warn("wrapped position", wrap_in_words(*period), true);
 }
 
 // `logged` gets the rows with the position as it was logged, made continuous; then `use` gets the joint's.
@@ -334,20 +301,22 @@ void LogPasses::Work::go_on_from(const Use& logged_use, const Use& use) {
             rows.position_deg = continuous;
         }
         logged_use(rows);
-        rows.position_deg = joints.of(recording.angle, rows);
+        rows.position_deg = joints.of(log.recording.angle, rows);
         use(rows);
     };
-    if (kept.whole())
-        kept.replay(facts.sample_rate, go_on);
-    else
-        static_cast<void>(run(go_on));
+    if (!kept.whole()) static_cast<void>(run(go_on));
+    for (const Trace& part : kept.parts()) {
+        TraceView rows = part.view();
+        rows.sample_rate = log.trace.sample_rate;
+        go_on(rows);
+    }
 }
 
 // As read_log compares the clock with the motion: by the joint's position; by the logged one where that is
 // not the joint's, or runs the other way.
 void LogPasses::Work::second(const Use& use) {
     MotionPieces motion(facts.rows);
-    const bool turned = recording.angle.verdict == AngleFacts::Verdict::reversed;
+    const bool turned = log.recording.angle.verdict == AngleFacts::Verdict::reversed;
     double low = std::numeric_limits<double>::infinity(), high = -low;
     TraceView as_logged;
     const auto look_at = [&](const TraceView& rows) {
@@ -361,10 +330,10 @@ void LogPasses::Work::second(const Use& use) {
         motion.add(turned || !rows.has_position() ? as_logged : rows);
         use(rows);
     });
-    const ClockCheck check = motion.check(facts.sample_rate);
-    facts.clock_factor = check.factor;
-    if (low <= high) facts.position_range_deg.emplace(low, high);
-    recording.warnings = recording_warnings(recording, check.warning);
+    const ClockCheck check = motion.check(log.trace.sample_rate);
+    log.clock_factor = check.factor;
+    if (low <= high) log.position_range_deg.emplace(low, high);
+    log.recording.warnings = recording_warnings(log.recording, check.warning);
 }
 
 LogPasses::LogPasses(const std::string& path, const ReadOptions& options)
@@ -383,29 +352,20 @@ void LogPasses::second(const Use& use) { work_->second(use); }
 
 const LogFacts& LogPasses::facts() const { return work_->facts; }
 
-const Layout& LogPasses::layout() const { return work_->layout; }
-
-const Recording& LogPasses::recording() const { return work_->recording; }
+const Log& LogPasses::log() const { return work_->log; }
 
 Log read_log(LogReader& reader, const ReadOptions& options) {
     return std::move(read_all_joints(reader, options).front());
 }
 
-std::vector<Log> read_joints_at_once(const std::string& path, const ReadOptions& options) {
-    ReadOptions every = options;
-    every.joint.reset();
-    every.every_joint = true;
-    return read_all_joints(*open_log(path, every), every);
-}
-
-std::vector<Log> read_joints_at_once_in_part(const std::string& path, const ReadOptions& options,
-                                             std::size_t most_rows) {
+std::vector<Log> read_joints_at_once(const std::string& path, const ReadOptions& options,
+                                     std::size_t most_rows) {
     const auto spool = std::make_shared<const Spool>(path);
     ReadOptions every = options;
     every.joint.reset();
     every.every_joint = true;
     std::vector<Log> logs;
-    if (!looks_longer(*spool, every, most_rows)) {
+    if (most_rows == all_rows || !looks_longer(*spool, every, most_rows)) {
         logs = read_all_joints(*open_log(spool->open(), every), every, most_rows);
         if (!logs.empty()) return logs;
     }

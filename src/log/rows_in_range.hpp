@@ -11,7 +11,7 @@
 #include <optional>
 #include <string>
 
-#include "log/clock/choose_time.hpp"
+#include "log/clock/stamp.hpp"
 #include "ripplenotch/core/files.hpp"
 #include "ripplenotch/log/layout.hpp"
 

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "log/table_writer.hpp"
+#include <fmt/format.h>
 
+#include <algorithm>
 #include <stdexcept>
 #include <utility>
 
+#include "log/columns/units.hpp"
+#include "log/formats.hpp"
 #include "ripplenotch/core/progress.hpp"
 
 namespace ripplenotch {
@@ -53,6 +56,17 @@ class Converter : public LogWriter {
     std::vector<bool> has_position_;
 };
 
+// "torque_filtered [Nm]" beside "tau [Nm]", "torque_filtered_Nm" beside "torque_Nm": a new column's name in
+// the style of the torque column's.
+std::string appended_name(const std::string& wanted, const std::string& torque_name) {
+    const NameAndUnit parts = split_unit(torque_name, Role::torque);
+    if (parts.unit.empty()) return wanted;
+    // Whatever stands between the name and the unit stays: "_Nm", " [Nm]", "(Nm)".
+    const std::size_t at = torque_name.rfind(parts.unit);
+    const std::size_t from = torque_name.find(parts.name) + parts.name.size();
+    return wanted + torque_name.substr(from, at - from) + torque_name.substr(at);
+}
+
 }  // namespace
 
 std::unique_ptr<LogWriter> convert_rows(std::unique_ptr<ByteSink> sink, const LogReader& reader,
@@ -82,6 +96,22 @@ void write_table(ByteSink& sink, std::span<const NumberColumn> columns, MakeTabl
         Progress::current().add(parts.front().size());
     }
     table->end();
+}
+
+std::vector<std::string> appended_names(const Layout& layout, const WriteOptions& options) {
+    std::vector<std::string> names;
+    const auto taken = [&](const std::string& name) {
+        return std::ranges::any_of(layout.columns, [&](const Column& column) { return column.name == name; });
+    };
+    for (const JointColumns& joint : layout.all_chosen()) {
+        const std::string wanted =
+            (layout.joints.size() < 2 ? "" : joint.joint + "_") + std::string(options.append_name);
+        const std::string& torque = layout.columns[*joint.torque].name;
+        names.push_back(appended_name(wanted, torque));
+        for (int count = 2; taken(names.back()); ++count)
+            names.back() = appended_name(fmt::format("{}_{}", wanted, count), torque);
+    }
+    return names;
 }
 
 }  // namespace ripplenotch

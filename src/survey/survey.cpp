@@ -85,9 +85,9 @@ class PassingRows {
 class PassingMeans {
   public:
     /// Of as few rows as `max_means` allow.
-    PassingMeans(const LogFacts& facts, std::size_t max_means)
-        : in_mean_((facts.rows + max_means - 1) / max_means) {
-        means_.sample_rate = Hertz(facts.sample_rate.value() / static_cast<double>(in_mean_));
+    PassingMeans(std::size_t rows, Hertz sample_rate, std::size_t max_means)
+        : in_mean_((rows + max_means - 1) / max_means) {
+        means_.sample_rate = Hertz(sample_rate.value() / static_cast<double>(in_mean_));
     }
 
     void add(const TraceView& rows) {
@@ -167,17 +167,15 @@ Surveyed survey_long(const std::shared_ptr<const Spool>& spool, const ReadOption
     LogPasses passes(spool, options);
     Surveyed found;
     passes.first([](const TraceView&) {});
-    PassingRows rows(passes.facts().rows, passes.facts().sample_rate);
-    PassingMeans means(passes.facts(), most_rows);
+    const std::size_t count = passes.facts().rows;
+    const Hertz sample_rate = passes.log().trace.sample_rate;
+    PassingRows rows(count, sample_rate);
+    PassingMeans means(count, sample_rate, most_rows);
     passes.second([&](const TraceView& part) {
         rows.add(part);
         means.add(part);
     });
-    found.log.layout = passes.layout();
-    found.log.recording = passes.recording();
-    found.log.held_bad_values = passes.facts().held_bad_values;
-    found.log.clock_factor = passes.facts().clock_factor;
-    found.log.position_range_deg = passes.facts().position_range_deg;
+    found.log = passes.log();
     rows.describe(found.info);
     Log thinned;
     thinned.trace = means.take();

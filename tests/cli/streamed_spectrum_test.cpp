@@ -172,13 +172,13 @@ void check_same(const std::string& path, const ReadOptions& options, double segm
     int told = 0;
     const LogSpectrum streamed = streamed_spectrum(log, spectrum, [&] {
         ++told;
-        CHECK(log.layout().warnings == whole.layout.warnings);
-        CHECK(log.layout().options == whole.layout.options);
-        CHECK(log.recording().warnings == whole.recording.warnings);
+        CHECK(log.log().layout.warnings == whole.layout.warnings);
+        CHECK(log.log().layout.options == whole.layout.options);
+        CHECK(log.log().recording.warnings == whole.recording.warnings);
     });
     CHECK(told == 1);
     CHECK(log.facts().rows == whole.trace.size());
-    CHECK(same(log.facts().sample_rate.value(), whole.trace.sample_rate.value()));
+    CHECK(same(log.log().trace.sample_rate.value(), whole.trace.sample_rate.value()));
     const Stretch stretch = whole_log(whole.trace.view());
     CHECK(streamed.stretch.count == stretch.count);
     CHECK(same(streamed.stretch.duration.value(), stretch.duration.value()));

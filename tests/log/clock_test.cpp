@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "log/clock/choose_time.hpp"
 #include "log/clock/clock_check.hpp"
 #include "log/clock/stamp.hpp"
 #include "log_support.hpp"

@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "log/text/own_clocks.hpp"
 #include "log/text/quick_rows.hpp"
 #include "log_support.hpp"
 #include "ripplenotch/core/error.hpp"

@@ -184,7 +184,7 @@ TEST_CASE("of a long log all joints are looked at in the same pieces as one by o
     std::ofstream(path.string()) << rows();
     ReadOptions options;
     options.torque_of_each = false;
-    const auto all = read_joints_at_once_in_part(path.string(), options, 480);
+    const auto all = read_joints_at_once(path.string(), options, 480);
     REQUIRE(all.size() == 3);
     for (const Log& joint : all) {
         REQUIRE(joint.recording.looked_at);
@@ -204,7 +204,7 @@ TEST_CASE("of a long log all joints are looked at in the same pieces as one by o
         CHECK(joint.recording.angle.verdict == one.recording.angle.verdict);
     }
     CHECK_FALSE(all[2].layout.chosen.torque);
-    const auto held = read_joints_at_once_in_part(path.string(), options, 3000);
+    const auto held = read_joints_at_once(path.string(), options, 3000);
     CHECK(held[0].trace.size() == 3000);
     CHECK_FALSE(held[0].recording.looked_at);
 }

@@ -18,7 +18,7 @@ namespace ripplenotch {
 // The rate of times that run at one rate.
 
 /// A gap is a step of more than so many usual ones.
-inline constexpr double default_gap_steps = 10.0;
+inline constexpr double gap_steps = 10.0;
 
 /// A controller's rate when the measured rate, or its period, is within 0.1 % of a number with two
 /// significant digits: that number, so that two logs of one controller get the same coefficients. 1000.3 Hz
@@ -30,8 +30,7 @@ struct RateEstimate {
     Hertz nominal, mean;
     double step_s = 0.0;  ///< median of the steps that advance; 0 when none does
 };
-[[nodiscard]] RateEstimate estimate_rate(std::span<const double> time_s,
-                                         double gap_steps = default_gap_steps);
+[[nodiscard]] RateEstimate estimate_rate(std::span<const double> time_s);
 
 /// Filters are designed before the log's end is known, so the clock is judged by so many first rows.
 inline constexpr std::size_t clock_rows = 16384;
@@ -86,8 +85,7 @@ class Clock {
   public:
     /// `opening_s`: the first rows' times; nan where the log has none. Of an opening in which the rate
     /// changes, the longest part at one rate tells the nominal one.
-    Clock(std::string source, std::span<const double> opening_s, std::optional<Hertz> stated,
-          double gap_steps = default_gap_steps);
+    Clock(std::string source, std::span<const double> opening_s, std::optional<Hertz> stated);
 
     /// The next times, from the first row on, and how they belong together; valid until the next call.
     /// Throws DataError when time runs backward.
@@ -109,7 +107,7 @@ class Clock {
         std::vector<double> time_s;
     };
 
-    Clock(std::string source, double gap_steps, Rate rate, Hertz nominal);
+    Clock(std::string source, Rate rate, Hertz nominal);
     void open(std::span<const double> opening_s);
     [[nodiscard]] std::string refusal(std::size_t rows) const;
     void run_at(Rate rate);
@@ -130,7 +128,6 @@ class Clock {
     void change_rate();
 
     std::string source_;
-    double gap_steps_;
     bool timed_ = false, advances_ = false;
     double rows_a_time_ = 0.0;   ///< more than 1 where times repeat
     double rows_a_burst_ = 0.0;  ///< 0 where rows do not come in bursts

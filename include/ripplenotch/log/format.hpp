@@ -45,10 +45,6 @@ struct RowBlock {
                 values->clear();
             for (auto* places : {&joint.torque_begin, &joint.torque_end}) places->clear();
         }
-        forget_verdict();
-    }
-    /// What was found out about the rows.
-    void forget_verdict() {
         held_bad_values = parsed_bytes = 0;
         failure = nullptr;
     }

@@ -10,6 +10,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "ripplenotch/core/quantity.hpp"
@@ -166,6 +167,14 @@ struct ContentEntry {
 struct JointColumns {
     std::string joint;
     std::optional<std::size_t> time, velocity, torque, position;
+    /// Of a role but Role::other.
+    [[nodiscard]] std::optional<std::size_t>& of(Role role) {
+        return role == Role::time       ? time
+               : role == Role::velocity ? velocity
+               : role == Role::torque   ? torque
+                                        : position;
+    }
+    [[nodiscard]] std::optional<std::size_t> of(Role role) const { return JointColumns(*this).of(role); }
 };
 
 /// A joint that was asked for and is not read.
@@ -208,6 +217,24 @@ struct Layout {
     std::shared_ptr<const RowsOutside>
         outside;               ///< where a range was asked for; counted while the log is read
     std::vector<Layout> each;  ///< with ReadOptions::each_joint: of each joint alone, as all_chosen()
+
+    /// The columns of the time and of all joints that are read.
+    [[nodiscard]] std::vector<std::size_t> columns_read() const {
+        std::vector<std::size_t> found;
+        for (const JointColumns& joint : all_chosen())
+            for (const Role role : {Role::time, Role::velocity, Role::torque, Role::position})
+                if (const auto c = joint.of(role); c && (role != Role::time || found.empty()))
+                    found.push_back(*c);
+        return found;
+    }
+
+    void warn(std::string_view about, std::string text, bool of_one_joint = false) {
+        warnings.push_back({about, std::move(text), of_one_joint});
+    }
+    void infer(std::string about, std::string assumed, std::string reason, std::string settle_with) {
+        inferences.push_back(
+            {std::move(about), std::move(assumed), std::move(reason), std::move(settle_with), {}});
+    }
 
     /// Does so with this one and with those of each joint.
     template <class Change>

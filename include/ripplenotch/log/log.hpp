@@ -19,20 +19,28 @@
 
 namespace ripplenotch {
 
+/// A log of one joint.
+struct Log {
+    Layout layout;
+    Trace trace;  ///< sample_rate is recording.clock.mean_rate; rows at another rate are left out
+    Recording recording;
+    std::size_t held_bad_values = 0;
+    /// Change of position divided by integrated velocity, by robust regression over the log; 1 when the
+    /// clock, the velocity unit and the position unit agree. Empty without position or without motion.
+    std::optional<double> clock_factor;
+    /// Least and greatest of the position column, made continuous, whether or not the trace has it.
+    std::optional<std::pair<double, double>> position_range_deg;
+};
+
 // A log of any length, gone through several times instead of held: what read_log finds out about a log in
 // memory, found out in passing.
 
 /// What is known of the joint that is read after the first pass.
 struct LogFacts {
     std::size_t rows = 0;  ///< without those left out
-    Hertz sample_rate;     ///< ClockFacts::mean_rate
     double first_s = 0.0, last_s = 0.0;
     double mean_s = 0.0;             ///< of the times
     double mean_position_deg = 0.0;  ///< of the continuous position; 0 where there is none
-    std::size_t held_bad_values = 0;
-    // Known after the second pass, as in Log:
-    std::optional<double> clock_factor;
-    std::optional<std::pair<double, double>> position_range_deg;
 };
 
 class LogPasses {
@@ -59,8 +67,9 @@ class LogPasses {
     /// Once, second: rows with a sample rate, and a continuous position if it is the joint's. Then all is
     /// known that read_log would say.
     void second(const Use& use);
-    [[nodiscard]] const Layout& layout() const;        ///< as Log::layout
-    [[nodiscard]] const Recording& recording() const;  ///< as Log::recording
+    /// What read_log gives, without rows: after the first pass all but clock_factor, position_range_deg and
+    /// the warning about the motion.
+    [[nodiscard]] const Log& log() const;
 
   private:
     class Work;
@@ -78,19 +87,6 @@ class LogPasses {
 [[nodiscard]] std::unique_ptr<LogWriter> rewrite_log(const std::string& path, const LogReader& reader,
                                                      const LogFormat& format, const WriteOptions& options,
                                                      ByteSink::Overwrite overwrite);
-
-/// A log of one joint.
-struct Log {
-    Layout layout;
-    Trace trace;  ///< sample_rate is recording.clock.mean_rate; rows at another rate are left out
-    Recording recording;
-    std::size_t held_bad_values = 0;
-    /// Change of position divided by integrated velocity, by robust regression over the log; 1 when the
-    /// clock, the velocity unit and the position unit agree. Empty without position or without motion.
-    std::optional<double> clock_factor;
-    /// Least and greatest of the position column, made continuous, whether or not the trace has it.
-    std::optional<std::pair<double, double>> position_range_deg;
-};
 
 /// Rows that commands hold which look at pieces of a log anyway.
 inline constexpr std::size_t most_rows_held = 320'000;
@@ -126,15 +122,11 @@ struct AskedJoints {
 [[nodiscard]] Log read_log(std::unique_ptr<ByteSource> source, const ReadOptions& options);
 [[nodiscard]] Log read_log(LogReader& reader, const ReadOptions& options);
 
-/// The same for all joints that have a velocity or position and a torque (options.torque_of_each), in one
-/// pass: their rows are the same. The torque of a joint without one is not a number. What is told of the
-/// layout is told of all of them. Throws what open_log and read_log throw.
-[[nodiscard]] std::vector<Log> read_joints_at_once(const std::string& path, const ReadOptions& options);
-
-/// The same in the pieces of read_log_in_part where there are more than `most_rows`: the log is gone through
-/// twice for each joint then. O(joints most_rows) memory.
-[[nodiscard]] std::vector<Log> read_joints_at_once_in_part(const std::string& path,
-                                                           const ReadOptions& options,
-                                                           std::size_t most_rows = most_rows_held);
+/// All joints that have a velocity or position and a torque (options.torque_of_each), in one pass: their rows
+/// are the same. The torque of a joint without one is not a number. What is told of the layout is told of all
+/// of them. In the pieces of read_log_in_part where there are more than `most_rows`: the log is gone through
+/// twice for each joint then. O(joints most_rows) memory. Throws what open_log and read_log throw.
+[[nodiscard]] std::vector<Log> read_joints_at_once(const std::string& path, const ReadOptions& options,
+                                                   std::size_t most_rows = all_rows);
 
 }  // namespace ripplenotch

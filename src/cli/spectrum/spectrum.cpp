@@ -140,9 +140,10 @@ LogSpectrum streamed_spectrum(LogPasses& log, const SpectrumOptions& options,
                               const std::function<void()>& tell) {
     log.first([](const TraceView&) {});
     const LogFacts& facts = log.facts();
-    const std::size_t length = piece_length(facts.rows, facts.sample_rate, options);
+    const Hertz sample_rate = log.log().trace.sample_rate;
+    const std::size_t length = piece_length(facts.rows, sample_rate, options);
     std::optional<SpectrumStream> stream;
-    if (length >= fewest_spectrum_samples) stream.emplace(length, facts.sample_rate);
+    if (length >= fewest_spectrum_samples) stream.emplace(length, sample_rate);
     StretchMeter speed(facts.rows, Seconds(facts.mean_s), Degrees(facts.mean_position_deg));
     log.second([&](const TraceView& rows) {
         speed.add(rows);
@@ -150,7 +151,7 @@ LogSpectrum streamed_spectrum(LogPasses& log, const SpectrumOptions& options,
     });
     tell();
     require_piece_length(length, options);
-    return {speed.stretch(facts.sample_rate), stream->spectrum(options.false_alarm)};
+    return {speed.stretch(sample_rate), stream->spectrum(options.false_alarm)};
 }
 
 namespace {
@@ -305,12 +306,12 @@ Result piecewise_result(const SpectrumRequest& request, Provenance& provenance) 
     reading.needs_velocity = false;
     LogPasses log(request.path, reading);
     LogSpectrum spectrum = streamed_spectrum(log, {request.segment, request.false_alarm}, [&] {
-        say_layout(request.common, log.layout());
-        say_warnings(request.common, log.recording().warnings);
+        say_layout(request.common, log.log().layout);
+        say_warnings(request.common, log.log().recording.warnings);
     });
     provenance.inputs.push_back(input_record(request.path));
-    provenance.recordings.push_back({log.recording()});
-    return frequency_result(request, std::move(spectrum), log.layout().chosen.joint, provenance);
+    provenance.recordings.push_back({log.log().recording});
+    return frequency_result(request, std::move(spectrum), log.log().layout.chosen.joint, provenance);
 }
 
 Result whole_result(const SpectrumRequest& request, Provenance& provenance) {

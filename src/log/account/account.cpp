@@ -18,18 +18,13 @@ double Unwrapper::next(double position_deg) {
     return *before_;
 }
 
-void WrapWatch::Continuous::add(double angle) {
-    sum += angle;
-    largest = std::max(largest, std::abs(angle));
-}
-
 // A wrapped angle never exceeds its turn, and steps over the seam in one row: other steps are much smaller.
 void WrapWatch::look_at(double step, Turn& turn) const {
     const double magnitude = std::abs(step);
     if (magnitude > 0.5 * turn.period) {
         if (turn.unwrapper) return;
         turn.unwrapper.emplace(turn.period, before_);
-        turn.made = raw_;
+        turn.sum = sum_;
     } else if (magnitude >= 0.25 * turn.period) {
         turn.ruled_out = true;
     }
@@ -48,10 +43,10 @@ void WrapWatch::follow(std::span<const double> position_deg) {
                 look_at(step, turn);
                 if (!turn.unwrapper) continue;
                 jumped_ = true;
-                turn.made.add(turn.unwrapper->next(angle));
+                turn.sum += turn.unwrapper->next(angle);
             }
         }
-        raw_.add(angle);
+        sum_ += angle;
         before_ = angle;
     }
 }
@@ -112,19 +107,9 @@ bool has_values(const std::vector<double>& values) {
 }  // namespace
 
 AngleFacts::Source AngleFacts::source() const {
-    switch (verdict) {
-        case Verdict::no_velocity:
-        case Verdict::too_little_motion:
-        case Verdict::agrees:
-        case Verdict::reversed:
-        case Verdict::stands:
-            return Source::position;
-        case Verdict::no_position:
-        case Verdict::scaled:
-        case Verdict::unrelated:
-            break;
-    }
-    return Source::velocity;
+    const bool none =
+        verdict == Verdict::no_position || verdict == Verdict::scaled || verdict == Verdict::unrelated;
+    return none ? Source::velocity : Source::position;
 }
 
 std::string_view source_name(AngleFacts::Source source) {
@@ -132,26 +117,18 @@ std::string_view source_name(AngleFacts::Source source) {
 }
 
 std::string AngleFacts::reason() const {
-    switch (verdict) {
-        case Verdict::no_position:
-            return "the log has no position of this joint";
-        case Verdict::no_velocity:
-            return "no velocity is logged to check the position against";
-        case Verdict::too_little_motion:
-            return "the joint moves too little to check the position against the velocity";
-        case Verdict::agrees:
-            return "the position agrees with the velocity";
-        case Verdict::reversed:
-            return "velocity and position have opposite signs: the sign of the position is inverted";
-        case Verdict::stands:
-            return "the position is constant: the joint is at rest, whatever its velocity says; a position "
-                   "that was not recorded is left out with --columns";
-        case Verdict::scaled:
-            return factor_in_words(*factor);
-        case Verdict::unrelated:
-            break;
-    }
-    return "the position does not agree with the velocity: it may be another joint's";
+    constexpr std::array<std::string_view, 8> reasons = {
+        "the log has no position of this joint",
+        "no velocity is logged to check the position against",
+        "the joint moves too little to check the position against the velocity",
+        "the position agrees with the velocity",
+        "velocity and position have opposite signs: the sign of the position is inverted",
+        "the position is constant: the joint is at rest, whatever its velocity says; a position that was not "
+        "recorded is left out with --columns",
+        "",
+        "the position does not agree with the velocity: it may be another joint's"};
+    return verdict == Verdict::scaled ? factor_in_words(*factor)
+                                      : std::string(reasons[static_cast<std::size_t>(verdict)]);
 }
 
 std::string AngleFacts::warning() const {
@@ -304,8 +281,8 @@ TraceView view_of(const RowBlock& block, std::size_t joint, std::size_t first, s
     return {{}, part(block.time_s), part(rows.velocity_deg_s), part(rows.torque_nm), part(rows.position_deg)};
 }
 
-Account::Account(const Layout& layout, const Opening& opening, double gap_steps)
-    : clock_(layout.source, opening.time_s, layout.stated_rate, gap_steps) {
+Account::Account(const Layout& layout, const Opening& opening)
+    : clock_(layout.source, opening.time_s, layout.stated_rate) {
     const std::size_t joints = opening.blocks.empty() ? 1 : opening.blocks.front().joints.size();
     for (std::size_t j = 0; j < joints; ++j) {
         const JointRows* const rows = opening.blocks.empty() ? nullptr : &opening.blocks.front().joints[j];

@@ -94,29 +94,23 @@ class WrapWatch {
     /// Empty when nothing jumps, or when jumps are no full turn.
     [[nodiscard]] std::optional<double> period() const;
     /// The sum of the angles made continuous.
-    [[nodiscard]] double sum() const { return made().sum; }
-    [[nodiscard]] double largest() const { return made().largest; }  ///< magnitude
+    [[nodiscard]] double sum() const { return found() != nullptr ? found()->sum : sum_; }
 
   private:
-    struct Continuous {
-        double sum = 0.0, largest = 0.0;
-        void add(double angle);
-    };
     struct Turn {
         double period;
         bool ruled_out = false;
         std::optional<Unwrapper> unwrapper = std::nullopt;  ///< from the first jump on
-        Continuous made = {};
+        double sum = 0.0;                                   ///< of the angles made continuous
     };
     void look_at(double step, Turn& turn) const;
     [[nodiscard]] const Turn* found() const;
-    [[nodiscard]] const Continuous& made() const { return found() != nullptr ? found()->made : raw_; }
 
     std::array<Turn, 3> turns_ = {{{360.0}, {2.0 * std::numbers::pi}, {360.0 * degrees_per_radian}}};
     std::size_t count_ = 0;
     double low_ = std::numeric_limits<double>::infinity(), high_ = -low_, before_ = 0.0;
     bool jumped_ = false;  ///< some turn has an unwrapper
-    Continuous raw_;
+    double sum_ = 0.0;
 };
 
 /// A sentence for the warnings of a log.
@@ -131,7 +125,7 @@ class WrapWatch {
 class Account {
   public:
     /// Judges the opening.
-    Account(const Layout& layout, const Opening& opening, double gap_steps = default_gap_steps);
+    Account(const Layout& layout, const Opening& opening);
 
     /// The next rows, from the first of the log on, as the clock parts them; valid until the next call.
     /// Throws DataError when time runs backward.

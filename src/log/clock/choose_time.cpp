@@ -2,8 +2,6 @@
 // Which column is the clock. A name is not enough: a column called "time" that counts rows is a counter, and
 // a log read by it would be wrong without anybody noticing.
 
-#include "log/clock/choose_time.hpp"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -16,6 +14,7 @@
 #include <vector>
 
 #include "core/text/lower_case.hpp"
+#include "log/clock/stamp.hpp"
 #include "log/columns/column_name.hpp"
 #include "log/columns/decide_layout.hpp"
 #include "log/columns/units.hpp"
@@ -237,11 +236,9 @@ bool holds_steps(const ColumnFacts& facts, std::size_t column) {
 void take_steps(const ColumnFacts& facts, std::size_t column, Layout& layout) {
     layout.chosen.time = column;
     layout.time_is_steps = true;
-    layout.inferences.push_back({"time",
-                                 fmt::format("the sum of the steps in {}", column_label(facts.names, column)),
-                                 "its name and its values are those of steps from row to row",
-                                 "--sample-rate, or --columns time=NAME",
-                                 {}});
+    layout.infer("time", fmt::format("the sum of the steps in {}", column_label(facts.names, column)),
+                 "its name and its values are those of steps from row to row",
+                 "--sample-rate, or --columns time=NAME");
 }
 
 /// Columns that could be the clock: by name, and by what their values do.
@@ -294,10 +291,10 @@ void refuse_clocks(const ColumnFacts& facts, const Clocks& clocks, const ReadOpt
     if (clocks.broken.size() > 1)
         why = fmt::format("neither of {} runs forward in numbers", labels(facts, clocks.broken));
     if (!options.needs_torque) {
-        layout.warnings.push_back(
-            {"no sample rate",
-             fmt::format("{}: no sample rate; use --sample-rate 1kHz, --unit time=ms, or --columns time=NAME",
-                         why)});
+        layout.warn(
+            "no sample rate",
+            fmt::format("{}: no sample rate; use --sample-rate 1kHz, --unit time=ms, or --columns time=NAME",
+                        why));
         return;
     }
     raise<DataError>("{}: {}, expected a time column; use --sample-rate 1kHz{}{}", layout.source, why,
@@ -310,11 +307,9 @@ bool use_step_of_head(const ColumnFacts& facts, const Clocks& clocks, Layout& la
     const auto is_empty = [&](std::size_t column) { return finite_values(facts, column).empty(); };
     if (!facts.row_step_s || !std::ranges::all_of(clocks.broken, is_empty)) return false;
     layout.stated_rate = Hertz(1.0 / *facts.row_step_s);
-    layout.inferences.push_back({"time",
-                                 fmt::format("{} s a row", *facts.row_step_s),
-                                 "no column is a time, and the head of the file states " + facts.row_step_key,
-                                 fmt::format("--sample-rate {}Hz", shortest(layout.stated_rate->value())),
-                                 {}});
+    layout.infer("time", fmt::format("{} s a row", *facts.row_step_s),
+                 "no column is a time, and the head of the file states " + facts.row_step_key,
+                 fmt::format("--sample-rate {}Hz", shortest(layout.stated_rate->value())));
     return true;
 }
 
@@ -331,17 +326,12 @@ void settle_clock(const ColumnFacts& facts, bool unit_is_stated, Layout& layout)
     set_origin(facts, opening, layout);
     const std::string label = column_label(facts.names, *layout.chosen.time);
     if (layout.time_as_text && layout.stamp_form.either_order && layout.stamp_form.other_s != 0)
-        layout.inferences.push_back({fmt::format("dates in {}", label),
-                                     layout.stamp_form.day_first ? "day/month/year" : "month/day/year",
-                                     "no field says which; only the day depends on it",
-                                     "dates as 2024-05-01",
-                                     {}});
+        layout.infer(fmt::format("dates in {}", label),
+                     layout.stamp_form.day_first ? "day/month/year" : "month/day/year",
+                     "no field says which; only the day depends on it", "dates as 2024-05-01");
     if (layout.time_as_text && layout.stamp_form.milliseconds)
-        layout.inferences.push_back({fmt::format("digits behind the seconds in {}", label),
-                                     "milliseconds",
-                                     "as decimals they would run backward",
-                                     "--sample-rate",
-                                     {}});
+        layout.infer(fmt::format("digits behind the seconds in {}", label), "milliseconds",
+                     "as decimals they would run backward", "--sample-rate");
     if (layout.time_as_text || layout.time_fraction) {
         column.unit = "s";
         column.factor = 1.0;
@@ -387,7 +377,6 @@ void choose_time(const ColumnFacts& facts, const std::vector<ColumnName>& names,
     if (layout.chosen.time && !pair && holds_steps(facts, *layout.chosen.time))
         take_steps(facts, *layout.chosen.time, layout);
     if (layout.chosen.time) return;
-    std::vector<LogWarning>& warnings = layout.warnings;
     const Clocks found = find_clocks(facts, names, forced, options);
     const auto& [clocks, texts, counters, broken] = found;
     if (clocks.size() > 1) {
@@ -399,11 +388,11 @@ void choose_time(const ColumnFacts& facts, const std::vector<ColumnName>& names,
     if (clocks.size() == 1) {
         layout.chosen.time = clocks[0];
         if (!counters.empty()) {
-            warnings.push_back(
-                {"row counter",
-                 fmt::format(
-                     "{} only counts rows; the time is taken from {}; --columns time=NAME decides otherwise",
-                     labels(facts, counters), column_label(facts.names, clocks[0]))});
+            layout.warn(
+                "row counter",
+                fmt::format(
+                    "{} only counts rows; the time is taken from {}; --columns time=NAME decides otherwise",
+                    labels(facts, counters), column_label(facts.names, clocks[0])));
         }
         // A date written as text beside a numeric clock is common; a numeric time that stands still or jumps
         // back means that the columns are not what their names say.
@@ -415,11 +404,11 @@ void choose_time(const ColumnFacts& facts, const std::vector<ColumnName>& names,
                     layout.source, column_label(facts.names, column), column_label(facts.names, clocks[0]),
                     facts.names[clocks[0]]);
             }
-            warnings.push_back(
-                {"time as text",
-                 fmt::format("{} is not a number of seconds; the time is taken from {}; --columns time=NAME "
-                             "decides otherwise",
-                             column_label(facts.names, column), column_label(facts.names, clocks[0]))});
+            layout.warn(
+                "time as text",
+                fmt::format("{} is not a number of seconds; the time is taken from {}; --columns time=NAME "
+                            "decides otherwise",
+                            column_label(facts.names, column), column_label(facts.names, clocks[0])));
         }
         return;
     }

@@ -125,9 +125,8 @@ void Clock::change_rate() {
     odd_windows_ = 0;
 }
 
-Clock::Clock(std::string source, std::span<const double> opening_s, std::optional<Hertz> stated,
-             double gap_steps)
-    : source_(std::move(source)), gap_steps_(gap_steps) {
+Clock::Clock(std::string source, std::span<const double> opening_s, std::optional<Hertz> stated)
+    : source_(std::move(source)) {
     if (stated) {
         facts_.stated = true;
         facts_.nominal_rate = facts_.mean_rate = *stated;
@@ -140,15 +139,15 @@ Clock::Clock(std::string source, std::span<const double> opening_s, std::optiona
     facts_.refusal = refusal(opening_s.size());
 }
 
-Clock::Clock(std::string source, double gap_steps, Rate rate, Hertz nominal)
-    : source_(std::move(source)), gap_steps_(gap_steps), timed_(true), advances_(true) {
+Clock::Clock(std::string source, Rate rate, Hertz nominal)
+    : source_(std::move(source)), timed_(true), advances_(true) {
     facts_.nominal_rate = nominal;
     run_at(rate);
 }
 
 void Clock::run_at(Rate rate) {
     now_ = rate;
-    limit_s_ = gap_steps_ * rate.step_s;
+    limit_s_ = gap_steps * rate.step_s;
 }
 
 // How the opening begins tells where its rate changes; its longest part at one rate is the nominal one.
@@ -156,15 +155,15 @@ void Clock::open(std::span<const double> opening_s) {
     const auto rate_of = [](const RateEstimate& estimate) {
         return Rate{estimate.step_s, 1.0 / estimate.mean.value(), estimate.nominal};
     };
-    RateEstimate first = estimate_rate(opening_s.first(std::min(scouted_rows, opening_s.size())), gap_steps_);
-    if (!(first.step_s > 0.0)) first = estimate_rate(opening_s, gap_steps_);
+    RateEstimate first = estimate_rate(opening_s.first(std::min(scouted_rows, opening_s.size())));
+    if (!(first.step_s > 0.0)) first = estimate_rate(opening_s);
     advances_ = first.step_s > 0.0;
     if (!advances_) return;
-    Clock scout(source_, gap_steps_, rate_of(first), first.nominal);
+    Clock scout(source_, rate_of(first), first.nominal);
     scout.add(opening_s);
     std::size_t begin = 0, most = 0;
     const auto end_part = [&](std::size_t end) {
-        const RateEstimate part = estimate_rate(opening_s.subspan(begin, end - begin), gap_steps_);
+        const RateEstimate part = estimate_rate(opening_s.subspan(begin, end - begin));
         if (begin == 0) first = part;
         if (end - begin > most) {
             most = end - begin;

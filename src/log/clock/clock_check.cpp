@@ -284,7 +284,7 @@ Hertz nominal_rate(Hertz measured) {
     return measured;
 }
 
-RateEstimate estimate_rate(std::span<const double> time_s, double gap_steps) {
+RateEstimate estimate_rate(std::span<const double> time_s) {
     std::vector<double> advancing;
     for (std::size_t k = 1; k < time_s.size(); ++k) {
         if (time_s[k] > time_s[k - 1]) advancing.push_back(time_s[k] - time_s[k - 1]);

@@ -6,7 +6,6 @@
 #include <charconv>
 #include <cmath>
 
-#include "log/clock/choose_time.hpp"
 #include "log/columns/units.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"

@@ -359,15 +359,10 @@ bool follows(std::string_view words, std::string_view pattern) {
     return true;
 }
 
-const std::vector<Convention>& all_conventions() {
-    static const std::vector<Convention> table = conventions();
-    return table;
-}
-
 void follow_conventions(const std::vector<std::string>& names, std::vector<ColumnName>& columns) {
     std::vector<std::string> words;
     for (const std::string& name : names) words.push_back(in_words(name));
-    for (const Convention& known : all_conventions()) {
+    for (const Convention& known : conventions()) {
         const auto fits = [&](const std::string& of_column) {
             bool any = false;
             for_each_word(known.names,
@@ -429,7 +424,7 @@ std::vector<JointGroup> collect_groups(const KnownColumns& known, bool merge) {
                 places[key] = groups.size();
                 groups.push_back({key, merge ? "" : name.joint, {}});
             }
-            groups[places[key]].candidates[name.role].push_back(c);
+            groups[places[key]].of(name.role).push_back(c);
         }
     }
     return groups;
@@ -490,8 +485,8 @@ void share_torques(std::vector<JointGroup>& groups) {
             if (const auto named = moving.find(joint_key(group.key.substr(cut + 1))); named != moving.end())
                 owner = named;
         if (owner == moving.end()) return false;
-        std::vector<std::size_t>& torques = owner->second->candidates[Role::torque];
-        const auto& more = group.candidates.at(Role::torque);
+        std::vector<std::size_t>& torques = owner->second->of(Role::torque);
+        const std::vector<std::size_t>& more = group.of(Role::torque);
         torques.insert(torques.end(), more.begin(), more.end());
         return true;
     };
@@ -588,13 +583,16 @@ ColumnName read_column_name(std::string_view name, bool linear_axis) {
     return column;
 }
 
-std::vector<Convention> conventions() {
-    std::vector<Convention> found;
-    for (const NameLine& line : name_lines)
-        if (!line.unit.empty())
-            found.push_back({line.family, line.beside, line.names, role_of(line.meaning), line.unit,
-                             line.side, line.source});
-    return found;
+const std::vector<Convention>& conventions() {
+    static const auto table = [] {
+        std::vector<Convention> found;
+        for (const NameLine& line : name_lines)
+            if (!line.unit.empty())
+                found.push_back({line.family, line.beside, line.names, role_of(line.meaning), line.unit,
+                                 line.side, line.source});
+        return found;
+    }();
+    return table;
 }
 
 std::vector<ColumnName> read_column_names(const std::vector<std::string>& names,
@@ -669,10 +667,9 @@ std::string mixed_numberings(const KnownColumns& known) {
         const std::string key = joint_key(name.joint);
         const auto number = number_of(key);
         if (!number) continue;
-        const auto [found, first] =
-            numberings[key.substr(0, key.find_last_not_of("0123456789") + 1)].try_emplace(
-                name.role, Numbering{*number, *number, c, 0});
-        Numbering& of_role = found->second;
+        const std::string letters = key.substr(0, key.find_last_not_of("0123456789") + 1);
+        Numbering& of_role =
+            numberings[letters].try_emplace(name.role, Numbering{*number, *number, c, 0}).first->second;
         if (*number < of_role.lowest) of_role.lowest = *number, of_role.first_column = c;
         of_role.highest = std::max(of_role.highest, *number);
         ++of_role.columns;
@@ -734,15 +731,14 @@ std::vector<JointGroup> group_joints(const KnownColumns& known, bool joint_asked
 std::optional<std::size_t> choose_column(const KnownColumns& known, const JointGroup& group, Role role,
                                          std::vector<LogWarning>& warnings) {
     if (const auto forced = known.forced.column_of(role)) return forced;
-    const auto found = group.candidates.find(role);
-    if (found == group.candidates.end()) return std::nullopt;
+    const std::vector<std::size_t>& candidates = group.of(role);
+    if (candidates.empty()) return std::nullopt;
     const auto cost = [&known](std::size_t c) {
         return known.names[c].rank + (known.names[c].reference ? 100 : 0);
     };
-    int lowest = 1000;
-    for (const std::size_t c : found->second) lowest = std::min(lowest, cost(c));
+    const int lowest = cost(std::ranges::min(candidates, {}, cost));
     std::vector<std::size_t> best, still;
-    for (const std::size_t c : found->second) {
+    for (const std::size_t c : candidates) {
         if (cost(c) != lowest) continue;
         const bool moves = known.facts.sample.empty() || varies(known.facts.sample[c]);
         (moves ? best : still).push_back(c);
@@ -750,7 +746,7 @@ std::optional<std::size_t> choose_column(const KnownColumns& known, const JointG
     if (best.empty()) best.swap(still);
     // A current is a torque only by a constant that the log does not hold.
     if (best.size() == 1 && known.names[best.front()].current)
-        for (const std::size_t c : found->second)
+        for (const std::size_t c : candidates)
             if (!known.names[c].current && !known.names[c].reference) best.push_back(c);
     if (best.size() > 1) refuse_tie(known, role, best);
     if (!still.empty()) {

@@ -3,7 +3,6 @@
 // What a column's name says: which quantity, how surely, in which unit, of which joint.
 
 #include <array>
-#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -66,8 +65,14 @@ inline constexpr std::array motion_roles = {Role::velocity, Role::torque, Role::
 /// All columns that could be one joint's velocity, torque or position.
 struct JointGroup {
     std::string key, name;
-    std::map<Role, std::vector<std::size_t>> candidates;
-    [[nodiscard]] bool has(Role role) const { return candidates.count(role) > 0; }
+    std::array<std::vector<std::size_t>, 4> candidates = {};  ///< by role
+    [[nodiscard]] std::vector<std::size_t>& of(Role role) {
+        return candidates[static_cast<std::size_t>(role)];
+    }
+    [[nodiscard]] const std::vector<std::size_t>& of(Role role) const {
+        return candidates[static_cast<std::size_t>(role)];
+    }
+    [[nodiscard]] bool has(Role role) const { return !of(role).empty(); }
 };
 
 /// What is known of a file's columns.
@@ -103,6 +108,6 @@ struct Convention {
     std::string_view source;  ///< where it is written down
 };
 
-[[nodiscard]] std::vector<Convention> conventions();
+[[nodiscard]] const std::vector<Convention>& conventions();
 
 }  // namespace ripplenotch

@@ -25,6 +25,14 @@ std::string column_label(const std::vector<std::string>& names, std::size_t colu
     return fmt::format("'{}' (column {})", names[column], column + 1);
 }
 
+std::string asked_role(const ReadOptions& options, std::string_view path) {
+    for (const std::string& entry : options.columns) {
+        const std::size_t equals = entry.find('=');
+        if (equals != std::string::npos && entry.substr(equals + 1) == path) return entry.substr(0, equals);
+    }
+    return {};
+}
+
 namespace {
 
 std::optional<Role> role_of(std::string_view word) {
@@ -98,8 +106,7 @@ std::string what_is_missing(const JointGroup& joint) {
 }
 
 bool holds(const JointGroup& joint, Role role, std::size_t column) {
-    const auto found = joint.candidates.find(role);
-    return found != joint.candidates.end() && std::ranges::find(found->second, column) != found->second.end();
+    return std::ranges::count(joint.of(role), column) > 0;
 }
 
 std::string why_unused(const KnownColumns& known, std::size_t column, const std::vector<JointGroup>& joints,
@@ -123,7 +130,7 @@ std::string why_unused(const KnownColumns& known, std::size_t column, const std:
                                joint.name.empty() ? "a joint without name" : joint.name,
                                what_is_missing(joint));
     const bool rivalled = std::ranges::any_of(joints, [&](const JointGroup& joint) {
-        return holds(joint, name.role, column) && joint.candidates.at(name.role).size() > 1;
+        return holds(joint, name.role, column) && joint.of(name.role).size() > 1;
     });
     return rivalled ? fmt::format("another column is the {} by its name", role)
                     : fmt::format("a {} of no joint that is read", role);
@@ -201,8 +208,7 @@ class Decision {
         for (const Layout& one : std::span(each).subspan(1)) {
             all.others.push_back(one.chosen);
             all.velocity_from_position = all.velocity_from_position || one.velocity_from_position;
-            for (const auto& column : {one.chosen.velocity, one.chosen.torque, one.chosen.position})
-                if (column) all.columns[*column] = one.columns[*column];
+            for (const std::size_t column : one.columns_read()) all.columns[column] = one.columns[column];
         }
         all.each = std::move(each);
         return all;
@@ -233,7 +239,7 @@ class Decision {
         const std::string mixed = mixed_numberings(known());
         if (mixed.empty()) return;
         if (options_.needs_torque) raise<DataError>("{}: {}", source_, mixed);
-        layout_.warnings.push_back({"numbering of joints", mixed});
+        layout_.warn("numbering of joints", mixed);
     }
 
     // Joints without a torque or without a motion can be named, and are left out with the reason.
@@ -294,8 +300,8 @@ class Decision {
 
     // Of a joint that is read, only the columns that are.
     void choose(const JointGroup& group) {
-        for (const auto& [role, columns] : group.candidates) {
-            for (const std::size_t c : columns) {
+        for (const Role role : motion_roles) {
+            for (const std::size_t c : group.of(role)) {
                 layout_.columns[c] = named(layout_.columns[c].name);
                 stated_[c] = false;
             }
@@ -308,22 +314,18 @@ class Decision {
     // What letters were taken for, and what they were not taken for because they may mean something else.
     void state_symbols() {
         for (const JointColumns& joint : layout_.all_chosen()) {
-            for (const auto& [column, role] :
-                 {std::pair{joint.velocity, Role::velocity}, std::pair{joint.torque, Role::torque},
-                  std::pair{joint.position, Role::position}}) {
+            for (const Role role : motion_roles) {
+                const auto column = joint.of(role);
                 if (!column || names_[*column].symbol != role || forced_.roles[*column]) continue;
-                layout_.inferences.push_back({std::string(role_name(role)),
-                                              column_label(facts_.names, *column),
-                                              "a symbol of it, and no other column is one",
-                                              fmt::format("--columns {}=NAME", role_name(role)),
-                                              {}});
+                layout_.infer(std::string(role_name(role)), column_label(facts_.names, *column),
+                              "a symbol of it, and no other column is one",
+                              fmt::format("--columns {}=NAME", role_name(role)));
             }
         }
         for (const Role role : motion_roles) {
             const std::string perhaps = maybe(role);
             if (perhaps.empty() || forced_.column_of(role)) continue;
-            layout_.warnings.push_back(
-                {"symbols", fmt::format("{} is not read: {}", role_name(role), perhaps)});
+            layout_.warn("symbols", fmt::format("{} is not read: {}", role_name(role), perhaps));
         }
     }
 
@@ -348,12 +350,9 @@ class Decision {
         if (motor && !options_.gear_ratio)
             raise<UsageError>("--constant-speed of the motor needs --gear-ratio, for example 100");
         layout_.constant_speed = *options_.constant_speed / (motor ? *options_.gear_ratio : 1.0);
-        layout_.inferences.push_back(
-            {"velocity",
-             fmt::format("{} deg/s throughout", shortest(layout_.constant_speed->value())),
-             "no motion is logged, and --constant-speed states it",
-             "--columns velocity=NAME",
-             {}});
+        layout_.infer("velocity",
+                      fmt::format("{} deg/s throughout", shortest(layout_.constant_speed->value())),
+                      "no motion is logged, and --constant-speed states it", "--columns velocity=NAME");
     }
 
     // The slope of a position needs times.
@@ -368,11 +367,9 @@ class Decision {
     KnownColumns known() const { return {source_, facts_, forced_, names_}; }
 
     JointColumns columns_of(const JointGroup& group) {
-        const auto choose = [&](Role role) { return choose_column(known(), group, role, layout_.warnings); };
         JointColumns columns{group.name, layout_.chosen.time, {}, {}, {}};
-        columns.velocity = choose(Role::velocity);
-        columns.torque = choose(Role::torque);
-        columns.position = choose(Role::position);
+        for (const Role role : motion_roles)
+            columns.of(role) = choose_column(known(), group, role, layout_.warnings);
         return columns;
     }
 
@@ -429,17 +426,11 @@ class Decision {
     void give_roles(const JointGroup& group, const JointColumns* chosen) {
         for (const Role role : motion_roles) {
             if (chosen != nullptr) {
-                const auto column = role == Role::velocity ? chosen->velocity
-                                    : role == Role::torque ? chosen->torque
-                                                           : chosen->position;
-                if (column) give_role(*column, role, group.name);
+                if (const auto column = chosen->of(role)) give_role(*column, role, group.name);
                 continue;
             }
-            const auto found = group.candidates.find(role);
-            if (found == group.candidates.end()) continue;
-            for (const std::size_t c : found->second) {
+            for (const std::size_t c : group.of(role))
                 if (!names_[c].reference) give_role(c, role, group.name);
-            }
         }
     }
 
@@ -460,6 +451,25 @@ class Decision {
         }
     }
 
+    // The unit that --unit or --scale states; empty where neither does.
+    std::string unit_of_options(std::size_t c, Role role, const ColumnScale* scale) const {
+        const auto asked = asked_unit(options_, layout_.columns[c].name, role);
+        if (!asked && scale == nullptr) return "";
+        const auto usual = usual_unit(asked ? *asked : scale->unit, role);
+        const bool fits = usual && role_factor(role, *usual);
+        if (asked && !fits)
+            raise<UsageError>("--unit: '{}' is no unit of {}; write one of {}", *asked, role_name(role),
+                              unit_list(role));
+        if (asked && scale != nullptr)
+            raise<UsageError>("--scale and --unit both state the unit of {}; leave one out",
+                              column_label(facts_.names, c));
+        if (!fits || (!asked && role == Role::time && scale->offset != 0.0))
+            raise<UsageError>("--scale: '{}' is no {}; write its unit as one of {}{}", scale->text,
+                              role_name(role), unit_list(role),
+                              role == Role::time ? ", without an offset" : "");
+        return *usual;
+    }
+
     void give_role(std::size_t c, Role role, const std::string& joint) {
         Column& column = layout_.columns[c];
         column.role = role;
@@ -469,30 +479,12 @@ class Decision {
         const bool device = known != nullptr && is_device_unit(known->unit);
         if (written.empty() && device) written = known->unit;
         stated_[c] = !written.empty();
-        if (const auto asked = asked_unit(options_, column.name, role)) {
-            const auto usual = usual_unit(*asked, role);
-            if (!usual || !role_factor(role, *usual)) {
-                raise<UsageError>("--unit: '{}' is no unit of {}; write one of {}", *asked, role_name(role),
-                                  unit_list(role));
-            }
-            written = *usual;
-            stated_[c] = true;
-        }
         const ColumnScale* const scale = asked_scale(options_, column.name, role);
-        if (scale != nullptr) {
-            const auto usual = usual_unit(scale->unit, role);
-            if (asked_unit(options_, column.name, role))
-                raise<UsageError>("--scale and --unit both state the unit of {}; leave one out",
-                                  column_label(facts_.names, c));
-            if (!usual || !role_factor(role, *usual) || (role == Role::time && scale->offset != 0.0)) {
-                raise<UsageError>("--scale: '{}' is no {}; write its unit as one of {}{}", scale->text,
-                                  role_name(role), unit_list(role),
-                                  role == Role::time ? ", without an offset" : "");
-            }
-            written = *usual;
+        if (const std::string unit = unit_of_options(c, role, scale); !unit.empty()) {
+            written = unit;
             stated_[c] = true;
-            column.scale = scale->text;
-        } else if (!asked_unit(options_, column.name, role) && is_chosen(c)) {
+            if (scale != nullptr) column.scale = scale->text;
+        } else if (is_chosen(c)) {
             ask_for_scale(c, role, written, known);
         }
         if (const auto unit = usual_unit(written, role);
@@ -582,7 +574,7 @@ class Decision {
                 "another unit",
                 fmt::join(linear_, ", "));
             if (options_.needs_torque) raise<DataError>("{}: {}", source_, what);
-            layout_.warnings.push_back({"linear axis", what, true});
+            layout_.warn("linear axis", what, true);
         }
         if (unscaled_.empty()) return;
         std::vector<std::string> read, options;
@@ -594,9 +586,8 @@ class Decision {
                           say = fmt::format("{}", fmt::join(options, " "));
         if (options_.needs_torque)
             ask("{}: read {}, expected quantities; state what 1 is, as in {}", source_, what, say);
-        layout_.warnings.push_back(
-            {"unscaled", fmt::format("read {}; commands that use it ask what 1 is, as in {}", what, say),
-             true});
+        layout_.warn("unscaled",
+                     fmt::format("read {}; commands that use it ask what 1 is, as in {}", what, say), true);
     }
 
     bool is_chosen(std::size_t c) const {
@@ -610,8 +601,7 @@ class Decision {
         std::set<std::string> seen, told;
         for (const std::string& name : facts_.names) {
             if (name.empty() || seen.insert(name).second || !told.insert(name).second) continue;
-            layout_.warnings.push_back(
-                {"repeated names", fmt::format("several columns are named '{}'", name)});
+            layout_.warn("repeated names", fmt::format("several columns are named '{}'", name));
         }
     }
 
@@ -639,19 +629,8 @@ std::optional<std::size_t> Forced::column_of(Role role) const {
 }
 
 std::string_view role_name(Role role) {
-    switch (role) {
-        case Role::time:
-            return "time";
-        case Role::velocity:
-            return "velocity";
-        case Role::torque:
-            return "torque";
-        case Role::position:
-            return "position";
-        case Role::other:
-            break;
-    }
-    return "other";
+    constexpr std::array<std::string_view, 5> names = {"time", "velocity", "torque", "position", "other"};
+    return names[static_cast<std::size_t>(role)];
 }
 
 Layout decide_layout(const std::string& source, const std::string& format, const ColumnFacts& facts,

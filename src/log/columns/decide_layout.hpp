@@ -4,10 +4,12 @@
 // for every format, so that a CSV and an NPY of the same names are understood alike. Ambiguity is an error
 // that lists the readings and the option that decides.
 
+#include <compare>
 #include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "ripplenotch/log/layout.hpp"
@@ -19,6 +21,7 @@ struct ColumnName;
 /// The columns of one joint's motion.
 struct MotionPlace {
     std::optional<std::size_t> velocity, position;
+    auto operator<=>(const MotionPlace&) const = default;
 };
 
 /// The rows of the motion of some joints: equal lengths, or empty where there is no such column. Time in the
@@ -69,6 +72,9 @@ struct ColumnFacts {
 /// (an option that names what is not there). Messages begin with `source`.
 [[nodiscard]] Layout decide_layout(const std::string& source, const std::string& format,
                                    const ColumnFacts& facts, const ReadOptions& options);
+
+/// The role that --columns gives to what has this path, as it was written; empty where it names it not.
+[[nodiscard]] std::string asked_role(const ReadOptions& options, std::string_view path);
 
 /// Column's name and place as messages write it: "'dq_0' (column 7)".
 [[nodiscard]] std::string column_label(const std::vector<std::string>& names, std::size_t column);

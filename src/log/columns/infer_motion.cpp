@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "log/account/account.hpp"
-#include "log/columns/motion_reading.hpp"
 #include "log/columns/units.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
@@ -118,8 +117,7 @@ class Inference {
         settle_on_best();
         refuse_motor_units();
         const std::vector<OtherReading> possible = others(readings, open_margin);
-        if (!stated() || best_.velocity.side == Shaft::motor || best_.position.side == Shaft::motor ||
-            !possible.empty())
+        if (!stated() || best_.of_motor() || !possible.empty())
             say(possible, others(readings, never_meant), motion_readings(question, false));
     }
 
@@ -133,20 +131,12 @@ class Inference {
         }
     }
 
-    static MotionsSeen::Columns columns_of(const MotionColumns& joint) {
-        const auto place = [](const std::optional<MotionColumn>& column) {
-            return column ? std::optional<std::size_t>(column->column) : std::nullopt;
-        };
-        return {place(joint.velocity), place(joint.position)};
-    }
-
     /// Looks at those that have not been looked at.
     const MotionsSeen::Opening& look_at(std::size_t bytes) {
         std::vector<MotionPlace> places;
         MotionsSeen::Opening& opening = seen_.openings[bytes];
         for (const MotionColumns& joint : joints_)
-            if (const auto columns = columns_of(joint); opening.of.count(columns) == 0)
-                places.push_back({columns.first, columns.second});
+            if (opening.of.count(joint.place()) == 0) places.push_back(joint.place());
         if (places.empty()) return opening;
         MotionSample rows = facts_.motion_sample(layout_, places, bytes);
         opening.whole = rows.whole;
@@ -160,8 +150,7 @@ class Inference {
                 const Column& column = layout_.columns[*place.velocity];
                 for (double& value : rows.joints[j].velocity) value += column.shift / column.factor;
             }
-            opening.of[{place.velocity, place.position}] =
-                motion_evidence(rows.time, rows.joints[j].velocity, rows.joints[j].position);
+            opening.of[place] = motion_evidence(rows.time, rows.joints[j].velocity, rows.joints[j].position);
         }
         return opening;
     }
@@ -175,7 +164,7 @@ class Inference {
             for (const auto* column : {&joint.velocity, &joint.position})
                 all_stated_ =
                     all_stated_ && (!*column || ((*column)->unit_is_stated && !(*column)->named_motor));
-            const MotionEvidence& one = opening.of.at(columns_of(joint));
+            const MotionEvidence& one = opening.of.at(joint.place());
             evidence_.fastest = std::max(evidence_.fastest, one.fastest);
             evidence_.farthest = std::max(evidence_.farthest, one.farthest);
             evidence_.velocity_counts = evidence_.velocity_counts || one.velocity_counts;
@@ -209,7 +198,7 @@ class Inference {
             if (joint.velocity) settle(*joint.velocity, best_.velocity, ratio);
             if (joint.position) settle(*joint.position, best_.position, ratio);
         }
-        const bool motor = best_.velocity.side == Shaft::motor || best_.position.side == Shaft::motor;
+        const bool motor = best_.of_motor();
         layout_.motor_units = motor && !best_.ratio;
     }
 
@@ -217,10 +206,8 @@ class Inference {
     // then.
     std::vector<MotionReading>::const_iterator likeliest(const std::vector<MotionReading>& readings) const {
         const bool named = options_.takes_motor_units || side_is_said();
-        return std::ranges::find_if(readings, [named](const MotionReading& one) {
-            const bool motor = one.velocity.side == Shaft::motor || one.position.side == Shaft::motor;
-            return named || !motor || one.ratio;
-        });
+        return std::ranges::find_if(
+            readings, [named](const MotionReading& one) { return named || !one.of_motor() || one.ratio; });
     }
 
     // Counts that did not show in the first rows, at rest.
@@ -283,12 +270,12 @@ class Inference {
         std::vector<OtherReading> found;
         for (const MotionReading& one : readings) {
             if (one.cost - best_.cost >= margin) continue;
-            const bool motor_now = best_.velocity.side == Shaft::motor && !best_.ratio;
-            const bool motor_then = one.velocity.side == Shaft::motor && !one.ratio;
-            OtherReading other{words_of(one), option_of(one), 1.0,
+            OtherReading other{words_of(one),
+                               option_of(one),
+                               1.0,
                                one.velocity.factor / best_.velocity.factor,
-                               one.position.factor / best_.position.factor};
-            if (motor_then != motor_now) other.changes_side = true;
+                               one.position.factor / best_.position.factor,
+                               one.speed_in_motor_units() != best_.speed_in_motor_units()};
             const auto same = [&](const OtherReading& known) {
                 return known.changes_side == other.changes_side &&
                        std::abs(known.velocity_factor / other.velocity_factor - 1.0) < same_speed;
@@ -348,7 +335,7 @@ class Inference {
                 option +=
                     fmt::format("{}{}={}", option.empty() ? "--unit " : ",", role_name(role), read->unit);
         }
-        const bool motor = best_.velocity.side == Shaft::motor || best_.position.side == Shaft::motor;
+        const bool motor = best_.of_motor();
         if (motor) option += fmt::format("{}--side {}", option.empty() ? "" : " ", side_words());
         if (option.empty() && !possible.empty())
             option = possible.front().changes_side ? "--side joint" : possible.front().option;
@@ -399,7 +386,7 @@ class Inference {
         }
         if (layout_.motor_units)
             return "named as the motor's, or too fast for a joint, and no ratio is known";
-        if (best_.velocity.side == Shaft::motor || best_.position.side == Shaft::motor) {
+        if (best_.of_motor()) {
             return evidence_.scale && best_.velocity.side != best_.position.side
                        ? fmt::format("position and velocity differ by {:.5g}, which is a gear ratio",
                                      *best_.ratio)
@@ -435,10 +422,8 @@ class Inference {
 
 // The measured column for a role where nobody has to choose between several.
 std::optional<std::size_t> only_column(const KnownColumns& known, const JointGroup& group, Role role) {
-    const auto found = group.candidates.find(role);
-    if (found == group.candidates.end()) return std::nullopt;
     std::optional<std::size_t> only;
-    for (const std::size_t c : found->second) {
+    for (const std::size_t c : group.of(role)) {
         if (known.names[c].reference) continue;
         if (only) return std::nullopt;
         only = c;

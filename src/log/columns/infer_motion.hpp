@@ -49,6 +49,12 @@ struct MotionColumns {
     std::string joint;
     std::optional<MotionColumn> velocity, position;
     bool chosen = false;
+    [[nodiscard]] MotionPlace place() const {
+        MotionPlace place;
+        if (velocity) place.velocity = velocity->column;
+        if (position) place.position = position->column;
+        return place;
+    }
 };
 
 /// The motions of the joints that are read, and of the file's others whose columns nobody has to choose
@@ -61,9 +67,8 @@ struct MotionColumns {
 /// What was found out of motions, by the bytes of the opening that were looked at: the same joints are asked
 /// for again where each is read alone.
 struct MotionsSeen {
-    using Columns = std::pair<std::optional<std::size_t>, std::optional<std::size_t>>;
     struct Opening {
-        std::map<Columns, MotionEvidence> of;
+        std::map<MotionPlace, MotionEvidence> of;
         bool whole = false;  ///< as MotionSample::whole
     };
     std::map<std::size_t, Opening> openings;
@@ -73,5 +78,45 @@ struct MotionsSeen {
 /// `layout` what was inferred, what stays assumed, and which other readings are as possible.
 void infer_motion(const ColumnFacts& facts, const ReadOptions& options,
                   const std::vector<MotionColumns>& joints, MotionsSeen& seen, Layout& layout);
+
+// Every way in which a joint's velocity and position could be written, and how much speaks against each.
+
+/// One column's unit and side under a reading.
+struct ReadColumn {
+    std::string_view unit;
+    double unit_factor = 1.0;  ///< to deg/s or deg
+    Shaft side = Shaft::joint;
+    double factor = 1.0;  ///< to the joint's deg/s or deg: by unit and ratio
+};
+
+struct MotionReading {
+    ReadColumn velocity, position;
+    std::optional<double> ratio;  ///< between the motor and the joint, where a side is the motor's
+    bool against_header = false;  ///< a unit that the log states is wrong
+    double cost = 0.0;            ///< the likeliest has the least
+
+    [[nodiscard]] bool of_motor() const {
+        return velocity.side == Shaft::motor || position.side == Shaft::motor;
+    }
+    [[nodiscard]] bool speed_in_motor_units() const { return velocity.side == Shaft::motor && !ratio; }
+};
+
+/// A reading is as possible as the likeliest when it costs less than this much more.
+inline constexpr double open_margin = 1.0;
+
+/// The columns that a motion has, with the factors of stated units in `layout`.
+struct MotionQuestion {
+    const MotionColumns& columns;
+    const MotionEvidence& evidence;
+    const Layout& layout;
+    std::optional<double> gear_ratio;
+};
+
+/// Whether the column's name says that it is measured before the gear.
+[[nodiscard]] bool names_motor(const MotionColumn& column);
+
+/// All readings that fit the evidence, the likeliest first. `with_scale` false: position and velocity need
+/// not belong together. Those against the header come last.
+[[nodiscard]] std::vector<MotionReading> motion_readings(const MotionQuestion& question, bool with_scale);
 
 }  // namespace ripplenotch

@@ -125,22 +125,18 @@ std::string_view without_padding(std::string_view text) {
 }
 
 Dimension linear_dimension_of(Role role) {
-    return role == Role::velocity   ? Dimension::linear_speed
-           : role == Role::torque   ? Dimension::force
-           : role == Role::position ? Dimension::length
-                                    : Dimension::none;
+    constexpr std::array dimensions = {Dimension::none, Dimension::linear_speed, Dimension::force,
+                                       Dimension::length, Dimension::none};
+    return dimensions[static_cast<std::size_t>(role)];
 }
 
 // One sentence for all units that are not stated.
 void say_assumed_units(Layout& layout, const ColumnFacts& facts) {
     std::vector<std::string> taken, asked;
-    std::vector<std::optional<std::size_t>> columns = {layout.chosen.time};
-    for (const JointColumns& joint : layout.all_chosen())
-        columns.insert(columns.end(), {joint.velocity, joint.torque, joint.position});
-    for (const auto& column : columns) {
-        if (!column || !layout.columns[*column].unit_assumed) continue;
-        const Column& c = layout.columns[*column];
-        taken.push_back(fmt::format("{} as {}", column_label(facts.names, *column), c.unit));
+    for (const std::size_t column : layout.columns_read()) {
+        const Column& c = layout.columns[column];
+        if (!c.unit_assumed) continue;
+        taken.push_back(fmt::format("{} as {}", column_label(facts.names, column), c.unit));
         asked.push_back(fmt::format("--unit {}={}", role_name(c.role), c.unit));
     }
     for (const JointColumns& joint : layout.all_chosen()) {
@@ -153,10 +149,10 @@ void say_assumed_units(Layout& layout, const ColumnFacts& facts) {
                                       {}});
     }
     if (!taken.empty()) {
-        layout.warnings.push_back({"assumed units",
-                                   fmt::format("no unit is stated for what is read: took {}; {} settles it",
-                                               fmt::join(taken, ", "), fmt::join(asked, " ")),
-                                   true});
+        layout.warn("assumed units",
+                    fmt::format("no unit is stated for what is read: took {}; {} settles it",
+                                fmt::join(taken, ", "), fmt::join(asked, " ")),
+                    true);
     }
 }
 
@@ -165,47 +161,34 @@ void say_torque_constant(Layout& layout, const ColumnFacts& facts, const ReadOpt
     if (!torque) return;
     const bool current = is_current_unit(layout.columns[*torque].unit);
     if (current && !options.nm_per_ampere) {
-        layout.warnings.push_back(
-            {"motor current",
-             fmt::format("{} is a motor current: 1 A is taken as 1 Nm, so every torque is in "
-                         "amperes; --kt gives the joint's torque constant in Nm/A",
-                         column_label(facts.names, *torque)),
-             true});
+        layout.warn("motor current",
+                    fmt::format("{} is a motor current: 1 A is taken as 1 Nm, so every torque is in "
+                                "amperes; --kt gives the joint's torque constant in Nm/A",
+                                column_label(facts.names, *torque)),
+                    true);
     }
     if (options.lead_m) {
-        bool linear = false;
-        for (const JointColumns& joint : layout.all_chosen()) {
-            for (const auto& column : {joint.velocity, joint.torque, joint.position})
-                linear = linear || (column && is_linear_unit(layout.columns[*column].role,
-                                                             layout.columns[*column].unit));
-        }
+        const bool linear = std::ranges::any_of(layout.columns_read(), [&](std::size_t c) {
+            return is_linear_unit(layout.columns[c].role, layout.columns[c].unit);
+        });
         if (linear)
-            layout.inferences.push_back(
-                {"linear axis",
-                 "angles, speeds and torques of its screw",
-                 fmt::format("one turn is {} mm (--lead)", shortest(1e3 * *options.lead_m)),
-                 "",
-                 {}});
+            layout.infer("linear axis", "angles, speeds and torques of its screw",
+                         fmt::format("one turn is {} mm (--lead)", shortest(1e3 * *options.lead_m)), "");
         else
-            layout.warnings.push_back(
-                {"--lead", "--lead has no effect: nothing that is read is in m, m/s or N", true});
+            layout.warn("--lead", "--lead has no effect: nothing that is read is in m, m/s or N", true);
     }
     if (!current && options.nm_per_ampere) {
-        layout.warnings.push_back(
-            {"--kt",
-             fmt::format("--kt has no effect: {} is in {}", column_label(facts.names, *torque),
-                         layout.columns[*torque].unit),
-             true});
+        layout.warn("--kt",
+                    fmt::format("--kt has no effect: {} is in {}", column_label(facts.names, *torque),
+                                layout.columns[*torque].unit),
+                    true);
     }
 }
 
 void require_used(const Layout& layout, std::string_view option, const std::string& key) {
-    for (const Role role : {Role::time, Role::velocity, Role::torque, Role::position}) {
+    for (const Role role : {Role::time, Role::velocity, Role::torque, Role::position})
         if (key == role_name(role)) return;
-    }
-    for (const Column& column : layout.columns) {
-        if (column.name == key) return;
-    }
+    if (std::ranges::find(layout.columns, key, &Column::name) != layout.columns.end()) return;
     raise<UsageError>("{}: '{}' is neither a role (time, velocity, torque, position) nor a column of {}",
                       option, key, layout.source);
 }
@@ -213,19 +196,9 @@ void require_used(const Layout& layout, std::string_view option, const std::stri
 }  // namespace
 
 Dimension dimension_of(Role role) {
-    switch (role) {
-        case Role::time:
-            return Dimension::time;
-        case Role::velocity:
-            return Dimension::speed;
-        case Role::torque:
-            return Dimension::torque;
-        case Role::position:
-            return Dimension::angle;
-        case Role::other:
-            break;
-    }
-    return Dimension::none;
+    constexpr std::array dimensions = {Dimension::time, Dimension::speed, Dimension::torque, Dimension::angle,
+                                       Dimension::none};
+    return dimensions[static_cast<std::size_t>(role)];
 }
 
 bool is_current_unit(std::string_view unit) { return unit_factor(Dimension::current, unit).has_value(); }
@@ -439,18 +412,15 @@ void state_derived_velocity(Layout& layout, const ColumnFacts& facts) {
         if (joint.velocity || !joint.position) continue;
         const std::string label = column_label(facts.names, *joint.position);
         layout.velocity_from_position = true;
-        layout.warnings.push_back(
-            {"derived velocity",
-             fmt::format(
-                 "no velocity is logged: it is the slope of {}, from row to row; --columns velocity=NAME "
-                 "decides otherwise",
-                 label),
-             true});
-        layout.inferences.push_back({"velocity",
-                                     fmt::format("the slope of {}", label),
-                                     "no column is a velocity",
-                                     "--columns velocity=NAME",
-                                     {}});
+        layout.warn(
+            "derived velocity",
+            fmt::format(
+                "no velocity is logged: it is the slope of {}, from row to row; --columns velocity=NAME "
+                "decides otherwise",
+                label),
+            true);
+        layout.infer("velocity", fmt::format("the slope of {}", label), "no column is a velocity",
+                     "--columns velocity=NAME");
     }
 }
 

@@ -272,11 +272,10 @@ double ns_per_unit(const std::string& source, const StoredArray& clock) {
     return nanoseconds;
 }
 
-// The columns of `base`, its clock first, and beside them what `asked` takes of those of `others`. All groups
-// have a clock.
+// The columns of `base`, its clock first, and beside them what --columns names of those of `others`. All
+// groups have a clock.
 void join_arrays(const std::shared_ptr<StoredBytes>& file, const ArrayGroup& base,
-                 const std::vector<const ArrayGroup*>& others, PathStyle style,
-                 const std::function<bool(const std::string& path)>& asked, const ReadOptions& options,
+                 const std::vector<const ArrayGroup*>& others, PathStyle style, const ReadOptions& options,
                  ColumnLog& log) {
     std::vector<ArrayColumn> columns = columns_of(base, style);
     const auto clock_column =
@@ -285,7 +284,7 @@ void join_arrays(const std::shared_ptr<StoredBytes>& file, const ArrayGroup& bas
     std::vector<SideColumn> sides;
     for (const ArrayGroup* other : others) {
         for (const ArrayColumn& column : columns_of(*other, style)) {
-            if (!asked(column.path)) continue;
+            if (asked_role(options, column.path).empty()) continue;
             if (column.array == other->clock)
                 raise<UsageError>(
                     "--columns: {} is not the clock of the torque, whose rows are taken; leave it out: each "
@@ -306,57 +305,33 @@ int column_names_tell(const std::vector<ArrayColumn>& columns) {
     return names_tell(names);
 }
 
-// What --columns names by path.
-class AskedPaths {
-  public:
-    explicit AskedPaths(const ReadOptions& options) {
-        for (const std::string& entry : options.columns) {
-            const std::size_t equals = entry.find('=');
-            if (equals != std::string::npos)
-                paths_.push_back({entry.substr(0, equals), entry.substr(equals + 1)});
-        }
+// The first of the group's columns that --columns names by path, the torque's before others; "" where there
+// is none.
+std::string first_asked(const ArrayGroup& group, PathStyle style, const ReadOptions& options) {
+    std::string first;
+    for (const ArrayColumn& column : columns_of(group, style)) {
+        const std::string role = asked_role(options, column.path);
+        if (role == "torque" || (first.empty() && !role.empty())) first = column.path;
     }
-    [[nodiscard]] bool has(const std::string& path) const { return !role_of(path).empty(); }
-    // The first of the group's columns that is asked for, the torque's before others; "" where there is none.
-    [[nodiscard]] std::string first_of(const ArrayGroup& group, PathStyle style) const {
-        std::string first;
-        for (const ArrayColumn& column : columns_of(group, style)) {
-            const std::string role = role_of(column.path);
-            if (role == "torque" || (first.empty() && !role.empty())) first = column.path;
-        }
-        return first;
-    }
-    [[nodiscard]] bool torque_in(const ArrayGroup& group, PathStyle style) const {
-        return role_of(first_of(group, style)) == "torque";
-    }
-
-  private:
-    struct Entry {
-        std::string role, path;
-    };
-    [[nodiscard]] std::string role_of(const std::string& path) const {
-        for (const Entry& entry : paths_)
-            if (entry.path == path) return entry.role;
-        return {};
-    }
-    std::vector<Entry> paths_;
-};
+    return first;
+}
 
 // The groups that --columns names, that of the torque first.
 std::vector<const ArrayGroup*> asked_groups(const std::string& source, const std::vector<ArrayGroup>& groups,
-                                            PathStyle style, const AskedPaths& asked) {
+                                            PathStyle style, const ReadOptions& options) {
     std::vector<const ArrayGroup*> found;
     for (const ArrayGroup& group : groups) {
-        if (asked.first_of(group, style).empty()) continue;
-        found.insert(asked.torque_in(group, style) ? found.begin() : found.end(), &group);
+        const std::string first = first_asked(group, style, options);
+        const bool torque = asked_role(options, first) == "torque";
+        if (!first.empty()) found.insert(torque ? found.begin() : found.end(), &group);
     }
     const bool joined = found.size() > 1;
     if (joined && std::ranges::any_of(found, [](const ArrayGroup* g) { return !g->clock; })) {
         raise<UsageError>(
             "--columns: {} of {} has {} rows, {} has {}: their clocks differ; name arrays of one length, or "
             "each with its own time",
-            asked.first_of(*found[0], style), source, found[0]->rows, asked.first_of(*found[1], style),
-            found[1]->rows);
+            first_asked(*found[0], style, options), source, found[0]->rows,
+            first_asked(*found[1], style, options), found[1]->rows);
     }
     return found;
 }
@@ -418,8 +393,7 @@ ColumnLog columns_of_arrays(const std::shared_ptr<StoredBytes>& file, const std:
     ColumnLog log;
     log.format = format;
     const std::vector<ArrayGroup> groups = FoundClocks(arrays).groups();
-    const AskedPaths asked(options);
-    std::vector<const ArrayGroup*> chosen = asked_groups(file->name(), groups, style, asked);
+    std::vector<const ArrayGroup*> chosen = asked_groups(file->name(), groups, style, options);
     if (chosen.empty())
         if (const ArrayGroup* const best = choose_group(groups, style)) chosen.push_back(best);
     const auto reads = [&](const StoredArray& array) {
@@ -429,7 +403,7 @@ ColumnLog columns_of_arrays(const std::shared_ptr<StoredBytes>& file, const std:
         return std::any_of(chosen.begin() + 1, chosen.end(), [&](const ArrayGroup* group) {
             const auto columns = columns_of(*group, style);
             return std::ranges::any_of(columns, [&](const ArrayColumn& column) {
-                return column.array == &array && asked.has(column.path);
+                return column.array == &array && !asked_role(options, column.path).empty();
             });
         });
     };
@@ -442,10 +416,9 @@ ColumnLog columns_of_arrays(const std::shared_ptr<StoredBytes>& file, const std:
             file->name(), listed(log.contents));
     }
     if (chosen.size() > 1) {
-        const std::vector<const ArrayGroup*> others(chosen.begin() + 1, chosen.end());
-        join_arrays(
-            file, *chosen.front(), others, style, [&](const std::string& path) { return asked.has(path); },
-            options, log);
+        const ArrayGroup& base = *chosen.front();
+        chosen.erase(chosen.begin());
+        join_arrays(file, base, chosen, style, options, log);
     } else {
         log.columns = std::make_unique<ArrayColumns>(file, columns_of(*chosen.front(), style));
     }

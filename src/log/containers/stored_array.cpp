@@ -10,8 +10,8 @@
 #include <cstring>
 #include <set>
 
+#include "core/files/byte_sink.hpp"
 #include "log/columns/column_name.hpp"
-#include "log/npy/npy_writer.hpp"
 #include "log/open.hpp"
 #include "ripplenotch/core/error.hpp"
 
@@ -34,6 +34,19 @@ constexpr std::size_t stored_piece = std::size_t{1} << 16;
         name, sum, expected);
 }
 
+// Fewer than `size` bytes where there are no more, or where they cannot be read: then errno says why.
+std::size_t read_as_far(int descriptor, std::uint64_t offset, char* into, std::size_t size) {
+    std::size_t have = 0;
+    while (have < size) {
+        errno = 0;
+        const ssize_t got = ::pread(descriptor, into + have, size - have, static_cast<off_t>(offset + have));
+        if (got < 0 && errno == EINTR) continue;
+        if (got <= 0) break;
+        have += static_cast<std::size_t>(got);
+    }
+    return have;
+}
+
 class FileBytes final : public StoredBytes {
   public:
     explicit FileBytes(std::unique_ptr<ByteSource> source)
@@ -43,15 +56,10 @@ class FileBytes final : public StoredBytes {
     [[nodiscard]] std::uint64_t size() const override { return source_->size(); }
     void read_at(std::uint64_t offset, char* into, std::size_t size) override {
         if (offset > this->size()) complain_of_end(name(), offset, this->size());
-        while (size > 0) {
-            const ssize_t got = ::pread(descriptor_, into, size, static_cast<off_t>(offset));
-            if (got < 0 && errno == EINTR) continue;
-            if (got < 0) raise<FileError>("{}: cannot read: {}", name(), std::strerror(errno));
-            if (got == 0) complain_of_end(name(), offset, this->size());
-            into += got;
-            size -= static_cast<std::size_t>(got);
-            offset += static_cast<std::uint64_t>(got);
-        }
+        const std::size_t have = read_as_far(descriptor_, offset, into, size);
+        if (have == size) return;
+        if (errno != 0) raise<FileError>("{}: cannot read: {}", name(), std::strerror(errno));
+        complain_of_end(name(), offset + have, this->size());
     }
     [[nodiscard]] std::string openable() const override {
         struct stat status {};
@@ -173,6 +181,37 @@ class StridedCursor final : public ColumnCursor {
 };
 
 }  // namespace
+
+TemporaryBytes::TemporaryBytes() {
+    TemporaryFile file(temporary_folder() + "/ripplenotch-rows", std::nullopt);
+    const int descriptor = file.release_without_name();
+    file_.reset(::fdopen(descriptor, "w+b"));
+    if (file_) return;
+    ::close(descriptor);
+    raise<FileError>("cannot make a temporary file for an array; check the temporary folder");
+}
+
+void TemporaryBytes::put(std::string_view bytes) {
+    flushed_ = false;
+    if (std::fwrite(bytes.data(), 1, bytes.size(), file_.get()) != bytes.size())
+        raise<FileError>("cannot write to a temporary file; check the space in the temporary folder");
+}
+
+void TemporaryBytes::read_at(std::uint64_t offset, char* into, std::size_t size) {
+    if (!flushed_ && std::fflush(file_.get()) != 0)
+        raise<FileError>("cannot write to a temporary file; check the space in the temporary folder");
+    flushed_ = true;
+    if (read_as_far(::fileno(file_.get()), offset, into, size) < size)
+        raise<FileError>("cannot read a temporary file back");
+}
+
+void TemporaryBytes::rewind() { std::rewind(file_.get()); }
+
+std::size_t TemporaryBytes::read(char* into, std::size_t size) {
+    const std::size_t got = std::fread(into, 1, size, file_.get());
+    if (std::ferror(file_.get()) != 0) raise<FileError>("cannot read a temporary file back");
+    return got;
+}
 
 void require_checksum(StoredBytes& bytes, std::uint64_t offset, std::uint64_t size, std::uint32_t checksum) {
     std::optional<std::uint32_t> sum = 0;

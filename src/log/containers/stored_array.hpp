@@ -4,6 +4,7 @@
 // them.
 
 #include <cstdint>
+#include <cstdio>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -53,6 +54,26 @@ class StoredBytes {
     for (std::size_t i = bytes.size(); i-- > 0;) number = number << 8U | static_cast<unsigned char>(bytes[i]);
     return number;
 }
+
+/// A file without a name in the folder for temporary files (TMPDIR). Throws FileError where there is no room.
+class TemporaryBytes {
+  public:
+    TemporaryBytes();
+    void put(std::string_view bytes);
+    /// All has been put; read() begins at the start.
+    void rewind();
+    /// Up to `size` bytes; 0 at the end.
+    std::size_t read(char* into, std::size_t size);
+    /// Exactly `size` bytes that have been put, anywhere; putting goes on behind the last.
+    void read_at(std::uint64_t offset, char* into, std::size_t size);
+
+  private:
+    struct Close {
+        void operator()(std::FILE* file) const { std::fclose(file); }
+    };
+    std::unique_ptr<std::FILE, Close> file_;
+    bool flushed_ = true;
+};
 
 /// A file is read where it lies; a pipe is kept in a temporary file. `first_bytes` have been read from it.
 [[nodiscard]] std::shared_ptr<StoredBytes> store_bytes(std::unique_ptr<ByteSource> source,

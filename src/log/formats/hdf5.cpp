@@ -1,25 +1,15 @@
 // SPDX-License-Identifier: MIT
 // HDF5 files, and MAT files of version 7.3, which are such, by libhdf5.
 
-#include <memory>
-#include <optional>
+#include <array>
 #include <string_view>
-#include <vector>
 
-#include "core/files/byte_sink.hpp"
-#include "log/containers/stored_array.hpp"
 #include "log/formats.hpp"
-#include "log/table_writer.hpp"
-#include "ripplenotch/core/error.hpp"
 
 namespace ripplenotch {
 namespace {
 
-struct Hdf5Contents {
-    std::vector<StoredArray> arrays;  ///< datasets of one dimension or two, members of compound types
-    std::vector<ContentEntry>
-        others;  ///< "outside of the file, not followed", "packed by a filter that is not here"
-};
+constexpr std::string_view magic = "\x89HDF\r\n\x1a\n", matlab_head = "MATLAB 7.3";
 
 }  // namespace
 }  // namespace ripplenotch
@@ -33,16 +23,20 @@ struct Hdf5Contents {
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cerrno>
 #include <exception>
+#include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
+#include "core/files/byte_sink.hpp"
 #include "core/files/byte_source.hpp"
+#include "log/containers/stored_array.hpp"
+#include "ripplenotch/core/error.hpp"
 
 namespace ripplenotch {
-
 namespace {
 
 // libhdf5's objects, closed when they go. The one door to the library.
@@ -75,12 +69,6 @@ class Hdf5Handle {
 };
 
 // Files for libhdf5, which opens by name only.
-
-/// A new file without a name, for the library to write and us to read.
-struct Hdf5Scratch {
-    Hdf5Handle file;
-    std::unique_ptr<TemporaryFile> bytes;
-};
 
 constexpr std::uint64_t piece_size = std::uint64_t{1} << 20;
 
@@ -123,18 +111,6 @@ Hdf5Handle open_hdf5(StoredBytes& bytes) {
         name = copy->name_for_a_moment(place_of_copies());
     }
     return {::H5Fopen(name.c_str(), H5F_ACC_RDONLY, access.id()), ::H5Fclose};
-}
-
-// Throws FileError.
-Hdf5Scratch create_hdf5() {
-    const Hdf5Handle access = access_of_files();
-    Hdf5Scratch scratch{{}, std::make_unique<TemporaryFile>(place_of_copies(), std::nullopt)};
-    const std::string& name = scratch.bytes->name_for_a_moment(place_of_copies());
-    scratch.file = Hdf5Handle(::H5Fcreate(name.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id()), ::H5Fclose);
-    if (!scratch.file.good())
-        raise<FileError>("cannot write to a temporary file; check the temporary folder");
-    scratch.bytes->forget_name();
-    return scratch;
 }
 
 // Numbers of an HDF5 dataset, a column at a time.
@@ -240,7 +216,11 @@ class Hdf5TableWriter final : public TableWriter {
         ::H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
         names_.assign(names.begin(), names.end());
         waiting_.resize(names_.size());
-        scratch_ = create_hdf5();
+        scratch_ = std::make_unique<TemporaryFile>(place_of_copies(), std::nullopt);
+        const std::string& name = scratch_->name_for_a_moment(place_of_copies());
+        file_ = {::H5Fcreate(name.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access_of_files().id()), ::H5Fclose};
+        if (!file_.good()) raise<FileError>("cannot write to a temporary file; check the temporary folder");
+        scratch_->forget_name();
     }
     // A chunk at a time, wherever the caller cuts: so the bytes are alike.
     void rows(std::span<const std::span<const double>> columns) override {
@@ -251,11 +231,11 @@ class Hdf5TableWriter final : public TableWriter {
     void end() override {
         write(waiting_.front().size());
         datasets_.clear();
-        require(::H5Fflush(scratch_.file.id(), H5F_SCOPE_LOCAL) >= 0);
-        scratch_.file = {};
+        require(::H5Fflush(file_.id(), H5F_SCOPE_LOCAL) >= 0);
+        file_ = {};
         std::vector<char> piece(std::size_t{1} << 20);
         for (off_t at = 0;;) {
-            const ssize_t got = ::pread(scratch_.bytes->descriptor(), piece.data(), piece.size(), at);
+            const ssize_t got = ::pread(scratch_->descriptor(), piece.data(), piece.size(), at);
             if (got < 0 && errno == EINTR) continue;
             if (got < 0) raise<FileError>("cannot read a temporary file back: {}", system_reason());
             if (got == 0) break;
@@ -293,7 +273,7 @@ class Hdf5TableWriter final : public TableWriter {
         ::H5Pset_obj_track_times(creation.id(), false);
         for (std::string name : names_) {
             std::ranges::replace(name, '/', '_');
-            datasets_.emplace_back(::H5Dcreate2(scratch_.file.id(), name.c_str(), H5T_IEEE_F64LE, space.id(),
+            datasets_.emplace_back(::H5Dcreate2(file_.id(), name.c_str(), H5T_IEEE_F64LE, space.id(),
                                                 H5P_DEFAULT, creation.id(), H5P_DEFAULT),
                                    ::H5Dclose);
             require(datasets_.back().good());
@@ -303,7 +283,9 @@ class Hdf5TableWriter final : public TableWriter {
     ByteSink& sink_;
     std::vector<std::string> names_;
     std::vector<std::vector<double>> waiting_;  ///< by column: rows of a chunk that is not full
-    Hdf5Scratch scratch_;
+    std::unique_ptr<TemporaryFile>
+        scratch_;  ///< a new file without a name, for the library to write and us to read
+    Hdf5Handle file_;
     std::vector<Hdf5Handle> datasets_;  ///< closed before the file
     hsize_t rows_ = 0;
 };
@@ -353,7 +335,9 @@ class Hdf5Walk {
                 "{}: read a part of the list of datasets, expected all of it; the file is damaged",
                 bytes->name());
     }
-    Hdf5Contents found;
+    std::vector<StoredArray> arrays;  ///< datasets of one dimension or two, members of compound types
+    std::vector<ContentEntry>
+        others;  ///< "outside of the file, not followed", "packed by a filter that is not here"
 
   private:
     static herr_t visit(hid_t group, const char* name, const H5L_info_t* info, void* walk) {
@@ -462,7 +446,7 @@ class Hdf5Walk {
         };
         // MATLAB counts dimensions from the other end.
         if (matlab_) array.shape.time_is_first = !array.shape.time_is_first;
-        found.arrays.push_back(std::move(array));
+        arrays.push_back(std::move(array));
     }
     // What was never written reads as zeros without end.
     static bool is_hollow(hid_t dataset, hid_t type, const ArrayShape& shape) {
@@ -499,7 +483,7 @@ class Hdf5Walk {
         return path;
     }
     void add_other(const std::string& name, const std::string& shape, const std::string& what) {
-        found.others.push_back({path_of(name), shape, what, "", {}, false});
+        others.push_back({path_of(name), shape, what, "", {}, false});
     }
 
     bool matlab_;
@@ -508,20 +492,12 @@ class Hdf5Walk {
     std::exception_ptr failure_;
 };
 
-Hdf5Contents find_hdf5_arrays(const std::shared_ptr<StoredBytes>& file, bool matlab) {
-    return std::move(Hdf5Walk(file, matlab).found);
-}
-
-}  // namespace
-}  // namespace ripplenotch
-
-#else
-
-namespace ripplenotch {
-namespace {
-
-Hdf5Contents find_hdf5_arrays(const std::shared_ptr<StoredBytes>& file, bool /*matlab*/) {
-    raise<UsageError>("{}: this build was made without libhdf5; install it and build again", file->name());
+ColumnLog make_hdf5(std::unique_ptr<ByteSource> source, std::string first_bytes, const ReadOptions& options) {
+    const bool matlab = first_bytes.starts_with(matlab_head);
+    const auto file = store_bytes(std::move(source), std::move(first_bytes));
+    const Hdf5Walk found(file, matlab);
+    return columns_of_arrays(file, "hdf5", matlab ? PathStyle::matlab : PathStyle::numpy, found.arrays,
+                             found.others, options);
 }
 
 }  // namespace
@@ -532,33 +508,20 @@ namespace ripplenotch {
 namespace {
 
 constexpr std::array<std::string_view, 2> hdf5_extensions = {".h5", ".hdf5"};
-constexpr std::string_view magic = "\x89HDF\r\n\x1a\n", matlab_head = "MATLAB 7.3";
 
 // MATLAB puts a head of text in front.
 bool sniff(std::string_view bytes) { return bytes.starts_with(magic) || bytes.starts_with(matlab_head); }
-
-ColumnLog make_hdf5(std::unique_ptr<ByteSource> source, std::string first_bytes, const ReadOptions& options) {
-    const bool matlab = first_bytes.starts_with(matlab_head);
-    const auto file = store_bytes(std::move(source), std::move(first_bytes));
-    const Hdf5Contents found = find_hdf5_arrays(file, matlab);
-    return columns_of_arrays(file, "hdf5", matlab ? PathStyle::matlab : PathStyle::numpy, found.arrays,
-                             found.others, options);
-}
 
 }  // namespace
 
 const LogFormat formats::hdf5 {
     .name = "hdf5", .summary = "HDF5 files, and MATLAB's of version 7.3: datasets by path",
     .extensions = hdf5_extensions, .binary = true,
-    .lacks =
 #if defined(RIPPLENOTCH_HAS_HDF5)
-        {},
+    .sniff = sniff, .open = open_as_columns<make_hdf5>, .convert = convert_with<Hdf5TableWriter>,
+    .write_columns = write_columns_with<Hdf5TableWriter>,
 #else
-        "libhdf5",
-#endif
-    .sniff = sniff, .open = open_as_columns<make_hdf5>,
-#if defined(RIPPLENOTCH_HAS_HDF5)
-    .convert = convert_with<Hdf5TableWriter>, .write_columns = write_columns_with<Hdf5TableWriter>,
+    .lacks = "libhdf5", .sniff = sniff,
 #endif
 };
 

@@ -19,8 +19,6 @@
 #include "log/containers/stored_array.hpp"
 #include "log/formats.hpp"
 #include "log/npy/npy_header.hpp"
-#include "log/npy/npy_writer.hpp"
-#include "log/table_writer.hpp"
 #include "ripplenotch/core/error.hpp"
 
 namespace ripplenotch {
@@ -45,34 +43,6 @@ enum : std::uint32_t {
 
 // New MAT files of version 5, which every MATLAB, Octave and SciPy reads: a column vector for each column.
 
-/// A variable is stored as a whole, so that each column waits in a temporary file until the last row is
-/// known.
-class MatTableWriter final : public TableWriter {
-  public:
-    /// Arrays hold every digit: of the options none concerns them.
-    MatTableWriter(ByteSink& sink, const WriteOptions& /*options*/) : sink_(sink) {}
-    void begin(std::span<const std::string> names) override;
-    void rows(std::span<const std::span<const double>> columns) override;
-    /// Throws UsageError beyond the 4 GiB that a variable of this version can have.
-    void end() override;
-
-  private:
-    void write_head(const std::string& name);
-
-    ByteSink& sink_;
-    std::vector<std::string> names_;
-    std::vector<TemporaryBytes> columns_;
-    std::string bytes_;
-    std::uint64_t rows_ = 0;
-};
-
-/// What was found.
-struct MatContents {
-    std::vector<StoredArray>
-        arrays;  ///< of numbers, by paths as MATLAB writes them: "log.q_dot", "runs(2).tau"
-    std::vector<ContentEntry> others;  ///< what is no log: "a function handle", "complex"
-};
-
 constexpr std::size_t text_size = 116, longest_variable = 63;
 constexpr std::uint64_t most_mat_rows = (std::uint64_t{1} << 29) - 64;  // of 8 bytes: sizes have 32 bits
 
@@ -91,65 +61,78 @@ std::string variable_name(const std::string& name) {
     return plain.substr(0, longest_variable);
 }
 
-void MatTableWriter::begin(std::span<const std::string> names) {
-    for (const std::string& name : names) names_.push_back(variable_name(name));
-    columns_ = std::vector<TemporaryBytes>(names_.size());
-    std::string head = "MATLAB 5.0 MAT-file, written by ripplenotch";
-    head.resize(text_size, ' ');
-    head.append(8, '\0');
-    head += '\0';  // version 1.0, then the byte order
-    head += "\x01IM";
-    sink_.write(head);
-}
-
-void MatTableWriter::rows(std::span<const std::span<const double>> columns) {
-    for (std::size_t c = 0; c < columns.size(); ++c) {
-        bytes_.resize(8 * columns[c].size());
-        NpyField field;
-        for (std::size_t r = 0; r < columns[c].size(); ++r, field.offset += 8)
-            store_float(bytes_.data(), field, columns[c][r]);
-        columns_[c].put(bytes_);
+/// A variable is stored as a whole, so that each column waits in a temporary file until the last row is
+/// known.
+class MatTableWriter final : public TableWriter {
+  public:
+    /// Arrays hold every digit: of the options none concerns them.
+    MatTableWriter(ByteSink& sink, const WriteOptions& /*options*/) : sink_(sink) {}
+    void begin(std::span<const std::string> names) override {
+        for (const std::string& name : names) names_.push_back(variable_name(name));
+        columns_ = std::vector<TemporaryBytes>(names_.size());
+        std::string head = "MATLAB 5.0 MAT-file, written by ripplenotch";
+        head.resize(text_size, ' ');
+        head.append(8, '\0');
+        head += '\0';  // version 1.0, then the byte order
+        head += "\x01IM";
+        sink_.write(head);
     }
-    if (!columns.empty()) rows_ += columns[0].size();
-}
-
-void MatTableWriter::write_head(const std::string& name) {
-    std::string head;
-    const auto add_tag = [&](std::uint32_t type, std::uint64_t size) {
-        add_word(head, type);
-        add_word(head, static_cast<std::uint32_t>(size));
-    };
-    add_tag(mat_type::uint32, 8);
-    add_word(head, double_class);
-    add_word(head, 0);
-    add_tag(mat_type::int32, 8);
-    add_word(head, static_cast<std::uint32_t>(rows_));
-    add_word(head, 1);
-    add_tag(mat_type::int8, name.size());
-    head += name;
-    head.append((8 - name.size() % 8) % 8, '\0');
-    add_tag(mat_type::float64, 8 * rows_);
-    std::string whole;
-    add_word(whole, mat_type::matrix);
-    add_word(whole, static_cast<std::uint32_t>(head.size() + 8 * rows_));
-    sink_.write(whole + head);
-}
-
-void MatTableWriter::end() {
-    if (rows_ > most_mat_rows) {
-        raise<UsageError>(
-            "a MAT file of version 5 holds at most {} rows, and these are {}; write -o NAME.h5 or -o "
-            "NAME.npy",
-            most_mat_rows, rows_);
+    void rows(std::span<const std::span<const double>> columns) override {
+        for (std::size_t c = 0; c < columns.size(); ++c) {
+            bytes_.resize(8 * columns[c].size());
+            NpyField field;
+            for (std::size_t r = 0; r < columns[c].size(); ++r, field.offset += 8)
+                store_float(bytes_.data(), field, columns[c][r]);
+            columns_[c].put(bytes_);
+        }
+        if (!columns.empty()) rows_ += columns[0].size();
     }
-    std::vector<char> piece(std::size_t{1} << 20);
-    for (std::size_t c = 0; c < names_.size(); ++c) {
-        write_head(names_[c]);
-        columns_[c].rewind();
-        while (const std::size_t got = columns_[c].read(piece.data(), piece.size()))
-            sink_.write({piece.data(), got});
+    /// Throws UsageError beyond the 4 GiB that a variable of this version can have.
+    void end() override {
+        if (rows_ > most_mat_rows) {
+            raise<UsageError>(
+                "a MAT file of version 5 holds at most {} rows, and these are {}; write -o NAME.h5 or -o "
+                "NAME.npy",
+                most_mat_rows, rows_);
+        }
+        std::vector<char> piece(std::size_t{1} << 20);
+        for (std::size_t c = 0; c < names_.size(); ++c) {
+            write_head(names_[c]);
+            columns_[c].rewind();
+            while (const std::size_t got = columns_[c].read(piece.data(), piece.size()))
+                sink_.write({piece.data(), got});
+        }
     }
-}
+
+  private:
+    void write_head(const std::string& name) {
+        std::string head;
+        const auto add_tag = [&](std::uint32_t type, std::uint64_t size) {
+            add_word(head, type);
+            add_word(head, static_cast<std::uint32_t>(size));
+        };
+        add_tag(mat_type::uint32, 8);
+        add_word(head, double_class);
+        add_word(head, 0);
+        add_tag(mat_type::int32, 8);
+        add_word(head, static_cast<std::uint32_t>(rows_));
+        add_word(head, 1);
+        add_tag(mat_type::int8, name.size());
+        head += name;
+        head.append((8 - name.size() % 8) % 8, '\0');
+        add_tag(mat_type::float64, 8 * rows_);
+        std::string whole;
+        add_word(whole, mat_type::matrix);
+        add_word(whole, static_cast<std::uint32_t>(head.size() + 8 * rows_));
+        sink_.write(whole + head);
+    }
+
+    ByteSink& sink_;
+    std::vector<std::string> names_;
+    std::vector<TemporaryBytes> columns_;
+    std::string bytes_;
+    std::uint64_t rows_ = 0;
+};
 
 constexpr int deepest_nesting = 16;
 constexpr std::uint64_t most_unpacked = std::uint64_t{1} << 33;
@@ -179,24 +162,13 @@ std::optional<Storage> storage_of(std::uint32_t type) {
 }
 
 std::string_view class_name(unsigned code) {
-    switch (code) {
-        case cell:
-            return "a cell array";
-        case structure:
-            return "a struct";
-        case object:
-            return "an object";
-        case text:
-            return "text";
-        case sparse:
-            return "a sparse matrix";
-        case function:
-            return "a function handle";
-        case opaque:
-            return "an object (a table, a timeseries, a string)";
-        default:
-            return code < first_number || code > opaque ? "unknown" : "";
-    }
+    if (code >= first_number && code <= last_number) return "";
+    constexpr std::array<std::string_view, first_number> below = {
+        "unknown", "a cell array", "a struct", "an object", "text", "a sparse matrix"};
+    return code < first_number ? below[code]
+           : code == function  ? "a function handle"
+           : code == opaque    ? "an object (a table, a timeseries, a string)"
+                               : "unknown";
 }
 
 struct Element {
@@ -227,7 +199,9 @@ class MatWalk {
         }
         name_signals();
     }
-    MatContents found;
+    std::vector<StoredArray>
+        arrays;  ///< of numbers, by paths as MATLAB writes them: "log.q_dot", "runs(2).tau"
+    std::vector<ContentEntry> others;  ///< what is no log: "a function handle", "complex"
 
   private:
     [[noreturn]] void fail(std::uint64_t at, const std::string& what) const {
@@ -272,7 +246,7 @@ class MatWalk {
                 if (storage.next < end)
                     kind = matlab_object_text(name, text_of(*bytes, element_at(*bytes, storage.next)));
             }
-            found.others.push_back({name, "", kind, "", {}, false});
+            others.push_back({name, "", kind, "", {}, false});
             return;
         }
         std::vector<std::uint64_t> dimensions;
@@ -301,7 +275,7 @@ class MatWalk {
         words_[path] = words;
     }
     void name_signals() {
-        for (StoredArray& array : found.arrays) {
+        for (StoredArray& array : arrays) {
             if (!array.path.ends_with(".Data")) continue;
             const std::string folder = array.path.substr(0, array.path.rfind('.'));
             const std::string axis = folder.substr(folder.rfind('.') + 1);
@@ -373,10 +347,10 @@ class MatWalk {
             return strided_cursor(bytes, start + column * type.size * (together ? own.rows : 1),
                                   type.size * (together ? 1 : own.columns), type);
         };
-        found.arrays.push_back(std::move(array));
+        arrays.push_back(std::move(array));
     }
     void add_other(const std::vector<std::uint64_t>& dimensions, const std::string& path, std::string what) {
-        found.others.push_back(
+        others.push_back(
             {path, fmt::format("{}", fmt::join(dimensions, " x ")), std::move(what), "", {}, false});
     }
 
@@ -401,7 +375,7 @@ ColumnLog make_mat(std::unique_ptr<ByteSource> source, std::string first_bytes, 
     if (!sniff(first_bytes))
         raise<DataError>("{}: read no head of a MAT file, expected one; leave out --format", source->name());
     const auto file = store_bytes(std::move(source), std::move(first_bytes));
-    const MatContents found = std::move(MatWalk(file).found);
+    const MatWalk found(file);
     return columns_of_arrays(file, "mat", PathStyle::matlab, found.arrays, found.others, options);
 }
 

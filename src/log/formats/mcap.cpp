@@ -58,32 +58,6 @@ class McapFields {
     std::string_view rest_;
 };
 
-class McapRecords {
-  public:
-    /// Throws DataError, beginning with the file's name, as next() does.
-    explicit McapRecords(std::shared_ptr<StoredBytes> file);
-    /// Those of the data section, those inside chunks in place of the chunks. False at its end.
-    bool next(McapRecord& record);
-    void restart();
-    /// The whole summary section behind the data; empty where there is none.
-    [[nodiscard]] std::string summary();
-    [[nodiscard]] const std::string& name() const { return file_->name(); }
-    void require_unchanged() const { file_->require_unchanged(); }
-    /// What is wrong, with the place in the file.
-    [[noreturn]] void fail(const std::string& what) const;
-
-  private:
-    bool next_in_chunk(McapRecord& record);
-    void open_chunk(std::string_view content);
-    std::string_view read_on(std::uint64_t size);
-
-    std::shared_ptr<StoredBytes> file_;
-    std::uint64_t at_ = 0, began_ = 0;  ///< of the record in the file
-    std::uint64_t ahead_at_ = 0;
-    std::string ahead_, chunk_;
-    std::string_view in_chunk_;
-};
-
 constexpr std::string_view magic = "\x89MCAP0\r\n";
 constexpr std::size_t head_size = 9, ahead_size = std::size_t{1} << 18;
 constexpr std::uint64_t largest_record = std::uint64_t{1} << 28, largest_chunk = std::uint64_t{1} << 27;
@@ -109,115 +83,128 @@ void unpack_chunk(std::string_view packed, const Packing& packing, const std::st
         raise<DataError>("a chunk of {} bytes when unpacked, expected {}", have, into.size());
 }
 
-McapRecords::McapRecords(std::shared_ptr<StoredBytes> file) : file_(std::move(file)) { restart(); }
-
-void McapRecords::fail(const std::string& what) const {
-    raise<DataError>("{}: read at byte {} {}; 'mcap recover' saves what can be read", name(), began_, what);
-}
-
-void McapRecords::restart() {
-    at_ = began_ = 0;
-    ahead_.clear();
-    in_chunk_ = {};
-    if (file_->size() < magic.size() || read_on(magic.size()) != magic) fail("no magic of MCAP");
-}
-
-// The next bytes of the file; small ones come out of a piece that was read ahead.
-std::string_view McapRecords::read_on(std::uint64_t size) {
-    const std::uint64_t total = file_->size();
-    if (size > total || at_ > total - size)
-        fail(fmt::format("a record of {} bytes, of which {} are there; the file is cut off", size,
-                         total - std::min(at_, total)));
-    const bool there = at_ >= ahead_at_ && at_ + size <= ahead_at_ + ahead_.size();
-    if (!there) {
-        const std::uint64_t piece = std::min(std::max<std::uint64_t>(size, ahead_size), total - at_);
-        ahead_.resize(static_cast<std::size_t>(piece));
-        file_->read_at(at_, ahead_.data(), ahead_.size());
-        ahead_at_ = at_;
+class McapRecords {
+  public:
+    /// Throws DataError, beginning with the file's name, as next() does.
+    explicit McapRecords(std::shared_ptr<StoredBytes> file) : file_(std::move(file)) { restart(); }
+    [[nodiscard]] const std::string& name() const { return file_->name(); }
+    void require_unchanged() const { file_->require_unchanged(); }
+    void restart() {
+        at_ = began_ = 0;
+        ahead_.clear();
+        in_chunk_ = {};
+        if (file_->size() < magic.size() || read_on(magic.size()) != magic) fail("no magic of MCAP");
     }
-    const auto part = std::string_view(ahead_).substr(static_cast<std::size_t>(at_ - ahead_at_),
-                                                      static_cast<std::size_t>(size));
-    at_ += size;
-    return part;
-}
-
-bool McapRecords::next_in_chunk(McapRecord& record) {
-    if (in_chunk_.empty()) return false;
-    McapFields fields(in_chunk_);
-    try {
-        record.code = static_cast<McapOpcode>(fields.number(1));
-        record.content = fields.bytes(fields.number(8));
-    } catch (const DataError& error) {
-        fail(fmt::format("a chunk with {}", error.what()));
-    }
-    in_chunk_ = fields.rest();
-    return true;
-}
-
-bool McapRecords::next(McapRecord& record) {
-    while (!next_in_chunk(record)) {
-        began_ = at_;
-        if (at_ == file_->size()) fail("no end of the data; the recording was not closed");
-        const std::string_view head = read_on(head_size);
-        record.code = static_cast<McapOpcode>(head[0]);
-        const std::uint64_t size = little_endian(head.substr(1));
-        if (size > largest_record && record.code != McapOpcode{0x09})
-            fail(fmt::format("a record of {} bytes, expected {} at most", size, largest_record));
-        if (record.code == McapOpcode::data_end || record.code == McapOpcode::footer) return false;
-        if (record.code == McapOpcode{0x09} && size > ahead_size) {  // an attachment is no log
-            if (size > file_->size() - at_) fail("an attachment that is cut off");
-            at_ += size;
-            continue;
+    /// Those of the data section, those inside chunks in place of the chunks. False at its end.
+    bool next(McapRecord& record) {
+        while (!next_in_chunk(record)) {
+            began_ = at_;
+            if (at_ == file_->size()) fail("no end of the data; the recording was not closed");
+            const std::string_view head = read_on(head_size);
+            record.code = static_cast<McapOpcode>(head[0]);
+            const std::uint64_t size = little_endian(head.substr(1));
+            if (size > largest_record && record.code != McapOpcode{0x09})
+                fail(fmt::format("a record of {} bytes, expected {} at most", size, largest_record));
+            if (record.code == McapOpcode::data_end || record.code == McapOpcode::footer) return false;
+            if (record.code == McapOpcode{0x09} && size > ahead_size) {  // an attachment is no log
+                if (size > file_->size() - at_) fail("an attachment that is cut off");
+                at_ += size;
+                continue;
+            }
+            record.content = read_on(size);
+            if (record.code != McapOpcode::chunk) return true;
+            try {
+                open_chunk(record.content);
+            } catch (const DataError& error) {
+                fail(error.what());
+            }
         }
-        record.content = read_on(size);
-        if (record.code != McapOpcode::chunk) return true;
+        return true;
+    }
+    /// The whole summary section behind the data; empty where there is none.
+    [[nodiscard]] std::string summary() {
+        constexpr std::uint64_t footer_size = head_size + 20, tail = footer_size + magic.size();
+        const std::uint64_t total = file_->size();
+        if (total < tail + magic.size()) return {};
+        const std::string footer = file_->text_at(total - tail, tail);
+        if (footer.substr(footer_size) != magic || footer[0] != '\x02') return {};
+        const std::uint64_t start = little_endian(std::string_view(footer).substr(head_size, 8)),
+                            end = total - tail;
+        if (start == 0 || start >= end || end - start > largest_record) return {};
+        return file_->text_at(start, static_cast<std::size_t>(end - start));
+    }
+    /// What is wrong, with the place in the file.
+    [[noreturn]] void fail(const std::string& what) const {
+        raise<DataError>("{}: read at byte {} {}; 'mcap recover' saves what can be read", name(), began_,
+                         what);
+    }
+
+  private:
+    bool next_in_chunk(McapRecord& record) {
+        if (in_chunk_.empty()) return false;
+        McapFields fields(in_chunk_);
         try {
-            open_chunk(record.content);
+            record.code = static_cast<McapOpcode>(fields.number(1));
+            record.content = fields.bytes(fields.number(8));
         } catch (const DataError& error) {
-            fail(error.what());
+            fail(fmt::format("a chunk with {}", error.what()));
         }
+        in_chunk_ = fields.rest();
+        return true;
     }
-    return true;
-}
-
-void McapRecords::open_chunk(std::string_view content) {
-    McapFields fields(content);
-    static_cast<void>(fields.bytes(16));  // first and last time
-    const std::uint64_t size = fields.number(8);
-    const auto checksum = static_cast<std::uint32_t>(fields.number(4));
-    const std::string_view compression = fields.text();
-    const std::string_view packed = fields.bytes(fields.number(8));
-    if (size > largest_chunk)
-        raise<DataError>("a chunk of {} bytes when unpacked, expected {} at most", size, largest_chunk);
-    if (compression.empty()) {
-        if (packed.size() != size) raise<DataError>("a chunk of {} bytes, expected {}", packed.size(), size);
-        chunk_ = packed;
-    } else {
-        const Packing* const packing = compression == "zstd"  ? &packings::zstd
-                                       : compression == "lz4" ? &packings::lz4
-                                                              : nullptr;
-        if (packing == nullptr)
-            raise<DataError>("a chunk packed as '{}', expected zstd, lz4 or none", compression.substr(0, 20));
-        chunk_.resize(static_cast<std::size_t>(size));
-        unpack_chunk(packed, *packing, name(), chunk_);
+    void open_chunk(std::string_view content) {
+        McapFields fields(content);
+        static_cast<void>(fields.bytes(16));  // first and last time
+        const std::uint64_t size = fields.number(8);
+        const auto checksum = static_cast<std::uint32_t>(fields.number(4));
+        const std::string_view compression = fields.text();
+        const std::string_view packed = fields.bytes(fields.number(8));
+        if (size > largest_chunk)
+            raise<DataError>("a chunk of {} bytes when unpacked, expected {} at most", size, largest_chunk);
+        if (compression.empty()) {
+            if (packed.size() != size)
+                raise<DataError>("a chunk of {} bytes, expected {}", packed.size(), size);
+            chunk_ = packed;
+        } else {
+            const Packing* const packing = compression == "zstd"  ? &packings::zstd
+                                           : compression == "lz4" ? &packings::lz4
+                                                                  : nullptr;
+            if (packing == nullptr)
+                raise<DataError>("a chunk packed as '{}', expected zstd, lz4 or none",
+                                 compression.substr(0, 20));
+            chunk_.resize(static_cast<std::size_t>(size));
+            unpack_chunk(packed, *packing, name(), chunk_);
+        }
+        if (const auto found = crc32_of(chunk_); checksum != 0 && found && *found != checksum)
+            raise<DataError>("a chunk with the checksum {:08x}, expected {:08x}: its bytes are damaged",
+                             *found, checksum);
+        in_chunk_ = chunk_;
     }
-    if (const auto found = crc32_of(chunk_); checksum != 0 && found && *found != checksum)
-        raise<DataError>("a chunk with the checksum {:08x}, expected {:08x}: its bytes are damaged", *found,
-                         checksum);
-    in_chunk_ = chunk_;
-}
+    // The next bytes of the file; small ones come out of a piece that was read ahead.
+    std::string_view read_on(std::uint64_t size) {
+        const std::uint64_t total = file_->size();
+        if (size > total || at_ > total - size)
+            fail(fmt::format("a record of {} bytes, of which {} are there; the file is cut off", size,
+                             total - std::min(at_, total)));
+        const bool there = at_ >= ahead_at_ && at_ + size <= ahead_at_ + ahead_.size();
+        if (!there) {
+            const std::uint64_t piece = std::min(std::max<std::uint64_t>(size, ahead_size), total - at_);
+            ahead_.resize(static_cast<std::size_t>(piece));
+            file_->read_at(at_, ahead_.data(), ahead_.size());
+            ahead_at_ = at_;
+        }
+        const auto part = std::string_view(ahead_).substr(static_cast<std::size_t>(at_ - ahead_at_),
+                                                          static_cast<std::size_t>(size));
+        at_ += size;
+        return part;
+    }
 
-std::string McapRecords::summary() {
-    constexpr std::uint64_t footer_size = head_size + 20, tail = footer_size + magic.size();
-    const std::uint64_t total = file_->size();
-    if (total < tail + magic.size()) return {};
-    const std::string footer = file_->text_at(total - tail, tail);
-    if (footer.substr(footer_size) != magic || footer[0] != '\x02') return {};
-    const std::uint64_t start = little_endian(std::string_view(footer).substr(head_size, 8)),
-                        end = total - tail;
-    if (start == 0 || start >= end || end - start > largest_record) return {};
-    return file_->text_at(start, static_cast<std::size_t>(end - start));
-}
+    std::shared_ptr<StoredBytes> file_;
+    std::uint64_t at_ = 0, began_ = 0;  ///< of the record in the file
+    std::uint64_t ahead_at_ = 0;
+    std::string ahead_, chunk_;
+    std::string_view in_chunk_;
+};
 
 class McapMessages final : public MessageSource {
   public:

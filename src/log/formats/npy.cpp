@@ -1,29 +1,24 @@
 // SPDX-License-Identifier: MIT
 // NumPy array files: structured arrays, whose field names are column names, and plain two-dimensional ones.
 
-#include "log/npy/npy_columns.hpp"
-
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <optional>
 
+#include "log/containers/stored_array.hpp"
 #include "log/formats.hpp"
-#include "log/npy/npy_writer.hpp"
+#include "log/npy/npy_header.hpp"
+#include "log/numbers/column_reader.hpp"
 #include "log/open.hpp"
 #include "ripplenotch/core/error.hpp"
 
 namespace ripplenotch {
 
 namespace {
-
-std::vector<ColumnInfo> info_of(const NpyHeader& header) {
-    std::vector<ColumnInfo> info;
-    for (const NpyField& field : header.fields)
-        info.push_back({field.name, "", "", field.whole(), field.kind != '\0'});
-    return info;
-}
 
 void read_up_to(ByteSource& source, std::string& bytes, std::size_t size) {
     bytes.resize(read_on(source, bytes, bytes.size(), size));
@@ -44,6 +39,180 @@ std::string by_rows(std::string_view data, const NpyHeader& header, const std::s
                       field.offset * header.rows + row * field.size);
     return rows;
 }
+
+std::string python_string(const std::string& text) {
+    std::string quoted(1, '\'');
+    for (const char c : text) {
+        if (c == '\'' || c == '\\') quoted += '\\';
+        quoted += c;
+    }
+    quoted += '\'';
+    return quoted;
+}
+
+/// An array whose length is known only at the end: its header is patched in a file, and the rows are spooled
+/// when the target is a pipe.
+class CountedArray {
+  public:
+    /// `after_rows`: of the shape, "," or ", 4".
+    CountedArray(ByteSink& sink, std::string descr, std::string after_rows)
+        : sink_(sink), descr_(std::move(descr)), after_rows_(std::move(after_rows)) {
+        if (sink_.can_rewrite())
+            sink_.write(head());
+        else
+            spool_.emplace();
+    }
+    void put(std::string_view bytes, std::size_t rows) {
+        if (spool_)
+            spool_->put(bytes);
+        else
+            sink_.write(bytes);
+        rows_ += rows;
+    }
+    void end() {
+        if (!spool_) {
+            sink_.rewrite(0, head());
+            return;
+        }
+        sink_.write(head());
+        spool_->rewind();
+        std::vector<char> buffer(std::size_t{1} << 20);
+        while (const std::size_t got = spool_->read(buffer.data(), buffer.size()))
+            sink_.write({buffer.data(), got});
+    }
+
+  private:
+    [[nodiscard]] std::string head() const {
+        return make_npy_header(descr_, fmt::format("{}{}", rows_, after_rows_), true);
+    }
+
+    ByteSink& sink_;
+    std::optional<TemporaryBytes> spool_;
+    std::string descr_, after_rows_;
+    std::size_t rows_ = 0;
+};
+
+/// Records of a reader with another torque; every other byte passes as it is.
+class NpyWriter final : public LogWriter {
+  public:
+    /// Throws UsageError when the torque is an integer and would be rounded (--append adds a float instead).
+    NpyWriter(std::unique_ptr<ByteSink> sink, const ColumnReader& reader, const WriteOptions& options)
+        : sink_(std::move(sink)), append_(options.append) {
+        const Layout& layout = reader.layout();
+        const auto& records = dynamic_cast<const RecordColumns&>(reader.columns().base());
+        const NpyHeader& header = records.header();
+        for (const JointColumns& joint : layout.all_chosen()) {
+            if (!joint.torque) raise<UsageError>("{}: there is no torque column to write", layout.source);
+            fields_.push_back(header.fields[*joint.torque]);
+            factors_.push_back(layout.columns[*joint.torque].factor);
+            if (fields_.back().kind == 'f' || (append_ && header.structured)) continue;
+            raise<UsageError>(
+                "{}: the torque is stored in integers, which would round the result; write it as CSV with -o "
+                "NAME.csv{}",
+                layout.source, header.structured ? ", or add a column with --append" : "");
+        }
+        sink_->expect(records.source_bytes());
+        record_in_ = record_out_ = header.record_size;
+        begin(layout, records, options);
+    }
+    std::string_view prepare(RowBlock& block, Torques torque_nm, std::string& room) const override {
+        char* records = block.bytes.data();
+        std::size_t size = block.bytes.size();
+        if (append_) {
+            size = block.size() * record_out_;
+            if (room.size() < size) room.resize(size);
+            records = room.data();
+            for (std::size_t i = 0; i < block.size(); ++i)
+                block.bytes.copy(records + i * record_out_, record_in_, i * record_in_);
+        }
+        // A value that nobody changed keeps its bits, whatever the unit.
+        const bool as_written = !append_ && block.held_bad_values == 0;
+        for (std::size_t j = 0; j < fields_.size(); ++j) {
+            const std::span<const double> raw =
+                as_written ? std::span(block.joints[j].torque_nm) : std::span<double>();
+            store_column(records, record_out_, fields_[j],
+                         {std::span(torque_nm[j]).first(block.size()), raw, factors_[j]});
+        }
+        return {records, size};
+    }
+    void put(const RowBlock& block, Torques /*torque_nm*/, std::string_view bytes) override {
+        if (counted_)
+            counted_->put(bytes, block.size());
+        else
+            sink_->write(bytes);
+    }
+    void finish() override {
+        if (counted_) counted_->end();
+        sink_->finish();
+    }
+
+  private:
+    void begin(const Layout& layout, const RecordColumns& records, const WriteOptions& options) {
+        const NpyHeader& header = records.header();
+        std::string descr = header.descr;
+        if (append_) {
+            const std::vector<std::string> names = appended_names(layout, options);
+            if (header.structured) {
+                descr.resize(descr.rfind(']'));
+                while (descr.back() == ' ' || descr.back() == ',') descr.pop_back();
+            }
+            for (std::size_t j = 0; j < fields_.size(); ++j) {
+                NpyField& field = fields_[j];
+                if (field.kind != 'f') field = {"", 'f', 8, false, 0};
+                field.offset = record_out_;
+                record_out_ += field.size;
+                if (header.structured)
+                    descr += fmt::format(", ({}, '{}f{}')", python_string(names[j]),
+                                         field.big_endian ? '>' : '<', field.size);
+            }
+            if (header.structured) descr += ']';
+        }
+        const std::string after_rows = header.after_rows(append_ ? fields_.size() : 0);
+        if (layout.outside)
+            counted_.emplace(*sink_, descr, after_rows);
+        else if (append_)
+            sink_->write(make_npy_header(descr, fmt::format("{}{}", header.rows, after_rows), false));
+        else
+            sink_->write(records.head());
+    }
+
+    std::unique_ptr<ByteSink> sink_;
+    std::vector<NpyField> fields_;  ///< by joint: where the new torque goes, in a record of the output
+    std::vector<double> factors_;   ///< by joint
+    std::size_t record_in_ = 0, record_out_ = 0;
+    bool append_;
+    std::optional<CountedArray> counted_;  ///< where a range leaves rows out
+};
+
+/// A structured array of float64 columns.
+class NpyTableWriter final : public TableWriter {
+  public:
+    /// Arrays hold every digit: of the options none concerns them.
+    NpyTableWriter(ByteSink& sink, const WriteOptions& /*options*/) : sink_(sink) {}
+    void begin(std::span<const std::string> names) override {
+        std::vector<std::string> fields;
+        for (const std::string& name : names)
+            fields.push_back(fmt::format("({}, '<f8')", python_string(name)));
+        array_.emplace(sink_, fmt::format("[{}]", fmt::join(fields, ", ")), ",");
+    }
+    void rows(std::span<const std::span<const double>> columns) override {
+        const std::size_t count = columns.empty() ? 0 : columns[0].size();
+        const std::size_t width = 8 * columns.size();
+        bytes_.resize(count * width);
+        for (std::size_t c = 0; c < columns.size(); ++c) {
+            const NpyField field{"", 'f', 8, false, 8 * c};
+            for (std::size_t r = 0; r < count; ++r)
+                store_float(bytes_.data() + r * width, field, columns[c][r]);
+        }
+        array_->put(bytes_, count);
+    }
+    void end() override { array_->end(); }
+
+  private:
+    ByteSink& sink_;
+    std::optional<CountedArray> array_;
+    std::string bytes_;
+};
 
 constexpr std::array<std::string_view, 1> npy_extensions = {".npy"};
 
@@ -79,53 +248,6 @@ ColumnLog make_npy(std::unique_ptr<ByteSource> source, std::string first_bytes,
 }
 
 }  // namespace
-
-RecordColumns::RecordColumns(std::unique_ptr<ByteSource> source, std::string first_bytes, NpyHeader header,
-                             std::string head)
-    : Columns(source->name(), info_of(header)),
-      source_(std::move(source)),
-      begun_(std::move(first_bytes)),
-      header_(std::move(header)),
-      head_(std::move(head)) {}
-
-std::size_t RecordColumns::next(std::size_t rows, NumberRows& into, std::string& bytes) {
-    const std::size_t size = header_.record_size, left = header_.rows - rows_, at = bytes.size();
-    const std::size_t asked = left == 0 ? 1 : std::min(left, std::max<std::size_t>(1, rows)) * size;
-    const std::size_t taken = std::min(asked, begun_.size() - begun_at_);
-    bytes.append(begun_, begun_at_, taken);
-    begun_at_ += taken;
-    bytes.resize(read_on(*source_, bytes, at + taken, at + asked));
-    const std::size_t have = bytes.size() - at, whole = left == 0 ? 0 : have / size;
-    if (left == 0 && have > 0) {
-        raise<DataError>(
-            "{}: read more bytes after the {} rows of the array, expected the end; save one array a file",
-            name(), header_.rows);
-    }
-    if (whole == 0 && have > 0 && header_.rows == rows_unknown) complain_of_end(have);
-    if (whole == 0 && left > 0 && header_.rows != rows_unknown) {
-        raise<DataError>(
-            "{}: read {} rows and a part of one, expected {} rows; the file is cut off, save the array again",
-            name(), rows_, header_.rows);
-    }
-    // A part of a row is the end of the file.
-    if (have > whole * size) {
-        begun_ = bytes.substr(at + whole * size);
-        begun_at_ = 0;
-    }
-    bytes.resize(at + whole * size);
-    for (std::size_t c = 0; c < header_.fields.size(); ++c)
-        if (wanted(c) && info()[c].number)
-            load_column(bytes.data() + at, size, header_.fields[c], whole, into[c]);
-    rows_ += whole;
-    return whole;
-}
-
-void RecordColumns::complain_of_end(std::size_t left_over) const {
-    raise<DataError>(
-        "{}: read {} rows and {} bytes of one more, expected records of {} bytes; the file is cut off, or "
-        "its records differ from its header",
-        name(), rows_, left_over, header_.record_size);
-}
 
 const LogFormat formats::npy{
     .name = "npy",

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "log/formats.hpp"
-#include "log/npy/npy_columns.hpp"
+#include "log/npy/npy_header.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 

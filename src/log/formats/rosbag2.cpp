@@ -5,9 +5,6 @@
 #include <array>
 
 #include "log/formats.hpp"
-#include "log/messages/message_columns.hpp"
-#include "ripplenotch/core/error.hpp"
-#include "ripplenotch/core/visible_text.hpp"
 
 #if defined(RIPPLENOTCH_HAS_SQLITE)
 
@@ -17,6 +14,10 @@
 #include <algorithm>
 #include <map>
 #include <tuple>
+
+#include "log/messages/message_columns.hpp"
+#include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/visible_text.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -189,18 +190,11 @@ class Rosbag2Messages final : public MessageSource {
     std::optional<Statement> messages_;
 };
 
-std::unique_ptr<MessageSource> open_rosbag2(std::shared_ptr<StoredBytes> file) {
-    return std::make_unique<Rosbag2Messages>(std::move(file));
-}
-
-}  // namespace
-}  // namespace ripplenotch
-#else
-namespace ripplenotch {
-namespace {
-
-std::unique_ptr<MessageSource> open_rosbag2(std::shared_ptr<StoredBytes> file) {
-    raise<UsageError>("{}: this build was made without libsqlite3; install it and build again", file->name());
+ColumnLog make_rosbag2(std::unique_ptr<ByteSource> source, std::string first_bytes,
+                       const ReadOptions& options) {
+    const auto file = store_bytes(std::move(source), std::move(first_bytes));
+    return columns_of_messages([file] { return std::make_unique<Rosbag2Messages>(file); }, "rosbag2",
+                               options);
 }
 
 }  // namespace
@@ -212,25 +206,18 @@ namespace {
 
 constexpr std::array<std::string_view, 1> rosbag2_extensions = {".db3"};
 
-ColumnLog make_rosbag2(std::unique_ptr<ByteSource> source, std::string first_bytes,
-                       const ReadOptions& options) {
-    const auto file = store_bytes(std::move(source), std::move(first_bytes));
-    return columns_of_messages([file] { return open_rosbag2(file); }, "rosbag2", options);
-}
-
 }  // namespace
 
 const LogFormat formats::rosbag2 {
     .name = "rosbag2", .summary = "rosbag2 recordings in SQLite (.db3), as mcap",
     .extensions = rosbag2_extensions, .binary = true,
-    .lacks =
-#if defined(RIPPLENOTCH_HAS_SQLITE)
-        {},
-#else
-        "libsqlite3",
+#if !defined(RIPPLENOTCH_HAS_SQLITE)
+    .lacks = "libsqlite3",
 #endif
     .sniff = [](std::string_view bytes) { return bytes.starts_with("SQLite format 3"); },
+#if defined(RIPPLENOTCH_HAS_SQLITE)
     .open = open_as_columns<make_rosbag2>,
+#endif
 };
 
 }  // namespace ripplenotch

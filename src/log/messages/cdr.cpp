@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Messages in CDR (OMG's Common Data Representation, version 1, as ROS 2 writes it): which numbers are in the
-// first of a topic, and a short program that takes them out of the next million.
+// first of a topic, and how they are taken out of the next million.
 
 #include <fmt/format.h>
 
@@ -10,7 +10,9 @@
 #include <cstdint>
 #include <cstring>
 #include <map>
+#include <optional>
 #include <string_view>
+#include <utility>
 
 #include "log/messages/message_columns.hpp"
 #include "ripplenotch/core/error.hpp"
@@ -39,6 +41,16 @@ struct RosField {
     RosType type;
     Count count = Count::one;
     std::size_t fixed = 1;
+    /// The names of joints, to which the lists behind it belong.
+    [[nodiscard]] bool names_joints() const {
+        return type.kind == RosType::Kind::text && count == Count::any &&
+               (name == "name" || name == "joint_names" || name == "names");
+    }
+    /// Nothing stands in the message, however often.
+    [[nodiscard]] bool is_empty() const {
+        const bool nothing = type.kind == RosType::Kind::record && type.fields.empty();
+        return count == Count::any ? false : nothing || fixed == 0;
+    }
 };
 
 constexpr int deepest_message = 16;
@@ -118,7 +130,7 @@ class SchemaParser {
         RosField field;
         field.name = word;
         field.type = type_of(read_count(type, field), name, depth);
-        into.fields.push_back(std::move(field));
+        if (!field.is_empty()) into.fields.push_back(std::move(field));
     }
     // Without "[]", "[3]", "[<=3]" and the "<=10" of a string.
     static std::string_view read_count(std::string_view type, RosField& field) {
@@ -202,25 +214,6 @@ RosType parse_ros_schema(std::string_view schema, const std::string& type) {
 
 // Where a message in CDR is read: numbers at multiples of their size, texts and lists behind their lengths.
 
-/// One step through a message.
-struct CdrStep {
-    enum class Kind {
-        number,    ///< of `size` bytes, kept
-        stamp,     ///< of eight bytes, kept
-        skip,      ///< `count` numbers of `size` bytes
-        skip_any,  ///< as many as stand in front
-        text,
-        text_is,     ///< `expected`
-        length_is,   ///< `count` in front of a sequence
-        repeat_any,  ///< `inner`, as many times as stand in front
-    };
-    Kind kind = Kind::skip;
-    std::size_t size = 0, count = 1, leaf = 0;
-    NpyField type = {};  ///< of a number that is kept
-    std::string path, expected;
-    std::vector<CdrStep> inner;
-};
-
 constexpr std::size_t cdr_head = 4;  // says the byte order
 
 /// Throws DataError, without a source's name, where the message ends.
@@ -256,13 +249,11 @@ class CdrCursor {
         number(4, reinterpret_cast<char*>(&value));
         return value;
     }
-    // The length of a list whose elements take a byte or more each.
-    std::uint32_t list_length() {
-        const std::uint32_t count = length();
+    // There may be so many elements, of a byte or more each.
+    void require(std::size_t count) const {
         if (count > bytes_.size() - at_)
             raise<DataError>("a list of {} things in the {} bytes that are left of a message, expected fewer",
                              count, bytes_.size() - at_);
-        return count;
     }
     std::string_view text() {
         const std::uint32_t size = length();
@@ -284,223 +275,179 @@ class CdrCursor {
     bool swaps_ = false;
 };
 
-// Reads on over what a step says, and checks what it demands.
-void pass_cdr(CdrCursor& cursor, const CdrStep& step);
+constexpr std::size_t most_leaves = 4096, most_names_of_joints = 10000;
 
-void pass_cdr(CdrCursor& cursor, const std::vector<CdrStep>& steps) {
-    for (const CdrStep& step : steps) pass_cdr(cursor, step);
-}
-
-void pass_cdr(CdrCursor& cursor, const CdrStep& step) {
-    switch (step.kind) {
-        case CdrStep::Kind::number:
-            cursor.take(step.size);
-            break;
-        case CdrStep::Kind::stamp:
-            cursor.take(4, 2);
-            break;
-        case CdrStep::Kind::skip:
-            if (step.count > 0) cursor.take(step.size, step.count);
-            break;
-        case CdrStep::Kind::skip_any:
-            if (const std::uint32_t count = cursor.length(); count > 0) cursor.take(step.size, count);
-            break;
-        case CdrStep::Kind::text:
-            cursor.text();
-            break;
-        case CdrStep::Kind::text_is:
-            if (const std::string_view text = cursor.text(); text != step.expected)
-                raise<DataError>(
-                    "'{}' as {}, expected '{}' as in the first message; record the joints on topics of their "
-                    "own",
-                    text.substr(0, 60), step.path, step.expected);
-            break;
-        case CdrStep::Kind::length_is:
-            if (const std::uint32_t count = cursor.length(); count != step.count)
-                raise<DataError>(
-                    "{} elements of {}, expected {} as in the first message; record messages of one shape on "
-                    "a topic",
-                    count, step.path, step.count);
-            break;
-        case CdrStep::Kind::repeat_any:
-            for (std::uint32_t left = cursor.list_length(); left > 0; --left) pass_cdr(cursor, step.inner);
-            break;
-    }
-}
-
-bool keeps(const CdrStep& step) {
-    return step.kind == CdrStep::Kind::number || step.kind == CdrStep::Kind::stamp;
-}
-
-class CdrReader final : public MessageReader {
-  public:
-    CdrReader(std::shared_ptr<const std::vector<CdrStep>> steps, const std::vector<bool>& wanted)
-        : steps_(std::move(steps)), count_(steps_->size()), wanted_(wanted) {
-        // Behind the last useful step there is nothing to go on for.
-        const auto useful = [&](const CdrStep& step) {
-            return keeps(step) ? wanted_[step.leaf] : step.kind == CdrStep::Kind::length_is;
-        };
-        while (count_ > 0 && !useful((*steps_)[count_ - 1])) --count_;
-    }
-    void read(std::string_view message, std::vector<LeafNumber>& into) override {
-        CdrCursor cursor(message);
-        for (std::size_t s = 0; s < count_; ++s) {
-            const CdrStep& step = (*steps_)[s];
-            if (!keeps(step) || !wanted_[step.leaf]) {
-                pass_cdr(cursor, step);
-                continue;
-            }
-            std::array<char, 8> raw{};
-            if (step.kind == CdrStep::Kind::number)
-                cursor.number(step.size, raw.data());
-            else
-                raw = std::bit_cast<std::array<char, 8>>(cursor.stamp());
-            into[step.leaf].value = load_field(raw.data(), step.type);
-            if (step.type.whole()) into[step.leaf].count = load_count(raw.data(), step.type);
-        }
-    }
-
-  private:
-    std::shared_ptr<const std::vector<CdrStep>> steps_;
-    std::size_t count_;
-    std::vector<bool> wanted_;  ///< by leaf
+/// What the first message of a topic says of all that follow, in the order in which it stands in them.
+struct CdrShape {
+    struct List {
+        std::string path;
+        std::optional<std::size_t> length;  ///< none: it may be of any, and is no columns
+    };
+    struct Name {
+        std::string path, text;
+    };
+    RosType type;
+    std::vector<MessageLeaf> leaves;
+    std::vector<List> lists;  ///< without a length in their type
+    std::vector<Name> names;  ///< of joints
 };
 
-constexpr std::size_t most_leaves = 4096, most_steps = 100000;
-
-/// Goes through the first message and writes down the way.
-class LayOut {
+/// Goes through a message by its type. Paths are put together for the first one alone.
+class CdrWalk {
   public:
-    explicit LayOut(std::string_view message) : cursor_(message) {}
-    void record(const RosType& type, const std::string& prefix, std::vector<CdrStep>& steps) {
-        const std::vector<std::string>* const outer = names_;
+    /// The first message.
+    CdrWalk(std::string_view message, CdrShape& shape) : cursor_(message), shape_(shape), first_(&shape) {}
+    /// Another one, which has to be like the first. It is left when `useful` lists and wanted leaves have
+    /// been seen.
+    CdrWalk(std::string_view message, const CdrShape& shape, std::size_t useful,
+            const std::vector<bool>& wanted, std::vector<LeafNumber>& into)
+        : cursor_(message), shape_(shape), left_(useful), wanted_(&wanted), into_(&into) {}
+
+    void record(const RosType& type, const std::string& prefix) {
+        const std::vector<std::string>* const outer = std::exchange(names_, nullptr);
         std::vector<std::string> names;
-        names_ = nullptr;
         for (const RosField& field : type.fields) {
-            const bool joint_names =
-                field.name == "name" || field.name == "joint_names" || field.name == "names";
-            const bool texts = field.type.kind == RosType::Kind::text && field.count == RosField::Count::any;
-            if (joint_names && texts) {
-                take_names(prefix + field.name, names, steps);
+            if (left_ == 0) break;
+            const std::string path = first_ != nullptr ? prefix + field.name : std::string();
+            if (field.names_joints() && !passing_) {
+                take_names(path, names);
                 names_ = &names;
             } else {
-                add_field(field, prefix + field.name, steps);
+                take(field, path);
             }
         }
         names_ = outer;
     }
-    std::vector<MessageLeaf> leaves;
 
   private:
-    void take_names(const std::string& path, std::vector<std::string>& names, std::vector<CdrStep>& steps) {
+    void take_names(const std::string& path, std::vector<std::string>& names) {
         const std::uint32_t count = cursor_.length();
-        if (count > 10000) raise<DataError>("{} names of joints", count);
-        steps.push_back({CdrStep::Kind::length_is, 0, count, 0, {}, path, {}, {}});
-        for (std::uint32_t i = 0; i < count; ++i) {
-            names.emplace_back(cursor_.text());
-            steps.push_back(
-                {CdrStep::Kind::text_is, 0, 1, 0, {}, fmt::format("{}[{}]", path, i), names.back(), {}});
-        }
-    }
-    void add_field(const RosField& field, const std::string& path, std::vector<CdrStep>& steps) {
-        if (field.count == RosField::Count::one) return add_one(field.type, path, path, steps);
-        const bool any = field.count == RosField::Count::any;
-        CdrCursor ahead = cursor_;
-        const std::size_t count = any ? ahead.length() : field.fixed;
-        const bool listed =
-            count > 0 && count <= most_listed_elements && field.type.kind != RosType::Kind::text;
-        if (!listed) return pass_over(field, steps);
-        if (any) {
-            cursor_.length();
-            steps.push_back({CdrStep::Kind::length_is, 0, count, 0, {}, path, {}, {}});
-        }
-        for (std::size_t i = 0; i < count; ++i) {
-            const bool named = names_ != nullptr && names_->size() == count;
-            add_one(field.type, fmt::format("{}[{}]", path, i),
-                    named ? fmt::format("{} {}", (*names_)[i], field.name) : fmt::format("{}[{}]", path, i),
-                    steps);
-        }
-    }
-    void add_one(const RosType& type, const std::string& path, const std::string& read_as,
-                 std::vector<CdrStep>& steps) {
-        CdrStep step;
-        step.path = path;
-        switch (type.kind) {
-            case RosType::Kind::record:
-                return record(type, path + ".", steps);
-            case RosType::Kind::wide_text:
-                raise<DataError>("the field {} of wide text, which is not read", path);
-            case RosType::Kind::text:
-                step.kind = CdrStep::Kind::text;
-                break;
-            case RosType::Kind::number:
-            case RosType::Kind::stamp: {
-                const bool stamp = type.kind == RosType::Kind::stamp;
-                step.kind = stamp ? CdrStep::Kind::stamp : CdrStep::Kind::number;
-                step.size = type.size;
-                step.leaf = leaves.size();
-                MessageLeaf leaf{path, read_as, {}, stamp, path == "header.stamp"};
-                leaf.type.kind = stamp ? 'i' : type.number;
-                leaf.type.size = stamp ? 8 : type.size;
-                leaf.type.big_endian = std::endian::native == std::endian::big;
-                if (leaves.size() == most_leaves)
-                    raise<DataError>("messages of more than {} numbers", most_leaves);
-                step.type = leaf.type;
-                leaves.push_back(leaf);
-                break;
+        if (first_ != nullptr && count > most_names_of_joints) raise<DataError>("{} names of joints", count);
+        check_length(path, count, true);
+        for (std::uint32_t i = 0; i < count && left_ > 0; ++i) {
+            const std::string_view text = cursor_.text();
+            if (first_ != nullptr) {
+                first_->names.push_back({fmt::format("{}[{}]", path, i), names.emplace_back(text)});
+                continue;
             }
+            const CdrShape::Name& known = shape_.names[name_++];
+            if (text != known.text)
+                raise<DataError>(
+                    "'{}' as {}, expected '{}' as in the first message; record the joints on topics of their "
+                    "own",
+                    text.substr(0, 60), known.path, known.text);
         }
-        pass_cdr(cursor_, step);
-        steps.push_back(std::move(step));
+    }
+    void take(const RosField& field, const std::string& path) {
+        if (field.count == RosField::Count::one) return one(field, path, path);
+        const bool any = field.count == RosField::Count::any;
+        const std::size_t count = any ? cursor_.length() : field.fixed;
+        bool listed = !passing_ && field.type.kind != RosType::Kind::text;
+        const bool columns = count > 0 && count <= most_listed_elements;
+        if (listed) listed = any ? check_length(path, count, columns) : columns;
+        if (!listed) return pass_over(field, count);
+        const bool named = names_ != nullptr && names_->size() == count;
+        for (std::size_t i = 0; i < count && left_ > 0; ++i) {
+            if (first_ == nullptr) {
+                one(field, path, path);
+                continue;
+            }
+            const std::string element = fmt::format("{}[{}]", path, i);
+            one(field, element, named ? fmt::format("{} {}", (*names_)[i], field.name) : element);
+        }
+    }
+    /// Whether the elements of the next list are columns, as in the first message.
+    bool check_length(const std::string& path, std::size_t count, bool columns) {
+        if (first_ != nullptr) {
+            first_->lists.push_back({path, columns ? std::optional(count) : std::nullopt});
+            return columns;
+        }
+        const CdrShape::List& list = shape_.lists[list_++];
+        if (!list.length) return false;
+        if (count != *list.length)
+            raise<DataError>(
+                "{} elements of {}, expected {} as in the first message; record messages of one shape on a "
+                "topic",
+                count, list.path, *list.length);
+        --left_;
+        return true;
     }
     // Without leaves, whatever its length in the next message.
-    void pass_over(const RosField& field, std::vector<CdrStep>& steps) {
-        const std::vector<CdrStep> passing = steps_without_leaves(field);
-        pass_cdr(cursor_, passing);
-        append(passing, steps);
-    }
-    static void append(const std::vector<CdrStep>& more, std::vector<CdrStep>& steps) {
-        steps.insert(steps.end(), more.begin(), more.end());
-        if (steps.size() > most_steps) raise<DataError>("messages of more than {} fields", most_steps);
-    }
-    static std::vector<CdrStep> steps_without_leaves(const RosField& field) {
-        const bool any = field.count == RosField::Count::any;
-        const std::size_t count = field.count == RosField::Count::fixed ? field.fixed : 1;
-        CdrStep step;
-        std::vector<CdrStep> one;
-        switch (field.type.kind) {
-            case RosType::Kind::number:
-                step.kind = any ? CdrStep::Kind::skip_any : CdrStep::Kind::skip;
-                step.size = field.type.size;
-                step.count = count;
-                return {step};
-            case RosType::Kind::wide_text:
-                raise<DataError>("the field {} of wide text, which is not read", field.name);
-            case RosType::Kind::text:
-                step.kind = CdrStep::Kind::text;
-                one = {step};
-                break;
-            case RosType::Kind::stamp:
-                step.size = 4;
-                step.count = 2;
-                one = {step};
-                break;
-            case RosType::Kind::record:
-                for (const RosField& inner : field.type.fields) append(steps_without_leaves(inner), one);
-                break;
+    void pass_over(const RosField& field, std::size_t count) {
+        const bool outer = std::exchange(passing_, true);
+        if (field.type.kind == RosType::Kind::number) {
+            if (count > 0) cursor_.take(field.type.size, count);
+        } else {
+            if (field.count == RosField::Count::any) cursor_.require(count);
+            for (; count > 0; --count) one(field, field.name, "");
         }
-        if (any) {
-            step.kind = CdrStep::Kind::repeat_any;
-            step.inner = std::move(one);
-            return {step};
+        passing_ = outer;
+    }
+    void one(const RosField& field, const std::string& path, const std::string& read_as) {
+        const RosType& type = field.type;
+        const bool stamp = type.kind == RosType::Kind::stamp;
+        if (type.kind == RosType::Kind::record) return record(type, first_ != nullptr ? path + "." : path);
+        if (type.kind == RosType::Kind::wide_text)
+            raise<DataError>("the field {} of wide text, which is not read",
+                             path.empty() ? field.name : path);
+        if (type.kind == RosType::Kind::text) {
+            cursor_.text();
+            return;
         }
-        std::vector<CdrStep> steps;
-        for (std::size_t i = 0; i < count; ++i) append(one, steps);
-        return steps;
+        if (!passing_ && first_ != nullptr) add_leaf(type, path, read_as);
+        const std::size_t leaf = passing_ ? 0 : leaf_++;
+        if (passing_ || first_ != nullptr || !(*wanted_)[leaf]) {
+            stamp ? cursor_.take(4, 2) : cursor_.take(type.size);
+            return;
+        }
+        std::array<char, 8> raw{};
+        if (stamp)
+            raw = std::bit_cast<std::array<char, 8>>(cursor_.stamp());
+        else
+            cursor_.number(type.size, raw.data());
+        const NpyField& kept = shape_.leaves[leaf].type;
+        (*into_)[leaf].value = load_field(raw.data(), kept);
+        if (kept.whole()) (*into_)[leaf].count = load_count(raw.data(), kept);
+        --left_;
+    }
+    void add_leaf(const RosType& type, const std::string& path, const std::string& read_as) {
+        if (first_->leaves.size() == most_leaves)
+            raise<DataError>("messages of more than {} numbers", most_leaves);
+        const bool stamp = type.kind == RosType::Kind::stamp;
+        MessageLeaf leaf{path, read_as, {}, stamp, path == "header.stamp"};
+        leaf.type.kind = stamp ? 'i' : type.number;
+        leaf.type.size = stamp ? 8 : type.size;
+        leaf.type.big_endian = std::endian::native == std::endian::big;
+        first_->leaves.push_back(std::move(leaf));
     }
 
     CdrCursor cursor_;
+    const CdrShape& shape_;
+    CdrShape* first_ = nullptr;  ///< of the first message: what it says
+    std::size_t left_ = 1;       ///< of another: what is useful and was not seen yet
+    const std::vector<bool>* wanted_ = nullptr;
+    std::vector<LeafNumber>* into_ = nullptr;
+    std::size_t leaf_ = 0, list_ = 0, name_ = 0;       ///< the next of the shape
+    bool passing_ = false;                             ///< over what gives no leaves
     const std::vector<std::string>* names_ = nullptr;  ///< of joints, in the record that is laid out
+};
+
+class CdrReader final : public MessageReader {
+  public:
+    CdrReader(std::shared_ptr<const CdrShape> shape, const std::vector<bool>& wanted)
+        : shape_(std::move(shape)), wanted_(wanted) {
+        const auto lists =
+            std::ranges::count_if(shape_->lists, [](const auto& list) { return !!list.length; });
+        useful_ = static_cast<std::size_t>(lists + std::ranges::count(wanted_, true));
+    }
+    void read(std::string_view message, std::vector<LeafNumber>& into) override {
+        CdrWalk(message, *shape_, useful_, wanted_, into).record(shape_->type, "");
+    }
+
+  private:
+    std::shared_ptr<const CdrShape> shape_;
+    std::vector<bool> wanted_;  ///< by leaf
+    std::size_t useful_;
 };
 
 }  // namespace
@@ -513,14 +460,11 @@ std::string_view known_ros_schema(std::string_view type) {
 }
 
 MessageLayout lay_out_cdr(std::string_view schema, const std::string& name, std::string_view message) {
-    const RosType type = parse_ros_schema(schema, name);
-    std::vector<CdrStep> steps;
-    LayOut work(message);
-    work.record(type, "", steps);
-    const auto shared = std::make_shared<const std::vector<CdrStep>>(std::move(steps));
-    return {std::move(work.leaves),
-            [shared](const std::vector<bool>& wanted) -> std::unique_ptr<MessageReader> {
-                return std::make_unique<CdrReader>(shared, wanted);
+    const auto shape = std::make_shared<CdrShape>();
+    shape->type = parse_ros_schema(schema, name);
+    CdrWalk(message, *shape).record(shape->type, "");
+    return {shape->leaves, [shape](const std::vector<bool>& wanted) -> std::unique_ptr<MessageReader> {
+                return std::make_unique<CdrReader>(shape, wanted);
             }};
 }
 

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 
+#include "log/columns/decide_layout.hpp"
 #include "ripplenotch/core/error.hpp"
 
 namespace ripplenotch {
@@ -246,12 +247,7 @@ class TopicChoice {
             if (is_asked(c) && (c >= topics_.size() || topics_[c].seen == 0)) return false;
         return true;
     }
-    bool is_named(const std::string& path) const {
-        return std::ranges::any_of(options_.columns, [&](const std::string& entry) {
-            const std::size_t equals = entry.find('=');
-            return equals != std::string::npos && entry.substr(equals + 1) == path;
-        });
-    }
+    bool is_named(const std::string& path) const { return !asked_role(options_, path).empty(); }
     bool is_asked(std::size_t channel, std::string_view role = "") const {
         return std::ranges::any_of(options_.columns, [&](const std::string& entry) {
             const std::size_t equals = entry.find('=');

@@ -9,6 +9,7 @@
 #include <cctype>
 #include <cstring>
 
+#include "log/open.hpp"
 #include "ripplenotch/core/error.hpp"
 
 namespace ripplenotch {
@@ -34,48 +35,19 @@ constexpr bool is_native(const NpyField& field) {
     return field.big_endian == (std::endian::native == std::endian::big);
 }
 
-/// Words in the processor's own order, which is nearly all there are.
-template <class Word>
-void load_native(const char* at, std::size_t record_size, std::span<double> into) {
-    for (double& value : into) {
-        Word word;
-        std::memcpy(&word, at, sizeof(Word));
-        at += record_size;
-        value = static_cast<double>(word);
-    }
-}
-
-double load_unscaled(const char* record, const NpyField& field) {
-    const char* const at = record + field.offset;
-    const bool big = field.big_endian;
-    switch (field.kind) {
-        case 'f':
-            return field.size == 4 ? static_cast<double>(load_word<float>(at, big))
-                                   : load_word<double>(at, big);
-        case 'i':
-            switch (field.size) {
-                case 1:
-                    return load_word<std::int8_t>(at, big);
-                case 2:
-                    return load_word<std::int16_t>(at, big);
-                case 4:
-                    return load_word<std::int32_t>(at, big);
-                default:
-                    return static_cast<double>(load_word<std::int64_t>(at, big));
-            }
-        case 'u':
-            switch (field.size) {
-                case 1:
-                    return load_word<std::uint8_t>(at, big);
-                case 2:
-                    return load_word<std::uint16_t>(at, big);
-                case 4:
-                    return load_word<std::uint32_t>(at, big);
-                default:
-                    return static_cast<double>(load_word<std::uint64_t>(at, big));
-            }
+/// Calls `use` with a zero of the type that a field of numbers holds.
+template <class Use>
+auto with_type_of(const NpyField& field, const Use& use) {
+    const bool real = field.kind == 'f', is_signed = field.kind == 'i';
+    switch (field.size) {
+        case 1:
+            return is_signed ? use(std::int8_t{}) : use(std::uint8_t{});
+        case 2:
+            return is_signed ? use(std::int16_t{}) : use(std::uint16_t{});
+        case 4:
+            return real ? use(float{}) : is_signed ? use(std::int32_t{}) : use(std::uint32_t{});
         default:
-            return 0.0;
+            return real ? use(double{}) : is_signed ? use(std::int64_t{}) : use(std::uint64_t{});
     }
 }
 
@@ -300,10 +272,19 @@ class HeaderText {
     NpyHeader header_;
 };
 
+std::vector<ColumnInfo> info_of(const NpyHeader& header) {
+    std::vector<ColumnInfo> info;
+    for (const NpyField& field : header.fields)
+        info.push_back({field.name, "", "", field.whole(), field.kind != '\0'});
+    return info;
+}
+
 }  // namespace
 
 double load_field(const char* record, const NpyField& field) {
-    const double number = load_unscaled(record, field);
+    const double number = with_type_of(field, [&](auto zero) {
+        return static_cast<double>(load_word<decltype(zero)>(record + field.offset, field.big_endian));
+    });
     return field.scaled() ? number * field.scale + field.shift : number;
 }
 
@@ -324,16 +305,21 @@ void load_column(const char* records, std::size_t record_size, const NpyField& f
     const std::size_t before = into.values.size();
     into.values.resize(before + rows);
     const std::span<double> values = std::span(into.values).subspan(before);
-    if (field.kind == 'f' && is_native(field) && !field.scaled()) {
-        const char* const first = records + field.offset;
-        field.size == 4 ? load_native<float>(first, record_size, values)
-                        : load_native<double>(first, record_size, values);
-        return;
+    if (is_native(field) && !field.scaled()) {  // which is nearly all there are
+        with_type_of(field, [&](auto word) {
+            const char* at = records + field.offset;
+            for (double& value : values) {
+                std::memcpy(&word, at, sizeof word);
+                at += record_size;
+                value = static_cast<double>(word);
+            }
+        });
+    } else {
+        for (std::size_t row = 0; row < rows; ++row)
+            values[row] = load_field(records + row * record_size, field);
     }
-    for (std::size_t row = 0; row < rows; ++row, records += record_size) {
-        values[row] = load_field(records, field);
-        if (field.whole()) into.counts.push_back(load_count(records, field));
-    }
+    for (std::size_t row = 0; row < rows && field.whole(); ++row)
+        into.counts.push_back(load_count(records + row * record_size, field));
 }
 
 void store_column(char* records, std::size_t record_size, const NpyField& field, const StoredColumn& column) {
@@ -396,6 +382,53 @@ std::string make_npy_header(std::string_view descr, std::string_view shape, bool
     header += '\0';
     for (std::size_t i = 0; i < start - 8; ++i) header += static_cast<char>((text.size() >> (8 * i)) & 0xff);
     return header + text;
+}
+
+RecordColumns::RecordColumns(std::unique_ptr<ByteSource> source, std::string first_bytes, NpyHeader header,
+                             std::string head)
+    : Columns(source->name(), info_of(header)),
+      source_(std::move(source)),
+      begun_(std::move(first_bytes)),
+      header_(std::move(header)),
+      head_(std::move(head)) {}
+
+std::size_t RecordColumns::next(std::size_t rows, NumberRows& into, std::string& bytes) {
+    const std::size_t size = header_.record_size, left = header_.rows - rows_, at = bytes.size();
+    const std::size_t asked = left == 0 ? 1 : std::min(left, std::max<std::size_t>(1, rows)) * size;
+    const std::size_t taken = std::min(asked, begun_.size() - begun_at_);
+    bytes.append(begun_, begun_at_, taken);
+    begun_at_ += taken;
+    bytes.resize(read_on(*source_, bytes, at + taken, at + asked));
+    const std::size_t have = bytes.size() - at, whole = left == 0 ? 0 : have / size;
+    if (left == 0 && have > 0) {
+        raise<DataError>(
+            "{}: read more bytes after the {} rows of the array, expected the end; save one array a file",
+            name(), header_.rows);
+    }
+    if (whole == 0 && have > 0 && header_.rows == rows_unknown) complain_of_end(have);
+    if (whole == 0 && left > 0 && header_.rows != rows_unknown) {
+        raise<DataError>(
+            "{}: read {} rows and a part of one, expected {} rows; the file is cut off, save the array again",
+            name(), rows_, header_.rows);
+    }
+    // A part of a row is the end of the file.
+    if (have > whole * size) {
+        begun_ = bytes.substr(at + whole * size);
+        begun_at_ = 0;
+    }
+    bytes.resize(at + whole * size);
+    for (std::size_t c = 0; c < header_.fields.size(); ++c)
+        if (wanted(c) && info()[c].number)
+            load_column(bytes.data() + at, size, header_.fields[c], whole, into[c]);
+    rows_ += whole;
+    return whole;
+}
+
+void RecordColumns::complain_of_end(std::size_t left_over) const {
+    raise<DataError>(
+        "{}: read {} rows and {} bytes of one more, expected records of {} bytes; the file is cut off, or "
+        "its records differ from its header",
+        name(), rows_, left_over, header_.record_size);
 }
 
 }  // namespace ripplenotch

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "log/clock/choose_time.hpp"
+#include "log/clock/stamp.hpp"
 #include "log/containers/stored_array.hpp"
 #include "log/rows_in_range.hpp"
 #include "ripplenotch/core/error.hpp"

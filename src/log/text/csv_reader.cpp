@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "log/clock/choose_time.hpp"
+#include "log/clock/stamp.hpp"
 #include "log/open.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
@@ -85,15 +85,13 @@ void CsvReader::decide(std::string& opening) {
         layout.outside = rows_outside(*source_);
         if (dialect_.head_lines == 0) return;
         const bool scope = !dialect_.scales.empty();
-        layout.inferences.push_back(
-            {fmt::format("the first {} lines", dialect_.head_lines),
-             scope ? "the head of a TwinCAT Scope export, with its names and units"
-                   : "a head, passed on and not read",
-             scope ? "'Name' stands over numbers that run forward, which are times, and "
-                     "over each channel"
-                   : "they are no rows, and the names do not stand in the first of them",
-             fmt::format("--skip-lines {}", dialect_.head_lines),
-             {}});
+        layout.infer(fmt::format("the first {} lines", dialect_.head_lines),
+                     scope ? "the head of a TwinCAT Scope export, with its names and units"
+                           : "a head, passed on and not read",
+                     scope ? "'Name' stands over numbers that run forward, which are times, and "
+                             "over each channel"
+                           : "they are no rows, and the names do not stand in the first of them",
+                     fmt::format("--skip-lines {}", dialect_.head_lines));
     });
 }
 

@@ -81,4 +81,12 @@ class CsvReader : public LogReader {
     CellSplit split_;
 };
 
+/// Opens any text log, `first_bytes` read already. The numbers of lists in the cells of a table are columns
+/// each. Where a row or a block of rows holds one signal, or columns have times of their own
+/// (TextDialect::own_clocks), all is held in memory, with a column for each signal; those with other times
+/// than the torque's are joined to it by ReadOptions::join. Columns of one time in every row, up to half a
+/// step, and traces of one block only are read as any text. Throws DataError.
+[[nodiscard]] std::unique_ptr<LogReader> open_text(std::unique_ptr<ByteSource> source,
+                                                   std::string first_bytes, const ReadOptions& options);
+
 }  // namespace ripplenotch

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include "log/text/own_clocks.hpp"
+// Text logs that are no table of one clock: a row or a block holds one signal, columns have times of their
+// own, cells hold lists.
 
 #include <fmt/format.h>
 
@@ -315,8 +316,7 @@ std::vector<std::string> head_cells(const Lines& lines) {
 std::size_t base_of(const std::vector<Signal>& signals, const ReadOptions& options) {
     const auto rank = [&](const Signal& signal) {
         const ColumnName name = read_column_name(signal.name);
-        const bool asked =
-            std::ranges::find(options.columns, "torque=" + signal.name) != options.columns.end();
+        const bool asked = asked_role(options, signal.name) == "torque";
         return std::tuple(asked, name.role == Role::torque && !name.reference, signal.values.size());
     };
     std::size_t base = 0;
@@ -585,26 +585,6 @@ class ListTable {
     std::optional<std::int64_t> origin_s_;
 };
 
-}  // namespace
-
-std::optional<std::vector<double>> list_in(std::string_view cell) {
-    const bool square = cell.starts_with('[') && cell.ends_with(']');
-    if (cell.size() < 3 || !(square || (cell.starts_with('(') && cell.ends_with(')')))) return std::nullopt;
-    std::string_view rest = cell.substr(1, cell.size() - 2);
-    std::vector<double> numbers;
-    while (true) {
-        constexpr std::string_view between = " \t,;";
-        rest.remove_prefix(std::min(rest.find_first_not_of(between), rest.size()));
-        if (rest.empty()) break;
-        const std::size_t end = std::min(rest.find_first_of(between), rest.size());
-        const auto number = parse_number(rest.substr(0, end));
-        if (!number) return std::nullopt;
-        numbers.push_back(*number);
-        rest.remove_prefix(end);
-    }
-    return numbers.empty() ? std::nullopt : std::optional(std::move(numbers));
-}
-
 // Of a trace, the first lines hold a head of two lines and more, and rows of a time and a value, which no
 // line over them names.
 bool may_be_long(std::string_view first_bytes) {
@@ -624,18 +604,6 @@ bool may_be_long(std::string_view first_bytes) {
     return std::ranges::any_of(head,
                                [](const auto& cells) { return cells.size() == 1 || cells.size() == 2; }) &&
            last.size() == 1 && !name_in_head(head, ignored).empty() && lines.next() && pair_in(lines);
-}
-
-std::unique_ptr<LogReader> open_long(std::unique_ptr<ByteSource> source, std::string first_bytes,
-                                     const ReadOptions& options) {
-    const std::string name = source->name();
-    std::string bytes = std::move(first_bytes);
-    bytes.resize(read_on(*source, bytes, bytes.size(), std::numeric_limits<std::size_t>::max()));
-    if (const auto header = long_header(first_line_of(bytes)))
-        return read_columns(tidy_columns(name, bytes, *header, options), options);
-    if (has_blocks(bytes)) return read_columns(block_columns(name, bytes, options), options);
-    auto held = std::make_unique<ByteSource>(name, std::make_shared<const std::string>(std::move(bytes)));
-    return open_table(std::move(held), "", options);
 }
 
 std::unique_ptr<LogReader> open_table(std::unique_ptr<ByteSource> source, std::string first_bytes,
@@ -660,6 +628,22 @@ std::unique_ptr<LogReader> open_table(std::unique_ptr<ByteSource> source, std::s
     const CsvReader table(again(), first);
     if (!table.layout().chosen.time && opening.dialect.clock_of.empty()) return plain(again());
     return read_columns(own_columns(name, *text, table, options), options);
+}
+
+}  // namespace
+
+std::unique_ptr<LogReader> open_text(std::unique_ptr<ByteSource> source, std::string first_bytes,
+                                     const ReadOptions& options) {
+    if (options.skip_lines > 0 || !may_be_long(first_bytes))
+        return open_table(std::move(source), std::move(first_bytes), options);
+    const std::string name = source->name();
+    std::string bytes = std::move(first_bytes);
+    bytes.resize(read_on(*source, bytes, bytes.size(), std::numeric_limits<std::size_t>::max()));
+    if (const auto header = long_header(first_line_of(bytes)))
+        return read_columns(tidy_columns(name, bytes, *header, options), options);
+    if (has_blocks(bytes)) return read_columns(block_columns(name, bytes, options), options);
+    auto held = std::make_unique<ByteSource>(name, std::make_shared<const std::string>(std::move(bytes)));
+    return open_table(std::move(held), "", options);
 }
 
 }  // namespace ripplenotch

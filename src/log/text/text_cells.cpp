@@ -145,6 +145,24 @@ std::vector<std::string> cell_texts(std::string_view line, char delimiter) {
     return texts;
 }
 
+std::optional<std::vector<double>> list_in(std::string_view cell) {
+    const bool square = cell.starts_with('[') && cell.ends_with(']');
+    if (cell.size() < 3 || !(square || (cell.starts_with('(') && cell.ends_with(')')))) return std::nullopt;
+    std::string_view rest = cell.substr(1, cell.size() - 2);
+    std::vector<double> numbers;
+    while (true) {
+        constexpr std::string_view between = " \t,;";
+        rest.remove_prefix(std::min(rest.find_first_not_of(between), rest.size()));
+        if (rest.empty()) break;
+        const std::size_t end = std::min(rest.find_first_of(between), rest.size());
+        const auto number = parse_number(rest.substr(0, end));
+        if (!number) return std::nullopt;
+        numbers.push_back(*number);
+        rest.remove_prefix(end);
+    }
+    return numbers.empty() ? std::nullopt : std::optional(std::move(numbers));
+}
+
 std::optional<CellNumber> cell_number(std::string_view cell, char decimal_mark) {
     if (const auto plain = parse_number(cell, decimal_mark)) return CellNumber{*plain, cell.size(), {}};
     std::string_view rest = cell;

@@ -52,6 +52,9 @@ void split_cells(std::string_view line, char delimiter, CellSplit& into);
 /// The texts of a line's cells in UTF-8, with doubled quotes undone.
 [[nodiscard]] std::vector<std::string> cell_texts(std::string_view line, char delimiter);
 
+/// The numbers of a list in one cell, "[0.1, 0.2]" or "(0.1 0.2)"; none where it is no such.
+[[nodiscard]] std::optional<std::vector<double>> list_in(std::string_view cell);
+
 /// Blank, or begins with # % or // after blanks.
 [[nodiscard]] bool is_blank_line(std::string_view line);
 [[nodiscard]] bool is_comment_line(std::string_view line);

@@ -15,7 +15,6 @@
 #include "log/clock/stamp.hpp"
 #include "log/columns/column_name.hpp"
 #include "log/rows_in_range.hpp"
-#include "log/text/own_clocks.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/trace.hpp"

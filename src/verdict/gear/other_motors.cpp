@@ -77,7 +77,7 @@ std::vector<JointLogs> read_arm(std::span<const std::string> paths, const Layout
     for (std::size_t l = 0; l < paths.size(); ++l) {
         std::vector<Log> all;
         try {
-            all = read_joints_at_once_in_part(paths[l], options, most_rows);
+            all = read_joints_at_once(paths[l], options, most_rows);
         } catch (const Error&) {
             return {};  // the joint that is looked at could be read, and its answer does not need the others
         }

@@ -154,13 +154,13 @@ std::size_t ArmReading::find(const Chain& chain, const std::string& joint) const
 namespace {
 
 // Of a log with more than `most_rows` the pieces of read_log_in_part. Throws what
-// read_joints_at_once_in_part and match_joints throw, and UsageError where a joint of the chain has no
+// read_joints_at_once and match_joints throw, and UsageError where a joint of the chain has no
 // position.
 ArmReading read_arm(const std::string& path, const ReadOptions& options, std::size_t most_rows,
                     const Chain& chain, const StatedJoints& stated) {
     ReadOptions motion = options;
     motion.torque_of_each = false;
-    std::vector<Log> all = read_joints_at_once_in_part(path, motion, most_rows);
+    std::vector<Log> all = read_joints_at_once(path, motion, most_rows);
     std::vector<std::string> there;
     for (const Log& log : all) there.push_back(log.trace.joint);
     const std::string source = all.front().layout.source;
