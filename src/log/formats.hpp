@@ -12,8 +12,6 @@
 
 namespace ripplenotch {
 
-// New logs, written in the tool's own units: what conversion between formats and write_columns share.
-
 /// Writes a table of numbers a few rows at a time. The sink is the caller's, and so is finishing it.
 class TableWriter {
   public:
@@ -24,15 +22,10 @@ class TableWriter {
     virtual void end() = 0;
 };
 
-using MakeTableWriter = std::unique_ptr<TableWriter> (*)(ByteSink& sink, const WriteOptions& options);
-
-/// The chosen joint's time_s, velocity_deg_s, torque_nm and position_deg as a new log in another format; with
-/// options.append the new torque in a column of its own.
+/// The time_s, velocity_deg_s, torque_nm and position_deg of the joints that are read as a new log in
+/// `format`; with options.append the new torque in a column of its own.
 [[nodiscard]] std::unique_ptr<LogWriter> convert_rows(std::unique_ptr<ByteSink> sink, const LogReader& reader,
-                                                      const WriteOptions& options, MakeTableWriter make);
-
-/// All columns at once. Throws std::invalid_argument when their lengths differ.
-void write_table(ByteSink& sink, std::span<const NumberColumn> columns, MakeTableWriter make);
+                                                      const WriteOptions& options, const LogFormat& format);
 
 /// Names of the columns that WriteOptions::append adds in the style of the torques' names, one for each joint
 /// that is read; with its joint's name before it where there are several.
@@ -49,17 +42,6 @@ std::unique_ptr<LogWriter> rewrite_with(std::unique_ptr<ByteSink> sink, const Lo
 template <class Table>
 std::unique_ptr<TableWriter> table_of(ByteSink& sink, const WriteOptions& options) {
     return std::make_unique<Table>(sink, options);
-}
-
-template <class Table>
-std::unique_ptr<LogWriter> convert_with(std::unique_ptr<ByteSink> sink, const LogReader& reader,
-                                        const WriteOptions& options) {
-    return convert_rows(std::move(sink), reader, options, table_of<Table>);
-}
-
-template <class Table>
-void write_columns_with(ByteSink& sink, std::span<const NumberColumn> columns) {
-    write_table(sink, columns, table_of<Table>);
 }
 
 namespace formats {

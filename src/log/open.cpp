@@ -13,11 +13,10 @@
 #include <utility>
 
 #include "core/text/lower_case.hpp"
-#include "log/clock/stamp.hpp"
 #include "log/formats.hpp"
+#include "log/numbers/columns.hpp"
 #include "log/unpack/unpacked_source.hpp"
 #include "ripplenotch/core/error.hpp"
-#include "ripplenotch/core/files.hpp"
 #include "ripplenotch/core/spec.hpp"
 #include "ripplenotch/core/visible_text.hpp"
 #include "ripplenotch/log/clock.hpp"
@@ -85,7 +84,7 @@ const LogFormat* told_format(const std::string& path, std::optional<std::string_
 
 std::string first_bytes_of(ByteSource& source) {
     std::string first_bytes;
-    first_bytes.resize(read_on(source, first_bytes, 0, first_bytes_size));
+    read_on(source, first_bytes, first_bytes_size);
     return first_bytes;
 }
 
@@ -101,7 +100,6 @@ class ChangedRows : public LogReader {
   public:
     explicit ChangedRows(std::unique_ptr<LogReader> reader) : reader_(std::move(reader)) {}
     [[nodiscard]] const Layout& layout() const override { return reader_->layout(); }
-    [[nodiscard]] std::string_view head() const override { return reader_->head(); }
     [[nodiscard]] const LogReader& base() const override { return reader_->base(); }
 
   protected:
@@ -297,13 +295,15 @@ const LogFormat& output_format(const std::string& path, std::optional<std::strin
     return told != nullptr ? *told : formats::csv;
 }
 
-std::size_t read_on(ByteSource& source, std::string& bytes, std::size_t have, std::size_t size) {
+bool read_on(ByteSource& source, std::string& bytes, std::size_t size) {
     constexpr std::size_t first_room = std::size_t{1} << 12;
+    std::size_t have = bytes.size();
     for (std::size_t got = 1; have < size && got > 0; have += got) {
         if (bytes.size() == have) bytes.resize(std::min(size, std::max(2 * have, first_room)));
         got = source.read(bytes.data() + have, std::min(size, bytes.size()) - have);
     }
-    return have;
+    bytes.resize(have);
+    return have < size;
 }
 
 std::unique_ptr<LogReader> open_log(std::unique_ptr<ByteSource> source, const ReadOptions& options) {
@@ -323,7 +323,10 @@ std::unique_ptr<LogReader> open_log(std::unique_ptr<ByteSource> source, const Re
     const LogFormat& format =
         options.format ? find_log_format(*options.format) : detect_format(first_bytes, source->name());
     require_built(format, source->name());
-    auto reader = format.open(std::move(source), std::move(first_bytes), options);
+    auto reader =
+        format.columns == nullptr
+            ? format.open(std::move(source), std::move(first_bytes), options)
+            : read_columns(format.columns(std::move(source), std::move(first_bytes), options), options);
     const Layout& layout = reader->layout();
     if (options.range.given() && !layout.outside)
         raise<UsageError>("{}: --from and --to: rows of a log in format {} are read all or none",
@@ -351,7 +354,7 @@ std::unique_ptr<LogWriter> rewrite_log(const std::string& path, const LogReader&
     });
     const bool same = reader.layout().format == format.name && format.rewrite != nullptr && !shifted;
     return same ? format.rewrite(std::move(sink), reader, options)
-                : format.convert(std::move(sink), reader, options);
+                : convert_rows(std::move(sink), reader, options, format);
 }
 
 }  // namespace ripplenotch

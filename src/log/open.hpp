@@ -38,8 +38,8 @@ inline constexpr std::size_t first_bytes_size = 512;
 [[nodiscard]] const LogFormat& detect_format(std::string_view first_bytes, const std::string& source,
                                              std::span<const LogFormat* const> formats = log_formats());
 
-/// Behind the first `have` of `bytes`, until there are `size` or the source ends; returns how many there are.
-/// The room grows with what comes: most logs are short of what is asked for.
-[[nodiscard]] std::size_t read_on(ByteSource& source, std::string& bytes, std::size_t have, std::size_t size);
+/// Appends to `bytes` until there are `size` or the source ends; true when it ended before. The room grows
+/// with what comes: most logs are short of what is asked for.
+bool read_on(ByteSource& source, std::string& bytes, std::size_t size = static_cast<std::size_t>(-1));
 
 }  // namespace ripplenotch

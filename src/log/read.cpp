@@ -29,68 +29,10 @@ void append(Trace& trace, const TraceView& rows, bool begins_run) {
     append(trace.position_deg, rows.position_deg);
 }
 
-/// The rows of a pass, kept for the next one as long as they are not too many.
-class KeptParts {
-  public:
-    /// Nothing is kept of more than so many numbers.
-    explicit KeptParts(std::size_t most_numbers) : most_numbers_(most_numbers) {}
-
-    void add(const TraceView& rows) {
-        numbers_ += 4 * rows.size();
-        if (numbers_ > most_numbers_) {
-            parts_.clear();
-            return;
-        }
-        append(parts_.emplace_back(), rows, false);
-        parts_.back().run_starts.assign(rows.run_starts.begin(), rows.run_starts.end());
-    }
-    [[nodiscard]] bool whole() const { return numbers_ <= most_numbers_ && !parts_.empty(); }
-    [[nodiscard]] const std::vector<Trace>& parts() const { return parts_; }
-
-  private:
-    std::size_t most_numbers_, numbers_ = 0;
-    std::vector<Trace> parts_;
-};
-
 // Few and long: half a minute at 1 kHz, in which a slow joint still turns and lines stand apart.
 constexpr std::size_t most_pieces = 16;
 // A million rows of time, speed, torque and position: less than what then looks at the pieces takes.
 constexpr std::size_t most_bytes_kept = std::size_t{32} << 20;
-
-/// Takes the rows of its pieces out of rows that go by.
-class PieceTaker {
-  public:
-    PieceTaker(std::size_t rows, std::size_t most_rows, Trace& trace)
-        : rows_(rows), in_piece_(std::max<std::size_t>(1, most_rows / most_pieces)), trace_(trace) {
-        for (auto* column : {&trace.time_s, &trace.velocity_deg_s, &trace.torque_nm})
-            column->reserve(in_piece_ * most_pieces);
-    }
-
-    void add(const TraceView& rows) {
-        const std::size_t first = at_, end = at_ + rows.size();
-        at_ = end;
-        for (; piece_ < most_pieces; ++piece_) {
-            const std::size_t from = std::max(first, begin_of(piece_)), to = std::min(end, end_of(piece_));
-            if (from < to) take(rows, from - first, to - from, from == begin_of(piece_));
-            if (end_of(piece_) > end) return;
-        }
-    }
-
-  private:
-    [[nodiscard]] std::size_t begin_of(std::size_t piece) const {
-        return (rows_ - in_piece_) / (most_pieces - 1) * piece;
-    }
-    [[nodiscard]] std::size_t end_of(std::size_t piece) const { return begin_of(piece) + in_piece_; }
-
-    void take(const TraceView& rows, std::size_t first, std::size_t count, bool begins_piece) {
-        if (rows.has_position()) trace_.position_deg.reserve(in_piece_ * most_pieces);
-        append(trace_, rows.part(first, count), begins_piece || (first == 0 && !rows.run_starts.empty()));
-    }
-
-    std::size_t rows_, in_piece_;
-    Trace& trace_;
-    std::size_t at_ = 0, piece_ = 0;
-};
 
 /// Pieces of a log with more than `most_rows`, nothing of a shorter one. See read_log_in_part. `joint`: by
 /// its place, where options.every_joint reads several.
@@ -101,20 +43,34 @@ std::optional<Log> read_pieces(const std::shared_ptr<const Spool>& log, const Re
     passes.first([](const TraceView&) {});
     const std::size_t rows = passes.facts().rows;
     if (rows <= most_rows) return std::nullopt;
+    const std::size_t in_piece = std::max<std::size_t>(1, most_rows / most_pieces);
+    const std::size_t from_piece_to_piece = (rows - in_piece) / (most_pieces - 1);
     Trace trace;
-    PieceTaker taker(rows, most_rows, trace);
-    passes.second([&](const TraceView& part) { taker.add(part); });
+    for (auto* column : {&trace.time_s, &trace.velocity_deg_s, &trace.torque_nm})
+        column->reserve(in_piece * most_pieces);
+    std::size_t at = 0, piece = 0;
+    passes.second([&](const TraceView& part) {
+        const std::size_t first = std::exchange(at, at + part.size());
+        for (; piece < most_pieces; ++piece) {
+            const std::size_t begin = piece * from_piece_to_piece, end = begin + in_piece;
+            const std::size_t from = std::max(first, begin), to = std::min(at, end);
+            if (part.has_position()) trace.position_deg.reserve(in_piece * most_pieces);
+            if (from < to)
+                append(trace, part.part(from - first, to - from),
+                       from == begin || (from == first && !part.run_starts.empty()));
+            if (end > at) return;
+        }
+    });
     Log part = passes.log();
     std::tie(trace.source, trace.joint, trace.sample_rate) =
         std::tie(part.trace.source, part.trace.joint, part.trace.sample_rate);
     part.trace = std::move(trace);
     part.recording.looked_at = LookedAt{part.trace.size(), most_pieces};
-    part.recording.warnings.push_back(
-        {"looked at in part",
-         fmt::format("{}: of {} rows {} are examined, in {} evenly spaced pieces; --from and --to select a "
-                     "part that is read whole",
-                     part.layout.source, rows, part.trace.size(), most_pieces),
-         true});
+    part.recording.warnings.push_back({"looked at in part",
+                                       fmt::format("{}: of {} rows {} are examined, in {} evenly spaced "
+                                                   "pieces; --from and --to select a part that is read whole",
+                                                   part.layout.source, rows, part.trace.size(), most_pieces),
+                                       true});
     return part;
 }
 
@@ -214,7 +170,7 @@ class LogPasses::Work {
 
     Log log;
     LogFacts facts;
-    KeptParts kept{0};
+    std::size_t most_kept = 0;  ///< numbers, of rows that are kept for the pass behind the first
 
   private:
     Account run(const Use& use);
@@ -230,6 +186,8 @@ class LogPasses::Work {
     std::size_t rows_ = 0;
     double sum_s_ = 0.0;
     bool has_position_ = false;
+    std::size_t numbers_ = 0;
+    std::vector<Trace> kept_;  ///< the parts of the first pass, where all of them are
 };
 
 Account LogPasses::Work::run(const Use& use) {
@@ -268,7 +226,13 @@ void LogPasses::Work::look_at(const TraceView& rows) {
 void LogPasses::Work::first(const Use& use) {
     const Account account = run([&](const TraceView& rows) {
         look_at(rows);
-        kept.add(rows);
+        numbers_ += 4 * rows.size();
+        if (numbers_ > most_kept) {
+            kept_.clear();
+        } else {
+            append(kept_.emplace_back(), rows, false);
+            kept_.back().run_starts.assign(rows.run_starts.begin(), rows.run_starts.end());
+        }
         use(rows);
     });
     facts.rows = rows_;
@@ -304,8 +268,8 @@ void LogPasses::Work::go_on_from(const Use& logged_use, const Use& use) {
         rows.position_deg = joints.of(log.recording.angle, rows);
         use(rows);
     };
-    if (!kept.whole()) static_cast<void>(run(go_on));
-    for (const Trace& part : kept.parts()) {
+    if (kept_.empty()) static_cast<void>(run(go_on));
+    for (const Trace& part : kept_) {
         TraceView rows = part.view();
         rows.sample_rate = log.trace.sample_rate;
         go_on(rows);
@@ -344,7 +308,7 @@ LogPasses::LogPasses(std::shared_ptr<const Spool> log, const ReadOptions& option
 
 LogPasses::~LogPasses() = default;
 
-void LogPasses::keep_rows(std::size_t most_bytes) { work_->kept = KeptParts(most_bytes / sizeof(double)); }
+void LogPasses::keep_rows(std::size_t most_bytes) { work_->most_kept = most_bytes / sizeof(double); }
 
 void LogPasses::first(const Use& use) { work_->first(use); }
 

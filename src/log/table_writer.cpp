@@ -16,8 +16,8 @@ namespace {
 class Converter : public LogWriter {
   public:
     Converter(std::unique_ptr<ByteSink> sink, const LogReader& reader, const WriteOptions& options,
-              MakeTableWriter make)
-        : sink_(std::move(sink)), table_(make(*sink_, options)), append_(options.append) {
+              const LogFormat& format)
+        : sink_(std::move(sink)), table_(format.table(*sink_, options)), append_(options.append) {
         const std::vector<JointColumns> joints = reader.layout().all_chosen();
         std::vector<std::string> names = {"time_s"};
         for (const JointColumns& joint : joints) {
@@ -70,32 +70,32 @@ std::string appended_name(const std::string& wanted, const std::string& torque_n
 }  // namespace
 
 std::unique_ptr<LogWriter> convert_rows(std::unique_ptr<ByteSink> sink, const LogReader& reader,
-                                        const WriteOptions& options, MakeTableWriter make) {
-    return std::make_unique<Converter>(std::move(sink), reader, options, make);
+                                        const WriteOptions& options, const LogFormat& format) {
+    return std::make_unique<Converter>(std::move(sink), reader, options, format);
 }
 
-void write_table(ByteSink& sink, std::span<const NumberColumn> columns, MakeTableWriter make) {
+void LogFormat::write_columns(ByteSink& sink, std::span<const NumberColumn> numbers) const {
     constexpr std::size_t rows_at_once = 16384;
     std::vector<std::string> names;
-    for (const NumberColumn& column : columns) {
+    for (const NumberColumn& column : numbers) {
         names.push_back(column.name);
-        if (column.values.size() != columns[0].values.size()) {
+        if (column.values.size() != numbers[0].values.size()) {
             throw std::invalid_argument("columns of a log differ in length: " + column.name);
         }
     }
-    const auto table = make(sink, {});
-    table->begin(names);
-    const std::size_t rows = columns.empty() ? 0 : columns[0].values.size();
+    const auto writer = table(sink, {});
+    writer->begin(names);
+    const std::size_t rows = numbers.empty() ? 0 : numbers[0].values.size();
     Progress::current().begin("writing", "rows", rows);
     for (std::size_t first = 0; first < rows; first += rows_at_once) {
         std::vector<std::span<const double>> parts;
-        for (const NumberColumn& column : columns) {
+        for (const NumberColumn& column : numbers) {
             parts.push_back(std::span(column.values).subspan(first, std::min(rows_at_once, rows - first)));
         }
-        table->rows(parts);
+        writer->rows(parts);
         Progress::current().add(parts.front().size());
     }
-    table->end();
+    writer->end();
 }
 
 std::vector<std::string> appended_names(const Layout& layout, const WriteOptions& options) {

@@ -42,7 +42,6 @@ class FakeReader final : public LogReader {
         layout_.stated_rate = stated;
     }
     [[nodiscard]] const Layout& layout() const override { return layout_; }
-    [[nodiscard]] std::string_view head() const override { return {}; }
     bool next(RowBlock& block) override {
         block = RowBlock{};
         if (at_ == rows_.time_s.size()) return false;

@@ -19,7 +19,7 @@ std::string unpacked(std::string_view bytes, std::size_t piece, std::size_t room
     const std::string answer = answer_of([&] {
         auto source = std::make_unique<ByteSource>("log", std::make_shared<const std::string>(bytes), piece);
         std::string first_bytes;
-        first_bytes.resize(read_on(*source, first_bytes, 0, first_bytes_size));
+        read_on(*source, first_bytes, first_bytes_size);
         const Packing* const packing = packing_of(first_bytes);
         if (packing == nullptr) return;
         const auto log = unpack(std::move(source), std::move(first_bytes), *packing);

@@ -127,9 +127,8 @@ TEST_CASE("formats have names, extensions and summaries of their own", "[log]") 
         CHECK_FALSE(format->extensions.empty());
         for (const auto extension : format->extensions) CHECK(extensions.insert(extension).second);
         CHECK(&find_log_format(format->name) == format);
-        CHECK(format->open != nullptr);
         CHECK((format->rewrite == nullptr || format->is_written()));
-        CHECK((format->convert == nullptr) == (format->write_columns == nullptr));
+        CHECK((format->open == nullptr) == (format->columns != nullptr || !format->lacks.empty()));
         CHECK((format->sniff == nullptr) == (format->name == "csv"));
         const std::string named = "log" + std::string(format->extensions[0]);
         if (format->is_written()) {
@@ -475,7 +474,6 @@ class TrialReader final : public LogReader {
         layout_.format = "trial";
     }
     [[nodiscard]] const Layout& layout() const override { return layout_; }
-    [[nodiscard]] std::string_view head() const override { return {}; }
     bool next(RowBlock& block) override { return text_->next(block); }
 
   private:

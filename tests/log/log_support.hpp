@@ -75,7 +75,6 @@ class TraceReader final : public LogReader {
         layout_.stated_rate = stated;
     }
     [[nodiscard]] const Layout& layout() const override { return layout_; }
-    [[nodiscard]] std::string_view head() const override { return {}; }
     bool next(RowBlock& block) override {
         block = RowBlock{};
         const std::size_t count = std::min(block_, trace_.size() - at_);

@@ -123,7 +123,7 @@ class Clock {
     void note_pending_gap();
     void end_slow_spell();
     void end_window();
-    void look_closely(double median_s);
+    void look_closely(std::vector<double> steps_s);
     [[nodiscard]] std::size_t change_row(double step_s) const;
     void change_rate();
 

@@ -59,8 +59,6 @@ class LogReader {
   public:
     virtual ~LogReader() = default;
     [[nodiscard]] virtual const Layout& layout() const = 0;
-    /// The bytes before the first row (header, comments), to be passed on as they are.
-    [[nodiscard]] virtual std::string_view head() const = 0;
     /// The reader of the file itself, for writers that know it.
     [[nodiscard]] virtual const LogReader& base() const { return *this; }
     /// Fills `block` with the next rows; false when there are none left. Block boundaries carry no meaning; a
@@ -115,7 +113,10 @@ struct NumberColumn {
     std::vector<double> values;
 };
 
-/// What makes a format one that is read and not written: no rewrite, no convert and no write_columns.
+struct ColumnLog;
+class TableWriter;
+
+/// One format: a record of its file.
 struct LogFormat {
     std::string_view name, summary;
     std::span<const std::string_view> extensions;  ///< ".csv", ".txt"
@@ -134,18 +135,20 @@ struct LogFormat {
     /// UsageError where the range is none or keeps fewer than two rows.
     std::unique_ptr<LogReader> (*open)(std::unique_ptr<ByteSource> source, std::string first_bytes,
                                        const ReadOptions& options) = nullptr;
+    /// In its place: all rows of the log as columns of numbers.
+    ColumnLog (*columns)(std::unique_ptr<ByteSource> source, std::string first_bytes,
+                         const ReadOptions& options) = nullptr;
     /// A writer for rows of a log that was read in this same format: other columns pass byte for byte. Null
-    /// where convert does it.
+    /// where such rows are written as those of any log.
     std::unique_ptr<LogWriter> (*rewrite)(std::unique_ptr<ByteSink> sink, const LogReader& reader,
                                           const WriteOptions& options) = nullptr;
-    /// A writer for rows of a log that was read in another format: time_s, velocity_deg_s, torque_nm and
-    /// position_deg of the chosen joint.
-    std::unique_ptr<LogWriter> (*convert)(std::unique_ptr<ByteSink> sink, const LogReader& reader,
-                                          const WriteOptions& options) = nullptr;
-    /// Writes columns of equal length as a new log; finishing the sink stays with the caller.
-    void (*write_columns)(ByteSink& sink, std::span<const NumberColumn> columns) = nullptr;
+    /// A writer of tables of numbers. Null where the format is read and not written.
+    std::unique_ptr<TableWriter> (*table)(ByteSink& sink, const WriteOptions& options) = nullptr;
 
-    [[nodiscard]] bool is_written() const { return convert != nullptr && write_columns != nullptr; }
+    [[nodiscard]] bool is_written() const { return table != nullptr; }
+    /// Writes columns of equal length as a new log; finishing the sink stays with the caller. Throws
+    /// std::invalid_argument when their lengths differ.
+    void write_columns(ByteSink& sink, std::span<const NumberColumn> columns) const;
 };
 
 /// All formats, in the order of formats.def.

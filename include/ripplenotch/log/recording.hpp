@@ -46,53 +46,6 @@ struct AngleFacts {
 };
 [[nodiscard]] std::string_view source_name(AngleFacts::Source source);
 
-/// Compares position with velocity over pieces of motion of 2 deg and more, sixteen at a time, by the median
-/// of their ratios, which neither spikes nor jumps move. All of the opening decide, from six on, or else
-/// the first sixteen; later ones can only contradict. A position is unwrapped at half turns.
-class JointAngle {
-  public:
-    /// What the log has.
-    JointAngle(bool velocity, bool position);
-
-    /// Consecutive rows of the opening, before all rows are taken: what they say holds from the first row on.
-    void look(const TraceView& rows, bool begins_run);
-    /// The opening has been seen.
-    void decide();
-    /// Consecutive rows; `begins_run`: the row before is no past of theirs.
-    void follow(const TraceView& rows, bool begins_run);
-    /// Rows that are not used.
-    void skip(std::size_t rows) {
-        rows_ += rows;
-        skipped_ += rows;
-    }
-
-    [[nodiscard]] const AngleFacts& facts() const { return facts_; }
-
-  private:
-    struct Piece {
-        double velocity_deg = 0.0, position_deg = 0.0;
-    };
-    struct Row {
-        double time_s = 0.0, velocity_deg_s = 0.0, position_deg = 0.0;
-    };
-    struct Judgement {
-        AngleFacts::Verdict verdict;
-        std::optional<double> factor;
-    };
-    static Judgement judge(const std::vector<Piece>& pieces);
-    void add(const TraceView& rows, bool begins_run);
-    void end_piece();
-    void conclude();
-
-    AngleFacts facts_;
-    bool any_ = false, looking_ = false;
-    std::size_t rows_ = 0, skipped_ = 0;  ///< so far
-    Row last_;
-    Piece piece_;
-    double piece_begin_s_ = 0.0;
-    std::vector<Piece> pieces_;
-};
-
 /// Rows that repeat the row before because nothing new had been measured.
 struct HeldSamples {
     std::size_t count = 0;

@@ -104,6 +104,136 @@ bool has_values(const std::vector<double>& values) {
     return !values.empty() && std::isfinite(values.front());
 }
 
+/// Compares position with velocity over pieces of motion of 2 deg and more, sixteen at a time, by the median
+/// of their ratios, which neither spikes nor jumps move. All of the opening decide, from six on, or else
+/// the first sixteen; later ones can only contradict. A position is unwrapped at half turns.
+class JointAngle {
+  public:
+    /// What the log has.
+    JointAngle(bool velocity, bool position) {
+        using Verdict = AngleFacts::Verdict;
+        facts_.verdict = !position   ? Verdict::no_position
+                         : !velocity ? Verdict::no_velocity
+                                     : Verdict::too_little_motion;
+    }
+    /// Consecutive rows of the opening, before all rows are taken: what they say holds from the first row on.
+    void look(const TraceView& rows, bool begins_run) {
+        looking_ = true;
+        add(rows, begins_run);
+    }
+    /// The opening has been seen.
+    void decide() {
+        if (facts_.verdict == AngleFacts::Verdict::too_little_motion && pieces_.size() >= fewest_pieces)
+            conclude();
+        looking_ = any_ = false;
+        rows_ = skipped_ = 0;
+        pieces_.clear();
+        piece_ = {};
+    }
+    /// Consecutive rows; `begins_run`: the row before is no past of theirs.
+    void follow(const TraceView& rows, bool begins_run) {
+        add(rows, begins_run);
+        rows_ += rows.size();
+    }
+    /// Rows that are not used.
+    void skip(std::size_t rows) {
+        rows_ += rows;
+        skipped_ += rows;
+    }
+    [[nodiscard]] const AngleFacts& facts() const { return facts_; }
+
+  private:
+    struct Piece {
+        double velocity_deg = 0.0, position_deg = 0.0;
+    };
+    struct Row {
+        double time_s = 0.0, velocity_deg_s = 0.0, position_deg = 0.0;
+    };
+    struct Judgement {
+        AngleFacts::Verdict verdict;
+        std::optional<double> factor;
+    };
+    static Judgement judge(const std::vector<Piece>& pieces) {
+        std::vector<double> ratios, velocities, positions;
+        for (const Piece& piece : pieces) {
+            const double far = std::copysign(std::numeric_limits<double>::max(), piece.position_deg);
+            ratios.push_back(piece.velocity_deg != 0.0 ? piece.position_deg / piece.velocity_deg : far);
+            velocities.push_back(std::abs(piece.velocity_deg));
+            positions.push_back(std::abs(piece.position_deg));
+        }
+        const double velocity = median_in(velocities), position = median_in(positions);
+        using Verdict = AngleFacts::Verdict;
+        if (velocity < frozen_share * position) return {Verdict::unrelated, std::nullopt};
+        const double factor = median_of(ratios), magnitude = std::abs(factor);
+        const auto alike = std::ranges::count_if(
+            ratios, [=](double ratio) { return std::abs(ratio - factor) <= alike_within * magnitude; });
+        if (magnitude > 0.0 &&
+            static_cast<double>(alike) >= alike_share * static_cast<double>(ratios.size())) {
+            if (magnitude < 1.0 / farthest_factor || magnitude > farthest_factor)
+                return {Verdict::scaled, factor};
+            return {factor > 0.0 ? Verdict::agrees : Verdict::reversed, factor};
+        }
+        return {position < standing_share * velocity ? Verdict::stands : Verdict::unrelated, std::nullopt};
+    }
+    void add(const TraceView& rows, bool begins_run) {
+        using Verdict = AngleFacts::Verdict;
+        if (facts_.verdict == Verdict::no_position || facts_.verdict == Verdict::no_velocity) return;
+        for (std::size_t k = 0; k < rows.size(); ++k) {
+            const Row row{rows.time_s[k], rows.velocity_deg_s[k], rows.position_deg[k]};
+            if (!any_ || (k == 0 && begins_run)) {
+                any_ = true;
+                piece_ = {};
+                piece_begin_s_ = row.time_s;
+                last_ = row;
+                continue;
+            }
+            double moved = row.position_deg - last_.position_deg;
+            if (std::abs(moved) > 180.0) moved -= 360.0 * std::round(moved / 360.0);
+            piece_.position_deg += moved;
+            piece_.velocity_deg +=
+                0.5 * (row.velocity_deg_s + last_.velocity_deg_s) * (row.time_s - last_.time_s);
+            last_ = row;
+            if (std::max(std::abs(piece_.position_deg), std::abs(piece_.velocity_deg)) >= piece_deg) {
+                end_piece();
+                if (!looking_ && pieces_.size() == pieces_judged) {
+                    rows_ += k;
+                    conclude();
+                    rows_ -= k;
+                }
+            } else if (row.time_s - piece_begin_s_ > longest_piece_s) {
+                piece_ = {};
+                piece_begin_s_ = row.time_s;
+            }
+        }
+    }
+    void end_piece() {
+        if (pieces_.size() < most_pieces_of_angle) pieces_.push_back(piece_);
+        piece_ = {};
+        piece_begin_s_ = last_.time_s;
+    }
+    void conclude() {
+        const Judgement found = judge(pieces_);
+        pieces_.clear();
+        if (facts_.verdict == AngleFacts::Verdict::too_little_motion) {
+            facts_.verdict = found.verdict;
+            facts_.factor = found.factor;
+            return;
+        }
+        if (facts_.contradicted || facts_.verdict == AngleFacts::Verdict::stands ||
+            facts_.source() == AngleFacts::Source::velocity)
+            return;
+        if (found.verdict != facts_.verdict) facts_.contradicted = {rows_, rows_ - skipped_};
+    }
+
+    AngleFacts facts_;
+    bool any_ = false, looking_ = false;
+    std::size_t rows_ = 0, skipped_ = 0;  ///< so far
+    Row last_;
+    Piece piece_;
+    double piece_begin_s_ = 0.0;
+    std::vector<Piece> pieces_;
+};
+
 }  // namespace
 
 AngleFacts::Source AngleFacts::source() const {
@@ -144,106 +274,6 @@ std::string AngleFacts::warning() const {
     return text.empty() ? later : fmt::format("{}; {}", text, later);
 }
 
-JointAngle::Judgement JointAngle::judge(const std::vector<Piece>& pieces) {
-    std::vector<double> ratios, velocities, positions;
-    for (const Piece& piece : pieces) {
-        const double far = std::copysign(std::numeric_limits<double>::max(), piece.position_deg);
-        ratios.push_back(piece.velocity_deg != 0.0 ? piece.position_deg / piece.velocity_deg : far);
-        velocities.push_back(std::abs(piece.velocity_deg));
-        positions.push_back(std::abs(piece.position_deg));
-    }
-    const double velocity = median_in(velocities), position = median_in(positions);
-    using Verdict = AngleFacts::Verdict;
-    if (velocity < frozen_share * position) return {Verdict::unrelated, std::nullopt};
-    const double factor = median_of(ratios), magnitude = std::abs(factor);
-    const auto alike = std::ranges::count_if(
-        ratios, [=](double ratio) { return std::abs(ratio - factor) <= alike_within * magnitude; });
-    if (magnitude > 0.0 && static_cast<double>(alike) >= alike_share * static_cast<double>(ratios.size())) {
-        if (magnitude < 1.0 / farthest_factor || magnitude > farthest_factor)
-            return {Verdict::scaled, factor};
-        return {factor > 0.0 ? Verdict::agrees : Verdict::reversed, factor};
-    }
-    return {position < standing_share * velocity ? Verdict::stands : Verdict::unrelated, std::nullopt};
-}
-
-JointAngle::JointAngle(bool velocity, bool position) {
-    using Verdict = AngleFacts::Verdict;
-    facts_.verdict = !position   ? Verdict::no_position
-                     : !velocity ? Verdict::no_velocity
-                                 : Verdict::too_little_motion;
-}
-
-void JointAngle::look(const TraceView& rows, bool begins_run) {
-    looking_ = true;
-    add(rows, begins_run);
-}
-
-void JointAngle::decide() {
-    if (facts_.verdict == AngleFacts::Verdict::too_little_motion && pieces_.size() >= fewest_pieces)
-        conclude();
-    looking_ = any_ = false;
-    rows_ = skipped_ = 0;
-    pieces_.clear();
-    piece_ = {};
-}
-
-void JointAngle::follow(const TraceView& rows, bool begins_run) {
-    add(rows, begins_run);
-    rows_ += rows.size();
-}
-
-void JointAngle::add(const TraceView& rows, bool begins_run) {
-    using Verdict = AngleFacts::Verdict;
-    if (facts_.verdict == Verdict::no_position || facts_.verdict == Verdict::no_velocity) return;
-    for (std::size_t k = 0; k < rows.size(); ++k) {
-        const Row row{rows.time_s[k], rows.velocity_deg_s[k], rows.position_deg[k]};
-        if (!any_ || (k == 0 && begins_run)) {
-            any_ = true;
-            piece_ = {};
-            piece_begin_s_ = row.time_s;
-            last_ = row;
-            continue;
-        }
-        double moved = row.position_deg - last_.position_deg;
-        if (std::abs(moved) > 180.0) moved -= 360.0 * std::round(moved / 360.0);
-        piece_.position_deg += moved;
-        piece_.velocity_deg +=
-            0.5 * (row.velocity_deg_s + last_.velocity_deg_s) * (row.time_s - last_.time_s);
-        last_ = row;
-        if (std::max(std::abs(piece_.position_deg), std::abs(piece_.velocity_deg)) >= piece_deg) {
-            end_piece();
-            if (!looking_ && pieces_.size() == pieces_judged) {
-                rows_ += k;
-                conclude();
-                rows_ -= k;
-            }
-        } else if (row.time_s - piece_begin_s_ > longest_piece_s) {
-            piece_ = {};
-            piece_begin_s_ = row.time_s;
-        }
-    }
-}
-
-void JointAngle::end_piece() {
-    if (pieces_.size() < most_pieces_of_angle) pieces_.push_back(piece_);
-    piece_ = {};
-    piece_begin_s_ = last_.time_s;
-}
-
-void JointAngle::conclude() {
-    const Judgement found = judge(pieces_);
-    pieces_.clear();
-    if (facts_.verdict == AngleFacts::Verdict::too_little_motion) {
-        facts_.verdict = found.verdict;
-        facts_.factor = found.factor;
-        return;
-    }
-    if (facts_.contradicted || facts_.verdict == AngleFacts::Verdict::stands ||
-        facts_.source() == AngleFacts::Source::velocity)
-        return;
-    if (found.verdict != facts_.verdict) facts_.contradicted = {rows_, rows_ - skipped_};
-}
-
 Hertz Recording::update_rate() const {
     const auto held_share =
         static_cast<double>(held.count) / static_cast<double>(std::max<std::size_t>(held.moving, 1));
@@ -281,6 +311,14 @@ TraceView view_of(const RowBlock& block, std::size_t joint, std::size_t first, s
     return {{}, part(block.time_s), part(rows.velocity_deg_s), part(rows.torque_nm), part(rows.position_deg)};
 }
 
+struct Account::Joint {
+    HeldCounter held;
+    JointAngle angle;
+};
+
+Account::~Account() = default;
+Account::Account(Account&&) noexcept = default;
+
 Account::Account(const Layout& layout, const Opening& opening)
     : clock_(layout.source, opening.time_s, layout.stated_rate) {
     const std::size_t joints = opening.blocks.empty() ? 1 : opening.blocks.front().joints.size();
@@ -302,6 +340,8 @@ Account::Account(const Layout& layout, const Opening& opening)
     }
     for (Joint& joint : joints_) joint.angle.decide();
 }
+
+const AngleFacts& Account::angle(std::size_t joint) const { return joints_[joint].angle.facts(); }
 
 std::span<const RunPart> Account::add(const RowBlock& block) {
     const std::span<const RunPart> parts = clock_.add(block.time_s);

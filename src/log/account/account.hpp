@@ -126,6 +126,8 @@ class Account {
   public:
     /// Judges the opening.
     Account(const Layout& layout, const Opening& opening);
+    ~Account();
+    Account(Account&&) noexcept;
 
     /// The next rows, from the first of the log on, as the clock parts them; valid until the next call.
     /// Throws DataError when time runs backward.
@@ -133,7 +135,7 @@ class Account {
 
     [[nodiscard]] const Clock& clock() const { return clock_; }
     /// What the rows so far say of the angle; by joint, as Layout::all_chosen().
-    [[nodiscard]] const AngleFacts& angle(std::size_t joint) const { return joints_[joint].angle.facts(); }
+    [[nodiscard]] const AngleFacts& angle(std::size_t joint) const;
     /// `layout` as it stands now, in which the joint stands at `place`.
     [[nodiscard]] Recording recording(const Layout& layout, std::size_t place, std::size_t joint) const;
     [[nodiscard]] Recording recording(const Layout& layout, std::size_t joint) const {
@@ -141,10 +143,7 @@ class Account {
     }
 
   private:
-    struct Joint {
-        HeldCounter held;
-        JointAngle angle;
-    };
+    struct Joint;
     Clock clock_;
     std::vector<Joint> joints_;
     bool judged_ = false;  ///< the clock tells how far a velocity goes

@@ -110,9 +110,8 @@ void find_unit(const ColumnFacts& facts, const ClockOpening& opening, Layout& la
     const ClockUnit* const unit = unit_of(opening, reason);
     if (unit == nullptr) {
         ask("{}: {} advances by {} a row and no unit is stated: in seconds that is {:.3g} rows a second, and "
-            "no "
-            "unit from s to ns gives {:g} Hz to {:g} kHz; use --unit time=d (or s, ms, us, ns, min, h), or "
-            "--sample-rate 1kHz",
+            "no unit from s to ns gives {:g} Hz to {:g} kHz; use --unit time=d (or s, ms, us, ns, min, h), "
+            "or --sample-rate 1kHz",
             layout.source, label, shortest(opening.step), 1.0 / opening.step, lowest_rate_hz,
             1e-3 * highest_rate_hz);
     }
@@ -188,11 +187,11 @@ std::string labels(const ColumnFacts& facts, const std::vector<std::size_t>& col
 }
 
 // "header.stamp." of "header.stamp.nanosec", when the name ends in one of the words.
-std::optional<std::string> name_before(const std::string& name, std::span<const std::string_view> words) {
+std::optional<std::string> name_before(const std::string& name, std::string_view words) {
     const std::string text = lower_case(name);
     std::size_t begin = text.size();
     while (begin > 0 && std::isalpha(static_cast<unsigned char>(text[begin - 1])) != 0) --begin;
-    if (std::ranges::find(words, std::string_view(text).substr(begin)) == words.end()) return std::nullopt;
+    if (!has_word(words, std::string_view(text).substr(begin))) return std::nullopt;
     return text.substr(0, begin);
 }
 
@@ -201,8 +200,8 @@ struct StampPair {
     std::size_t seconds, nanoseconds;
 };
 std::optional<StampPair> find_stamp_pair(const ColumnFacts& facts, const Forced& forced) {
-    constexpr std::array<std::string_view, 4> whole = {"sec", "secs", "seconds", "s"};
-    constexpr std::array<std::string_view, 5> parts = {"nanosec", "nsec", "nsecs", "nanosecs", "nanoseconds"};
+    constexpr std::string_view whole = "sec secs seconds s",
+                               parts = "nanosec nsec nsecs nanosecs nanoseconds";
     for (std::size_t n = 0; n < facts.names.size(); ++n) {
         const auto before = name_before(facts.names[n], parts);
         if (!before || forced.roles[n]) continue;
@@ -222,13 +221,12 @@ std::optional<StampPair> find_stamp_pair(const ColumnFacts& facts, const Forced&
 
 /// "dt", "timestep", "Delta t": a column of steps, whose values are steps, too.
 bool holds_steps(const ColumnFacts& facts, std::size_t column) {
-    constexpr std::array<std::string_view, 9> words = {"dt",         "timestep",  "timesteps",
-                                                       "deltat",     "deltatime", "sampletime",
-                                                       "samplestep", "steptime",  "tdelta"};
+    constexpr std::string_view words =
+        "dt timestep timesteps deltat deltatime sampletime samplestep steptime tdelta";
     if (!facts.sums_steps || facts.names.empty()) return false;
     std::string name = lower_case(split_unit(facts.meanings()[column]).name);
     std::erase_if(name, [](char c) { return c == '_' || c == ' ' || c == '-' || c == '.'; });
-    if (std::ranges::find(words, name) == words.end()) return false;
+    if (!has_word(words, name)) return false;
     const auto values = finite_values(facts, column);
     return !values.empty() && *std::ranges::min_element(values) >= 0.0 && !runs_forward(values);
 }
@@ -284,8 +282,7 @@ void refuse_clocks(const ColumnFacts& facts, const Clocks& clocks, const ReadOpt
             : "no column is named as a time";
     if (!clocks.counters.empty()) {
         why = fmt::format(
-            "{} only counts rows (1, 2, 3, ...), which is a row number, or a time whose unit is not "
-            "stated",
+            "{} only counts rows (1, 2, 3, ...), which is a row number, or a time whose unit is not stated",
             labels(facts, clocks.counters));
     }
     if (clocks.broken.size() > 1)
@@ -344,11 +341,10 @@ std::string time_backward(const TimeStep& step) {
     const std::string seen = fmt::format("read the time {} after {}, ", shown_time(step.read, step.origin),
                                          shown_time(step.before, step.origin));
     if (const Round* round = round_of(step)) {
-        return seen +
-               fmt::format(
-                   "expected time to run forward; it falls as {} does that begins anew (at {}): take the "
-                   "rows before with --to, or count rows with --sample-rate",
-                   round->words, shortest(round->length));
+        return seen + fmt::format(
+                          "expected time to run forward; it falls as {} does that begins anew (at {}): take "
+                          "the rows before with --to, or count rows with --sample-rate",
+                          round->words, shortest(round->length));
     }
     return seen +
            "expected time to run forward; sort or split the log, or use --sample-rate if the clock is of no "
@@ -404,11 +400,10 @@ void choose_time(const ColumnFacts& facts, const std::vector<ColumnName>& names,
                     layout.source, column_label(facts.names, column), column_label(facts.names, clocks[0]),
                     facts.names[clocks[0]]);
             }
-            layout.warn(
-                "time as text",
-                fmt::format("{} is not a number of seconds; the time is taken from {}; --columns time=NAME "
-                            "decides otherwise",
-                            column_label(facts.names, column), column_label(facts.names, clocks[0])));
+            layout.warn("time as text",
+                        fmt::format("{} is not a number of seconds; the time is taken from {}; --columns "
+                                    "time=NAME decides otherwise",
+                                    column_label(facts.names, column), column_label(facts.names, clocks[0])));
         }
         return;
     }

@@ -19,15 +19,6 @@ constexpr double usual_duration = 0.1;  ///< share by which a window's time diff
 constexpr double other_rate = 1.35;     ///< steps longer or shorter by this are of another rate ...
 constexpr std::size_t windows_to_change = 4;  ///< ... when so many windows in a row have them
 
-double median_step(const std::vector<double>& time_s) {
-    std::vector<double> steps;
-    for (std::size_t k = 1; k < time_s.size(); ++k) {
-        if (time_s[k] > time_s[k - 1]) steps.push_back(time_s[k] - time_s[k - 1]);
-    }
-    if (steps.empty()) return 0.0;
-    return median_in(steps);
-}
-
 constexpr std::size_t scouted_rows = 512;  ///< that tell how the opening begins
 constexpr double alike_steps = 1.25;       // by hand: as a factor
 // Times of more rows than these in one say too little of when each was taken: with five, ripple of 11 to 33
@@ -57,7 +48,7 @@ void Clock::end_window() {
     if (std::abs(duration - usual) <= usual_duration * usual)
         odd_windows_ = 0;
     else
-        look_closely(median_step(window_.time_s));
+        look_closely(advancing_steps(window_.time_s));
     sum_up_window();
     if (odd_windows_ == windows_to_change) change_rate();
     std::swap(before_, window_);
@@ -66,7 +57,8 @@ void Clock::end_window() {
     summed_up_ = 0;
 }
 
-void Clock::look_closely(double median_s) {
+void Clock::look_closely(std::vector<double> steps_s) {
+    const double median_s = steps_s.empty() ? 0.0 : median_in(steps_s);
     if (!(median_s > 0.0) || within_factor(median_s, now_.step_s, other_rate)) {
         odd_windows_ = 0;
     } else if (odd_windows_ > 0 && within_factor(median_s, odd_step_s_, other_rate)) {
@@ -204,8 +196,7 @@ std::string Clock::refusal(std::size_t rows) const {
             rows_a_burst_, now_.step_s, state_rate());
     if (advances_) return {};
     return "time does not advance from row to row; state the rate of its rows, for example --sample-rate "
-           "1kHz, "
-           "or name the right column with --columns time=NAME";
+           "1kHz, or name the right column with --columns time=NAME";
 }
 
 void Clock::require() const {

@@ -114,8 +114,7 @@ std::string changes_in_words(const ClockFacts& clock) {
     if (clock.rows_left_out == 0) return changes;
     return fmt::format(
         "{}; {} rows at another rate than {:.6g} Hz are left out and pass unfiltered: give each part a log "
-        "of "
-        "its own",
+        "of its own",
         changes, clock.rows_left_out, clock.nominal_rate.value());
 }
 
@@ -267,6 +266,13 @@ std::string explain(double factor, Hertz sample_rate) {
 
 }  // namespace
 
+std::vector<double> advancing_steps(std::span<const double> time_s) {
+    std::vector<double> steps;
+    for (std::size_t k = 1; k < time_s.size(); ++k)
+        if (time_s[k] > time_s[k - 1]) steps.push_back(time_s[k] - time_s[k - 1]);
+    return steps;
+}
+
 StepSums sum_up_steps(std::span<const double> time_s, double usual_s) noexcept {
     return in_lanes<SumUp>(time_s, usual_s);
 }
@@ -285,10 +291,7 @@ Hertz nominal_rate(Hertz measured) {
 }
 
 RateEstimate estimate_rate(std::span<const double> time_s) {
-    std::vector<double> advancing;
-    for (std::size_t k = 1; k < time_s.size(); ++k) {
-        if (time_s[k] > time_s[k - 1]) advancing.push_back(time_s[k] - time_s[k - 1]);
-    }
+    std::vector<double> advancing = advancing_steps(time_s);
     if (advancing.empty()) return {};
     RateEstimate rate;
     rate.step_s = median_in(advancing);
@@ -315,13 +318,11 @@ std::vector<LogWarning> clock_warnings(const ClockFacts& clock) {
     if (!clock.rate_changes.empty()) warnings.push_back({"changes of rate", changes_in_words(clock)});
     if (clock.repeated_times > 0) {
         warnings.push_back(
-            {"repeated times",
-             fmt::format("{} rows ({} %) repeat the time of the row before: the clock is coarser than the "
-                         "rows, or rows "
-                         "were doubled",
-                         clock.repeated_times,
-                         percent_text(100.0 * static_cast<double>(clock.repeated_times) /
-                                      static_cast<double>(clock.rows)))});
+            {"repeated times", fmt::format("{} rows ({} %) repeat the time of the row before: the clock is "
+                                           "coarser than the rows, or rows were doubled",
+                                           clock.repeated_times,
+                                           percent_text(100.0 * static_cast<double>(clock.repeated_times) /
+                                                        static_cast<double>(clock.rows)))});
     }
     const double mean = clock.mean_rate.value(), nominal = clock.nominal_rate.value();
     if (nominal > 0.0 && std::abs(mean / nominal - 1.0) > rate_worth_a_word) {

@@ -17,6 +17,9 @@ namespace ripplenotch {
     return a <= factor * b && b <= factor * a;
 }
 
+/// The steps from time to time that advance.
+[[nodiscard]] std::vector<double> advancing_steps(std::span<const double> time_s);
+
 struct StepSums {
     double shortest_s, longest_s;
     double squares;  ///< of the steps about the usual one
@@ -47,6 +50,9 @@ class MotionPieces {
     struct Piece {
         double position_change = 0.0, integrated_velocity = 0.0, velocity_change = 0.0;
     };
+
+    /// Those that are complete.
+    [[nodiscard]] const std::vector<Piece>& pieces() const { return pieces_; }
 
   private:
     struct Row {

@@ -2,8 +2,8 @@
 #include "log/clock/stamp.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
+#include <chrono>
 #include <cmath>
 
 #include "log/columns/units.hpp"
@@ -14,8 +14,6 @@
 namespace ripplenotch {
 
 namespace {
-
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 /// Takes digits off the front of `text`: at least `fewest`, at most `most` of them.
 std::optional<int> read_number(std::string_view& text, std::size_t fewest, std::size_t most) {
@@ -32,13 +30,6 @@ bool skip(std::string_view& text, std::string_view one_of) {
     if (text.empty() || one_of.find(text.front()) == std::string_view::npos) return false;
     text.remove_prefix(1);
     return true;
-}
-
-// Days from 1970-01-01 in the Gregorian calendar, by counting the leap years before the first of March.
-std::int64_t days_since_1970(int year, int month, int day) {
-    const std::int64_t y = month > 2 ? year : year - 1;
-    const std::int64_t months = month > 2 ? month - 3 : month + 9;
-    return y * 365 + y / 4 - y / 100 + y / 400 + (153 * months + 2) / 5 + day - 1 - 719468;
 }
 
 /// "2024-05-01T" or "2024/05/01 ", "2024:05:01:" as some loggers write it, "1.5.2024 " and "5/1/2024 ".
@@ -65,7 +56,9 @@ std::optional<std::int64_t> read_date(std::string_view& text, bool day_first) {
     }
     if (month < 1 || month > 12 || day < 1 || day > 31) return std::nullopt;
     text = rest;
-    return days_since_1970(year, month, day);
+    using namespace std::chrono;
+    const sys_days first_of_month(std::chrono::year(year) / month / 1);
+    return first_of_month.time_since_epoch().count() + day - 1;
 }
 
 /// "AM" or "PM" behind the time, and its blanks; the hours to be added to it. Empty where 13 PM is no hour.
@@ -115,45 +108,24 @@ std::optional<ClockTime> with_unit(std::string_view text) {
 
 constexpr std::int64_t day_s = 86400;
 
-std::optional<std::int64_t> whole_number(std::string_view text) {
-    constexpr std::size_t most_digits = 9;  // of nanoseconds, and what an int holds
-    if (text.empty() || text.size() > most_digits) return std::nullopt;
-    std::int64_t value = 0;
-    for (const char c : text) {
-        if (std::isdigit(static_cast<unsigned char>(c)) == 0) return std::nullopt;
-        value = 10 * value + (c - '0');
-    }
-    return value;
-}
-
-/// "05" to "59".
-std::optional<std::int64_t> sixtieths(std::string_view text) {
-    const auto value = text.size() == 2 ? whole_number(text) : std::nullopt;
-    return value && *value < 60 ? value : std::nullopt;
-}
-
 /// "12:30", "1:02:30.5", "90:00.25"; empty for what is none.
 std::optional<TimePoint> sexagesimal(std::string_view text) {
+    constexpr std::size_t most_digits = 9;  // of nanoseconds, and what an int holds
     TimePoint point;
     point.text = text;
-    const std::size_t dot = std::min(text.find('.'), text.size());
-    if (dot < text.size()) {
-        if (!whole_number(text.substr(dot + 1, 9))) return std::nullopt;
-        const auto fraction = parse_number("0" + std::string(text.substr(dot)));
-        if (!fraction) return std::nullopt;
-        point.fraction_s = *fraction;
-        text = text.substr(0, dot);
-    }
-    const std::size_t last = text.rfind(':'), first = text.find(':');
-    if (last == std::string_view::npos) return std::nullopt;
-    const bool hours = first != last;
-    const auto lead = whole_number(text.substr(0, first));
-    const auto middle =
-        hours ? sixtieths(text.substr(first + 1, last - first - 1)) : std::optional<std::int64_t>(0);
-    const auto end = sixtieths(text.substr(last + 1));
-    if (!lead || !middle || !end) return std::nullopt;
+    const auto lead = read_number(text, 1, most_digits);
+    const auto middle = lead && skip(text, ":") ? read_number(text, 2, 2) : std::nullopt;
+    const bool hours = middle && skip(text, ":");
+    const auto last = hours ? read_number(text, 2, 2) : middle;
+    if (!last || *middle > 59 || *last > 59) return std::nullopt;
     point.form = hours ? TimePoint::Form::hours : TimePoint::Form::two_fields;
-    point.whole_s = (hours ? 3600 : 60) * *lead + 60 * *middle + *end;
+    point.whole_s =
+        hours ? std::int64_t{3600} * *lead + 60 * *middle + *last : std::int64_t{60} * *lead + *last;
+    if (text.empty()) return point;
+    const auto fraction = text.front() == '.' ? parse_number("0" + std::string(text)) : std::nullopt;
+    const std::string_view digits = text.substr(1, most_digits);
+    if (!fraction || !is_digits(digits)) return std::nullopt;
+    point.fraction_s = *fraction;
     return point;
 }
 

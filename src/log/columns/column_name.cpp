@@ -5,7 +5,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <charconv>
 #include <map>
@@ -117,10 +116,6 @@ struct Word {
     bool glued = false;  // follows the word before without anything between: "j" "4" of "j4"
     Sense sense = {};
 };
-
-bool is_digits(std::string_view text) {
-    return !text.empty() && std::ranges::all_of(text, [](unsigned char c) { return std::isdigit(c) != 0; });
-}
 
 // q_dot and theta_dot are one symbol each.
 void join_dots(std::vector<Word>& words) {
@@ -304,7 +299,7 @@ bool is_clock_name(const std::vector<Word>& left) {
 /// "v" of "v", "v_3", "v3", "v[3]".
 std::string_view without_number(std::string_view name) {
     if (name.ends_with(']')) name.remove_suffix(1);
-    while (!name.empty() && is_digits(name.substr(name.size() - 1))) name.remove_suffix(1);
+    while (!name.empty() && is_digit(name.back())) name.remove_suffix(1);
     while (!name.empty() && (name.back() == '_' || name.back() == '[' || name.back() == ' '))
         name.remove_suffix(1);
     return name;
@@ -444,10 +439,8 @@ std::vector<JointGroup> collect_groups(const KnownColumns& known, bool merge) {
                      role_name(role), fmt::join(choices, " or "));
 }
 
-/// The columns of one role whose joints are numbers.
-struct Numbering {
-    std::size_t lowest = 0, highest = 0, first_column = 0, columns = 0;
-};
+/// The columns of one role, by the number of their joint.
+using Numbering = std::multimap<std::size_t, std::size_t>;
 
 /// Number behind the letters of a joint's key, "left_3".
 std::optional<std::size_t> number_of(std::string_view key) {
@@ -462,9 +455,10 @@ std::optional<std::size_t> number_of(std::string_view key) {
 
 // One of them has what the other has not, at both ends; of single columns, another number.
 bool differ(const Numbering& a, const Numbering& b) {
-    if (a.columns == 1 && b.columns == 1) return a.lowest != b.lowest;
+    if (a.size() == 1 && b.size() == 1) return a.begin()->first != b.begin()->first;
     const auto shifted = [](const Numbering& from_0, const Numbering& from_1) {
-        return from_0.lowest == 0 && from_1.lowest == 1 && from_1.highest > from_0.highest;
+        return from_0.begin()->first == 0 && from_1.begin()->first == 1 &&
+               from_1.rbegin()->first > from_0.rbegin()->first;
     };
     return shifted(a, b) || shifted(b, a);
 }
@@ -667,25 +661,22 @@ std::string mixed_numberings(const KnownColumns& known) {
         const std::string key = joint_key(name.joint);
         const auto number = number_of(key);
         if (!number) continue;
-        const std::string letters = key.substr(0, key.find_last_not_of("0123456789") + 1);
-        Numbering& of_role =
-            numberings[letters].try_emplace(name.role, Numbering{*number, *number, c, 0}).first->second;
-        if (*number < of_role.lowest) of_role.lowest = *number, of_role.first_column = c;
-        of_role.highest = std::max(of_role.highest, *number);
-        ++of_role.columns;
+        numberings[key.substr(0, key.find_last_not_of("0123456789") + 1)][name.role].emplace(*number, c);
     }
     for (const auto& [letters, roles] : numberings) {
         for (auto a = roles.begin(); a != roles.end(); ++a) {
             for (auto b = std::next(a); b != roles.end(); ++b) {
                 if (!differ(a->second, b->second)) continue;
-                const std::size_t first = a->second.first_column, second = b->second.first_column;
+                const auto [of_a, first] = *a->second.begin();
+                const auto [of_b, second] = *b->second.begin();
                 const auto& names = known.facts.names;
                 return fmt::format(
                     "{} is the first {} and {} the first {}: joints are numbered from {} and from {}; state "
-                    "which columns are one joint's, with --columns {}={},{}={}",
+                    "which "
+                    "columns are one joint's, with --columns {}={},{}={}",
                     column_label(names, first), role_name(a->first), column_label(names, second),
-                    role_name(b->first), a->second.lowest, b->second.lowest, role_name(a->first),
-                    names[first], role_name(b->first), names[second]);
+                    role_name(b->first), of_a, of_b, role_name(a->first), names[first], role_name(b->first),
+                    names[second]);
             }
         }
     }
@@ -707,15 +698,15 @@ std::vector<JointGroup> group_joints(const KnownColumns& known, bool joint_asked
     if (std::ranges::none_of(groups, complete) && groups.size() > 1 && !joint_asked) {
         // "motor_torque" and "link_velocity": one joint whose columns are named after different
         // things.
-        std::array<std::size_t, 3> counts{};
-        for (std::size_t r = 0; r < motion_roles.size(); ++r) {
-            for (const JointGroup& group : groups) counts[r] += group.has(motion_roles[r]);
-        }
+        const auto count = [&](Role role) {
+            return std::ranges::count_if(groups, [role](const JointGroup& group) { return group.has(role); });
+        };
         // "tau_motor_side" and "tau_sensor" with them: torques of the one joint that moves, to be chosen
         // from.
         const bool numbered = std::ranges::any_of(
             groups, [](const JointGroup& group) { return number_of(group.key).has_value(); });
-        if (counts[0] <= 1 && counts[2] <= 1 && (counts[1] <= 1 || !numbered))
+        if (count(Role::velocity) <= 1 && count(Role::position) <= 1 &&
+            (count(Role::torque) <= 1 || !numbered))
             groups = collect_groups(known, true);
     }
     share_torques(groups);
@@ -750,13 +741,12 @@ std::optional<std::size_t> choose_column(const KnownColumns& known, const JointG
             if (!known.names[c].current && !known.names[c].reference) best.push_back(c);
     if (best.size() > 1) refuse_tie(known, role, best);
     if (!still.empty()) {
-        warnings.push_back(
-            {"standing column",
-             fmt::format("{} does not change at the start of the log; the {} is taken from {}; --columns "
-                         "{}=NAME decides otherwise",
-                         column_label(known.facts.names, still.front()), role_name(role),
-                         column_label(known.facts.names, best.front()), role_name(role)),
-             true});
+        warnings.push_back({"standing column",
+                            fmt::format("{} does not change at the start of the log; the {} is taken from "
+                                        "{}; --columns {}=NAME decides otherwise",
+                                        column_label(known.facts.names, still.front()), role_name(role),
+                                        column_label(known.facts.names, best.front()), role_name(role)),
+                            true});
     }
     if (known.names[best.front()].reference) {
         warnings.push_back({"reference",

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <set>
 #include <span>
 
@@ -42,6 +41,11 @@ std::optional<Role> role_of(std::string_view word) {
     return std::nullopt;
 }
 
+std::string names_in_words(const ColumnFacts& facts) {
+    return facts.names.empty() ? fmt::format("{} columns without names", facts.columns)
+                               : fmt::format("{}", fmt::join(facts.names, ", "));
+}
+
 std::size_t column_named(const std::string& source, const ColumnFacts& facts, const std::string& name) {
     std::vector<std::size_t> found;
     for (std::size_t c = 0; c < facts.names.size(); ++c) {
@@ -61,9 +65,7 @@ std::size_t column_named(const std::string& source, const ColumnFacts& facts, co
         *number == static_cast<double>(static_cast<std::size_t>(*number))) {
         return static_cast<std::size_t>(*number) - 1;
     }
-    raise<UsageError>("--columns: {} has no column '{}'; it has {}", source, name,
-                      facts.names.empty() ? fmt::format("{} columns without names", facts.columns)
-                                          : fmt::format("{}", fmt::join(facts.names, ", ")));
+    raise<UsageError>("--columns: {} has no column '{}'; it has {}", source, name, names_in_words(facts));
 }
 
 Forced read_columns_option(const std::string& source, const ColumnFacts& facts, const ReadOptions& options) {
@@ -220,8 +222,8 @@ class Decision {
         else
             names_ = read_column_names(facts_.meanings(), facts_.units);
         for (std::size_t c = 0; c < facts_.columns; ++c) {
-            layout_.columns.push_back(
-                named(facts_.names.empty() ? fmt::format("column {}", c + 1) : facts_.names[c]));
+            layout_.columns.emplace_back().name =
+                facts_.names.empty() ? fmt::format("column {}", c + 1) : facts_.names[c];
             if (names_[c].unit.empty() && facts_.names.empty() && !facts_.units.empty()) {
                 names_[c].unit = facts_.units[c];
                 names_[c].unit_is_sure = !facts_.units[c].empty();
@@ -292,17 +294,13 @@ class Decision {
             require_torque_and_velocity();
     }
 
-    static Column named(const std::string& name) {
-        Column column;
-        column.name = name;
-        return column;
-    }
-
     // Of a joint that is read, only the columns that are.
     void choose(const JointGroup& group) {
         for (const Role role : motion_roles) {
             for (const std::size_t c : group.of(role)) {
-                layout_.columns[c] = named(layout_.columns[c].name);
+                const std::string name = layout_.columns[c].name;
+                layout_.columns[c] = {};
+                layout_.columns[c].name = name;
                 stated_[c] = false;
             }
         }
@@ -435,9 +433,7 @@ class Decision {
     }
 
     void require_torque_and_velocity() const {
-        const auto names = facts_.names.empty()
-                               ? fmt::format("{} columns without names", facts_.columns)
-                               : fmt::format("{}", fmt::join(facts_.names, ", ")).substr(0, 400);
+        const std::string names = names_in_words(facts_).substr(0, 400);
         for (const auto& [column, role] : {std::pair{layout_.chosen.torque, Role::torque},
                                            std::pair{layout_.chosen.velocity, Role::velocity}}) {
             if (column || (role == Role::velocity && may_go_without(layout_.chosen))) continue;
@@ -543,11 +539,10 @@ class Decision {
         } else if (is_device_unit(written)) {
             unscaled_.push_back({fmt::format("{} in {}", label, written), scale_example(role, written)});
         } else if (role != Role::time && written.empty() && !names_[c].suffix.empty() && !shares_joint(c)) {
-            unscaled_.push_back(
-                {fmt::format("{}, where '{}' is neither a unit that is known nor in the name of "
-                             "another column, as a joint is",
-                             label, names_[c].suffix),
-                 unit_or_scale(role)});
+            unscaled_.push_back({fmt::format("{}, where '{}' is neither a unit that is known nor in the name "
+                                             "of another column, as a joint is",
+                                             label, names_[c].suffix),
+                                 unit_or_scale(role)});
         } else if (!written.empty() && !usual_unit(written, role)) {
             unscaled_.push_back(
                 {fmt::format("{} in '{}', which is no unit of a {}", label, written, role_name(role)),

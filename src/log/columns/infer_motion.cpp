@@ -4,11 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 
 #include "log/account/account.hpp"
+#include "log/clock/clock_check.hpp"
 #include "log/columns/units.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
@@ -37,48 +37,32 @@ std::vector<double> slopes(const std::vector<double>& time_s, const std::vector<
     return found;
 }
 
-// Change of position and velocity times time, piece by piece: long enough to average noise, many enough for a
-// median. A step of ten usual ones ends a piece: nobody knows the velocity within.
-struct Moves {
-    std::vector<double> position, velocity;
-};
-Moves moves_of(const std::vector<double>& t, const std::vector<double>& v, const std::vector<double>& q) {
-    constexpr std::size_t most_pieces = 64, shortest_piece = 4;  // by hand
+// Piece by piece: long enough to average noise, many enough for a median. A step of ten usual ones ends a
+// piece: nobody knows the velocity within.
+std::vector<MotionPieces::Piece> pieces_of(const std::vector<double>& t, const std::vector<double>& v,
+                                           const std::vector<double>& q) {
     std::vector<double> steps;
     for (std::size_t i = 1; i < t.size(); ++i) steps.push_back(t[i] - t[i - 1]);
     const double gap = 10.0 * std::max(median_of(steps), 0.0);
-    const std::size_t rows = std::max(shortest_piece, t.size() / most_pieces);
-    Moves moves;
-    double position = 0.0, velocity = 0.0;
-    std::size_t taken = 0;
-    for (std::size_t i = 0; i < steps.size(); ++i) {
-        const bool broken = gap > 0.0 && steps[i] > gap;
-        if (!broken) {
-            position += q[i + 1] - q[i];
-            velocity += 0.5 * (v[i] + v[i + 1]) * steps[i];
-            ++taken;
-        }
-        if (!broken && taken < rows) continue;
-        if (taken >= shortest_piece) {
-            moves.position.push_back(position);
-            moves.velocity.push_back(velocity);
-        }
-        position = velocity = 0.0;
-        taken = 0;
-    }
-    return moves;
+    std::vector<std::size_t> run_starts;
+    for (std::size_t i = 0; i < steps.size(); ++i)
+        if (gap > 0.0 && steps[i] > gap) run_starts.push_back(i + 1);
+    MotionPieces motion(t.size());
+    motion.add({{}, t, v, v, q, run_starts});
+    return motion.pieces();
 }
 
 // The median of the pieces' ratios, where most of them say the same: neither spikes nor jumps move it.
-std::optional<double> scale_of(const Moves& moves) {
+std::optional<double> scale_of(const std::vector<MotionPieces::Piece>& pieces) {
     constexpr std::size_t fewest = 6;          // by hand
     constexpr double alike = 0.1, most = 0.7;  // by hand: of the ratio, and of the pieces
-    if (moves.velocity.size() < fewest) return std::nullopt;
-    const double usual = nearly_largest(moves.velocity);
-    std::vector<double> ratios;
-    for (std::size_t i = 0; i < moves.velocity.size(); ++i) {
-        if (std::abs(moves.velocity[i]) > 0.2 * usual)
-            ratios.push_back(moves.position[i] / moves.velocity[i]);
+    if (pieces.size() < fewest) return std::nullopt;
+    std::vector<double> moved, ratios;
+    for (const auto& piece : pieces) moved.push_back(piece.integrated_velocity);
+    const double usual = nearly_largest(moved);
+    for (const auto& piece : pieces) {
+        if (std::abs(piece.integrated_velocity) > 0.2 * usual)
+            ratios.push_back(piece.position_change / piece.integrated_velocity);
     }
     if (!(usual > 0.0) || ratios.size() < fewest) return std::nullopt;
     const double middle = median_of(ratios);
@@ -161,9 +145,8 @@ class Inference {
         all_stated_ = true;
         evidence_ = {};
         for (const MotionColumns& joint : joints_) {
-            for (const auto* column : {&joint.velocity, &joint.position})
-                all_stated_ =
-                    all_stated_ && (!*column || ((*column)->unit_is_stated && !(*column)->named_motor));
+            for (const MotionColumn& column : joint.all())
+                all_stated_ = all_stated_ && column.unit_is_stated && !column.named_motor;
             const MotionEvidence& one = opening.of.at(joint.place());
             evidence_.fastest = std::max(evidence_.fastest, one.fastest);
             evidence_.farthest = std::max(evidence_.farthest, one.farthest);
@@ -187,16 +170,14 @@ class Inference {
     }
 
     [[nodiscard]] bool stated() const {
-        return (!subject_->velocity || subject_->velocity->unit_is_stated) &&
-               (!subject_->position || subject_->position->unit_is_stated);
+        return std::ranges::all_of(subject_->all(), &MotionColumn::unit_is_stated);
     }
 
     void settle_on_best() {
         for (const MotionColumns& joint : joints_) {
             const std::optional<double> known = known_ratio(joint);
             const std::optional<double> ratio = known ? known : best_.ratio;
-            if (joint.velocity) settle(*joint.velocity, best_.velocity, ratio);
-            if (joint.position) settle(*joint.position, best_.position, ratio);
+            for (const MotionColumn& column : joint.all()) settle(column, best_.of(column), ratio);
         }
         const bool motor = best_.of_motor();
         layout_.motor_units = motor && !best_.ratio;
@@ -212,43 +193,40 @@ class Inference {
 
     // Counts that did not show in the first rows, at rest.
     void refuse_counts() const {
-        for (const auto& [column, counts, role] :
-             {std::tuple(&subject_->velocity, evidence_.velocity_counts, Role::velocity),
-              std::tuple(&subject_->position, evidence_.position_counts, Role::position)}) {
-            if (!*column || !counts || (*column)->unit_is_stated || (*column)->convention != nullptr)
-                continue;
+        for (const MotionColumn& column : subject_->all()) {
+            const bool counts =
+                column.role == Role::velocity ? evidence_.velocity_counts : evidence_.position_counts;
+            if (!counts || column.unit_is_stated || column.convention != nullptr) continue;
             ask("{}: read {} in whole numbers throughout, as counts are, and no unit, expected quantities; "
                 "state what 1 is, as in {} (or --unit {}={})",
-                layout_.source, label(**column), scale_example(role), role_name(role),
-                base_unit(dimension_of(role)));
+                layout_.source, label(column), scale_example(column.role), role_name(column.role),
+                base_unit(dimension_of(column.role)));
         }
     }
 
     // Whatever unit was taken, nothing turns so fast: the numbers are those of a device.
     void refuse_no_speed() const {
-        const auto& column = subject_->velocity ? subject_->velocity : subject_->position;
-        const ReadColumn& read = subject_->velocity ? best_.velocity : best_.position;
+        const MotionColumn& column = subject_->of_speed();
+        const ReadColumn& read = best_.of(column);
         const bool motor = read.side == Shaft::motor && !best_.ratio;
         const double deg_s = evidence_.fastest * (motor ? read.unit_factor : read.factor);
-        if (!options_.needs_torque || column->unit_is_stated ||
+        if (!options_.needs_torque || column.unit_is_stated ||
             deg_s <= (motor ? no_motor_deg_s : no_joint_deg_s))
             return;
         const bool both = subject_->velocity && subject_->position && !subject_->position->unit_is_stated;
         ask("{}: read {:.4g} in {}, of which no unit is stated: in {} the {} would turn at {:.3g} deg/s, "
             "expected at most {:g}; state what 1 is, as in {}{}, or --unit if that is the speed",
-            layout_.source, evidence_.fastest, label(*column), read.unit, motor ? "motor" : "joint", deg_s,
-            motor ? no_motor_deg_s : no_joint_deg_s,
-            scale_example(subject_->velocity ? Role::velocity : Role::position),
+            layout_.source, evidence_.fastest, label(column), read.unit, motor ? "motor" : "joint", deg_s,
+            motor ? no_motor_deg_s : no_joint_deg_s, scale_example(column.role),
             both ? " " + scale_example(Role::position) : "");
     }
 
     void refuse_motor_units() const {
         if (!layout_.motor_units || !options_.needs_torque || options_.takes_motor_units) return;
-        const auto& column = subject_->velocity ? subject_->velocity : subject_->position;
         raise<DataError>(
             "{}: {} is measured before the gear (named so, or too fast for a joint), and no ratio is known "
             "to bring it to the joint; use --gear-ratio, or --side joint if it is the joint's",
-            layout_.source, label(*column));
+            layout_.source, label(subject_->of_speed()));
     }
 
     void settle(const MotionColumn& known, const ReadColumn& read, std::optional<double> ratio) {
@@ -322,18 +300,16 @@ class Inference {
     void say(const std::vector<OtherReading>& possible, const std::vector<OtherReading>& thinkable,
              const std::vector<MotionReading>& without_position) {
         std::string about, assumed, option;
-        for (const auto& [column, read, role] :
-             {std::tuple(&subject_->velocity, &best_.velocity, Role::velocity),
-              std::tuple(&subject_->position, &best_.position, Role::position)}) {
-            if (!*column) continue;
-            const bool motor = read->side == Shaft::motor;
-            if ((*column)->unit_is_stated && !motor && possible.empty()) continue;
-            about += fmt::format("{}{}", about.empty() ? "" : " and ", label(**column));
-            assumed += fmt::format("{}{}{}", assumed.empty() ? "" : " and ", read->unit,
-                                   motor ? ", motor side" : "");
-            if (!(*column)->unit_is_stated)
-                option +=
-                    fmt::format("{}{}={}", option.empty() ? "--unit " : ",", role_name(role), read->unit);
+        for (const MotionColumn& column : subject_->all()) {
+            const ReadColumn& read = best_.of(column);
+            const bool motor = read.side == Shaft::motor;
+            if (column.unit_is_stated && !motor && possible.empty()) continue;
+            about += fmt::format("{}{}", about.empty() ? "" : " and ", label(column));
+            assumed +=
+                fmt::format("{}{}{}", assumed.empty() ? "" : " and ", read.unit, motor ? ", motor side" : "");
+            if (!column.unit_is_stated)
+                option += fmt::format("{}{}={}", option.empty() ? "--unit " : ",", role_name(column.role),
+                                      read.unit);
         }
         const bool motor = best_.of_motor();
         if (motor) option += fmt::format("{}--side {}", option.empty() ? "" : " ", side_words());
@@ -346,30 +322,26 @@ class Inference {
             return;
         }
         for (const MotionColumns& joint : joints_) {
-            for (const auto* column : {&joint.velocity, &joint.position}) {
-                if (*column && !(*column)->unit_is_stated)
-                    layout_.columns[(*column)->column].unit_assumed = true;
-            }
+            for (const MotionColumn& column : joint.all())
+                if (!column.unit_is_stated) layout_.columns[column.column].unit_assumed = true;
         }
         layout_.assumptions.push_back(std::move(read));
     }
 
     /// The convention of a name that decided on the unit; null where none did.
     const Convention* by_convention() const {
-        for (const auto* column : {&subject_->velocity, &subject_->position}) {
-            if (!*column || (*column)->unit_is_stated || (*column)->convention == nullptr) continue;
-            const auto& read = column == &subject_->velocity ? best_.velocity : best_.position;
-            if (read.unit == (*column)->convention->unit) return (*column)->convention;
-        }
+        for (const MotionColumn& column : subject_->all())
+            if (!column.unit_is_stated && column.convention != nullptr &&
+                best_.of(column).unit == column.convention->unit)
+                return column.convention;
         return nullptr;
     }
 
     /// By --side, or by a name that is a motor's.
     bool side_is_said() const {
-        const auto says = [](const std::optional<MotionColumn>& column) {
-            return column && (names_motor(*column) || column->stated_side.has_value());
-        };
-        return says(subject_->velocity) || says(subject_->position);
+        return std::ranges::any_of(subject_->all(), [](const MotionColumn& column) {
+            return names_motor(column) || column.stated_side.has_value();
+        });
     }
 
     std::string side_words() const {
@@ -453,7 +425,7 @@ MotionEvidence motion_evidence(const std::vector<double>& time_s, const std::vec
     if (evidence.wrap) Unwrapper(*evidence.wrap).apply(q);
     evidence.fastest = nearly_largest(velocity.empty() && !t.empty() ? slopes(t, q) : v);
     if (t.size() < 2 || v.empty() || q.empty()) return evidence;
-    evidence.scale = scale_of(moves_of(t, v, q));
+    evidence.scale = scale_of(pieces_of(t, v, q));
     return evidence;
 }
 
@@ -473,8 +445,9 @@ std::vector<MotionColumns> motions_of(const KnownColumns& known, const std::vect
             stated_side = side->second;
         else if (is_linear_unit(role, layout.columns[*c].unit))
             stated_side = Shaft::joint;  // the screw's, however fast it turns
-        return MotionColumn{*c, unit_is_stated[*c], known.names[*c].motor_side,
-                            known.names[*c].convention(role), stated_side};
+        return MotionColumn{
+            role,       *c, unit_is_stated[*c], known.names[*c].motor_side, known.names[*c].convention(role),
+            stated_side};
     };
     std::vector<MotionColumns> motions;
     const auto add = [&](const std::string& joint, std::optional<std::size_t> velocity,

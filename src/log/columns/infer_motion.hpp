@@ -37,6 +37,7 @@ struct MotionEvidence {
 
 /// What is known of a velocity or position column before its values are looked at.
 struct MotionColumn {
+    Role role = Role::velocity;
     std::size_t column = 0;
     bool unit_is_stated = false;
     bool named_motor = false;
@@ -49,12 +50,21 @@ struct MotionColumns {
     std::string joint;
     std::optional<MotionColumn> velocity, position;
     bool chosen = false;
+    /// Those that there are.
+    [[nodiscard]] std::vector<MotionColumn> all() const {
+        std::vector<MotionColumn> found;
+        for (const auto& column : {velocity, position})
+            if (column) found.push_back(*column);
+        return found;
+    }
     [[nodiscard]] MotionPlace place() const {
         MotionPlace place;
-        if (velocity) place.velocity = velocity->column;
-        if (position) place.position = position->column;
+        for (const MotionColumn& one : all())
+            (one.role == Role::velocity ? place.velocity : place.position) = one.column;
         return place;
     }
+    /// That which tells the speed: the velocity, where there is one.
+    [[nodiscard]] const MotionColumn& of_speed() const { return velocity ? *velocity : *position; }
 };
 
 /// The motions of the joints that are read, and of the file's others whose columns nobody has to choose
@@ -95,6 +105,9 @@ struct MotionReading {
     bool against_header = false;  ///< a unit that the log states is wrong
     double cost = 0.0;            ///< the likeliest has the least
 
+    [[nodiscard]] const ReadColumn& of(const MotionColumn& column) const {
+        return column.role == Role::velocity ? velocity : position;
+    }
     [[nodiscard]] bool of_motor() const {
         return velocity.side == Shaft::motor || position.side == Shaft::motor;
     }

@@ -22,24 +22,35 @@ constexpr double within_family = 0.5;                         // by hand
 constexpr double scale_agreement = 0.03;                      // scales within 3 % are one
 constexpr double lowest_ratio = 20.0, highest_ratio = 400.0;  // of gears that a position may tell
 constexpr double fastest_joint_deg_s = 1200.0;                // 200 rpm behind the gear
-// What speaks against a reading; below open_margin alone, it settles nothing.
-constexpr double unusual_size = 0.25, motor_side_unnamed = 1.5, joint_side_of_motor_name = 1.0;
-// Whoever states no unit does not state the side either: a motor is as likely, where it turns as motors do
-// (100 to 12000 rpm) and its speed is not in degrees, which are those of joints.
-constexpr double slowest_motor_deg_s = 600.0, fastest_motor_deg_s = 72000.0;
-constexpr double motor_without_unit = 0.75, motor_in_degrees = 1.0, motor_out_of_range = 3.0;
-// By hand: what each costs, in nats.
-constexpr double against_convention = 2.0, against_wrap = 3.0, too_fast = 3.0, header_wrong = 1.5;
-constexpr double families_mixed = 1.0;  // by hand
+constexpr double slowest_motor_deg_s = 600.0, fastest_motor_deg_s = 72000.0;  // 100 to 12000 rpm
 // Speeds and angles of joints in radians stay below these; in degrees such a joint would hardly move.
 constexpr double usual_rad_s = 7.0, usual_rad = 6.6;
+
+// By hand: what speaks against a reading, in nats, by what would have to be so. Below open_margin alone it
+// settles nothing. Whoever states no unit does not state the side either: a motor is nearly as likely then,
+// where it turns as motors do and its speed is not in degrees, which are those of joints.
+struct Costs {
+    double unusual_size = 0.25;        ///< degrees of a joint that hardly moves, radians beyond a joint's
+    double motor_without_unit = 0.75;  ///< a motor's, and neither a unit nor a convention is there
+    double motor_in_degrees = 1.0;     ///< in addition
+    double joint_side_of_motor_name = 1.0;  ///< named after the motor, measured at the joint
+    double families_mixed = 1.0;            ///< degrees in one column, radians in the other
+    double motor_side_unnamed = 1.5;  ///< a motor's, though a unit is stated or a convention is a joint's
+    double header_wrong = 1.5;        ///< a stated unit is another one
+    double against_convention = 2.0;  ///< another unit than whoever writes such names has
+    double against_wrap = 3.0;        ///< the position starts again elsewhere than at a turn
+    double too_fast = 3.0;            ///< for a joint
+    double motor_out_of_range = 3.0;  ///< too slow or too fast for a motor
+};
+constexpr Costs costs;
 
 enum class Family { degrees, radians, turns };
 struct MotionUnit {
     std::string_view name;
     double factor;
     Family family;
-    double cost;  // turns are rare where nothing names them
+    double cost;  ///< turns are rare where nothing names them
+    bool against_header = false;
 };
 constexpr std::array velocity_units = {MotionUnit{"deg/s", 1.0, Family::degrees, 0.0},
                                        MotionUnit{"rad/s", degrees_per_radian, Family::radians, 0.0},
@@ -49,29 +60,25 @@ constexpr std::array position_units = {MotionUnit{"deg", 1.0, Family::degrees, 0
                                        MotionUnit{"rad", degrees_per_radian, Family::radians, 0.0},
                                        MotionUnit{"rev", 360.0, Family::turns, 1.0}};
 
-/// A unit that a column may have, and whether the header says another.
-struct Candidate {
-    MotionUnit unit;
-    bool against_header = false;
-};
-
-std::vector<Candidate> candidates(const std::optional<MotionColumn>& column, const Layout& layout,
-                                  std::span<const MotionUnit> units) {
-    if (!column) return {{{"", 1.0, Family::degrees, 0.0}, false}};
-    std::vector<Candidate> found;
+// The units that a column may have.
+std::vector<MotionUnit> candidates(const std::optional<MotionColumn>& column, const Layout& layout,
+                                   std::span<const MotionUnit> units) {
+    if (!column) return {{"", 1.0, Family::degrees, 0.0}};
+    std::vector<MotionUnit> found;
     const Column& read = layout.columns[column->column];
-    const auto known = std::ranges::find_if(units, [&](const MotionUnit& u) { return u.name == read.unit; });
+    const auto known = std::ranges::find(units, std::string_view(read.unit), &MotionUnit::name);
     if (column->unit_is_stated)
         found.push_back(
-            {{read.unit, read.factor, known == units.end() ? Family::degrees : known->family, 0.0}, false});
+            {read.unit, read.factor, known == units.end() ? Family::degrees : known->family, 0.0});
     // Whoever states what 1 is does not mean another unit, nor does a linear axis.
     if (!read.scale.empty() || is_linear_unit(read.role, read.unit)) return found;
     for (MotionUnit unit : units) {
         if (column->unit_is_stated && unit.name == read.unit) continue;
-        if (column->unit_is_stated) unit.cost = header_wrong;
+        unit.against_header = column->unit_is_stated;
+        if (column->unit_is_stated) unit.cost = costs.header_wrong;
         if (column->convention != nullptr)
-            unit.cost = column->convention->unit == unit.name ? 0.0 : unit.cost + against_convention;
-        found.push_back({unit, column->unit_is_stated});
+            unit.cost = column->convention->unit == unit.name ? 0.0 : unit.cost + costs.against_convention;
+        found.push_back(unit);
     }
     return found;
 }
@@ -95,8 +102,8 @@ class Scoring {
 
     std::vector<MotionReading> run() {
         const MotionColumns& columns = question_.columns;
-        for (const Candidate& v : candidates(columns.velocity, question_.layout, velocity_units)) {
-            for (const Candidate& q : candidates(columns.position, question_.layout, position_units)) {
+        for (const MotionUnit& v : candidates(columns.velocity, question_.layout, velocity_units)) {
+            for (const MotionUnit& q : candidates(columns.position, question_.layout, position_units)) {
                 for (const Shaft vs : {Shaft::joint, Shaft::motor}) {
                     for (const Shaft qs : {Shaft::joint, Shaft::motor}) add(v, q, vs, qs);
                 }
@@ -110,7 +117,7 @@ class Scoring {
 
   private:
     // The velocity of a log without one is the slope of its position.
-    void add(const Candidate& v, const Candidate& q, Shaft vs, Shaft qs) {
+    void add(const MotionUnit& v, const MotionUnit& q, Shaft vs, Shaft qs) {
         const MotionColumns& columns = question_.columns;
         if ((!columns.velocity && vs != qs) || (!columns.position && qs != vs)) return;
         if (!allowed(columns.velocity, vs) || !allowed(columns.position, qs)) return;
@@ -118,41 +125,40 @@ class Scoring {
         MotionReading reading;
         reading.against_header = v.against_header || q.against_header;
         if (reading.against_header && !scale_) return;
-        reading.velocity = {v.unit.name, columns.velocity ? v.unit.factor : q.unit.factor, vs, 1.0};
-        reading.position = {q.unit.name, q.unit.factor, qs, 1.0};
+        reading.velocity = {v.name, columns.velocity ? v.factor : q.factor, vs, 1.0};
+        reading.position = {q.name, q.factor, qs, 1.0};
         if (!find_ratio(reading)) return;
         for (ReadColumn* column : {&reading.velocity, &reading.position})
             column->factor =
                 column->unit_factor / (column->side == Shaft::motor ? reading.ratio.value_or(1.0) : 1.0);
-        reading.cost = v.unit.cost + q.unit.cost + side_cost(reading) + mixture(v, q, vs != qs) +
-                       magnitude_cost(reading, v, q);
+        reading.cost =
+            v.cost + q.cost + side_cost(reading) + mixture(v, q, vs != qs) + magnitude_cost(reading, v, q);
         found_.push_back(reading);
     }
 
     double side_cost(const MotionReading& reading) const {
         double cost = 0.0;
         bool unnamed = false;
-        for (const auto& [column, side] : {std::pair(&question_.columns.velocity, reading.velocity.side),
-                                           std::pair(&question_.columns.position, reading.position.side)}) {
-            if (!*column) continue;
-            if (side == Shaft::joint && names_motor(**column)) cost += joint_side_of_motor_name;
-            unnamed = unnamed || (side == Shaft::motor && !names_motor(**column));
+        for (const MotionColumn& column : question_.columns.all()) {
+            const bool motor = reading.of(column).side == Shaft::motor;
+            if (!motor && names_motor(column)) cost += costs.joint_side_of_motor_name;
+            unnamed = unnamed || (motor && !names_motor(column));
         }
         return unnamed ? cost + unnamed_motor_cost(reading) : cost;
     }
 
     double unnamed_motor_cost(const MotionReading& reading) const {
-        const auto& speed =
-            question_.columns.velocity ? question_.columns.velocity : question_.columns.position;
+        const MotionColumn& speed = question_.columns.of_speed();
         const bool one_side = reading.velocity.side == reading.position.side;
         // A convention of names is one of joints, unless it says motor: for the angle as for the speed.
         const auto& angle = question_.columns.position;
         const bool by_convention =
-            speed->convention != nullptr || (angle && angle->convention != nullptr && !angle->unit_is_stated);
-        if (speed->unit_is_stated || by_convention || !one_side) return motor_side_unnamed;
+            speed.convention != nullptr || (angle && angle->convention != nullptr && !angle->unit_is_stated);
+        if (speed.unit_is_stated || by_convention || !one_side) return costs.motor_side_unnamed;
         const double deg_s = question_.evidence.fastest * reading.velocity.unit_factor;
-        if (deg_s < slowest_motor_deg_s || deg_s > fastest_motor_deg_s) return motor_out_of_range;
-        return motor_without_unit + (family_of(reading.velocity) == Family::degrees ? motor_in_degrees : 0.0);
+        if (deg_s < slowest_motor_deg_s || deg_s > fastest_motor_deg_s) return costs.motor_out_of_range;
+        return costs.motor_without_unit +
+               (family_of(reading.velocity) == Family::degrees ? costs.motor_in_degrees : 0.0);
     }
 
     /// False where the scale is neither 1 nor a gear's.
@@ -173,29 +179,29 @@ class Scoring {
     }
 
     // Where position and velocity agree in these units, that they are of one family says nothing more.
-    double mixture(const Candidate& v, const Candidate& q, bool through_gear) const {
+    double mixture(const MotionUnit& v, const MotionUnit& q, bool through_gear) const {
         const MotionColumns& columns = question_.columns;
         if (!columns.velocity || !columns.position || (scale_ && !through_gear)) return 0.0;
-        return v.unit.family == q.unit.family ? 0.0 : families_mixed;
+        return v.family == q.family ? 0.0 : costs.families_mixed;
     }
 
-    double magnitude_cost(const MotionReading& reading, const Candidate& v, const Candidate& q) const {
+    double magnitude_cost(const MotionReading& reading, const MotionUnit& v, const MotionUnit& q) const {
         const MotionEvidence& evidence = question_.evidence;
         double cost = 0.0;
         const double by_motor =
             question_.gear_ratio ? fastest_motor_deg_s / *question_.gear_ratio : fastest_joint_deg_s;
         if (!reading.speed_in_motor_units() &&
             evidence.fastest * reading.velocity.factor > std::max(by_motor, fastest_joint_deg_s))
-            cost += too_fast;
+            cost += costs.too_fast;
         if (evidence.wrap && question_.columns.position) {
             const double turn = *evidence.wrap * reading.position.unit_factor;
-            if (std::abs(turn / 360.0 - 1.0) > scale_agreement) cost += against_wrap;
+            if (std::abs(turn / 360.0 - 1.0) > scale_agreement) cost += costs.against_wrap;
         }
         const bool small = evidence.fastest <= usual_rad_s && evidence.farthest <= usual_rad;
-        const Family family = question_.columns.velocity ? v.unit.family : q.unit.family;
-        if (family == Family::degrees && small) cost += unusual_size;
+        const Family family = question_.columns.velocity ? v.family : q.family;
+        if (family == Family::degrees && small) cost += costs.unusual_size;
         if (family == Family::radians && !small && reading.velocity.side == Shaft::joint)
-            cost += unusual_size;
+            cost += costs.unusual_size;
         return cost;
     }
 

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <array>
 #include <cctype>
 #include <cmath>
@@ -14,7 +13,6 @@
 
 #include "core/text/lower_case.hpp"
 #include "log/columns/column_name.hpp"
-#include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 
 namespace ripplenotch {
@@ -35,12 +33,8 @@ constexpr std::string_view electrical_rpm = "erpm";
 /// The usual name of a unit of this dimension, by its spelling alone; for Dimension::none, whether there is
 /// one.
 std::optional<std::string_view> spelled(Dimension dimension, std::string_view text) {
-    for (const UnitLine& line : unit_lines) {
-        bool found = false;
-        if (line.dimension == dimension)
-            for_each_word(line.spellings, [&](std::string_view known) { found = found || known == text; });
-        if (found) return line.usual;
-    }
+    for (const UnitLine& line : unit_lines)
+        if (line.dimension == dimension && has_word(line.spellings, text)) return line.usual;
     return std::nullopt;
 }
 
@@ -117,12 +111,7 @@ std::optional<std::string> speed_unit(std::string_view written) {
     return unit_factor(Dimension::speed, joined) ? std::optional(joined) : std::nullopt;
 }
 
-std::string_view without_padding(std::string_view text) {
-    constexpr std::string_view padding = " _,:/-.";
-    while (!text.empty() && padding.find(text.front()) != std::string_view::npos) text.remove_prefix(1);
-    while (!text.empty() && padding.find(text.back()) != std::string_view::npos) text.remove_suffix(1);
-    return text;
-}
+std::string_view without_padding(std::string_view text) { return trimmed(text, " _,:/-."); }
 
 Dimension linear_dimension_of(Role role) {
     constexpr std::array dimensions = {Dimension::none, Dimension::linear_speed, Dimension::force,
@@ -162,8 +151,8 @@ void say_torque_constant(Layout& layout, const ColumnFacts& facts, const ReadOpt
     const bool current = is_current_unit(layout.columns[*torque].unit);
     if (current && !options.nm_per_ampere) {
         layout.warn("motor current",
-                    fmt::format("{} is a motor current: 1 A is taken as 1 Nm, so every torque is in "
-                                "amperes; --kt gives the joint's torque constant in Nm/A",
+                    fmt::format("{} is a motor current: 1 A is taken as 1 Nm, so every torque is in amperes; "
+                                "--kt gives the joint's torque constant in Nm/A",
                                 column_label(facts.names, *torque)),
                     true);
     }
@@ -249,24 +238,19 @@ std::optional<std::string> usual_unit(std::string_view written, Role role) {
 }
 
 NameAndUnit split_unit(std::string_view column_name, Role role, bool linear_axis) {
-    const auto padded = [](std::string_view text) {
-        while (!text.empty() && (text.front() == ' ' || text.front() == '_')) text.remove_prefix(1);
-        while (!text.empty() && (text.back() == ' ' || text.back() == '_')) text.remove_suffix(1);
-        return text;
-    };
-    const std::string_view whole = padded(column_name);
+    constexpr std::string_view blanks = " _";
+    const std::string_view whole = trimmed(column_name, blanks);
     for (const auto& [open, close] : {std::pair{'[', ']'}, std::pair{'(', ')'}}) {
         const std::size_t from = whole.rfind(open);
         if (from == std::string_view::npos || from == 0 || whole.empty() || whole.back() != close) continue;
-        const std::string_view inside = padded(whole.substr(from + 1, whole.size() - from - 2));
-        const bool index = !inside.empty() &&
-                           std::ranges::all_of(inside, [](unsigned char c) { return std::isdigit(c) != 0; });
+        const std::string_view inside = trimmed(whole.substr(from + 1, whole.size() - from - 2), blanks);
         // An address, as "(P:00A305h)", is no unit.
         if (inside.find(':') != std::string_view::npos)
-            return {std::string(padded(whole.substr(0, from))), "", false};
+            return {std::string(trimmed(whole.substr(0, from), blanks)), "", false};
         // Nor are words, as in "torque (measured)".
-        if (!index && (usual_unit(inside, role) || is_device_unit(inside) || !is_known_word(inside)))
-            return {std::string(padded(whole.substr(0, from))), std::string(inside), true};
+        if (!is_digits(inside) &&
+            (usual_unit(inside, role) || is_device_unit(inside) || !is_known_word(inside)))
+            return {std::string(trimmed(whole.substr(0, from), blanks)), std::string(inside), true};
     }
     // The longest unit that ends the name: "_deg_s" before "_s", "velDeg", "tau / Nm".
     const auto is_letter = [&](std::size_t at) {
@@ -291,6 +275,12 @@ NameAndUnit split_unit(std::string_view column_name, Role role, bool linear_axis
     return {std::string(whole), "", false};
 }
 
+std::optional<double> stated_clock_ns(const std::string& unit, std::string_view name) {
+    constexpr double nanoseconds = 1e9;  // in a second
+    const auto usual = usual_unit(unit.empty() ? split_unit(name, Role::time).unit : unit, Role::time);
+    return usual ? std::optional(nanoseconds * role_factor(Role::time, *usual).value_or(1.0)) : std::nullopt;
+}
+
 std::optional<std::string> asked_unit(const ReadOptions& options, const std::string& name, Role role) {
     for (const std::string& key : {name, std::string(role_name(role))}) {
         if (const auto found = options.units.find(key); found != options.units.end()) return found->second;
@@ -309,16 +299,14 @@ ColumnScale parse_scale(std::string_view text, std::string_view label) {
     scale.text = text;
     const auto complain = [&](std::string_view why) {
         raise<UsageError>(
-            "{}: '{}': {}; write FACTOR and UNIT, then /DIVISOR, then +OFFSET, as in 0.04Nm, "
-            "360deg/524288 or 2Nm+10Nm",
+            "{}: '{}': {}; write FACTOR and UNIT, then /DIVISOR, then +OFFSET, as in 0.04Nm, 360deg/524288 "
+            "or 2Nm+10Nm",
             label, text, why);
     };
     // The longest beginning that is a number; what follows it is left.
     const auto take_number = [](std::string_view& rest) -> std::optional<double> {
-        for (std::size_t size = rest.find_first_not_of("0123456789.eE+-") == std::string_view::npos
-                                    ? rest.size()
-                                    : rest.find_first_not_of("0123456789.eE+-");
-             size > 0; --size) {
+        for (std::size_t size = std::min(rest.find_first_not_of("0123456789.eE+-"), rest.size()); size > 0;
+             --size) {
             if (const auto number = parse_number(rest.substr(0, size))) {
                 rest.remove_prefix(size);
                 return number;
@@ -333,8 +321,7 @@ ColumnScale parse_scale(std::string_view text, std::string_view label) {
     // Units have letters behind their '/', a divisor has digits.
     std::size_t end = 0;
     while (end < rest.size() && rest[end] != '+' && rest[end] != '-' &&
-           !(rest[end] == '/' && end + 1 < rest.size() &&
-             std::isdigit(static_cast<unsigned char>(rest[end + 1])) != 0))
+           !(rest[end] == '/' && end + 1 < rest.size() && is_digit(rest[end + 1])))
         ++end;
     scale.unit = without_padding(rest.substr(0, end));
     rest.remove_prefix(end);
@@ -412,13 +399,11 @@ void state_derived_velocity(Layout& layout, const ColumnFacts& facts) {
         if (joint.velocity || !joint.position) continue;
         const std::string label = column_label(facts.names, *joint.position);
         layout.velocity_from_position = true;
-        layout.warn(
-            "derived velocity",
-            fmt::format(
-                "no velocity is logged: it is the slope of {}, from row to row; --columns velocity=NAME "
-                "decides otherwise",
-                label),
-            true);
+        layout.warn("derived velocity",
+                    fmt::format("no velocity is logged: it is the slope of {}, from row to row; --columns "
+                                "velocity=NAME decides otherwise",
+                                label),
+                    true);
         layout.infer("velocity", fmt::format("the slope of {}", label), "no column is a velocity",
                      "--columns velocity=NAME");
     }

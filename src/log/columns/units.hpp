@@ -26,6 +26,24 @@ void for_each_word(std::string_view list, const Take& take) {
     }
 }
 
+[[nodiscard]] inline bool has_word(std::string_view list, std::string_view word) {
+    bool found = false;
+    for_each_word(list, [&](std::string_view one) { found = found || one == word; });
+    return found;
+}
+
+[[nodiscard]] inline bool is_digit(char c) { return c >= '0' && c <= '9'; }
+/// One and more, and nothing else.
+[[nodiscard]] inline bool is_digits(std::string_view text) {
+    return !text.empty() && std::ranges::all_of(text, is_digit);
+}
+
+/// Without these characters at both ends.
+[[nodiscard]] inline std::string_view trimmed(std::string_view text, std::string_view what) {
+    text.remove_prefix(std::min(text.find_first_not_of(what), text.size()));
+    return text.substr(0, text.find_last_not_of(what) + 1);
+}
+
 /// Throws what an option answers, a unit or a scale that the log does not state: exit code 5.
 template <class... Args>
 [[noreturn]] void ask(fmt::format_string<Args...> format, Args&&... args) {
@@ -67,6 +85,10 @@ struct NameAndUnit {
 /// axis alone: elsewhere an m is the motor's.
 [[nodiscard]] NameAndUnit split_unit(std::string_view column_name, Role role = Role::other,
                                      bool linear_axis = false);
+
+/// Nanoseconds in one unit of a clock: as `unit` states it, else as its name ends in it; none where neither
+/// does.
+[[nodiscard]] std::optional<double> stated_clock_ns(const std::string& unit, std::string_view name);
 
 // A part of decide_layout: units that --unit states, and what is said of units that nobody stated.
 

@@ -57,10 +57,9 @@ std::string path_around(const std::string& path) {
 
 // Without last parts that say nothing: "/tau/value" is "/tau", "tau.signals.values" is "tau".
 std::string without_empty_words(const std::string& path) {
-    constexpr std::array empty_words = {"value", "Value", "data", "Data", "values", "Values", "signals"};
     std::string rest = path;
-    while (std::ranges::find(empty_words, last_word(rest)) != empty_words.end() &&
-           path_around(rest).size() > 0)
+    while (has_word("value Value data Data values Values signals", last_word(rest)) &&
+           !path_around(rest).empty())
         rest = path_around(rest);
     return rest;
 }
@@ -87,84 +86,58 @@ bool same_numbers(const StoredArray& one, const StoredArray& other) {
     return true;
 }
 
-/// The clock of an array is the vector named as a time in its own folder or in the nearest one around it, if
-/// it has as many rows; clocks that hold the same numbers are one. Reads clocks where several have the same
-/// length.
-class FoundClocks {
-  public:
-    explicit FoundClocks(const std::vector<StoredArray>& arrays) : arrays_(arrays), clock_(arrays.size()) {
-        for (std::size_t a = 0; a < arrays.size(); ++a) {
-            if (arrays[a].shape.rows < 2 || !names_time(arrays[a])) continue;
-            times_.emplace(Scope{path_around(without_empty_words(arrays[a].path)), arrays[a].shape.rows}, a);
-        }
-        for (std::size_t a = 0; a < arrays.size(); ++a) clock_[a] = nearest(a);
-        for (std::optional<std::size_t>& clock : clock_)
-            if (clock) clock = first_of_equals(*clock);
-        share();
-    }
-    /// In order of their rows.
-    [[nodiscard]] std::vector<ArrayGroup> groups() const {
-        std::map<std::pair<std::size_t, std::size_t>, ArrayGroup> groups;
-        for (std::size_t a = 0; a < arrays_.size(); ++a) {
-            if (arrays_[a].shape.rows < 2) continue;
-            const std::size_t clock = clock_[a].value_or(arrays_.size());
-            ArrayGroup& group = groups[{arrays_[a].shape.rows, clock}];
-            group.rows = arrays_[a].shape.rows;
-            if (clock_[a]) group.clock = &arrays_[clock];
-            if (!is_copy(a)) group.arrays.push_back(&arrays_[a]);
-        }
-        std::vector<ArrayGroup> found;
-        for (auto& [key, group] : groups) found.push_back(std::move(group));
-        return found;
-    }
-
-  private:
-    using Scope = std::pair<std::string, std::size_t>;  // a folder, and rows
-
-    [[nodiscard]] std::optional<std::size_t> nearest(std::size_t a) const {
-        const std::size_t rows = arrays_[a].shape.rows;
-        std::string folder = path_around(arrays_[a].path);
+// In order of their rows. The clock of an array is the vector named as a time in its own folder or in the
+// nearest one around it, if it has as many rows; clocks that hold the same numbers are one. Reads clocks
+// where several have the same length.
+std::vector<ArrayGroup> groups_of(const std::vector<StoredArray>& arrays) {
+    const auto rows_of = [&](std::size_t a) { return arrays[a].shape.rows; };
+    std::map<std::pair<std::string, std::size_t>, std::size_t>
+        times;  // the first in a folder, of so many rows
+    for (std::size_t a = 0; a < arrays.size(); ++a)
+        if (rows_of(a) >= 2 && names_time(arrays[a]))
+            times.emplace(std::pair(path_around(without_empty_words(arrays[a].path)), rows_of(a)), a);
+    const auto nearest = [&](std::size_t a) -> std::optional<std::size_t> {
+        std::string folder = path_around(arrays[a].path);
         while (true) {
-            if (const auto found = times_.find({folder, rows}); found != times_.end()) return found->second;
+            if (const auto found = times.find({folder, rows_of(a)}); found != times.end())
+                return found->second;
             if (folder.empty()) return std::nullopt;
             folder = path_around(folder);
         }
+    };
+    std::vector<std::size_t> distinct;
+    std::map<std::size_t, std::size_t> equal_to;
+    const auto first_of_equals = [&](std::size_t clock) {
+        if (const auto known = equal_to.find(clock); known != equal_to.end()) return known->second;
+        const auto first = std::ranges::find_if(distinct, [&](std::size_t other) {
+            return rows_of(other) == rows_of(clock) && same_numbers(arrays[other], arrays[clock]);
+        });
+        if (first != distinct.end()) return equal_to[clock] = *first;
+        distinct.push_back(clock);
+        return equal_to[clock] = clock;
+    };
+    std::vector<std::optional<std::size_t>> clocks;
+    for (std::size_t a = 0; a < arrays.size(); ++a) {
+        clocks.push_back(nearest(a));
+        if (clocks[a]) clocks[a] = first_of_equals(*clocks[a]);
     }
-    std::size_t first_of_equals(std::size_t clock) {
-        const auto known = equal_to_.find(clock);
-        if (known != equal_to_.end()) return known->second;
-        std::size_t first = clock;
-        for (const std::size_t other : distinct_) {
-            if (arrays_[other].shape.rows != arrays_[clock].shape.rows) continue;
-            if (!same_numbers(arrays_[other], arrays_[clock])) continue;
-            first = other;
-            break;
-        }
-        if (first == clock) distinct_.push_back(clock);
-        return equal_to_[clock] = first;
+    std::map<std::pair<std::size_t, std::size_t>, ArrayGroup> groups;  // by rows and clock
+    for (std::size_t a = 0; a < arrays.size(); ++a) {
+        if (rows_of(a) < 2) continue;
+        // An array that nothing is said of has the only clock of its length.
+        const auto fits = [&](std::size_t clock) { return rows_of(clock) == rows_of(a); };
+        if (!clocks[a] && std::ranges::count_if(distinct, fits) == 1)
+            clocks[a] = *std::ranges::find_if(distinct, fits);
+        ArrayGroup& group = groups[{rows_of(a), clocks[a].value_or(arrays.size())}];
+        group.rows = rows_of(a);
+        if (clocks[a]) group.clock = &arrays[*clocks[a]];
+        const bool copy = equal_to.count(a) > 0 && equal_to[a] != a;  // of a clock in another folder
+        if (!copy) group.arrays.push_back(&arrays[a]);
     }
-    // An array that nothing is said of has the only clock of its length.
-    void share() {
-        for (std::size_t a = 0; a < arrays_.size(); ++a) {
-            if (clock_[a]) continue;
-            std::vector<std::size_t> fitting;
-            for (const std::size_t clock : distinct_)
-                if (arrays_[clock].shape.rows == arrays_[a].shape.rows) fitting.push_back(clock);
-            if (fitting.size() == 1) clock_[a] = fitting.front();
-        }
-    }
-    // Whether this clock has the numbers of one in another folder.
-    [[nodiscard]] bool is_copy(std::size_t a) const {
-        const auto known = equal_to_.find(a);
-        return known != equal_to_.end() && known->second != a;
-    }
-
-    const std::vector<StoredArray>& arrays_;
-    std::map<Scope, std::size_t> times_;             ///< the first in each
-    std::vector<std::optional<std::size_t>> clock_;  ///< of each array
-    std::vector<std::size_t> distinct_;
-    std::map<std::size_t, std::size_t> equal_to_;
-};
+    std::vector<ArrayGroup> found;
+    for (auto& [key, group] : groups) found.push_back(std::move(group));
+    return found;
+}
 
 std::vector<ColumnInfo> info_of(const std::vector<ArrayColumn>& columns) {
     std::vector<ColumnInfo> info;
@@ -259,17 +232,13 @@ std::vector<ArrayColumn> columns_of(const ArrayGroup& group, PathStyle style) {
 }
 
 double ns_per_unit(const std::string& source, const StoredArray& clock) {
-    constexpr double nanoseconds = 1e9;  // in a second
-    const std::string written =
-        clock.unit.empty() ? split_unit(last_word(clock.path), Role::time).unit : clock.unit;
-    const auto unit = written.empty() ? std::nullopt : usual_unit(written, Role::time);
-    if (unit) return nanoseconds * role_factor(Role::time, *unit).value_or(1.0);
+    if (const auto stated = stated_clock_ns(clock.unit, last_word(clock.path))) return *stated;
     if (clock.type.kind != 'f')
         raise<DataError>(
             "{}: read whole numbers without a unit in {}, expected seconds, or a name or attribute with the "
             "unit; read arrays of one clock, or save them with it",
             source, clock.path);
-    return nanoseconds;
+    return 1e9;
 }
 
 // The columns of `base`, its clock first, and beside them what --columns names of those of `others`. All
@@ -338,11 +307,8 @@ std::vector<const ArrayGroup*> asked_groups(const std::string& source, const std
 
 std::string listed(const std::vector<ContentEntry>& contents) {
     std::string text;
-    for (std::size_t i = 0; i < std::min<std::size_t>(contents.size(), 8); ++i) {
-        const ContentEntry& entry = contents[i];
-        text += fmt::format("{}{} ({}{}{})", i == 0 ? "" : ", ", entry.path, entry.shape,
-                            entry.shape.empty() ? "" : ", ", entry.type);
-    }
+    for (std::size_t i = 0; i < std::min<std::size_t>(contents.size(), 8); ++i)
+        text += (i == 0 ? "" : ", ") + in_words(contents[i]);
     return text.empty() ? "nothing numeric" : text + (contents.size() > 8 ? ", ..." : "");
 }
 
@@ -392,7 +358,7 @@ ColumnLog columns_of_arrays(const std::shared_ptr<StoredBytes>& file, const std:
                             const std::vector<ContentEntry>& extra, const ReadOptions& options) {
     ColumnLog log;
     log.format = format;
-    const std::vector<ArrayGroup> groups = FoundClocks(arrays).groups();
+    const std::vector<ArrayGroup> groups = groups_of(arrays);
     std::vector<const ArrayGroup*> chosen = asked_groups(file->name(), groups, style, options);
     if (chosen.empty())
         if (const ArrayGroup* const best = choose_group(groups, style)) chosen.push_back(best);

@@ -34,19 +34,6 @@ constexpr std::size_t stored_piece = std::size_t{1} << 16;
         name, sum, expected);
 }
 
-// Fewer than `size` bytes where there are no more, or where they cannot be read: then errno says why.
-std::size_t read_as_far(int descriptor, std::uint64_t offset, char* into, std::size_t size) {
-    std::size_t have = 0;
-    while (have < size) {
-        errno = 0;
-        const ssize_t got = ::pread(descriptor, into + have, size - have, static_cast<off_t>(offset + have));
-        if (got < 0 && errno == EINTR) continue;
-        if (got <= 0) break;
-        have += static_cast<std::size_t>(got);
-    }
-    return have;
-}
-
 class FileBytes final : public StoredBytes {
   public:
     explicit FileBytes(std::unique_ptr<ByteSource> source)
@@ -76,9 +63,9 @@ class FileBytes final : public StoredBytes {
 class KeptBytes final : public StoredBytes {
   public:
     KeptBytes(ByteSource& source, std::string piece) : StoredBytes(source.name()) {
-        for (std::size_t have = piece.size(); have > 0; have = read_on(source, piece, 0, stored_piece)) {
-            bytes_.put(std::string_view(piece).substr(0, have));
-            size_ += have;
+        for (; !piece.empty(); piece.clear(), read_on(source, piece, stored_piece)) {
+            bytes_.put(piece);
+            size_ += piece.size();
         }
         char first = 0;
         if (size_ > 0) bytes_.read_at(0, &first, 1);  // all is in the file
@@ -182,6 +169,32 @@ class StridedCursor final : public ColumnCursor {
 
 }  // namespace
 
+std::size_t read_as_far(int descriptor, std::uint64_t offset, char* into, std::size_t size) {
+    std::size_t have = 0;
+    errno = 0;
+    while (have < size) {
+        const ssize_t got = ::pread(descriptor, into + have, size - have, static_cast<off_t>(offset + have));
+        if (got < 0 && errno == EINTR) {
+            errno = 0;
+            continue;
+        }
+        if (got <= 0) break;
+        have += static_cast<std::size_t>(got);
+    }
+    return have;
+}
+
+void copy_bytes(int descriptor, ByteSink& sink) {
+    std::vector<char> piece(std::size_t{1} << 20);
+    for (std::uint64_t at = 0;;) {
+        const std::size_t got = read_as_far(descriptor, at, piece.data(), piece.size());
+        if (errno != 0) raise<FileError>("cannot read a temporary file back: {}", std::strerror(errno));
+        if (got == 0) return;
+        sink.write({piece.data(), got});
+        at += got;
+    }
+}
+
 TemporaryBytes::TemporaryBytes() {
     TemporaryFile file(temporary_folder() + "/ripplenotch-rows", std::nullopt);
     const int descriptor = file.release_without_name();
@@ -198,19 +211,20 @@ void TemporaryBytes::put(std::string_view bytes) {
 }
 
 void TemporaryBytes::read_at(std::uint64_t offset, char* into, std::size_t size) {
-    if (!flushed_ && std::fflush(file_.get()) != 0)
-        raise<FileError>("cannot write to a temporary file; check the space in the temporary folder");
-    flushed_ = true;
+    flush();
     if (read_as_far(::fileno(file_.get()), offset, into, size) < size)
         raise<FileError>("cannot read a temporary file back");
 }
 
-void TemporaryBytes::rewind() { std::rewind(file_.get()); }
+void TemporaryBytes::copy_to(ByteSink& sink) {
+    flush();
+    copy_bytes(::fileno(file_.get()), sink);
+}
 
-std::size_t TemporaryBytes::read(char* into, std::size_t size) {
-    const std::size_t got = std::fread(into, 1, size, file_.get());
-    if (std::ferror(file_.get()) != 0) raise<FileError>("cannot read a temporary file back");
-    return got;
+void TemporaryBytes::flush() {
+    if (!flushed_ && std::fflush(file_.get()) != 0)
+        raise<FileError>("cannot write to a temporary file; check the space in the temporary folder");
+    flushed_ = true;
 }
 
 void require_checksum(StoredBytes& bytes, std::uint64_t offset, std::uint64_t size, std::uint32_t checksum) {
@@ -260,6 +274,10 @@ int names_tell(const std::vector<std::string>& names) {
     }
     roles.erase(Role::other);
     return static_cast<int>(roles.size()) + (roles.count(Role::torque) > 0 ? 2 : 0);
+}
+
+std::string in_words(const ContentEntry& entry) {
+    return fmt::format("{} ({}{}{})", entry.path, entry.shape, entry.shape.empty() ? "" : ", ", entry.type);
 }
 
 std::string type_name(const NpyField& type) {

@@ -55,19 +55,25 @@ class StoredBytes {
     return number;
 }
 
+/// Fewer than `size` bytes where there are no more, or where they cannot be read: then errno says why, else
+/// it is 0.
+[[nodiscard]] std::size_t read_as_far(int descriptor, std::uint64_t offset, char* into, std::size_t size);
+/// The bytes of a file from its beginning to its end. Throws FileError.
+void copy_bytes(int descriptor, ByteSink& sink);
+
 /// A file without a name in the folder for temporary files (TMPDIR). Throws FileError where there is no room.
 class TemporaryBytes {
   public:
     TemporaryBytes();
     void put(std::string_view bytes);
-    /// All has been put; read() begins at the start.
-    void rewind();
-    /// Up to `size` bytes; 0 at the end.
-    std::size_t read(char* into, std::size_t size);
+    /// All that has been put.
+    void copy_to(ByteSink& sink);
     /// Exactly `size` bytes that have been put, anywhere; putting goes on behind the last.
     void read_at(std::uint64_t offset, char* into, std::size_t size);
 
   private:
+    void flush();
+
     struct Close {
         void operator()(std::FILE* file) const { std::fclose(file); }
     };
@@ -137,6 +143,9 @@ enum class PathStyle {
 /// How many of time, velocity, torque and position the names speak of, torque counting thrice; by which the
 /// part of a container is chosen that is read.
 [[nodiscard]] int names_tell(const std::vector<std::string>& names);
+
+/// "tau (4000, float64)".
+[[nodiscard]] std::string in_words(const ContentEntry& entry);
 
 /// "f8" as people say it: "float64".
 [[nodiscard]] std::string type_name(const NpyField& type);

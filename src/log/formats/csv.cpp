@@ -34,8 +34,7 @@ struct CellText {
     }
 };
 
-/// Text put together piece by piece in a string that is used again and again. It is written at end(), where
-/// ensure() has seen to it that there is room.
+/// Text put together piece by piece in a string that is used again and again.
 class TextRoom {
   public:
     /// Keeps what `room` holds of size: making a string longer fills it, which takes as long as the text.
@@ -318,7 +317,7 @@ std::unique_ptr<LogWriter> rewrite(std::unique_ptr<ByteSink> sink, const LogRead
                                    const WriteOptions& options) {
     const bool rows = dynamic_cast<const CsvReader*>(&reader.base()) != nullptr;
     return rows ? rewrite_with<CsvWriter, CsvReader>(std::move(sink), reader, options)
-                : convert_with<CsvTableWriter>(std::move(sink), reader, options);
+                : convert_rows(std::move(sink), reader, options, formats::csv);
 }
 
 }  // namespace
@@ -331,8 +330,7 @@ const LogFormat formats::csv{
     .sniff = nullptr,  // any text may be a text log
     .open = open_text,
     .rewrite = rewrite,
-    .convert = convert_with<CsvTableWriter>,
-    .write_columns = write_columns_with<CsvTableWriter>,
+    .table = table_of<CsvTableWriter>,
 };
 
 }  // namespace ripplenotch

@@ -42,30 +42,19 @@ namespace {
 // libhdf5's objects, closed when they go. The one door to the library.
 // The names of version 1.10, which later ones keep.
 
-/// A number of libhdf5, negative where there is none.
+/// A number of libhdf5, negative where there is none; closed when nobody has it any more.
 class Hdf5Handle {
   public:
-    using Close = herr_t (*)(hid_t);
     Hdf5Handle() = default;
-    Hdf5Handle(hid_t id, Close close) : id_(id), close_(close) {}
-    ~Hdf5Handle() {
-        if (id_ >= 0) close_(id_);
+    Hdf5Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id) {
+        if (id >= 0) keeper_ = std::shared_ptr<void>(nullptr, [id, close](void* /*none*/) { close(id); });
     }
-    Hdf5Handle(Hdf5Handle&& other) noexcept
-        : id_(std::exchange(other.id_, -1)), close_(std::exchange(other.close_, nullptr)) {}
-    Hdf5Handle& operator=(Hdf5Handle&& other) noexcept {
-        std::swap(id_, other.id_);
-        std::swap(close_, other.close_);
-        return *this;
-    }
-    Hdf5Handle(const Hdf5Handle&) = delete;
-    Hdf5Handle& operator=(const Hdf5Handle&) = delete;
     [[nodiscard]] hid_t id() const { return id_; }
     [[nodiscard]] bool good() const { return id_ >= 0; }
 
   private:
     hid_t id_ = -1;
-    Close close_ = nullptr;
+    std::shared_ptr<void> keeper_;
 };
 
 // Files for libhdf5, which opens by name only.
@@ -124,8 +113,8 @@ struct Hdf5File {
 /// Numbers in memory, and how they are asked for.
 struct Hdf5Memory {
     NpyField field;
-    std::shared_ptr<Hdf5Handle> type;  ///< one number, an array of them, or a record of one member
-    std::size_t count = 1;             ///< numbers that come for each row
+    Hdf5Handle type;        ///< one number, an array of them, or a record of one member
+    std::size_t count = 1;  ///< numbers that come for each row
 };
 
 hid_t hdf5_native(const NpyField& field) {
@@ -158,10 +147,11 @@ std::optional<NpyField> hdf5_number(hid_t type) {
 /// A column of a dataset of one dimension or two, or one number of an array in every row.
 class DatasetCursor final : public ColumnCursor {
   public:
-    DatasetCursor(std::shared_ptr<Hdf5File> file, std::shared_ptr<Hdf5Handle> dataset, Hdf5Memory memory,
+    DatasetCursor(std::shared_ptr<Hdf5File> file, Hdf5Handle dataset, std::string path, Hdf5Memory memory,
                   std::size_t dimensions, std::size_t time_dimension, std::size_t column)
         : file_(std::move(file)),
           dataset_(std::move(dataset)),
+          path_(std::move(path)),
           memory_(std::move(memory)),
           dimensions_(dimensions),
           time_dimension_(time_dimension),
@@ -171,17 +161,17 @@ class DatasetCursor final : public ColumnCursor {
         start[time_dimension_] = at_;
         count[time_dimension_] = rows;
         if (memory_.count == 1 && dimensions_ == 2) start[1 - time_dimension_] = column_;
-        const Hdf5Handle space(::H5Dget_space(dataset_->id()), ::H5Sclose);
+        const Hdf5Handle space(::H5Dget_space(dataset_.id()), ::H5Sclose);
         const hsize_t length = rows;
         const Hdf5Handle memory_space(::H5Screate_simple(1, &length, nullptr), ::H5Sclose);
         ::H5Sselect_hyperslab(space.id(), H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr);
         const std::size_t size = memory_.field.size;
         read_.resize(rows * memory_.count * size);
-        if (::H5Dread(dataset_->id(), memory_.type->id(), memory_space.id(), space.id(), H5P_DEFAULT,
+        if (::H5Dread(dataset_.id(), memory_.type.id(), memory_space.id(), space.id(), H5P_DEFAULT,
                       read_.data()) < 0) {
             raise<DataError>(
                 "{}: read row {} of {}, expected {} rows of numbers; the file is cut off or damaged",
-                file_->bytes->name(), at_ + 1, path(), rows);
+                file_->bytes->name(), at_ + 1, path_, rows);
         }
         const std::size_t picked = memory_.count > 1 ? column_ * size : 0;
         load_column(read_.data() + picked, memory_.count * size, memory_.field, rows, into);
@@ -189,16 +179,9 @@ class DatasetCursor final : public ColumnCursor {
     }
 
   private:
-    std::string path() const {
-        std::string name(
-            static_cast<std::size_t>(std::max<ssize_t>(0, ::H5Iget_name(dataset_->id(), nullptr, 0))) + 1,
-            '\0');
-        ::H5Iget_name(dataset_->id(), name.data(), name.size());
-        name.pop_back();
-        return name;
-    }
     std::shared_ptr<Hdf5File> file_;
-    std::shared_ptr<Hdf5Handle> dataset_;
+    Hdf5Handle dataset_;
+    std::string path_;  ///< of the dataset
     Hdf5Memory memory_;
     std::size_t dimensions_, time_dimension_, column_;
     std::uint64_t at_ = 0;
@@ -233,15 +216,7 @@ class Hdf5TableWriter final : public TableWriter {
         datasets_.clear();
         require(::H5Fflush(file_.id(), H5F_SCOPE_LOCAL) >= 0);
         file_ = {};
-        std::vector<char> piece(std::size_t{1} << 20);
-        for (off_t at = 0;;) {
-            const ssize_t got = ::pread(scratch_->descriptor(), piece.data(), piece.size(), at);
-            if (got < 0 && errno == EINTR) continue;
-            if (got < 0) raise<FileError>("cannot read a temporary file back: {}", system_reason());
-            if (got == 0) break;
-            sink_.write({piece.data(), static_cast<std::size_t>(got)});
-            at += got;
-        }
+        copy_bytes(scratch_->descriptor(), sink_);
     }
 
   private:
@@ -325,8 +300,7 @@ class Hdf5Walk {
         if (!file_->file.good())
             raise<DataError>(
                 "{}: read an HDF5 file that libhdf5 cannot open, expected a whole one; the file is cut off, "
-                "damaged, or "
-                "still being written",
+                "damaged, or still being written",
                 bytes->name());
         const herr_t walked = ::H5Lvisit(file_->file.id(), H5_INDEX_NAME, H5_ITER_INC, visit, this);
         if (failure_) std::rethrow_exception(failure_);
@@ -396,15 +370,13 @@ class Hdf5Walk {
         const std::string unit = unit_of(plain.id());
         if (compound) return take_members(name, *shape, dataset, type.id(), dimensions);
         if (const auto field = hdf5_number(type.id())) {
-            Hdf5Memory memory{*field,
-                              std::make_shared<Hdf5Handle>(::H5Tcopy(hdf5_native(*field)), ::H5Tclose), 1};
-            add_array(path_of(name), *shape, dataset, memory, dimensions, unit);
+            Hdf5Memory memory{*field, Hdf5Handle(::H5Tcopy(hdf5_native(*field)), ::H5Tclose), 1};
+            add_array(path_of(name), name, *shape, dataset, memory, dimensions, unit);
         } else {
             add_other(name, words, ::H5Tget_class(type.id()) == H5T_STRING ? "text" : "no numbers");
         }
     }
-    void take_members(const std::string& name, const ArrayShape& shape,
-                      const std::shared_ptr<Hdf5Handle>& dataset, hid_t type,
+    void take_members(const std::string& name, const ArrayShape& shape, const Hdf5Handle& dataset, hid_t type,
                       const std::vector<std::uint64_t>& dimensions) {
         const int members = ::H5Tget_nmembers(type);
         for (int m = 0; m < members; ++m) {
@@ -422,27 +394,26 @@ class Hdf5Walk {
             const Hdf5Handle inner(
                 array ? ::H5Tarray_create2(hdf5_native(*field), 1, &count) : ::H5Tcopy(hdf5_native(*field)),
                 ::H5Tclose);
-            Hdf5Memory memory{
-                *field,
-                std::make_shared<Hdf5Handle>(::H5Tcreate(H5T_COMPOUND, field->size * count), ::H5Tclose),
-                count};
-            ::H5Tinsert(memory.type->id(), member.c_str(), 0, inner.id());
+            Hdf5Memory memory{*field, Hdf5Handle(::H5Tcreate(H5T_COMPOUND, field->size * count), ::H5Tclose),
+                              count};
+            ::H5Tinsert(memory.type.id(), member.c_str(), 0, inner.id());
             ArrayShape own_shape = shape;
             own_shape.columns = count;
             own_shape.vector = !array;
             own_shape.time_is_first = true;
-            add_array(path_of(name) + "." + member, own_shape, dataset, memory, dimensions, "");
+            add_array(path_of(name) + "." + member, name, own_shape, dataset, memory, dimensions, "");
         }
     }
-    void add_array(const std::string& path, ArrayShape shape, const std::shared_ptr<Hdf5Handle>& dataset,
-                   const Hdf5Memory& memory, const std::vector<std::uint64_t>& dimensions,
-                   const std::string& unit) {
+    void add_array(const std::string& path, const std::string& name, ArrayShape shape,
+                   const Hdf5Handle& dataset, const Hdf5Memory& memory,
+                   const std::vector<std::uint64_t>& dimensions, const std::string& unit) {
         const auto longest = std::ranges::max_element(dimensions);
         const auto time_dimension = static_cast<std::size_t>(longest - dimensions.begin());
         StoredArray array{path, shape, memory.field, unit, {}, ""};
-        array.open = [file = file_, dataset, memory, rank = dimensions.size(),
+        array.open = [file = file_, dataset, name, memory, rank = dimensions.size(),
                       time_dimension](std::size_t column) {
-            return std::make_unique<DatasetCursor>(file, dataset, memory, rank, time_dimension, column);
+            return std::make_unique<DatasetCursor>(file, dataset, "/" + name, memory, rank, time_dimension,
+                                                   column);
         };
         // MATLAB counts dimensions from the other end.
         if (matlab_) array.shape.time_is_first = !array.shape.time_is_first;
@@ -456,10 +427,10 @@ class Hdf5Walk {
         return bytes > unasked && bytes > most_for_one * static_cast<double>(::H5Dget_storage_size(dataset));
     }
     // With room for a chunk that is longer than usual, or it is unpacked anew for every column.
-    static std::shared_ptr<Hdf5Handle> reopened(hid_t group, const std::string& name, std::size_t chunk) {
+    static Hdf5Handle reopened(hid_t group, const std::string& name, std::size_t chunk) {
         const Hdf5Handle access(::H5Pcreate(H5P_DATASET_ACCESS), ::H5Pclose);
         ::H5Pset_chunk_cache(access.id(), 521, std::clamp(2 * chunk, usual_cache, largest_cache), 1.0);
-        return std::make_shared<Hdf5Handle>(::H5Dopen2(group, name.c_str(), access.id()), ::H5Dclose);
+        return Hdf5Handle(::H5Dopen2(group, name.c_str(), access.id()), ::H5Dclose);
     }
     static std::size_t chunk_bytes(hid_t layout, hid_t type, std::size_t rank) {
         if (::H5Pget_layout(layout) != H5D_CHUNKED) return 0;
@@ -518,8 +489,7 @@ const LogFormat formats::hdf5 {
     .name = "hdf5", .summary = "HDF5 files, and MATLAB's of version 7.3: datasets by path",
     .extensions = hdf5_extensions, .binary = true,
 #if defined(RIPPLENOTCH_HAS_HDF5)
-    .sniff = sniff, .open = open_as_columns<make_hdf5>, .convert = convert_with<Hdf5TableWriter>,
-    .write_columns = write_columns_with<Hdf5TableWriter>,
+    .sniff = sniff, .columns = make_hdf5, .table = table_of<Hdf5TableWriter>,
 #else
     .lacks = "libhdf5", .sniff = sniff,
 #endif

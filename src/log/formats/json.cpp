@@ -7,7 +7,6 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -18,6 +17,7 @@
 #include "log/open.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/spec.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -182,17 +182,11 @@ class Reader final : public MessageReader {
         for (const Program::List& list : program_->lists)
             if (const Json* const found = find(json, list.at);
                 found != nullptr && found->is_array() && found->size() > list.elements)
-                raise<DataError>(
-                    "{} elements of {} and more, expected {} as in the first message; record messages of one "
-                    "shape on a topic",
-                    list.elements + 1, list.path, list.elements);
+                refuse_length(list.elements + 1, list.path + " and more", list.elements);
         for (const Program::Name& name : program_->names)
             if (const Json* const found = find(json, name.at);
                 found != nullptr && found->is_string() && *found != name.text)
-                raise<DataError>(
-                    "'{}' as {}, expected '{}' as in the first message; record the joints on topics of their "
-                    "own",
-                    found->get<std::string>().substr(0, 60), name.path, name.text);
+                refuse_name(found->get<std::string>(), name.path, name.text);
         for (std::size_t leaf = 0; leaf < program_->leaves.size(); ++leaf)
             if (wanted_[leaf]) into[leaf] = {};
         for (const Program::Number& number : program_->numbers) {
@@ -223,36 +217,6 @@ class Reader final : public MessageReader {
 
     std::shared_ptr<const Program> program_;
     std::vector<bool> wanted_;
-};
-
-/// Objects, a row each.
-class RowColumns {
-  public:
-    void add(const Json& object) {
-        if (!reader_) {
-            const auto program = std::make_shared<const Program>(std::move(JsonLayOut(object).program));
-            for (const MessageLeaf& leaf : program->leaves)
-                info_.push_back({leaf.path, leaf.read_as, leaf.stamp ? "ns" : "", leaf.type.whole(), true});
-            row_.resize(info_.size());
-            numbers_.resize(info_.size());
-            reader_.emplace(program, std::vector<bool>(info_.size(), true));
-        }
-        reader_->read(object, row_);
-        for (std::size_t c = 0; c < row_.size(); ++c) {
-            numbers_[c].values.push_back(row_[c].value);
-            if (info_[c].whole) numbers_[c].counts.push_back(row_[c].count);
-        }
-    }
-    std::unique_ptr<Columns> columns(const std::string& source) {
-        if (info_.empty()) raise<DataError>("{}: read objects without numbers, expected some", source);
-        return std::make_unique<HeldColumns>(source, std::move(info_), std::move(numbers_));
-    }
-
-  private:
-    std::optional<Reader> reader_;
-    std::vector<LeafNumber> row_;
-    std::vector<ColumnInfo> info_;
-    NumberRows numbers_;
 };
 
 bool is_list_of_objects(const Json& json) {
@@ -314,35 +278,48 @@ ColumnLog columns_of_json(const std::string& source, std::string_view text) {
     const std::size_t begin = text.find_first_not_of(" \t\r\n"), end = text.find('\n', begin);
     const std::size_t next = end == std::string_view::npos ? end : text.find_first_not_of(" \t\r\n", end);
     const bool lines = next != std::string_view::npos && text[begin] == '{' && text[next] == '{';
+    std::optional<Reader> reader;
+    std::vector<LeafNumber> numbers_of_row;
+    std::vector<ColumnInfo> info;
+    NumberRows numbers;
     std::size_t row = 0;
-    try {
-        RowColumns rows;
-        if (lines) {
-            for (std::size_t at = 0; at < text.size();) {
-                const std::size_t line_end = std::min(text.find('\n', at), text.size());
-                const std::string_view line = text.substr(at, line_end - at);
-                at = line_end + 1;
-                ++row;
-                if (line.find_first_not_of(" \t\r") != std::string_view::npos) rows.add(parsed(line));
-            }
-            log.columns = rows.columns(source);
-            return log;
+    const auto add_row = [&](const Json& object) {
+        if (!reader) {
+            const auto program = std::make_shared<const Program>(std::move(JsonLayOut(object).program));
+            for (const MessageLeaf& leaf : program->leaves)
+                info.push_back({leaf.path, leaf.read_as, leaf.stamp ? "ns" : "", leaf.type.whole(), true});
+            numbers_of_row.resize(info.size());
+            numbers.resize(info.size());
+            reader.emplace(program, std::vector<bool>(info.size(), true));
         }
-        const Json json = json_of(text);
+        reader->read(object, numbers_of_row);
+        for (std::size_t c = 0; c < info.size(); ++c) {
+            numbers[c].values.push_back(numbers_of_row[c].value);
+            if (info[c].whole) numbers[c].counts.push_back(numbers_of_row[c].count);
+        }
+    };
+    try {
+        for (const std::string_view line : lines ? split(text, '\n') : std::vector<std::string_view>()) {
+            ++row;
+            if (line.find_first_not_of(" \t\r") != std::string_view::npos) add_row(parsed(line));
+        }
+        const Json json = lines ? Json() : json_of(text);
         const FoundLists found(json);
         const std::size_t longest = found.numbers.empty() ? 0 : found.numbers.rbegin()->first;
-        if (found.objects != nullptr && found.objects->size() >= longest) {
-            for (const Json& object : *found.objects) {
-                ++row;
-                rows.add(object);
-            }
-            log.columns = rows.columns(source);
+        const bool objects = found.objects != nullptr && found.objects->size() >= longest;
+        for (std::size_t k = 0; objects && k < found.objects->size(); ++k) {
+            ++row;
+            add_row((*found.objects)[k]);
+        }
+        if (lines || objects) {
+            if (info.empty()) raise<DataError>("{}: read objects without numbers, expected some", source);
+            log.columns = std::make_unique<HeldColumns>(source, std::move(info), std::move(numbers));
             return log;
         }
         if (longest < 2)
             raise<DataError>(
-                "JSON without lists, expected an object a line, a list of objects, or an object of "
-                "lists of numbers");
+                "JSON without lists, expected an object a line, a list of objects, or an object of lists of "
+                "numbers");
         log.columns = columns_of_lists(source, found.numbers.rbegin()->second);
     } catch (const DataError& error) {
         const std::string what = error.what();
@@ -368,7 +345,7 @@ bool sniff(std::string_view bytes) {
 }
 
 ColumnLog make_json(std::unique_ptr<ByteSource> source, std::string text, const ReadOptions& /*options*/) {
-    text.resize(read_on(*source, text, text.size(), std::numeric_limits<std::size_t>::max()));
+    read_on(*source, text);
     return columns_of_json(source->name(), text);
 }
 
@@ -387,7 +364,7 @@ const LogFormat formats::json{
     .extensions = json_extensions,
     .binary = false,
     .sniff = sniff,
-    .open = open_as_columns<make_json>,
+    .columns = make_json,
 };
 
 }  // namespace ripplenotch

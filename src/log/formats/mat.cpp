@@ -9,7 +9,6 @@
 #include <bit>
 #include <cctype>
 #include <cstdint>
-#include <cstring>
 #include <map>
 #include <memory>
 #include <span>
@@ -95,12 +94,9 @@ class MatTableWriter final : public TableWriter {
                 "NAME.npy",
                 most_mat_rows, rows_);
         }
-        std::vector<char> piece(std::size_t{1} << 20);
         for (std::size_t c = 0; c < names_.size(); ++c) {
             write_head(names_[c]);
-            columns_[c].rewind();
-            while (const std::size_t got = columns_[c].read(piece.data(), piece.size()))
-                sink_.write({piece.data(), got});
+            columns_[c].copy_to(sink_);
         }
     }
 
@@ -387,9 +383,8 @@ const LogFormat formats::mat{
     .extensions = mat_extensions,
     .binary = true,
     .sniff = sniff,
-    .open = open_as_columns<make_mat>,
-    .convert = convert_with<MatTableWriter>,
-    .write_columns = write_columns_with<MatTableWriter>,
+    .columns = make_mat,
+    .table = table_of<MatTableWriter>,
 };
 
 }  // namespace ripplenotch

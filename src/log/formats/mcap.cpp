@@ -66,8 +66,7 @@ void unpack_chunk(std::string_view packed, const Packing& packing, const std::st
                   std::string& into) {
     if (packing.make == nullptr) {
         raise<UsageError>(
-            "{}: chunks are packed by {}, and this build was made without {}; install it and build "
-            "again",
+            "{}: chunks are packed by {}, and this build was made without {}; install it and build again",
             source, packing.name, packing.lacks);
     }
     const auto unpacker = packing.make();
@@ -342,7 +341,7 @@ const LogFormat formats::mcap{
     .extensions = mcap_extensions,
     .binary = true,
     .sniff = [](std::string_view bytes) { return bytes.starts_with("\x89MCAP"); },
-    .open = open_as_columns<make_mcap>,
+    .columns = make_mcap,
 };
 
 }  // namespace ripplenotch

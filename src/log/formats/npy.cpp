@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <optional>
 
 #include "log/containers/stored_array.hpp"
@@ -19,10 +18,6 @@
 namespace ripplenotch {
 
 namespace {
-
-void read_up_to(ByteSource& source, std::string& bytes, std::size_t size) {
-    bytes.resize(read_on(source, bytes, bytes.size(), size));
-}
 
 // Of an array whose columns stand together, the bytes of its rows: it cannot be read a row at a time.
 std::string by_rows(std::string_view data, const NpyHeader& header, const std::string& source) {
@@ -75,10 +70,7 @@ class CountedArray {
             return;
         }
         sink_.write(head());
-        spool_->rewind();
-        std::vector<char> buffer(std::size_t{1} << 20);
-        while (const std::size_t got = spool_->read(buffer.data(), buffer.size()))
-            sink_.write({buffer.data(), got});
+        spool_->copy_to(sink_);
     }
 
   private:
@@ -221,14 +213,14 @@ bool sniff(std::string_view first_bytes) { return first_bytes.substr(0, npy_magi
 ColumnLog make_npy(std::unique_ptr<ByteSource> source, std::string first_bytes,
                    const ReadOptions& /*options*/) {
     const std::string name = source->name();
-    read_up_to(*source, first_bytes, 12);
+    read_on(*source, first_bytes, 12);
     if (first_bytes.substr(0, npy_magic.size()) != npy_magic) {
         raise<DataError>(
             "{}: read '{}...', expected a NumPy file, which begins with \\x93NUMPY; leave out --format", name,
             first_bytes.substr(0, 6));
     }
     const std::size_t header_size = npy_header_size(first_bytes);
-    if (header_size <= largest_npy_header) read_up_to(*source, first_bytes, header_size);
+    if (header_size <= largest_npy_header) read_on(*source, first_bytes, header_size);
     NpyHeader header = parse_npy_header(first_bytes, name);
     if (header.rows == 0)
         raise<DataError>("{}: read an array without rows, expected rows of numbers; check what wrote it",
@@ -236,7 +228,7 @@ ColumnLog make_npy(std::unique_ptr<ByteSource> source, std::string first_bytes,
     std::string head = first_bytes.substr(0, header.data_offset);
     first_bytes.erase(0, header.data_offset);
     if (header.by_columns || header.transposed) {
-        read_up_to(*source, first_bytes, std::numeric_limits<std::size_t>::max());
+        read_on(*source, first_bytes);
         first_bytes = by_rows(first_bytes, header, name);
         head = make_npy_header(header.descr, fmt::format("{}{}", header.rows, header.after_rows()), false);
     }
@@ -255,10 +247,9 @@ const LogFormat formats::npy{
     .extensions = npy_extensions,
     .binary = true,
     .sniff = sniff,
-    .open = open_as_columns<make_npy>,
+    .columns = make_npy,
     .rewrite = rewrite_with<NpyWriter, ColumnReader>,
-    .convert = convert_with<NpyTableWriter>,
-    .write_columns = write_columns_with<NpyTableWriter>,
+    .table = table_of<NpyTableWriter>,
 };
 
 }  // namespace ripplenotch

@@ -213,7 +213,7 @@ const LogFormat formats::npz{
     .extensions = extensions,
     .binary = true,
     .sniff = sniff,
-    .open = open_as_columns<make_npz>,
+    .columns = make_npz,
 };
 
 }  // namespace ripplenotch

@@ -13,6 +13,7 @@
 #include "log/npy/npy_header.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/spec.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -20,26 +21,10 @@ namespace {
 constexpr std::array<std::string_view, 3> extensions = {".raw", ".bin", ".f64"};
 constexpr std::size_t largest_raw_record = std::size_t{1} << 16;
 
-struct RawType {
-    std::string_view name;
-    char kind;
-    std::size_t size;
-};
-constexpr std::array types = {
-    RawType{"f4", 'f', 4},     RawType{"f8", 'f', 8},      RawType{"i1", 'i', 1},
-    RawType{"i2", 'i', 2},     RawType{"i4", 'i', 4},      RawType{"i8", 'i', 8},
-    RawType{"u1", 'u', 1},     RawType{"u2", 'u', 2},      RawType{"u4", 'u', 4},
-    RawType{"u8", 'u', 8},     RawType{"float", 'f', 4},   RawType{"float32", 'f', 4},
-    RawType{"double", 'f', 8}, RawType{"float64", 'f', 8}, RawType{"int8", 'i', 1},
-    RawType{"int16", 'i', 2},  RawType{"int32", 'i', 4},   RawType{"int64", 'i', 8},
-    RawType{"uint8", 'u', 1},  RawType{"uint16", 'u', 2},  RawType{"uint32", 'u', 4},
-    RawType{"uint64", 'u', 8},
-};
-
 [[noreturn]] void complain(std::string_view field, std::string_view why) {
     raise<UsageError>(
-        "--layout: '{}': {}; write fields as f8,f4,i2*0.01:torque_nm, with f4 f8 i1 i2 i4 i8 u1 u2 u4 u8, "
-        "x4 for 4 bytes to skip, and < or > in front for the byte order",
+        "--layout: '{}': {}; write fields as f8,f4,i2*0.01:torque_nm, with f4 f8 i1 i2 i4 i8 u1 u2 u4 u8, x4 "
+        "for 4 bytes to skip, and < or > in front for the byte order",
         field, why);
 }
 
@@ -82,10 +67,7 @@ RawLayout parse_raw_layout(const std::string& text) {
     RawLayout layout;
     layout.text = text;
     bool big_endian = false;
-    for (std::size_t at = 0; at <= text.size();) {
-        const std::size_t comma = std::min(text.find(',', at), text.size());
-        const std::string_view whole = std::string_view(text).substr(at, comma - at);
-        at = comma + 1;
+    for (const std::string_view whole : split(text, ',')) {
         std::string_view rest = whole;
         if (!rest.empty() && (rest.front() == '<' || rest.front() == '>')) {
             big_endian = rest.front() == '>';
@@ -105,8 +87,8 @@ RawLayout parse_raw_layout(const std::string& text) {
             layout.record_size += static_cast<std::size_t>(bytes);
             continue;
         }
-        const auto type = std::ranges::find_if(types, [&](const RawType& one) { return one.name == word; });
-        if (type == types.end()) complain(whole, fmt::format("'{}' is no type of numbers", word));
+        const auto type = number_type(word == "float" ? "f4" : word == "double" ? "f8" : word);
+        if (!type) complain(whole, fmt::format("'{}' is no type of numbers", word));
         field.kind = type->kind;
         field.size = type->size;
         field.big_endian = big_endian;
@@ -155,8 +137,7 @@ void require_whole_records(const RawLayout& layout, const ByteSource& source) {
     const auto fits = layouts_that_fit(layout, bytes);
     raise<DataError>(
         "{}: read {} bytes, expected records of {} bytes (--layout {}): {} whole ones and {} bytes of one "
-        "more. If "
-        "the dump was cut off: head -c {} {} | ripplenotch ... -. {}",
+        "more. If the dump was cut off: head -c {} {} | ripplenotch ... -. {}",
         source.name(), bytes, layout.record_size, layout.text, bytes / layout.record_size, rest, bytes - rest,
         source.name(),
         fits.empty() ? fmt::format("No layout like it fits; a head before the records is left out by tail -c "
@@ -199,7 +180,7 @@ const LogFormat formats::raw{
     .binary = true,
     .told = true,
     .sniff = [](std::string_view) { return false; },
-    .open = open_as_columns<make_raw>,
+    .columns = make_raw,
 };
 
 }  // namespace ripplenotch

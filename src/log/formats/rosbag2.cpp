@@ -216,7 +216,7 @@ const LogFormat formats::rosbag2 {
 #endif
     .sniff = [](std::string_view bytes) { return bytes.starts_with("SQLite format 3"); },
 #if defined(RIPPLENOTCH_HAS_SQLITE)
-    .open = open_as_columns<make_rosbag2>,
+    .columns = make_rosbag2,
 #endif
 };
 

@@ -14,9 +14,11 @@
 #include <string_view>
 #include <utility>
 
+#include "log/columns/units.hpp"
 #include "log/messages/message_columns.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/spec.hpp"
 
 namespace ripplenotch {
 
@@ -56,19 +58,6 @@ struct RosField {
 constexpr int deepest_message = 16;
 constexpr std::size_t longest_array = 100000, most_fields = 10000;
 
-struct Primitive {
-    std::string_view name;
-    char kind;
-    std::size_t size;
-};
-constexpr std::array primitives = {
-    Primitive{"bool", 'u', 1},    Primitive{"byte", 'u', 1},   Primitive{"char", 'u', 1},
-    Primitive{"int8", 'i', 1},    Primitive{"uint8", 'u', 1},  Primitive{"int16", 'i', 2},
-    Primitive{"uint16", 'u', 2},  Primitive{"int32", 'i', 4},  Primitive{"uint32", 'u', 4},
-    Primitive{"int64", 'i', 8},   Primitive{"uint64", 'u', 8}, Primitive{"float32", 'f', 4},
-    Primitive{"float64", 'f', 8},
-};
-
 // sensor_msgs/msg/JointState and sensor_msgs/JointState are one.
 std::string plain_name(std::string_view type) {
     std::string name(type);
@@ -76,24 +65,17 @@ std::string plain_name(std::string_view type) {
     return name;
 }
 
-std::string_view trimmed(std::string_view text) {
-    const std::size_t first = text.find_first_not_of(" \t\r");
-    if (first == std::string_view::npos) return {};
-    return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
-}
+std::string_view without_blanks(std::string_view text) { return trimmed(text, " \t\r"); }
 
 class SchemaParser {
   public:
     SchemaParser(std::string_view schema, const std::string& type) {
         std::string name = plain_name(type);
-        std::string_view rest = schema;
-        while (!rest.empty()) {
-            const std::size_t end = std::min(rest.find('\n'), rest.size());
-            const std::string_view line = trimmed(rest.substr(0, end));
-            rest.remove_prefix(std::min(end + 1, rest.size()));
+        for (const std::string_view text : split(schema, '\n')) {
+            const std::string_view line = without_blanks(text);
             if (line.starts_with("====")) continue;
             if (line.starts_with("MSG:")) {
-                name = plain_name(trimmed(line.substr(4)));
+                name = plain_name(without_blanks(line.substr(4)));
                 definitions_[name];
                 continue;
             }
@@ -114,17 +96,17 @@ class SchemaParser {
 
   private:
     void read_line(std::string_view line, const std::string& name, RosType& into, int depth) {
-        line = trimmed(line.substr(0, std::min(line.find('#'), line.size())));
+        line = without_blanks(line.substr(0, std::min(line.find('#'), line.size())));
         if (line.empty()) return;
         const std::size_t blank = line.find_first_of(" \t");
         if (blank == std::string_view::npos)
             raise<DataError>("the type {} has a line '{}', expected a field", name, line);
         const std::string_view type = line.substr(0, blank);
-        const std::string_view rest = trimmed(line.substr(blank));
+        const std::string_view rest = without_blanks(line.substr(blank));
         const std::size_t end = rest.find_first_of(" \t=");
         const std::string_view word = rest.substr(0, end);
         // A constant: NAME=value.
-        if (end != std::string_view::npos && trimmed(rest.substr(end)).starts_with('=')) return;
+        if (end != std::string_view::npos && without_blanks(rest.substr(end)).starts_with('=')) return;
         if (++fields_ > most_fields)
             raise<DataError>("the type {} has more than {} fields", name, most_fields);
         RosField field;
@@ -148,11 +130,10 @@ class SchemaParser {
     }
     RosType type_of(std::string_view word, const std::string& inside, int depth) {
         RosType type;
-        const auto primitive =
-            std::ranges::find_if(primitives, [&](const Primitive& one) { return one.name == word; });
-        if (primitive != primitives.end()) {
-            type.number = primitive->kind;
-            type.size = primitive->size;
+        const bool byte = word == "bool" || word == "byte" || word == "char";
+        if (const auto number = word.size() < 3 ? std::nullopt : number_type(byte ? "uint8" : word)) {
+            type.number = number->kind;
+            type.size = number->size;
             return type;
         }
         if (word == "string" || word == "wstring") {
@@ -331,11 +312,7 @@ class CdrWalk {
                 continue;
             }
             const CdrShape::Name& known = shape_.names[name_++];
-            if (text != known.text)
-                raise<DataError>(
-                    "'{}' as {}, expected '{}' as in the first message; record the joints on topics of their "
-                    "own",
-                    text.substr(0, 60), known.path, known.text);
+            if (text != known.text) refuse_name(text, known.path, known.text);
         }
     }
     void take(const RosField& field, const std::string& path) {
@@ -364,11 +341,7 @@ class CdrWalk {
         }
         const CdrShape::List& list = shape_.lists[list_++];
         if (!list.length) return false;
-        if (count != *list.length)
-            raise<DataError>(
-                "{} elements of {}, expected {} as in the first message; record messages of one shape on a "
-                "topic",
-                count, list.path, *list.length);
+        if (count != *list.length) refuse_length(count, list.path, *list.length);
         --left_;
         return true;
     }

@@ -25,15 +25,20 @@ std::string refusal_of(const MessageChannel& channel) {
     return {};
 }
 
-/// The clock, then the leaves but for the one that is it.
-[[nodiscard]] std::vector<std::size_t> leaves_beside_clock(const MessageLayout& layout, bool header_clock) {
-    std::vector<std::size_t> leaves;
-    for (std::size_t l = 0; l < layout.leaves.size(); ++l)
-        if (!(layout.leaves[l].clock && header_clock)) leaves.push_back(l);
+/// The leaves that are columns, the clock first: a leaf, or the time of recording, which stands behind them
+/// all.
+std::vector<std::size_t> leaves_of(const MessageLayout& layout, bool header_clock) {
+    std::vector<std::size_t> leaves = {layout.leaves.size()};
+    for (std::size_t l = 0; l < layout.leaves.size(); ++l) {
+        if (layout.leaves[l].clock && header_clock)
+            leaves.front() = l;
+        else
+            leaves.push_back(l);
+    }
     return leaves;
 }
 
-/// Column 0 is the clock, in nanoseconds; behind it stand leaves_beside_clock().
+/// Column 0 is the clock, in nanoseconds.
 class MessageColumns final : public Columns {
   public:
     /// `header_clock`: the layout has a leaf that is the clock, and it is taken; else the time of recording.
@@ -43,12 +48,8 @@ class MessageColumns final : public Columns {
           source_(std::move(source)),
           topic_(source_->channels()[channel].topic),
           layout_(std::move(layout)),
+          leaf_of_(leaves_of(layout_, header_clock)),
           row_(layout_.leaves.size() + 1) {
-        leaf_of_ = leaves_beside_clock(layout_, header_clock);
-        std::size_t clock = layout_.leaves.size();  // the time of recording
-        for (std::size_t l = 0; header_clock && l < layout_.leaves.size(); ++l)
-            if (layout_.leaves[l].clock) clock = l;
-        leaf_of_.insert(leaf_of_.begin(), clock);
         source_->restart({channel});
         chosen();
     }
@@ -77,15 +78,15 @@ class MessageColumns final : public Columns {
   private:
     static std::vector<ColumnInfo> info_of(const std::string& topic, const MessageLayout& layout,
                                            bool header_clock) {
-        std::vector<ColumnInfo> info = {{topic + ".log_time", "time", "ns", true, true}};
-        for (const MessageLeaf& leaf : layout.leaves)
-            if (leaf.clock && header_clock)
-                info[0] = {fmt::format("{}.{}", topic, leaf.path), leaf.read_as, "ns", true, true};
-        // The stamp of something else is no clock of the messages.
-        for (const std::size_t l : leaves_beside_clock(layout, header_clock)) {
-            const MessageLeaf& leaf = layout.leaves[l];
-            info.push_back({fmt::format("{}.{}", topic, leaf.path), leaf.stamp ? "other" : leaf.read_as, "",
-                            leaf.type.whole(), true});
+        std::vector<ColumnInfo> info;
+        for (const std::size_t l : leaves_of(layout, header_clock)) {
+            const bool clock = info.empty();
+            const MessageLeaf log_time{"log_time", "time", {}, true, true};
+            const MessageLeaf& leaf = l < layout.leaves.size() ? layout.leaves[l] : log_time;
+            // The stamp of something else is no clock of the messages.
+            info.push_back({fmt::format("{}.{}", topic, leaf.path),
+                            leaf.stamp && !clock ? "other" : leaf.read_as, clock ? "ns" : "",
+                            clock || leaf.type.whole(), true});
         }
         return info;
     }
@@ -215,13 +216,13 @@ class TopicChoice {
         for (std::size_t c = 0; c < topics_.size(); ++c) {
             if (c == chosen) continue;
             const MessageLayout& layout = topics_[c].layout;
-            const auto beside = leaves_beside_clock(layout, header_clock);
-            for (std::size_t f = 0; f < beside.size(); ++f) {
-                if (!is_named(
-                        fmt::format("{}.{}", source_->channels()[c].topic, layout.leaves[beside[f]].path)))
-                    continue;
-                sides.push_back({std::make_unique<MessageColumns>(opened_up_to(c), c, layout, header_clock),
-                                 f + 1, 1.0, "message"});
+            const std::vector<std::size_t> leaves = leaves_of(layout, header_clock);
+            for (std::size_t f = 1; f < leaves.size(); ++f) {
+                const std::string& path = layout.leaves[leaves[f]].path;
+                if (is_named(fmt::format("{}.{}", source_->channels()[c].topic, path)))
+                    sides.push_back(
+                        {std::make_unique<MessageColumns>(opened_up_to(c), c, layout, header_clock), f, 1.0,
+                         "message"});
             }
         }
         return sides;
@@ -326,6 +327,18 @@ class TopicChoice {
 };
 
 }  // namespace
+
+void refuse_length(std::size_t count, const std::string& path, std::size_t expected) {
+    raise<DataError>(
+        "{} elements of {}, expected {} as in the first message; record messages of one shape on a topic",
+        count, path, expected);
+}
+
+void refuse_name(std::string_view name, const std::string& path, const std::string& expected) {
+    raise<DataError>(
+        "'{}' as {}, expected '{}' as in the first message; record the joints on topics of their own",
+        name.substr(0, 60), path, expected);
+}
 
 MessageLayout lay_out_message(const MessageChannel& channel, std::string_view first) {
     if (channel.encoding == "json") return lay_out_json(first);

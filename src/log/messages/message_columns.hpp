@@ -87,6 +87,10 @@ class MessageReader {
     virtual void read(std::string_view message, std::vector<LeafNumber>& into) = 0;
 };
 
+/// What read() throws of a list and of a joint's name.
+[[noreturn]] void refuse_length(std::size_t count, const std::string& path, std::size_t expected);
+[[noreturn]] void refuse_name(std::string_view name, const std::string& path, const std::string& expected);
+
 /// How to read the messages of a topic. `wanted`: by leaf.
 using MessageProgram = std::function<std::unique_ptr<MessageReader>(const std::vector<bool>& wanted)>;
 

@@ -232,8 +232,7 @@ class HeaderText {
             if (shape_.size() > 2 || shape_.empty()) {
                 raise<DataError>(
                     "{}: read an array of {} dimensions, expected rows and columns; save it as a "
-                    "two-dimensional "
-                    "array",
+                    "two-dimensional array",
                     source_, shape_.size());
             }
             // A few long rows are signals one under another, not a log of a few rows.
@@ -280,6 +279,18 @@ std::vector<ColumnInfo> info_of(const NpyHeader& header) {
 }
 
 }  // namespace
+
+std::optional<NpyField> number_type(std::string_view word) {
+    for (const auto& [name, kind] :
+         {std::pair("float", 'f'), std::pair("uint", 'u'), std::pair("int", 'i')}) {
+        for (const std::size_t size : {1, 2, 4, 8}) {
+            if (kind == 'f' && size < 4) continue;
+            if (word == fmt::format("{}{}", name, 8 * size) || word == fmt::format("{}{}", kind, size))
+                return NpyField{"", kind, size};
+        }
+    }
+    return std::nullopt;
+}
 
 double load_field(const char* record, const NpyField& field) {
     const double number = with_type_of(field, [&](auto zero) {
@@ -398,7 +409,7 @@ std::size_t RecordColumns::next(std::size_t rows, NumberRows& into, std::string&
     const std::size_t taken = std::min(asked, begun_.size() - begun_at_);
     bytes.append(begun_, begun_at_, taken);
     begun_at_ += taken;
-    bytes.resize(read_on(*source_, bytes, at + taken, at + asked));
+    read_on(*source_, bytes, at + asked);
     const std::size_t have = bytes.size() - at, whole = left == 0 ? 0 : have / size;
     if (left == 0 && have > 0) {
         raise<DataError>(

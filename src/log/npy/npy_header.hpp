@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -29,6 +30,9 @@ struct NpyField {
     /// An integer that a double may not hold.
     [[nodiscard]] bool whole() const { return (kind == 'i' || kind == 'u') && size == 8 && !scaled(); }
 };
+
+/// Of "int16", "uint8", "float64" or, as NumPy has them, "i2", "u1", "f8"; none for other words.
+[[nodiscard]] std::optional<NpyField> number_type(std::string_view word);
 
 /// A number of a record, and back; `record` points at its first byte.
 [[nodiscard]] double load_field(const char* record, const NpyField& field);

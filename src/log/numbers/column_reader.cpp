@@ -29,8 +29,7 @@ std::string left_out_of(const std::vector<ContentEntry>& contents) {
     for (const ContentEntry& entry : contents) {
         const bool object = entry.type.starts_with("an object");
         if (entry.read || found.size() == most || (names_tell({entry.path}) == 0 && !object)) continue;
-        found.push_back(
-            fmt::format("{} ({}{}{})", entry.path, entry.shape, entry.shape.empty() ? "" : ", ", entry.type));
+        found.push_back(in_words(entry));
     }
     return found.empty() ? std::string() : fmt::format(" and not {}", fmt::join(found, ", "));
 }
@@ -121,10 +120,11 @@ void ColumnReader::decide(const ReadOptions& options) {
         if (!by_place) return;
         layout.warnings.insert(
             layout.warnings.begin(),
-            LogWarning{"columns by place", fmt::format("the {} names no columns: took time, velocity, "
-                                                       "torque{} by place; --columns settles it",
-                                                       log_.format == "npy" ? "array" : "layout",
-                                                       facts.columns == 4 ? ", position" : "")});
+            LogWarning{
+                "columns by place",
+                fmt::format(
+                    "the {} names no columns: took time, velocity, torque{} by place; --columns settles it",
+                    log_.format == "npy" ? "array" : "layout", facts.columns == 4 ? ", position" : "")});
     });
     wanted_ = wanted_columns(layout_);
     // time_at() adds the fraction of a second.
@@ -249,6 +249,10 @@ void ColumnReader::complain(const WantedColumn& wanted, std::size_t row, double 
                               : "remove the row");
     raise<DataError>("{}: row {}, {}: {}", columns().name(), columns().number_in_file(rows_ + row + 1),
                      column_label(names(), wanted.column), sentence);
+}
+
+std::unique_ptr<LogReader> read_columns(ColumnLog log, const ReadOptions& options) {
+    return rows_in_range(std::make_unique<ColumnReader>(std::move(log), options_of_whole(options)), options);
 }
 
 }  // namespace ripplenotch

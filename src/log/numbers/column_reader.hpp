@@ -20,7 +20,6 @@ class ColumnReader final : public LogReader {
     ColumnReader(ColumnLog log, const ReadOptions& options);
 
     [[nodiscard]] const Layout& layout() const override { return layout_; }
-    [[nodiscard]] std::string_view head() const override { return {}; }
     bool next(RowBlock& block) override;
     bool fetch(RowBlock& block) override;
 

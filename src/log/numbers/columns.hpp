@@ -100,23 +100,8 @@ struct ColumnLog {
     std::vector<Assumption> inferences;
 };
 
-/// Makes them from a file of one format. Throws DataError and UsageError, beginning with the source's name or
-/// the option.
-using MakeColumns = ColumnLog (*)(std::unique_ptr<ByteSource> source, std::string first_bytes,
-                                  const ReadOptions& options);
-
 /// The rows inside options.range, where one is given.
 [[nodiscard]] std::unique_ptr<LogReader> read_columns(ColumnLog log, const ReadOptions& options);
-[[nodiscard]] std::unique_ptr<LogReader> read_columns(std::unique_ptr<ByteSource> source,
-                                                      std::string first_bytes, const ReadOptions& options,
-                                                      MakeColumns make);
-
-/// LogFormat::open of such a format.
-template <MakeColumns make>
-std::unique_ptr<LogReader> open_as_columns(std::unique_ptr<ByteSource> source, std::string first_bytes,
-                                           const ReadOptions& options) {
-    return read_columns(std::move(source), std::move(first_bytes), options, make);
-}
 
 /// A signal with a clock of its own.
 struct SideColumn {

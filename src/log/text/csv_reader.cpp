@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include "log/clock/stamp.hpp"
 #include "log/open.hpp"
@@ -19,12 +18,6 @@ namespace {
 
 constexpr std::size_t csv_piece = std::size_t{1} << 17;
 constexpr std::size_t sniff_size = std::size_t{1} << 16;
-
-// Reads on until `size` bytes are there; true when the source ended before.
-bool read_up_to(ByteSource& source, std::string& bytes, std::size_t size) {
-    bytes.resize(read_on(source, bytes, bytes.size(), size));
-    return bytes.size() < size;
-}
 
 std::size_t line_ends(std::string_view bytes) {
     return static_cast<std::size_t>(std::ranges::count(bytes, '\n'));
@@ -42,16 +35,16 @@ std::string shown_cell(std::string_view text) {
 TextOpening::TextOpening(std::unique_ptr<ByteSource> from, std::string first_bytes,
                          const ReadOptions& options)
     : source(std::move(from)), bytes(std::move(first_bytes)) {
-    ended = read_up_to(*source, bytes, sniff_size);
+    ended = read_on(*source, bytes, sniff_size);
     // Lines may be long: a verdict on them needs a few whole ones.
     for (std::size_t size = 2 * sniff_size; !ended && line_ends(bytes) < 8 && size <= 8 * longest_line;
          size *= 2)
-        ended = read_up_to(*source, bytes, size);
+        ended = read_on(*source, bytes, size);
     dialect = sniff_text(bytes, ended, *source, options);
 }
 
 std::string TextOpening::whole() {
-    while (!ended) ended = read_up_to(*source, bytes, 2 * bytes.size());
+    while (!ended) ended = read_on(*source, bytes, 2 * bytes.size());
     return std::move(bytes);
 }
 
@@ -62,17 +55,20 @@ CsvReader::CsvReader(TextOpening opening, const ReadOptions& options)
       source_ended_(opening.ended) {
     decide(opening.bytes);
     head_ = opening.bytes.substr(0, dialect_.data_offset);
-    ahead_ = std::move(opening.bytes);
-    ahead_at_ = dialect_.data_offset;
+    carry_ = std::move(opening.bytes);
+    carry_.erase(0, dialect_.data_offset);
     line_ = dialect_.data_line;
-    plan_columns();
+    before_ = row_ = ParsedRow(1 + layout_.others.size());
+    const std::vector<WantedColumn> wanted = wanted_columns(layout_);
+    parser_.emplace(RowPlan{dialect_.rules, dialect_.columns, wanted, slot_factors(layout_, wanted),
+                            stamp_rule(layout_, dialect_.rules.decimal_mark)});
 }
 
 // `opening` may be read on while the layout is decided.
 void CsvReader::decide(std::string& opening) {
     dialect_.motion_sample = [this, &opening](const Layout& layout, const std::vector<MotionPlace>& places,
                                               std::size_t bytes) {
-        if (!source_ended_ && opening.size() < bytes) source_ended_ = read_up_to(*source_, opening, bytes);
+        if (!source_ended_ && opening.size() < bytes) source_ended_ = read_on(*source_, opening, bytes);
         MotionSample sample = text_motion_sample(std::string_view(opening).substr(dialect_.data_offset),
                                                  dialect_, layout, places);
         sample.whole = source_ended_;
@@ -85,39 +81,14 @@ void CsvReader::decide(std::string& opening) {
         layout.outside = rows_outside(*source_);
         if (dialect_.head_lines == 0) return;
         const bool scope = !dialect_.scales.empty();
-        layout.infer(fmt::format("the first {} lines", dialect_.head_lines),
-                     scope ? "the head of a TwinCAT Scope export, with its names and units"
-                           : "a head, passed on and not read",
-                     scope ? "'Name' stands over numbers that run forward, which are times, and "
-                             "over each channel"
-                           : "they are no rows, and the names do not stand in the first of them",
-                     fmt::format("--skip-lines {}", dialect_.head_lines));
+        layout.infer(
+            fmt::format("the first {} lines", dialect_.head_lines),
+            scope ? "the head of a TwinCAT Scope export, with its names and units"
+                  : "a head, passed on and not read",
+            scope ? "'Name' stands over numbers that run forward, which are times, and over each channel"
+                  : "they are no rows, and the names do not stand in the first of them",
+            fmt::format("--skip-lines {}", dialect_.head_lines));
     });
-}
-
-// At once. A log that was read whole, to see how it is written, needs no more room.
-std::size_t CsvReader::most_to_come() const {
-    if (ahead_at_ < ahead_.size()) return std::min(csv_piece, ahead_.size() - ahead_at_);
-    return source_ended_ ? 0 : csv_piece;
-}
-
-// What was read ahead first, then the source.
-std::size_t CsvReader::next_bytes(char* into, std::size_t size) {
-    if (ahead_at_ < ahead_.size()) {
-        const std::size_t taken = ahead_.copy(into, size, ahead_at_);
-        ahead_at_ += taken;
-        if (ahead_at_ == ahead_.size()) std::string().swap(ahead_);
-        return taken;
-    }
-    return source_ended_ ? 0 : source_->read(into, size);
-}
-
-void CsvReader::plan_columns() {
-    before_ = row_ = ParsedRow(1 + layout_.others.size());
-    std::ranges::fill(before_.values, not_a_number);
-    const std::vector<WantedColumn> wanted = wanted_columns(layout_);
-    parser_.emplace(RowPlan{dialect_.rules, dialect_.columns, wanted, slot_factors(layout_, wanted),
-                            stamp_rule(layout_, dialect_.rules.decimal_mark)});
 }
 
 bool CsvReader::next(RowBlock& block) {
@@ -146,9 +117,8 @@ bool CsvReader::fetch(RowBlock& block) {
     };
     std::size_t lines = whole_lines();
     for (; lines == 0 && !at_end_ && have <= longest_line; lines = whole_lines()) {
-        const std::size_t most = most_to_come();
-        if (bytes.size() < have + most) bytes.resize(have + most);
-        const std::size_t got = next_bytes(bytes.data() + have, most);
+        if (!source_ended_ && bytes.size() < have + csv_piece) bytes.resize(have + csv_piece);
+        const std::size_t got = source_ended_ ? 0 : source_->read(bytes.data() + have, csv_piece);
         at_end_ = got == 0;
         have += got;
     }
@@ -276,17 +246,9 @@ void CsvReader::append_row(RowBlock& block, ParsedRow& row) {
     else
         block.time_s.push_back(layout_.stated_rate ? static_cast<double>(rows_) / layout_.stated_rate->value()
                                                    : not_a_number);
-    for (std::size_t j = 0; j < block.joints.size(); ++j) {
-        const auto number = [&](RowSlot of_first) {
-            const std::size_t slot = slot_of(of_first, j);
-            return row.values[slot] * parser_->plan().factors[slot];
-        };
-        const JointColumns& columns = j == 0 ? layout_.chosen : layout_.others[j - 1];
-        JointRows& joint = block.joints[j];
-        joint.velocity_deg_s.push_back(columns.velocity ? number(velocity_slot) : not_a_number);
-        joint.torque_nm.push_back(columns.torque ? number(torque_slot) : not_a_number);
-        if (columns.position) joint.position_deg.push_back(number(position_slot));
-    }
+    const RowPlan& plan = parser_->plan();
+    for (std::size_t slot = velocity_slot; slot < plan.factors.size(); ++slot)
+        if (plan.stores(slot)) numbers_of(block, slot).push_back(row.values[slot] * plan.factors[slot]);
     std::swap(before_, row);
     ++rows_;
 }

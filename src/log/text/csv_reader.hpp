@@ -33,7 +33,8 @@ class CsvReader : public LogReader {
         : CsvReader(TextOpening(std::move(source), std::move(first_bytes), options), options) {}
 
     [[nodiscard]] const Layout& layout() const override { return layout_; }
-    [[nodiscard]] std::string_view head() const override { return head_; }
+    /// The bytes before the first row (header, comments), to be passed on as they are.
+    [[nodiscard]] std::string_view head() const { return head_; }
     /// The size of the whole log; 0 where it is not known.
     [[nodiscard]] std::uint64_t source_bytes() const { return source_->size(); }
     bool next(RowBlock& block) override;
@@ -45,9 +46,6 @@ class CsvReader : public LogReader {
 
   private:
     void decide(std::string& opening);
-    [[nodiscard]] std::size_t most_to_come() const;
-    std::size_t next_bytes(char* into, std::size_t size);
-    void plan_columns();
     void note_quick_rows(RowBlock& block, std::size_t before);
     [[nodiscard]] bool continues(const RowBlock& block) const;
     std::size_t accept_from(RowBlock& block, std::size_t begin);
@@ -65,11 +63,9 @@ class CsvReader : public LogReader {
     TextDialect dialect_;
     Layout layout_;
     std::string head_;
-    std::string ahead_;               ///< read to decide on the layout, before the first row was asked for
-    std::size_t ahead_at_ = 0;        ///< what of it has been fetched
-    bool source_ended_ = false;       ///< the source has no more bytes
-    std::string carry_;               ///< bytes after the last complete line
-    bool at_end_ = false;             ///< there is nothing left to fetch
+    bool source_ended_ = false;  ///< the source has no more bytes
+    std::string carry_;    ///< bytes after the last complete line; at first what the layout was decided on
+    bool at_end_ = false;  ///< there is nothing left to fetch
     bool last_line_complete_ = true;  ///< the line being taken has its line end
     bool plain_row_ = false;          ///< the line taken last was a row that needed no care
     bool end_mark_seen_ = false;      ///< a line "EOF"

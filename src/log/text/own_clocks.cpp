@@ -10,7 +10,6 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <map>
 #include <optional>
 #include <set>
@@ -186,9 +185,7 @@ class Signals {
     // As the clock says, else so that the longest time fits.
     [[nodiscard]] double ns_per_unit(const ColumnInfo& clock) const {
         constexpr double most_ns = 9e18, seconds = 1e9;
-        const std::string written = clock.unit.empty() ? split_unit(clock.path).unit : clock.unit;
-        if (const auto unit = written.empty() ? std::nullopt : usual_unit(written, Role::time))
-            return seconds * role_factor(Role::time, *unit).value_or(1.0);
+        if (const auto stated = stated_clock_ns(clock.unit, clock.path)) return *stated;
         double longest = 1.0;
         for (const Signal& signal : all)
             for (const double time : {signal.time.values.front(), signal.time.values.back()})
@@ -206,21 +203,13 @@ class Signals {
     bool all_whole_ = true;  ///< the times
 };
 
-using Words = std::span<const std::string_view>;
-constexpr std::array<std::string_view, 10> signal_words = {
-    "signal", "variable", "name", "channel", "topic", "key", "parameter", "field", "series", "signalname"};
-// In addition: whose signal it is.
-constexpr std::array<std::string_view, 6> owner_words = {"joint", "axis",  "actuator",
-                                                         "motor", "robot", "device"};
-constexpr std::array<std::string_view, 7> value_words = {"value", "values", "data",   "wert",
-                                                         "werte", "y",      "reading"};
-constexpr std::array<std::string_view, 5> name_keys = {"variable", "name", "variablename", "symbol",
-                                                       "symbolname"};
+constexpr std::string_view signal_words =
+    "signal variable name channel topic key parameter field series signalname";
+constexpr std::string_view owner_words = "joint axis actuator motor robot device";  // whose signal it is
+constexpr std::string_view value_words = "value values data wert werte y reading";
+constexpr std::string_view name_keys = "variable name variablename symbol symbolname";
 
-bool is_one_of(Words words, std::string_view text) {
-    const std::string lower = lower_case(text);
-    return std::ranges::find(words, lower) != words.end();
-}
+bool is_one_of(std::string_view words, std::string_view text) { return has_word(words, lower_case(text)); }
 
 /// Which columns of a tidy table are what, by its header.
 struct LongHeader {
@@ -247,17 +236,11 @@ std::optional<LongHeader> long_header(std::string_view line) {
             named = named || names;
             if (names || is_one_of(owner_words, cells[c])) signal.push_back(c);
             if (!value && is_one_of(value_words, cells[c])) value = c;
-            if (!unit && is_one_of(std::array<std::string_view, 2>{"unit", "units"}, cells[c])) unit = c;
+            if (!unit && is_one_of("unit units", cells[c])) unit = c;
         }
+        const bool others = cells.size() > signal.size() + 2 + (unit ? 1 : 0);
         if (time && named && value)
-            return LongHeader{delimiter,
-                              cells.size(),
-                              *time,
-                              *value,
-                              signal,
-                              unit,
-                              cells.size() > signal.size() + 2 + (unit ? 1 : 0),
-                              cells[*time]};
+            return LongHeader{delimiter, cells.size(), *time, *value, signal, unit, others, cells[*time]};
     }
     return std::nullopt;
 }
@@ -495,10 +478,9 @@ ColumnLog own_columns(const std::string& source, std::string_view text, const Cs
             const std::pair sample(rows.cell(read[k].clock), rows.cell(read[k].column));
             if (sample.first.empty() || sample.second.empty() || sample == before[k]) continue;
             if (sample.first == before[k].first)
-                rows.complain(
-                    fmt::format("read a second value of '{}' at the time {}, expected time to run "
-                                "forward; export again",
-                                signals.all[k].name, sample.first));
+                rows.complain(fmt::format(
+                    "read a second value of '{}' at the time {}, expected time to run forward; export again",
+                    signals.all[k].name, sample.first));
             before[k] = sample;
             signals.add(k, sample.first, sample.second, dialect.rules.delimiter);
         }
@@ -523,67 +505,50 @@ ColumnLog own_columns(const std::string& source, std::string_view text, const Cs
     return log;
 }
 
-/// A table some of whose cells hold lists, which have as many numbers in every row.
-class ListTable {
-  public:
-    ListTable(const std::string& source, std::string_view text, const TextDialect& dialect)
-        : rows_(rows_of(source, text, dialect)), dialect_(dialect) {
-        while (next_row(rows_, dialect)) {
-            std::size_t place = 0;
-            for (std::size_t c = 0; c < dialect.columns; ++c) add_cell(c, rows_.cell(c), place);
-            first_ = false;
+// A table some of whose cells hold lists, which have as many numbers in every row.
+ColumnLog list_columns(const std::string& source, std::string_view text, const TextDialect& dialect) {
+    std::vector<ColumnInfo> info;
+    NumberRows numbers;
+    std::vector<std::size_t> lengths;  // of the list in a cell, by its place in the row; 0: it is none
+    std::optional<std::int64_t> origin_s;
+    Lines rows = rows_of(source, text, dialect);
+    for (bool first = true; next_row(rows, dialect); first = false) {
+        std::size_t place = 0;
+        const auto add = [&](const std::string& name, std::size_t column, std::string_view cell,
+                             std::optional<double> number) {
+            if (first) {
+                const std::string unit = column < dialect.units.size() ? dialect.units[column] : "";
+                info.push_back({name, "", unit, true, number.has_value()});
+                numbers.emplace_back();
+            }
+            info[place].whole = add_count(cell, numbers[place].counts) && info[place].whole;
+            numbers[place].values.push_back(number.value_or(not_a_number));
+            ++place;
+        };
+        for (std::size_t c = 0; c < dialect.columns; ++c) {
+            const std::string_view cell = rows.cell(c);
+            const std::string name =
+                dialect.names.empty() ? fmt::format("column {}", c + 1) : dialect.names[c];
+            const auto list = list_in(cell);
+            const std::size_t length = list ? list->size() : 0;
+            if (first) lengths.push_back(length);
+            if (length != lengths[c])
+                rows.complain(fmt::format(
+                    "read '{}' in '{}', expected as many numbers as in the first row: {}; correct or remove "
+                    "the line",
+                    cell.substr(0, 40), name, std::max<std::size_t>(1, lengths[c])));
+            if (!list)
+                add(name, c, cell,
+                    number_or_time_in(cell, dialect.rules.delimiter, dialect.stamp_forms[c], origin_s));
+            for (std::size_t i = 0; i < length; ++i) add(fmt::format("{}[{}]", name, i), c, "", (*list)[i]);
         }
-        for (std::size_t c = 0; c < info_.size(); ++c) info_[c].whole = whole_[c];
     }
-    ColumnLog log(const std::string& source) {
-        ColumnLog log;
-        log.format = "csv";
-        log.options = dialect_.dialect_options;
-        log.columns = std::make_unique<HeldColumns>(source, std::move(info_), std::move(numbers_));
-        return log;
-    }
-
-  private:
-    void add_cell(std::size_t column, std::string_view cell, std::size_t& place) {
-        const std::string name =
-            dialect_.names.empty() ? fmt::format("column {}", column + 1) : dialect_.names[column];
-        const auto list = list_in(cell);
-        const std::size_t length = list ? list->size() : 0;
-        if (first_) lengths_.push_back(length);
-        if (length != lengths_[column])
-            rows_.complain(
-                fmt::format("read '{}' in '{}', expected as many numbers as in the first row: {}; "
-                            "correct or remove the line",
-                            cell.substr(0, 40), name, std::max<std::size_t>(1, lengths_[column])));
-        if (!list)
-            return add(
-                place, name, column, cell,
-                number_or_time_in(cell, dialect_.rules.delimiter, dialect_.stamp_forms[column], origin_s_));
-        for (std::size_t i = 0; i < length; ++i)
-            add(place, fmt::format("{}[{}]", name, i), column, "", (*list)[i]);
-    }
-    void add(std::size_t& place, const std::string& name, std::size_t column, std::string_view cell,
-             std::optional<double> number) {
-        if (first_) {
-            info_.push_back({name, "", column < dialect_.units.size() ? dialect_.units[column] : "", false,
-                             number.has_value()});
-            whole_.push_back(true);
-            numbers_.emplace_back();
-        }
-        whole_[place] = add_count(cell, numbers_[place].counts) && whole_[place];
-        numbers_[place].values.push_back(number.value_or(not_a_number));
-        ++place;
-    }
-
-    Lines rows_;
-    const TextDialect& dialect_;
-    bool first_ = true;  ///< in the first row
-    std::vector<ColumnInfo> info_;
-    std::vector<bool> whole_;  ///< by column: all its numbers
-    NumberRows numbers_;
-    std::vector<std::size_t> lengths_;  ///< of the list in a cell, by its place in the row; 0: it is none
-    std::optional<std::int64_t> origin_s_;
-};
+    ColumnLog log;
+    log.format = "csv";
+    log.options = dialect.dialect_options;
+    log.columns = std::make_unique<HeldColumns>(source, std::move(info), std::move(numbers));
+    return log;
+}
 
 // Of a trace, the first lines hold a head of two lines and more, and rows of a time and a value, which no
 // line over them names.
@@ -616,8 +581,7 @@ std::unique_ptr<LogReader> open_table(std::unique_ptr<ByteSource> source, std::s
     if (!opening.dialect.own_clocks && !opening.dialect.has_lists) return plain(std::move(opening));
     const std::string name = opening.source->name();
     const auto text = std::make_shared<const std::string>(opening.whole());
-    if (opening.dialect.has_lists)
-        return read_columns(ListTable(name, *text, opening.dialect).log(name), options);
+    if (opening.dialect.has_lists) return read_columns(list_columns(name, *text, opening.dialect), options);
     const auto again = [&] {
         return TextOpening(std::make_unique<ByteSource>(name, text), std::string(), options);
     };
@@ -638,7 +602,7 @@ std::unique_ptr<LogReader> open_text(std::unique_ptr<ByteSource> source, std::st
         return open_table(std::move(source), std::move(first_bytes), options);
     const std::string name = source->name();
     std::string bytes = std::move(first_bytes);
-    bytes.resize(read_on(*source, bytes, bytes.size(), std::numeric_limits<std::size_t>::max()));
+    read_on(*source, bytes);
     if (const auto header = long_header(first_line_of(bytes)))
         return read_columns(tidy_columns(name, bytes, *header, options), options);
     if (has_blocks(bytes)) return read_columns(block_columns(name, bytes, options), options);

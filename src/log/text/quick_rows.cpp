@@ -12,7 +12,6 @@
 #include "core/vectors/bytes.hpp"
 #include "core/vectors/lanes.hpp"
 #include "log/text/row_edges.hpp"
-#include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/trace.hpp"
 
 namespace ripplenotch {
@@ -128,7 +127,7 @@ class RowSink {
     /// Turns the numbers of the first `rows` into the tool's units and appends them.
     void commit(std::size_t rows) {
         for (std::size_t slot = 0; slot < plan_.factors.size(); ++slot) {
-            if (!stored(slot)) continue;
+            if (!plan_.stores(slot)) continue;
             double* const first = numbers(slot);
             const double factor = plan_.factors[slot];
             if (factor != 1.0) std::for_each_n(first, rows, [factor](double& value) { value *= factor; });
@@ -142,10 +141,6 @@ class RowSink {
     }
 
   private:
-    /// Positions that the log has not leave their vector empty; other numbers are then not a number.
-    [[nodiscard]] bool stored(std::size_t slot) const {
-        return !is_position(slot) || plan_.column_of(slot).has_value();
-    }
     template <typename T>
     static void append(std::vector<T>& to, const std::vector<T>& from, std::size_t rows) {
         to.insert(to.end(), from.begin(), from.begin() + static_cast<std::ptrdiff_t>(rows));
@@ -153,7 +148,7 @@ class RowSink {
     void reserve(std::size_t size) {
         if (block_.time_s.capacity() >= size) return;
         for (std::size_t slot = 0; slot < plan_.factors.size(); ++slot)
-            if (stored(slot)) numbers_of(block_, slot).reserve(size);
+            if (plan_.stores(slot)) numbers_of(block_, slot).reserve(size);
         for (JointRows& joint : block_.joints) {
             joint.torque_begin.reserve(size);
             joint.torque_end.reserve(size);

@@ -10,6 +10,7 @@
 
 #include "log/clock/stamp.hpp"
 #include "log/text/text_cells.hpp"
+#include "ripplenotch/core/number.hpp"
 #include "ripplenotch/log/format.hpp"
 
 namespace ripplenotch {
@@ -62,9 +63,9 @@ struct ParsedRow {
         const char* begin = nullptr;
         const char* end = nullptr;
     };
-    explicit ParsedRow(std::size_t joints = 1) : values(slot_count(joints)), torques(joints) {}
+    explicit ParsedRow(std::size_t joints = 1) : values(slot_count(joints), not_a_number), torques(joints) {}
 
-    std::vector<double> values;         ///< by slot
+    std::vector<double> values;         ///< by slot; not a number where no column is wanted
     std::vector<Place> torques;         ///< by joint; null without a torque column
     const char* content_end = nullptr;  ///< just past the last cell
 };
@@ -89,6 +90,10 @@ struct RowPlan {
             if (one.slot == slot) return one.column;
         }
         return std::nullopt;
+    }
+    /// Positions that the log has not leave their vector empty; other numbers are then not a number.
+    [[nodiscard]] bool stores(std::size_t slot) const {
+        return !is_position(slot) || column_of(slot).has_value();
     }
 };
 

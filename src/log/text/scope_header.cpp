@@ -80,9 +80,9 @@ class Head {
 
 // "Nm (Torque)", "mNm (Torque)", "° (Angle)": the unit, then what it measures.
 std::string scope_unit(const std::string& text) {
-    const std::size_t bracket = text.rfind('(');
-    std::string unit = bracket == std::string::npos || !text.ends_with(')') ? text : text.substr(0, bracket);
-    while (!unit.empty() && unit.back() == ' ') unit.pop_back();
+    const std::size_t bracket = text.ends_with(')') ? text.rfind('(') : std::string::npos;
+    std::string unit = text.substr(0, bracket);
+    while (unit.ends_with(' ')) unit.pop_back();
     return unit == "None" || unit == "-" ? "" : unit;
 }
 
@@ -131,8 +131,7 @@ std::optional<double> common_step(const Head& head, const std::string& source) {
         if (step_ms.value_or(*number) != *number)
             raise<DataError>(
                 "{}: read channels of {} and {} ms without times, expected a column of times; export again "
-                "with "
-                "Timelines: All, or channels of one sample time",
+                "with Timelines: All, or channels of one sample time",
                 source, shortest(*step_ms), shortest(*number));
         step_ms = number;
     }

@@ -2,7 +2,6 @@
 #include "log/text/text_cells.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <utility>
 
 #include "log/columns/units.hpp"
@@ -10,8 +9,6 @@
 
 namespace ripplenotch {
 namespace {
-
-bool is_decimal_digit(char c) { return c >= '0' && c <= '9'; }
 
 // The minus sign as typesetters write it.
 constexpr std::string_view long_minus = "\xe2\x88\x92";
@@ -26,14 +23,14 @@ std::string take_number(std::string_view& rest, char decimal_mark, std::size_t& 
         if (size > 0) plain += rest.front() == '+' ? '+' : '-';
         rest.remove_prefix(size);
     };
-    const auto digit_at = [&](std::size_t at) { return at < rest.size() && is_decimal_digit(rest[at]); };
+    const auto digit_at = [&](std::size_t at) { return at < rest.size() && is_digit(rest[at]); };
     take_sign();
     char separator = '\0';
     for (bool marked = false; !rest.empty(); rest.remove_prefix(1)) {
         const char c = rest.front();
         const bool thousands = !marked && c != decimal_mark && std::string_view(",.' ").find(c) < 4 &&
                                (separator == '\0' || separator == c) && !plain.empty() &&
-                               is_decimal_digit(plain.back()) && digit_at(1) && digit_at(2) && digit_at(3) &&
+                               is_digit(plain.back()) && digit_at(1) && digit_at(2) && digit_at(3) &&
                                !digit_at(4);
         if (thousands) {
             separator = c;
@@ -42,7 +39,7 @@ std::string take_number(std::string_view& rest, char decimal_mark, std::size_t& 
             marked = true;
             groups += groups > 0 ? 1 : 0;
             plain += '.';
-        } else if (is_decimal_digit(c)) {
+        } else if (is_digit(c)) {
             plain += c;
         } else {
             break;

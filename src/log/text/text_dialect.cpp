@@ -300,8 +300,7 @@ TextLines opening_lines(std::string_view bytes, bool whole, const ByteSource& so
     if (bytes.find('\n') == std::string_view::npos && bytes.find('\r') != std::string_view::npos)
         raise<DataError>(
             "{}:1: read lines that end in CR alone, expected LF or CR LF; convert it: tr '\\r' '\\n' < FILE "
-            "| "
-            "ripplenotch ... -",
+            "| ripplenotch ... -",
             source.name());
     std::vector<TextLine> lines = lines_of(bytes, whole, start);
     if (!whole && bytes.size() - (lines.empty() ? start : lines.back().next) > longest_line) {

@@ -38,10 +38,9 @@ Kinds kinds_of(std::string_view line, const CellRules& rules) {
     return kinds;
 }
 
-std::string bare_unit(std::string text) {
-    while (!text.empty() && (text.front() == '[' || text.front() == '(')) text.erase(0, 1);
-    while (!text.empty() && (text.back() == ']' || text.back() == ')')) text.pop_back();
-    return text == "-" ? "" : text;
+std::string bare_unit(std::string_view text) {
+    const std::string_view unit = trimmed(text, "[]()");
+    return unit == "-" ? std::string() : std::string(unit);
 }
 
 // A row under the header in which every cell is a unit, a dash or nothing, and at least one is a unit.
@@ -51,8 +50,7 @@ bool is_unit_row(const std::vector<std::string>& cells) {
         const std::string text = bare_unit(cell);
         if (text.empty()) continue;
         const bool unit = usual_unit(text, Role::other) || text == "nm";
-        if (!unit && std::ranges::any_of(text, [](unsigned char c) { return std::isdigit(c) != 0; }))
-            return false;
+        if (!unit && std::ranges::any_of(text, is_digit)) return false;
         any = any || unit;
     }
     return any;

@@ -3,11 +3,8 @@
 
 #include <algorithm>
 #include <array>
-#include <condition_variable>
-#include <cstring>
 #include <exception>
-#include <mutex>
-#include <thread>
+#include <future>
 #include <vector>
 
 #include "ripplenotch/core/error.hpp"
@@ -32,8 +29,7 @@ namespace {
 std::unique_ptr<Unpacker> unpacker_of(const Packing& packing, const std::string& source) {
     if (packing.make == nullptr) {
         raise<UsageError>(
-            "{}: read a {} file, and this build was made without {}; unpack it: {} {} | "
-            "ripplenotch ... -",
+            "{}: read a {} file, and this build was made without {}; unpack it: {} {} | ripplenotch ... -",
             source, packing.name, packing.lacks, packing.program, source);
     }
     return packing.make();
@@ -46,7 +42,6 @@ constexpr std::uint64_t most_unpacked_for_one = 500, unpacked_unasked = std::uin
 constexpr std::size_t packed_piece = std::size_t{1} << 16;
 constexpr std::size_t unpacked_piece = std::size_t{1} << 18;
 constexpr std::size_t room_size = std::size_t{1} << 16;
-constexpr std::size_t pieces_ahead = 4;
 
 /// In the thread of who reads.
 class UnpackedBytes : public ByteSource {
@@ -120,21 +115,24 @@ class UnpackedBytes : public ByteSource {
     std::uint64_t taken_ = 0, given_ = 0;
 };
 
-/// What another source gives, read ahead by a thread.
+/// What another source gives, a piece ahead in another thread.
 class ReadAhead : public ByteSource {
   public:
     explicit ReadAhead(std::unique_ptr<ByteSource> source)
-        : ByteSource(Name{source->name()}),
-          source_(std::move(source)),
-          thread_([this](const std::stop_token& stop) { fill(stop); }) {}
+        : ByteSource(Name{source->name()}), source_(std::move(source)) {
+        begin({});
+    }
 
     std::size_t read(char* into, std::size_t size) override {
-        if (given_ == current_.size()) {
-            if (failure_) std::rethrow_exception(failure_);
-            take_piece();
+        if (given_ == current_.bytes.size() && !current_.failure && next_.valid()) {
+            Piece piece = next_.get();
+            if (!piece.bytes.empty() && !piece.failure) begin(std::move(current_.bytes));
+            current_ = std::move(piece);
+            given_ = 0;
         }
-        const std::size_t count = std::min(size, current_.size() - given_);
-        std::memcpy(into, current_.data() + given_, count);
+        const std::size_t count = std::min(size, current_.bytes.size() - given_);
+        if (count == 0 && current_.failure) std::rethrow_exception(current_.failure);
+        std::copy_n(current_.bytes.data() + given_, count, into);
         given_ += count;
         return count;
     }
@@ -144,55 +142,26 @@ class ReadAhead : public ByteSource {
         std::vector<char> bytes;
         std::exception_ptr failure;  ///< behind the bytes
     };
-    void fill(const std::stop_token& stop) {
-        bool ended = false;
-        while (!ended) {
-            std::vector<char> bytes = spare();
-            Piece piece;
+    void begin(std::vector<char> room) {
+        next_ = std::async(std::launch::async, [this, bytes = std::move(room)]() mutable {
+            Piece piece{std::move(bytes), nullptr};
             std::size_t have = 0;
             try {
-                bytes.resize(unpacked_piece);
-                for (std::size_t got = 1; have < bytes.size() && got > 0; have += got)
-                    got = source_->read(bytes.data() + have, bytes.size() - have);
+                piece.bytes.resize(unpacked_piece);
+                for (std::size_t got = 1; have < unpacked_piece && got > 0; have += got)
+                    got = source_->read(piece.bytes.data() + have, unpacked_piece - have);
             } catch (...) {
                 piece.failure = std::current_exception();
             }
-            bytes.resize(have);
-            ended = bytes.empty() || piece.failure;
-            piece.bytes = std::move(bytes);
-            std::unique_lock lock(mutex_);
-            if (!changed_.wait(lock, stop, [this] { return ready_.size() < pieces_ahead; })) return;
-            ready_.push_back(std::move(piece));
-            changed_.notify_all();
-        }
-    }
-    std::vector<char> spare() {
-        const std::lock_guard lock(mutex_);
-        return std::exchange(spare_, {});
-    }
-    void take_piece() {
-        if (ended_) return;
-        std::unique_lock lock(mutex_);
-        changed_.wait(lock, [this] { return !ready_.empty(); });
-        Piece piece = std::move(ready_.front());
-        ready_.erase(ready_.begin());
-        spare_ = std::exchange(current_, std::move(piece.bytes));
-        given_ = 0;
-        changed_.notify_all();
-        failure_ = piece.failure;
-        ended_ = current_.empty() && !failure_;
-        if (current_.empty() && failure_) std::rethrow_exception(failure_);
+            piece.bytes.resize(have);
+            return piece;
+        });
     }
 
     std::unique_ptr<ByteSource> source_;
-    std::mutex mutex_;
-    std::condition_variable_any changed_;
-    std::vector<Piece> ready_;
-    std::vector<char> spare_, current_;
-    std::size_t given_ = 0;  ///< of the current piece
-    bool ended_ = false;
-    std::exception_ptr failure_;  ///< behind the current piece
-    std::jthread thread_;         ///< last: what it uses is there before it and behind it
+    Piece current_;
+    std::size_t given_ = 0;    ///< of the current piece
+    std::future<Piece> next_;  ///< last: what it uses is there before it and behind it
 };
 
 }  // namespace
