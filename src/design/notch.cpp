@@ -237,4 +237,24 @@ Biquad design_notch(const NotchSpec& spec, Hertz sample_rate) {
     return f;
 }
 
+SvfSection svf_at(double g, double k) {
+    SvfSection svf;
+    svf.a1 = 1.0 / (1.0 + g * (g + k));
+    svf.a2 = g * svf.a1;
+    svf.a3 = g * svf.a2;
+    return svf;
+}
+
+SvfSection svf_of(const NotchSpec& notch, Hertz sample_rate) {
+    const double half = std::numbers::pi * (notch.center / sample_rate), g = portable::tan(half);
+    // The digital rule has another damping in the same prototype: alpha = tan(W/(2Q)) instead of sin(W)/(2Q).
+    const double k = notch.width == WidthRule::analog
+                         ? 1.0 / notch.q
+                         : 2.0 * portable::tan(half / notch.q) / portable::sin(2.0 * half);
+    const double gain = notch.depth_db >= 6000.0 ? 0.0 : portable::pow(10.0, -notch.depth_db / 20.0);
+    SvfSection svf = svf_at(g, k);
+    svf.m1 = -(1.0 - gain) * k;
+    return svf;
+}
+
 }  // namespace ripplenotch

@@ -5,11 +5,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <bit>
 #include <cctype>
 #include <charconv>
 #include <cmath>
-#include <cstdint>
 #include <numbers>
 #include <optional>
 
@@ -29,29 +27,19 @@ bool in_token(char c) {
 }
 
 template <class Real>
-std::optional<double> read_as(std::string_view digits, std::chars_format format) {
+std::optional<double> read_as(std::string_view digits) {
     Real value{};
     const char* const end = digits.data() + digits.size();
-    const auto result = std::from_chars(digits.data(), end, value, format);
+    const auto result = std::from_chars(digits.data(), end, value);
     if (result.ec != std::errc() || result.ptr != end) return std::nullopt;
     return static_cast<double>(value);
 }
 
 std::optional<double> read_number(std::string_view text, Precision precision) {
-    const bool negative = !text.empty() && text.front() == '-';
-    if (!text.empty() && (text.front() == '-' || text.front() == '+')) text.remove_prefix(1);
-    if (text.empty() || text.front() == '-') return std::nullopt;
-    const bool hex = text.size() > 2 && text[0] == '0' && (text[1] == 'x' || text[1] == 'X');
-    if (hex) text.remove_prefix(2);
-    // The suffix of a C float; in hexadecimal an f is a digit unless an exponent stands before it.
-    const bool suffix = (text.back() == 'f' || text.back() == 'F') &&
-                        (!hex || text.find_first_of("pP") != std::string_view::npos);
-    if (suffix) text.remove_suffix(1);
-    const auto format = hex ? std::chars_format::hex : std::chars_format::general;
-    const auto value =
-        precision == Precision::float32 ? read_as<float>(text, format) : read_as<double>(text, format);
-    if (!value) return std::nullopt;
-    return negative ? -*value : *value;
+    if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
+    if (text.empty()) return std::nullopt;
+    if (text.back() == 'f' || text.back() == 'F') text.remove_suffix(1);  // of a C float
+    return precision == Precision::float32 ? read_as<float>(text) : read_as<double>(text);
 }
 
 }  // namespace
@@ -138,20 +126,6 @@ std::string decimal(double value) { return with_point(shortest(value)); }
 std::string decimal_float(double value) {
     return with_point(fmt::format("{:.9g}", static_cast<float>(value))) + "f";
 }
-
-// printf's %a, by our own hand: fmt's form of it depends on its version, and 10 writes 0 as 0x0p-1022.
-std::string hexadecimal(double value) {
-    const auto bits = std::bit_cast<std::uint64_t>(value);
-    const std::uint64_t fraction = bits & 0xF'FFFF'FFFF'FFFFU;
-    const int exponent = static_cast<int>(bits >> 52U & 0x7FFU);
-    const bool normal = exponent != 0;
-    const int power = normal ? exponent - 1023 : fraction == 0 ? 0 : -1022;
-    std::string digits = fmt::format(".{:013x}", fraction);
-    digits.erase(digits.find_last_not_of("0.") + 1);
-    return fmt::format("{}0x{:d}{}p{:+d}", std::signbit(value) ? "-" : "", normal, digits, power);
-}
-
-std::string hexadecimal_float(double value) { return hexadecimal(as_float(value)) + "f"; }
 
 std::string describe(const ExportSection& section) {
     if (!section.notch) return fmt::format("low-pass section at {:.6g} Hz", section.center.value());

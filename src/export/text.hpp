@@ -65,33 +65,17 @@ template <class Enter, class Section>
     return loaded(Biquad{v[0], v[1], v[2], v[4], v[5]}, {Form::df2t, Precision::float64});
 }
 
-/// make(0.0F) or make(0.0): what runs in the target's own numbers.
-template <class Make>
-auto in_precision(Precision precision, const Make& make) {
-    return precision == Precision::float32 ? make(0.0F) : make(0.0);
-}
 [[nodiscard]] inline double as_float(double value) { return static_cast<double>(static_cast<float>(value)); }
 
-inline constexpr std::array<std::string_view, 2> precision_choices = {"float", "double"};
 [[nodiscard]] constexpr Key precision_key(std::string_view help) {
-    return {.name = "precision",
-            .kind = KeyKind::choice,
-            .default_text = "float",
-            .choices = precision_choices,
-            .help = help};
+    return {.name = "precision", .default_text = "float", .choices = "float double", .help = help};
 }
-inline constexpr std::array<std::string_view, 3> speed_unit_choices = {"deg/s", "rad/s", "rpm"};
-inline constexpr std::array<std::string_view, 2> speed_side_choices = {"joint", "motor"};
 inline constexpr Key speed_unit_key = {.name = "speed-unit",
-                                       .kind = KeyKind::choice,
                                        .default_text = "deg/s",
-                                       .choices = speed_unit_choices,
+                                       .choices = "deg/s rad/s rpm",
                                        .help = "of the speed that the step function gets"};
-inline constexpr Key speed_side_key = {.name = "speed-side",
-                                       .kind = KeyKind::choice,
-                                       .default_text = "joint",
-                                       .choices = speed_side_choices,
-                                       .help = "whose speed it gets"};
+inline constexpr Key speed_side_key = {
+    .name = "speed-side", .default_text = "joint", .choices = "joint motor", .help = "whose speed it gets"};
 /// The speed that exported code gets, by these keys.
 struct CodeSpeed {
     std::string unit, side;
@@ -108,10 +92,6 @@ struct CodeSpeed {
 [[nodiscard]] std::string decimal(double value);
 /// Nine significant digits, enough for any float, and the f that keeps C from making it a double.
 [[nodiscard]] std::string decimal_float(double value);
-/// C99 hexadecimal literals of finite numbers: exact for every reader.
-[[nodiscard]] std::string hexadecimal(double value);
-[[nodiscard]] std::string hexadecimal_float(double value);
-
 /// "order 1, 7.5 Hz, Q 0.25" or "low-pass section at 13 Hz"
 [[nodiscard]] std::string describe(const ExportSection& section);
 /// "band 3: 54 < |v| <= 72 deg/s", or "at every speed"

@@ -5,12 +5,6 @@
 
 namespace ripplenotch {
 
-void run_cascade(std::span<const Biquad> sections, std::span<BiquadState> states, std::span<const double> in,
-                 double origin, std::span<double> out) {
-    run_cascade(sections, states, in, origin, out,
-                [](const Biquad& f, BiquadState& s, double x) { return step(f, s, x); });
-}
-
 void CascadeFilter::process(const Samples& in, std::span<double> out) {
     if (out.empty()) return;
     if (!started_) {
@@ -18,7 +12,11 @@ void CascadeFilter::process(const Samples& in, std::span<double> out) {
         std::fill(states_.begin(), states_.end(), BiquadState{});
         started_ = true;
     }
-    run_cascade(cascade_, states_, in.torque_nm, origin_nm_, out);
+    for (std::size_t k = 0; k < out.size(); ++k) {
+        double signal = in.torque_nm[k] - origin_nm_;
+        for (std::size_t i = 0; i < cascade_.size(); ++i) signal = step(cascade_[i], states_[i], signal);
+        out[k] = origin_nm_ + signal;
+    }
 }
 
 }  // namespace ripplenotch

@@ -73,12 +73,10 @@ inline constexpr Key joint_key{.name = "joint",
                                    "joint.json of identify: gear ratio, orders and what else the method "
                                    "has keys for, unless given"};
 
-inline constexpr std::array<std::string_view, 2> angle_choices = {"best", "velocity"};
 inline constexpr Key angle_key{
     .name = "angle",
-    .kind = KeyKind::choice,
     .default_text = "best",
-    .choices = angle_choices,
+    .choices = "best velocity",
     .help = "best: position, velocity where there is none or it is not the joint's; velocity: always that"};
 [[nodiscard]] MotorAngle::Source angle_source(const Settings& settings);
 

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/functions/many_numbers.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/model/effect.hpp"
 
@@ -109,31 +110,29 @@ inline Parameter seed_parameter() {
                          {first_seed, 0.0, 2147483647.0, first_seed}));
 }
 
-// Cosines of an angle at every sample, in blocks that stay in the first-level cache.
+// Functions of every sample, in blocks that stay in the first-level cache.
+
+inline void cosines_of(std::span<double> angles_deg) { portable::cos_degrees(angles_deg, angles_deg); }
+inline void sines_of(std::span<double> angles_deg) { portable::sin_degrees(angles_deg, angles_deg); }
 
 /// use(k, cosine of angle_deg(k)) for each sample k.
 template <class AngleDeg, class Use>
 void with_cosines(std::size_t samples, AngleDeg angle_deg, Use use) {
-    std::array<double, 256> angles{}, cosines{};
-    for (std::size_t first = 0; first < samples; first += angles.size()) {
-        const std::size_t count = std::min(angles.size(), samples - first);
-        for (std::size_t i = 0; i < count; ++i) angles[i] = angle_deg(first + i);
-        portable::cos_degrees(std::span(angles).first(count), cosines);
-        for (std::size_t i = 0; i < count; ++i) use(first + i, cosines[i]);
-    }
+    with_values(samples, angle_deg, cosines_of, use);
 }
 
 /// use(k, cosine, sine) of angle_deg(k) for each sample k.
 template <class AngleDeg, class Use>
 void with_cosines_and_sines(std::size_t samples, AngleDeg angle_deg, Use use) {
-    std::array<double, 256> angles{}, cosines{}, sines{};
-    for (std::size_t first = 0; first < samples; first += angles.size()) {
-        const std::size_t count = std::min(angles.size(), samples - first);
-        for (std::size_t i = 0; i < count; ++i) angles[i] = angle_deg(first + i);
-        portable::cos_degrees(std::span(angles).first(count), cosines);
-        portable::sin_degrees(std::span(angles).first(count), sines);
-        for (std::size_t i = 0; i < count; ++i) use(first + i, cosines[i], sines[i]);
-    }
+    with_two_values(samples, angle_deg, cosines_of, angle_deg, sines_of, use);
+}
+
+/// use(k, tanh(v / width_deg_s)) for each sample k: the direction of motion, smoothed.
+template <class Use>
+void with_directions(const Motion& motion, double width_deg_s, Use use) {
+    with_values(
+        motion.size(), [&](std::size_t k) { return motion.velocity_deg_s[k] / width_deg_s; },
+        portable::many_tanh, use);
 }
 
 #define EFFECT(name) extern const Effect name;

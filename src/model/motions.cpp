@@ -200,6 +200,23 @@ const MotionKind poly6_motion{
                 }};
     }};
 
+// Back and forth, from one frequency to another.
+MotionPiece swing(double from_deg, const Settings& settings, double from_hz, double to_hz) {
+    const double amplitude_deg = settings.number("amplitude"), phase_deg = settings.number("phase");
+    const double duration_s = settings.number("duration"), rate_hz_s = (to_hz - from_hz) / duration_s;
+    const double center_deg = from_deg - amplitude_deg * portable::sin_degrees(phase_deg);
+    return {Seconds(duration_s), [=](Seconds elapsed) {
+                const double t = elapsed.value();
+                const double angle_deg = 360.0 * (from_hz + 0.5 * rate_hz_s * t) * t + phase_deg;
+                const double sine = portable::sin_degrees(angle_deg),
+                             cosine = portable::cos_degrees(angle_deg);
+                const double rad_s = 2.0 * std::numbers::pi * (from_hz + rate_hz_s * t);
+                const double rad_s2 = 2.0 * std::numbers::pi * rate_hz_s;
+                return MotionState{center_deg + amplitude_deg * sine, amplitude_deg * rad_s * cosine,
+                                   amplitude_deg * (rad_s2 * cosine - rad_s * rad_s * sine)};
+            }};
+}
+
 const MotionKind sine_motion{
     .name = "sine",
     .summary = "swing back and forth",
@@ -211,19 +228,8 @@ const MotionKind sine_motion{
              angle_key("phase", "-90deg", "phase of the sine at its beginning; -90deg starts from rest"),
              duration_key(), from_key()},
     .make = [](const Settings& settings, const Before& before) -> MotionPiece {
-        const double from_deg = start_position_deg("sine", settings, before);
-        const double amplitude_deg = settings.number("amplitude");
-        const double frequency_hz = settings.number("frequency");
-        const double phase_deg = settings.number("phase");
-        const double center_deg = from_deg - amplitude_deg * portable::sin_degrees(phase_deg);
-        const double rad_s = 2.0 * std::numbers::pi * frequency_hz;
-        return {Seconds(settings.number("duration")), [=](Seconds elapsed) {
-                    const double angle_deg = 360.0 * frequency_hz * elapsed.value() + phase_deg;
-                    const double sine = portable::sin_degrees(angle_deg),
-                                 cosine = portable::cos_degrees(angle_deg);
-                    return MotionState{center_deg + amplitude_deg * sine, amplitude_deg * rad_s * cosine,
-                                       -amplitude_deg * rad_s * rad_s * sine};
-                }};
+        const double hz = settings.number("frequency");
+        return swing(start_position_deg("sine", settings, before), settings, hz, hz);
     }};
 
 const MotionKind sweep_motion{
@@ -239,23 +245,8 @@ const MotionKind sweep_motion{
              angle_key("phase", "-90deg", "phase of the sine at its beginning; -90deg starts from rest"),
              duration_key(), from_key()},
     .make = [](const Settings& settings, const Before& before) -> MotionPiece {
-        const double from_deg = start_position_deg("sweep", settings, before);
-        const double amplitude_deg = settings.number("amplitude");
-        const double from_hz = settings.number("from-frequency");
-        const double duration_s = settings.number("duration");
-        const double rate_hz_s = (settings.number("to-frequency") - from_hz) / duration_s;
-        const double phase_deg = settings.number("phase");
-        const double center_deg = from_deg - amplitude_deg * portable::sin_degrees(phase_deg);
-        return {Seconds(duration_s), [=](Seconds elapsed) {
-                    const double t = elapsed.value();
-                    const double angle_deg = 360.0 * (from_hz + 0.5 * rate_hz_s * t) * t + phase_deg;
-                    const double sine = portable::sin_degrees(angle_deg),
-                                 cosine = portable::cos_degrees(angle_deg);
-                    const double rad_s = 2.0 * std::numbers::pi * (from_hz + rate_hz_s * t);
-                    const double rad_s2 = 2.0 * std::numbers::pi * rate_hz_s;
-                    return MotionState{center_deg + amplitude_deg * sine, amplitude_deg * rad_s * cosine,
-                                       amplitude_deg * (rad_s2 * cosine - rad_s * rad_s * sine)};
-                }};
+        return swing(start_position_deg("sweep", settings, before), settings,
+                     settings.number("from-frequency"), settings.number("to-frequency"));
     }};
 
 struct Sine {

@@ -58,13 +58,13 @@ class CHeader(Case):
                     if form == "svf":
                         self.compiled(SELF_TEST, "-O3", "-ffast-math")  # within the tolerance all the same
 
-    def test_the_test_vector_notices_one_wrong_bit_in_the_table(self):
+    def test_the_test_vector_notices_one_wrong_digit_in_the_table(self):
         self.table()
         self.good("export", "table.json", "--to", "c-header,precision=double", "-o", "notch.h")
         path = self.folder / "notch.h"
         lines = path.read_text().split("\n")
-        row = next(i for i, line in enumerate(lines) if line.startswith("        {0x1"))
-        lines[row] = lines[row].replace("{0x1.", "{0x1.1", 1)
+        row = next(i for i, line in enumerate(lines) if line.startswith("        {0."))
+        lines[row] = lines[row].replace("{0.", "{0.1", 1)
         path.write_text("\n".join(lines))
         (self.folder / "main.c").write_text(SELF_TEST)
         subprocess.run([COMPILER, "main.c", "-o", "main"], cwd=self.folder, check=True)

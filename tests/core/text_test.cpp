@@ -11,7 +11,6 @@ using namespace ripplenotch;
 using Catch::Contains;
 
 namespace {
-constexpr std::array<std::string_view, 2> modes = {"keep", "reset"};
 const std::array keys = {
     Key{.name = "cutoff",
         .dimension = Dimension::frequency,
@@ -22,7 +21,7 @@ const std::array keys = {
     Key{.name = "dwell", .dimension = Dimension::time, .at_least = 0.0},
     Key{.name = "counts", .kind = KeyKind::list, .at_least = 1.0, .whole = true},
     Key{.name = "centers", .kind = KeyKind::list, .dimension = Dimension::frequency, .above = 0.0},
-    Key{.name = "mode", .kind = KeyKind::choice, .default_text = "keep", .choices = modes},
+    Key{.name = "mode", .default_text = "keep", .choices = "keep reset"},
 };
 Settings settings(std::string_view text) { return Settings("method lowpass", parse_spec(text), keys); }
 }  // namespace

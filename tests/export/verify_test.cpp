@@ -118,7 +118,7 @@ TEST_CASE("sections that are missing are refused") {
 }
 
 TEST_CASE("numbers of C, MATLAB and YAML are read, and only numbers") {
-    TextReader c("/* {9} */ x = {0x1.8p+1f, -1.5e0f, 3}", "a.h", Comments::c, Precision::float32);
+    TextReader c("/* {9} */ x = {3.0f, -1.5e0f, 3}", "a.h", Comments::c, Precision::float32);
     CHECK(c.numbers('{', '}', 3) == std::vector<double>{3.0, -1.5, 3.0});
     TextReader tenth("0.1f 0.1", "a.h", Comments::c, Precision::float32);
     CHECK(tenth.number() == static_cast<double>(0.1F));
@@ -140,19 +140,19 @@ TEST_CASE("the exported bank passes, holds and fades where the table says") {
         while (at + 1 < regions.size() && speed > regions[at].to_deg_s) ++at;
         return regions[at];
     };
-    CHECK(settled_output(table(OutsideRule::pass, OutsideRule::pass), 10.0).band == region_passes);
-    CHECK(settled_output(table(OutsideRule::hold, OutsideRule::pass), 10.0).band == region_holds);
-    CHECK(settled_output(table(OutsideRule::pass, OutsideRule::hold), 90.0).band == region_holds);
-    CHECK(settled_output(table(OutsideRule::pass, OutsideRule::pass), 50.0).band == region_passes);
-    CHECK(settled_output(table(OutsideRule::pass, OutsideRule::pass), 20.0).band == region_passes);
-    CHECK(settled_output(table(OutsideRule::pass, OutsideRule::pass), 20.001).band == 0);
-    CHECK(settled_output(table(OutsideRule::pass, OutsideRule::pass), 40.0).band == 0);
-    const SwitchingRegion below = settled_output(table(OutsideRule::fade, OutsideRule::fade), 15.0);
-    CHECK((below.band == 0 && below.full_deg_s == 20.0 && below.none_deg_s == 10.0));
-    const SwitchingRegion hole = settled_output(table(OutsideRule::fade, OutsideRule::fade), 55.0);
-    CHECK((hole.band == 1 && hole.full_deg_s == 60.0 && hole.none_deg_s == 50.0));
-    const SwitchingRegion above = settled_output(table(OutsideRule::fade, OutsideRule::fade), 100.0);
-    CHECK((above.band == 1 && above.full_deg_s == 80.0 && above.none_deg_s == 120.0));
+    CHECK(settled_output(table(OutsideRule::pass, OutsideRule::pass), 10.0).code() == -1);
+    CHECK(settled_output(table(OutsideRule::hold, OutsideRule::pass), 10.0).code() == -2);
+    CHECK(settled_output(table(OutsideRule::pass, OutsideRule::hold), 90.0).code() == -2);
+    CHECK(settled_output(table(OutsideRule::pass, OutsideRule::pass), 50.0).code() == -1);
+    CHECK(settled_output(table(OutsideRule::pass, OutsideRule::pass), 20.0).code() == -1);
+    CHECK(settled_output(table(OutsideRule::pass, OutsideRule::pass), 20.001).code() == 0);
+    CHECK(settled_output(table(OutsideRule::pass, OutsideRule::pass), 40.0).code() == 0);
+    const SpeedRegion below = settled_output(table(OutsideRule::fade, OutsideRule::fade), 15.0);
+    CHECK((below.code() == 0 && below.full_deg_s == 20.0 && below.none_deg_s == 10.0));
+    const SpeedRegion hole = settled_output(table(OutsideRule::fade, OutsideRule::fade), 55.0);
+    CHECK((hole.code() == 1 && hole.full_deg_s == 60.0 && hole.none_deg_s == 50.0));
+    const SpeedRegion above = settled_output(table(OutsideRule::fade, OutsideRule::fade), 100.0);
+    CHECK((above.code() == 1 && above.full_deg_s == 80.0 && above.none_deg_s == 120.0));
 }
 
 TEST_CASE("the test vector goes through every region and is not the identity") {

@@ -14,21 +14,21 @@
 
 namespace ripplenotch {
 
-enum class KeyKind { number, list, choice, text };
+enum class KeyKind { number, list, text };
 
 /// One key of a specification. Aggregate, so that tables read as data:
 /// {.name = "cutoff", .kind = KeyKind::number, .dimension = Dimension::frequency, .help = "..."}
 struct Key {
     std::string_view name;
-    KeyKind kind = KeyKind::number;
+    KeyKind kind = KeyKind::number;  ///< does not matter where there are choices
     Dimension dimension = Dimension::none;
     std::string_view default_text = {};  ///< as the user would write it; empty: no default
     bool required = false;
-    std::span<const std::string_view> choices = {};  ///< for KeyKind::choice
-    double above = -1e300;                           ///< numbers and list entries must be > above ...
-    double at_least = -1e300;                        ///< ... and >= at_least ...
-    double at_most = 1e300;                          ///< ... and <= at_most, in the base unit
-    bool whole = false;                              ///< numbers and list entries must be whole numbers
+    std::string_view choices = {};  ///< of a choice: "df1 df2t"
+    double above = -1e300;          ///< numbers and list entries must be > above ...
+    double at_least = -1e300;       ///< ... and >= at_least ...
+    double at_most = 1e300;         ///< ... and <= at_most, in the base unit
+    bool whole = false;             ///< numbers and list entries must be whole numbers
     std::string_view help = {};
 };
 
@@ -55,7 +55,7 @@ class Settings {
     [[nodiscard]] bool has(std::string_view key) const;                  ///< given or defaulted
     [[nodiscard]] double number(std::string_view key) const;             ///< in the base unit
     [[nodiscard]] std::vector<double> list(std::string_view key) const;  ///< "25Hz:50Hz" -> {25, 50}
-    [[nodiscard]] std::string text(std::string_view key) const;  ///< KeyKind::choice and KeyKind::text
+    [[nodiscard]] std::string text(std::string_view key) const;          ///< of a choice or a text
 
   private:
     std::map<std::string, std::string, std::less<>> texts_;

@@ -122,6 +122,8 @@ struct SpeedRegion {
 
     [[nodiscard]] double share(double speed_deg_s) const noexcept;
     [[nodiscard]] bool fades() const noexcept { return full_deg_s != none_deg_s; }
+    /// As exported code has it: the candidate, -1 where the torque passes, -2 where the active one stays.
+    [[nodiscard]] int code() const noexcept { return holds ? -2 : candidate; }
 };
 
 /// All speeds from 0 up, without holes. `fade` reaches from the edge of a band to half that speed below the

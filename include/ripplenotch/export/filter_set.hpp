@@ -76,18 +76,6 @@ struct Arithmetic {
 };
 [[nodiscard]] std::string arithmetic_name(Arithmetic arithmetic);  ///< "float32, state-variable form"
 
-/// One section as two trapezoidal integrators (A. Simper, Linear Trapezoidal Integrated SVF, 2013). With
-/// g = tan(pi f0 / fs) and k = 1/Q: a1 = 1 / (1 + g (g + k)), a2 = g a1, a3 = g a2, and per sample
-///   v3 = x - s2;  v1 = a1 s1 + a2 v3;  v2 = s2 + a2 s1 + a3 v3;  s1 = 2 v1 - s1;  s2 = 2 v2 - s2;
-///   y = m0 x + m1 v1 + m2 v2.
-/// A notch is m0 = 1, m1 = -(1 - gain at the centre) k, m2 = 0. In steady state v1 is 0 whatever the
-/// rounding, so
-/// its gain at 0 Hz is exactly 1.
-struct SvfSection {
-    double a1 = 1.0, a2 = 0.0, a3 = 0.0;
-    double m0 = 1.0, m1 = 0.0, m2 = 0.0;
-};
-
 /// From the notch's own figures where there are any, else from the poles and zeros of the section.
 [[nodiscard]] SvfSection svf_of(const ExportSection& section, Hertz sample_rate);
 /// The transfer function of what stands in `section`, consistent or not.

@@ -45,7 +45,7 @@ Json keys_json(std::span<const Key> keys) {
         Json one{{"name", key.name}, {"required", key.required}};
         if (const auto unit = base_unit(key.dimension); !unit.empty()) one["unit"] = unit;
         if (!key.default_text.empty()) one["default"] = key.default_text;
-        if (!key.choices.empty()) one["choices"] = key.choices;
+        if (!key.choices.empty()) one["choices"] = split(key.choices, ' ');
         one["help"] = key.help;
         all.push_back(std::move(one));
     }

@@ -187,26 +187,18 @@ Settings::Settings(std::string_view what, const Spec& spec, std::span<const Key>
             continue;
         }
         const std::string& value = found->second;
-        switch (key.kind) {
-            case KeyKind::number:
-                numbers_[std::string(key.name)] = {checked_number(value, key, what)};
-                break;
-            case KeyKind::list: {
-                std::vector<double> entries;
-                for (const auto piece : split(value, ':'))
-                    entries.push_back(checked_number(piece, key, what));
-                numbers_[std::string(key.name)] = std::move(entries);
-                break;
-            }
-            case KeyKind::choice:
-                if (std::find(key.choices.begin(), key.choices.end(), value) == key.choices.end()) {
-                    raise<UsageError>("{}, {}: '{}' is none of {}", what, key.name, value,
-                                      fmt::join(key.choices, ", "));
-                }
-                break;
-            case KeyKind::text:
-                if (value.empty()) raise<UsageError>("{}, {}: the value is empty", what, key.name);
-                break;
+        if (!key.choices.empty()) {
+            const auto known = split(key.choices, ' ');
+            if (std::find(known.begin(), known.end(), value) == known.end())
+                raise<UsageError>("{}, {}: '{}' is none of {}", what, key.name, value,
+                                  fmt::join(known, ", "));
+        } else if (key.kind == KeyKind::text) {
+            if (value.empty()) raise<UsageError>("{}, {}: the value is empty", what, key.name);
+        } else {
+            std::vector<std::string_view> pieces = {value};
+            if (key.kind == KeyKind::list) pieces = split(value, ':');
+            auto& numbers = numbers_[std::string(key.name)];
+            for (const auto piece : pieces) numbers.push_back(checked_number(piece, key, what));
         }
     }
 }

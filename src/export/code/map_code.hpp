@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// The amplitudes of a map as C: what its form needs, written out.
+// The amplitudes of a map as C.
 
 #include <string>
 #include <vector>
@@ -19,8 +19,9 @@ class MapTables {
     std::vector<double> slopes, offsets;
     /// Speed below which the directions blend; the joint's angle from which it is counted, in negative turns.
     std::vector<double> limits;
-    /// By direction and column, in it by order, cosine before sine. Instead of the speeds' columns, for each
-    /// gap the value in its middle and the increment across it.
+    /// By direction and column, in it by order, cosine before sine; those of a second comb as orders of their
+    /// own behind the first comb's, counted from where the joint's angle is counted. Instead of the speeds'
+    /// columns, for each gap the value in its middle and the increment across it.
     std::vector<double> amplitudes;
 
     explicit MapTables(const RippleMap& map);
@@ -34,42 +35,16 @@ class MapTables {
     void add(const RippleMap& map, const Of& of);
 };
 
-/// The same amplitudes with the second comb's columns as orders of their own behind the first comb's, counted
-/// from where the joint's angle is counted in C. The map itself where it has no second comb.
-[[nodiscard]] RippleMap with_combs_apart(const RippleMap& map);
+/// The tables of a map and its functions.
+[[nodiscard]] std::string map_code(const RippleMap& map, const CodeStyle& style);
 
-/// The C code of one map. Functions have only the parameters that the form needs, so that a compiler has
-/// nothing to warn of.
-class MapCode {
-  public:
-    MapCode(const RippleMap& map, const CodeStyle& style)
-        : map_(map), apart_(with_combs_apart(map)), style_(style) {}
+/// The table of the orders, and of each the place of an earlier one that it is twice of; -1 where there is
+/// none.
+[[nodiscard]] std::string angles_code(const std::vector<double>& orders, const CodeStyle& style);
+[[nodiscard]] std::vector<int> halves_of(const std::vector<double>& orders);
 
-    /// Tables, and the function NAME_at where amplitudes are not the same everywhere.
-    [[nodiscard]] std::string definitions() const;
-    /// Lines that declare z[], the amplitudes here, cosine before sine.
-    [[nodiscard]] std::string amplitudes_here() const;
-
-  private:
-    [[nodiscard]] bool is_constant() const { return map_.form.columns() == 1; }
-    [[nodiscard]] std::string arguments(bool with_types) const;
-    [[nodiscard]] bool by_joint() const { return map_.form.second_comb != 0; }
-    [[nodiscard]] std::string sum(std::size_t part) const;
-    [[nodiscard]] std::string side(std::size_t direction, std::string_view indent,
-                                   std::string_view form) const;
-    [[nodiscard]] std::string combined() const;
-
-    const RippleMap& map_;
-    RippleMap apart_;
-    const CodeStyle& style_;
-};
-
-/// How the orders show at an angle, as lines that set c0, s0, c1, ...; an order twice an earlier one is its
-/// double angle. `turns` is the angle's expression.
-[[nodiscard]] std::string order_angles_code(const std::vector<double>& orders, std::string_view turns);
-
-/// Code whose argument motor_turns is the angle by which these orders count: joint_turns under no_ratio.
-/// Fills in @shaft@ and @fraction@.
+/// Code whose argument motor_turns is the angle by which these orders count: joint_turns under no_ratio. Says
+/// whether a fraction of the turn is enough.
 [[nodiscard]] std::string by_shaft(std::string code, const std::vector<double>& orders, GearRatio ratio);
 
 }  // namespace ripplenotch

@@ -15,16 +15,14 @@ namespace ripplenotch {
 
 // A map for targets that hold one amplitude and phase an order.
 
-inline constexpr std::array<std::string_view, 3> flat_directions = {"both", "forward", "backward"};
 inline constexpr Key flat_speed_key{
     .name = "speed",
     .dimension = Dimension::speed,
     .at_least = 0.0,
     .help = "joint speed whose amplitudes are taken; the middle of the map's"};
 inline constexpr Key flat_direction_key{.name = "direction",
-                                        .kind = KeyKind::choice,
                                         .default_text = "both",
-                                        .choices = flat_directions,
+                                        .choices = "both forward backward",
                                         .help = "both: the mean of the two"};
 
 /// The map at one speed and direction, alike at all of them, without the second comb and orders that are not

@@ -21,24 +21,16 @@ constexpr std::size_t slots = 10;
 constexpr double highest_order = 200.0;
 constexpr int first_slot = 7;  // subindex of n of slot 0; phi and r follow, and the next slot
 
-constexpr std::array<std::string_view, 2> channels = {"a", "b"}, forms = {"cosine", "sine"},
-                                          sides = {"motor", "joint"};
 constexpr std::array keys = {
     flat_speed_key, flat_direction_key,
-    Key{.name = "channel",
-        .kind = KeyKind::choice,
-        .default_text = "a",
-        .choices = channels,
-        .help = "a: object 0x32CB; b: 0x36CB"},
+    Key{.name = "channel", .default_text = "a", .choices = "a b", .help = "a: object 0x32CB; b: 0x36CB"},
     Key{.name = "form",
-        .kind = KeyKind::choice,
         .default_text = "cosine",
-        .choices = forms,
+        .choices = "cosine sine",
         .help = "r cos(n theta + phi) or r sin(n theta + phi)"},
     Key{.name = "side",
-        .kind = KeyKind::choice,
         .default_text = "motor",
-        .choices = sides,
+        .choices = "motor joint",
         .help = "motor: r is the joint's torque over the gear ratio; joint: as it is"}};
 
 double side_factor(const RippleMap& map, const Settings& settings) {

@@ -13,7 +13,6 @@
 namespace ripplenotch {
 namespace {
 
-constexpr std::array<std::string_view, 2> forms = {"csv", "c"};
 constexpr std::array keys = {
     flat_speed_key, flat_direction_key,
     Key{.name = "entries",
@@ -23,9 +22,8 @@ constexpr std::array keys = {
         .whole = true,
         .help = "of the table, over one motor turn"},
     Key{.name = "form",
-        .kind = KeyKind::choice,
         .default_text = "csv",
-        .choices = forms,
+        .choices = "csv c",
         .help = "csv: one number a line; c: an array of C99 floats"},
     Key{.name = "name", .kind = KeyKind::text, .default_text = "ripple_table", .help = "of the array in C"}};
 

@@ -174,34 +174,18 @@ std::string arithmetic_name(Arithmetic arithmetic) {
 }
 
 SvfSection svf_of(const ExportSection& section, Hertz sample_rate) {
+    if (section.notch) return svf_of(*section.notch, sample_rate);
     const Biquad& f = section.section;
-    double g = 0.0, k = 0.0;
-    SvfSection svf;
-    if (section.notch) {
-        const NotchSpec& notch = *section.notch;
-        const double half = std::numbers::pi * (notch.center / sample_rate);
-        g = portable::tan(half);
-        // The digital rule has another damping in the same prototype: alpha = tan(W/(2Q)) instead of
-        // sin(W)/(2Q).
-        k = notch.width == WidthRule::analog
-                ? 1.0 / notch.q
-                : 2.0 * portable::tan(half / notch.q) / portable::sin(2.0 * half);
-        const double gain = notch.depth_db >= 6000.0 ? 0.0 : portable::pow(10.0, -notch.depth_db / 20.0);
-        svf.m1 = -(1.0 - gain) * k;
-    } else {
-        const double at_half_rate = 1.0 - f.a1 + f.a2;
-        g = std::sqrt((1.0 + f.a1 + f.a2) / at_half_rate);
-        k = 2.0 * (1.0 - f.a2) / (g * at_half_rate);
-        const double scale = 4.0 / at_half_rate;
-        const double high = (f.b0 - f.b1 + f.b2) * scale / 4.0;
-        // A low-pass has no high-pass part; the difference from 0 is rounding.
-        svf.m0 = std::abs(high) < 1e-12 ? 0.0 : high;
-        svf.m1 = (f.b0 - f.b2) * scale / (2.0 * g) - k * svf.m0;
-        svf.m2 = 1.0 - svf.m0;
-    }
-    svf.a1 = 1.0 / (1.0 + g * (g + k));
-    svf.a2 = g * svf.a1;
-    svf.a3 = g * svf.a2;
+    const double at_half_rate = 1.0 - f.a1 + f.a2;
+    const double g = std::sqrt((1.0 + f.a1 + f.a2) / at_half_rate);
+    const double k = 2.0 * (1.0 - f.a2) / (g * at_half_rate);
+    const double scale = 4.0 / at_half_rate;
+    const double high = (f.b0 - f.b1 + f.b2) * scale / 4.0;
+    SvfSection svf = svf_at(g, k);
+    // A low-pass has no high-pass part; the difference from 0 is rounding.
+    svf.m0 = std::abs(high) < 1e-12 ? 0.0 : high;
+    svf.m1 = (f.b0 - f.b2) * scale / (2.0 * g) - k * svf.m0;
+    svf.m2 = 1.0 - svf.m0;
     return svf;
 }
 

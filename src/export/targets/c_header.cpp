@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "design/switching_run.hpp"
 #include "export/code/method_code.hpp"
 #include "export/code/switching_code.hpp"
 #include "export/target.hpp"
@@ -17,21 +18,17 @@
 namespace ripplenotch {
 namespace {
 
-constexpr std::array<std::string_view, 3> precisions = {"float", "double", "q31"};
-constexpr std::array<std::string_view, 3> forms = {"svf", "df1", "df2t"};
 constexpr std::array keys = {
     Key{.name = "precision",
-        .kind = KeyKind::choice,
         .default_text = "float",
-        .choices = precisions,
+        .choices = "float double q31",
         .help = "type of every number: float, double, or fixed point of 32 bits"},
     Key{.name = "range",
         .dimension = Dimension::torque,
         .above = 0.0,
         .help = "of fixed point: the torque of the largest word"},
     Key{.name = "form",
-        .kind = KeyKind::choice,
-        .choices = forms,
+        .choices = "svf df1 df2t",
         .help = "svf: state-variable; df1: direct form I; df2t: transposed direct form II (default: svf)"},
     speed_unit_key,
     speed_side_key,
@@ -119,16 +116,7 @@ LoadedSection section_from_fixed(const std::vector<double>& words, Arithmetic ar
     return section_from(values, arithmetic);
 }
 
-/// A literal that is exact, and the number as people read it.
-struct Writer {
-    std::string (*exact)(double);
-    std::string (*readable)(double);
-};
-constexpr Writer in_double = {hexadecimal, shortest};
-constexpr Writer in_float = {hexadecimal_float,
-                             [](double value) { return fmt::format("{:.9g}", static_cast<float>(value)); }};
-
-std::string bands_text(const FilterSet& filters, const Writer& writer, Arithmetic arithmetic,
+std::string bands_text(const FilterSet& filters, const CodeStyle& style, Arithmetic arithmetic,
                        LoadedFilters& loaded_filters) {
     std::string text;
     for (const ExportBand& band : filters.bands) {
@@ -136,11 +124,12 @@ std::string bands_text(const FilterSet& filters, const Writer& writer, Arithmeti
         auto& sections = loaded_filters.bands.emplace_back();
         for (const ExportSection& section : band.sections) {
             const auto values = values_of(section, filters.sample_rate, arithmetic);
-            std::string literals = joined(values, ", ", writer.exact);
+            std::string literals = joined(values, ", ", style.literal()), decimals;
             sections.push_back(section_from(values, arithmetic));
             if (is_fixed(arithmetic.precision)) {
                 std::vector<double> words;
                 literals.clear();
+                decimals = fmt::format("        /* {} */\n", joined(values, ", ", shortest));
                 for (const FixedCoefficient& c : fixed_coefficients(sections.back().svf)) {
                     literals +=
                         fmt::format("{}{{{}, {}}}", literals.empty() ? "" : ", ", c.mantissa, c.shift);
@@ -149,8 +138,8 @@ std::string bands_text(const FilterSet& filters, const Writer& writer, Arithmeti
                 }
                 sections.back() = section_from_fixed(words, arithmetic);
             }
-            text += fmt::format("        /* {} */\n        {{{}}},\n        /* {} */\n", describe(section),
-                                literals, joined(values, ", ", writer.readable));
+            text +=
+                fmt::format("        /* {} */\n        {{{}}},\n{}", describe(section), literals, decimals);
         }
         text += "    },\n";
     }
@@ -159,34 +148,36 @@ std::string bands_text(const FilterSet& filters, const Writer& writer, Arithmeti
 
 std::string fixed_speed(double speed) { return std::to_string(std::llround(speed * fixed_speed_steps)); }
 
-std::string regions_text(const std::vector<SwitchingRegion>& regions, const CodeSpeed& unit,
+std::string regions_text(const std::vector<SpeedRegion>& regions, const CodeSpeed& unit,
                          std::string (*literal)(double)) {
     std::string text;
-    for (const SwitchingRegion& region : regions) {
+    for (const SpeedRegion& region : regions) {
         // Nothing is faster than the last region, so its edge is never used.
         const double to = std::isinf(region.to_deg_s) ? 0.0 : region.to_deg_s;
         const std::string edge = std::isinf(region.to_deg_s)
                                      ? "and faster"
                                      : fmt::format("|v| <= {} {}", shortest(region.to_deg_s), unit.unit);
-        const std::string rule = region.band == region_passes  ? "the torque passes"
-                                 : region.band == region_holds ? "the active band stays"
-                                                               : fmt::format("band {}", region.band + 1);
-        const std::string fade = region.full_deg_s != region.none_deg_s ? ", fading" : "";
-        text += fmt::format("    {{{}, {}, {}, {}}}, /* {}: {}{} */\n", literal(to), region.band,
+        const std::string rule = region.holds ? "the active band stays"
+                                 : region.candidate == no_candidate
+                                     ? "the torque passes"
+                                     : fmt::format("band {}", region.candidate + 1);
+        const std::string fade = region.fades() ? ", fading" : "";
+        text += fmt::format("    {{{}, {}, {}, {}}}, /* {}: {}{} */\n", literal(to), region.code(),
                             literal(region.full_deg_s), literal(region.none_deg_s), edge, rule, fade);
     }
     return text;
 }
 
-std::string golden_text(const GoldenVector& golden, const Writer& writer, const Arithmetic& arithmetic) {
+std::string golden_text(const GoldenVector& golden, const CodeStyle& style, const Arithmetic& arithmetic) {
     std::string text;
     for (std::size_t k = 0; k < golden.torque_nm.size(); ++k) {
         const std::array row = {golden.torque_nm[k], golden.speed_deg_s[k], golden.expected_nm[k]};
-        const std::string literals = is_fixed(arithmetic.precision)
-                                         ? fmt::format("{}, {}, {}", fixed_word(row[0], arithmetic),
-                                                       fixed_speed(row[1]), fixed_word(row[2], arithmetic))
-                                         : joined(row, ", ", writer.exact);
-        text += fmt::format("    {{{}}}, /* {} */\n", literals, joined(row, ", ", writer.readable));
+        if (is_fixed(arithmetic.precision))
+            text +=
+                fmt::format("    {{{}, {}, {}}}, /* {} */\n", fixed_word(row[0], arithmetic),
+                            fixed_speed(row[1]), fixed_word(row[2], arithmetic), joined(row, ", ", shortest));
+        else
+            text += fmt::format("    {{{}}},\n", joined(row, ", ", style.literal()));
     }
     return text;
 }
@@ -205,7 +196,7 @@ std::string about(const FilterSet& filters, const Arithmetic& arithmetic, const 
             design.transition, shortest(design.hysteresis.value()), how_many(design.dwell_samples, "sample"));
     }
     if (!is_fixed(arithmetic.precision))
-        return text + " * Literals are exact; the comment below each row has them in decimal.\n */\n";
+        return text + " * Literals have the digits that give back every bit.\n */\n";
     return text + fmt::format(
                       " * {} Nm at full scale, a word's last place is {:.3g} Nm; {} bits of headroom; on the "
                       "test vector rounding\n * makes {:.2g} Nm rms.\n */\n",
@@ -213,52 +204,88 @@ std::string about(const FilterSet& filters, const Arithmetic& arithmetic, const 
                       arithmetic.headroom_bits, golden.rounding_rms_nm);
 }
 
+// The sizes and rules that the runtime counts by.
+std::string definitions(const FilterSet& filters, const std::string& speed_words, std::size_t regions,
+                        const std::string& hysteresis) {
+    std::string text = fmt::format("#define RN_BANDS {}\n#define RN_SECTIONS {}\n", filters.bands.size(),
+                                   filters.sections_per_band());
+    if (!filters.by_speed()) return text;
+    const SwitchingDesign& design = filters.switching;
+    const bool parallel = runs_all_bands(design);
+    return text +
+           fmt::format(
+               "#define RN_REGIONS {}\n"
+               "#define RN_HYSTERESIS {} /* {}: a region is left only so far outside it */\n"
+               "#define RN_DWELL {} /* samples that a filter stays active at least */\n"
+               "#define RN_CROSSFADE {} /* samples over which outputs are blended */\n"
+               "#define RN_PARALLEL {} /* 1: all bands run side by side; 0: one cascade changes its band */\n"
+               "#define RN_CASCADES {}\n#define RN_OUTPUTS {}\n",
+               regions, hysteresis, speed_words, design.dwell_samples, crossfade_samples(design),
+               parallel ? 1 : 0, parallel ? "RN_BANDS" : "1", parallel ? "(RN_BANDS + 1)" : "1");
+}
+
+std::string arithmetic_text(const Arithmetic& arithmetic) {
+    if (!is_fixed(arithmetic.precision))
+        return fmt::format("\ntypedef {} rn_real;\n{}",
+                           arithmetic.precision == Precision::float32 ? "float" : "double",
+                           runtime_text::floating);
+    return fmt::format(
+        "#define RN_FULL_SCALE_NM {} /* the torque of a word one larger than the largest */\n"
+        "#define RN_HEADROOM {} /* bits of a signal above a word, for what is larger inside of a filter */\n"
+        "#define RN_FRACTION (16 - RN_HEADROOM)\n\n#include <stdint.h>\n{}",
+        shortest(arithmetic.full_scale_nm), arithmetic.headroom_bits, runtime_text::fixed);
+}
+
 Written write(const FilterSet& filters, const Settings& settings, std::span<const std::string> heading) {
     const CodeStyle style = style_of(settings);
     const Arithmetic arithmetic = arithmetic_of(filters, settings);
     const bool fixed = is_fixed(arithmetic.precision);
     const CodeSpeed speed = speed_of(filters, settings);
+    const std::string speed_words = (fixed ? "thousandths of " : "") + speed.unit;
     const FilterSet scaled = in_unit(filters, speed.per_deg_s);
-    const Writer& writer = style.is_float ? in_float : in_double;
     const auto regions = switching_regions(scaled);
-    LoadedFilters held;
-    const std::string bands = bands_text(filters, writer, arithmetic, held);
-    const GoldenVector golden = golden_vector(scaled, held);
-    const SwitchingCode code(arithmetic, filters);
-
-    std::string text = about(filters, arithmetic, golden) + code.declarations();
-    text +=
-        "static const @name@_section @name@_bands[@NAME@_BANDS][@NAME@_SECTIONS] = {\n" + bands + "};\n\n";
-    if (filters.by_speed())
-        text +=
-            code.regions_open() + regions_text(regions, speed, fixed ? fixed_speed : writer.exact) + "};\n\n";
-    text += code.section_functions() + code.step_function() + code.self_test_open() +
-            golden_text(golden, writer, arithmetic) + "};\n\n" + code.self_test_function() + "#endif\n";
     const double hysteresis = scaled.switching.hysteresis.value();
-    text = filled(text, {{"@rate@", style.number(filters.sample_rate.value())},
-                         {"@bands@", std::to_string(filters.bands.size())},
-                         {"@sections@", std::to_string(filters.sections_per_band())},
-                         {"@regions@", std::to_string(regions.size())},
-                         {"@golden@", std::to_string(golden.torque_nm.size())},
-                         {"@hysteresis@", fixed ? fixed_speed(hysteresis) : style.number(hysteresis)},
-                         {"@dwell@", std::to_string(filters.switching.dwell_samples)},
-                         {"@crossfade@", std::to_string(filters.switching.crossfade_samples)},
-                         {"@full-scale@", shortest(arithmetic.full_scale_nm)},
-                         {"@headroom@", std::to_string(arithmetic.headroom_bits)},
-                         {"@unused@", std::to_string(unused_bits)},
-                         {"@golden-type@", fixed            ? "int64_t"
-                                           : style.is_float ? "float"
-                                                            : "double"},
-                         {"@speed@", fixed ? "int32_t" : "@name@_real"},
-                         {"@speed-unit@", speed.unit},
-                         {"@speed-words@", fixed ? "thousandths of " + speed.unit : speed.unit},
-                         {"@speed-name@", fixed ? "milli_" + speed.name : speed.name},
-                         {"@shaft@", speed.side},
-                         {"@tolerance@", fixed            ? "0"
-                                         : style.is_float ? "1e-4f"
-                                                          : "1e-9"}});
-    return {"/*\n" + comment_lines(heading, " * ") + style.filled(text), {}};
+    LoadedFilters held;
+    const std::string bands = "static const rn_section rn_bands[RN_BANDS][RN_SECTIONS] = {\n" +
+                              bands_text(filters, style, arithmetic, held) + "};\n";
+    const GoldenVector golden = golden_vector(scaled, held);
+
+    std::string text = fmt::format("#ifndef RN_H\n#define RN_H\n\n#define RN_SAMPLE_RATE_HZ {}\n",
+                                   style.number(filters.sample_rate.value()));
+    text += definitions(filters, speed_words, regions.size(),
+                        fixed ? fixed_speed(hysteresis) : style.number(hysteresis)) +
+            arithmetic_text(arithmetic);
+    text += arithmetic.form == Form::svf   ? runtime_text::svf
+            : arithmetic.form == Form::df1 ? runtime_text::df1
+                                           : runtime_text::df2t;
+    text += runtime_text::cascade;
+    std::string self_test(runtime_text::self_test);
+    if (filters.by_speed()) {
+        const std::string rows = regions_text(regions, speed, fixed ? fixed_speed : style.literal());
+        text +=
+            with_tables(runtime_text::switching,
+                        fmt::format("\n{}\n/* slowest first; the {} speed in {} */\nstatic const rn_region "
+                                    "rn_regions[RN_REGIONS] = {{\n{}}};\n",
+                                    bands, speed.side, speed_words, rows));
+        text = filled(text, {{"speed_deg_s", (fixed ? "milli_" : "") + speed.name}});
+    } else {
+        text += "\n" + bands + std::string(runtime_text::single);
+        self_test = filled(self_test, {{", (rn_speed)rn_golden[k][1]", ""}});
+    }
+    text += fmt::format(
+        "\n#ifdef RN_SELF_TEST\n#define RN_GOLDEN {}\n#define RN_GOLDEN_TOLERANCE{} {}\n\n"
+        "/* torque, {} speed in {}, filtered torque */\nstatic const rn_signal rn_golden[RN_GOLDEN][3] = {{\n"
+        "{}}};\n{}\n#endif\n",
+        golden.torque_nm.size(), fixed ? "" : "_NM",
+        fixed            ? "0"
+        : style.is_float ? "1e-4f"
+                         : "1e-9",
+        speed.side, speed_words, golden_text(golden, style, arithmetic), self_test);
+    return {"/*\n" + comment_lines(heading, " * ") + about(filters, arithmetic, golden) + style.filled(text),
+            {}};
 }
+
+constexpr std::string_view svf_fields = "a1, a2, a3, m0, m1, m2;", df1_memory = "x1, x2, y1, y2;";
 
 // The file itself states in which type and form it computes.
 Arithmetic arithmetic_in(std::string_view bytes, TextReader& reader) {
@@ -321,7 +348,7 @@ std::string usage(const FilterSet& filters, const Settings& settings, const std:
 const Target targets::c_header = {
     .name = "c-header",
     .summary = "one C99 header: table, step function, test vector; float, double or fixed point",
-    .source = "A. Simper, Linear Trapezoidal Integrated State Variable Filter, 2013; C99, 6.4.4.2",
+    .source = "A. Simper, Linear Trapezoidal Integrated State Variable Filter, 2013",
     .endings = ".h .hpp",
     .switches = true,
     .runs_supervisor = true,

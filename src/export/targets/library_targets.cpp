@@ -19,13 +19,10 @@ namespace {
 
 // ARM's CMSIS-DSP adds a1 y1 and a2 y2, so both are negated here: the usual mistake with it.
 
-constexpr std::array<std::string_view, 2> cmsis_forms = {"df1", "df2t"};
-
 constexpr std::array cmsis_keys = {
     Key{.name = "form",
-        .kind = KeyKind::choice,
         .default_text = "df1",
-        .choices = cmsis_forms,
+        .choices = "df1 df2t",
         .help = "which of arm_biquad_cascade_df1_f32 and arm_biquad_cascade_df2T_f32 will run it"},
     name_key("ripplenotch"),
 };
@@ -119,13 +116,10 @@ namespace {
 // The ROS package `filters`: one transfer function a section, in a filter chain. It does not depend on the
 // joint speed.
 
-constexpr std::array<std::string_view, 2> channel_choices = {"multi", "single"};
-
 constexpr std::array ros_keys = {
     Key{.name = "channels",
-        .kind = KeyKind::choice,
         .default_text = "multi",
-        .choices = channel_choices,
+        .choices = "multi single",
         .help = "multi: MultiChannelFilterChain; single: FilterChain, as chained_filter_controller has it"},
     Key{.name = "node",
         .kind = KeyKind::text,
@@ -192,12 +186,10 @@ namespace {
 // Servo drives of the Panasonic MINAS and Omron G5 kind: whole hertz, a width code, a depth code.
 
 // Whether the ranges of the drive's own parameters are kept.
-constexpr std::array<std::string_view, 2> limit_choices = {"firmware", "none"};
 constexpr std::array drive_keys = {Key{
     .name = "limits",
-    .kind = KeyKind::choice,
     .default_text = "firmware",
-    .choices = limit_choices,
+    .choices = "firmware none",
     .help = "firmware: refuse what its own parameters cannot hold; none: for other firmware in this style"}};
 
 // Width over centre is 0.5 * 2^(code / 4), code 0 to 20: from Q 2 down to Q 1/16. Depth code d is a gain of d

@@ -13,8 +13,6 @@
 
 namespace ripplenotch {
 
-inline constexpr std::array<std::string_view, 2> beyond_choices = {"refuse", "hold"};
-
 /// `map` never reaches a method: the code that loads files replaces it by the keys that it abbreviates.
 inline constexpr std::array ripple_map_keys = [] {
     const auto list = [](std::string_view name, Dimension dimension, std::string_view help,
@@ -29,14 +27,6 @@ inline constexpr std::array ripple_map_keys = [] {
                    .at_least = least,
                    .at_most = most,
                    .whole = true,
-                   .help = help};
-    };
-    const auto choice = [](std::string_view name, std::span<const std::string_view> choices,
-                           std::string_view help) {
-        return Key{.name = name,
-                   .kind = KeyKind::choice,
-                   .default_text = choices[0],
-                   .choices = choices,
                    .help = help};
     };
     return std::array{
@@ -61,8 +51,10 @@ inline constexpr std::array ripple_map_keys = [] {
             .dimension = Dimension::speed,
             .above = 0.0,
             .help = "speed up to which the map was made"},
-        choice("beyond", beyond_choices,
-               "a joint half as fast again: refuse, as another joint; hold: the map's edge"),
+        Key{.name = "beyond",
+            .default_text = "refuse",
+            .choices = "refuse hold",
+            .help = "a joint half as fast again: refuse, as another joint; hold: the map's edge"},
         whole("second-comb", -1.0, 1.0,
               "1 or -1: after those of the speeds, as many of lines at n (gear ratio + 1) or n (gear ratio - "
               "1)")};
@@ -100,10 +92,6 @@ constexpr auto required_map_keys() {
 [[nodiscard]] double map_multiplications(const Settings& settings);
 
 // Keys of the method oscillator.
-
-inline constexpr std::array<std::string_view, 2> oscillator_gains = {"exact", "scheduled"};
-inline constexpr std::array<std::string_view, 2> oscillator_outputs = {"torque", "minus-ripple"};
-inline constexpr std::array<std::string_view, 2> oscillator_zeros = {"known", "unknown"};
 
 inline constexpr std::array oscillator_own_keys = {
     gear_ratio_key,
@@ -147,9 +135,8 @@ inline constexpr std::array oscillator_own_keys = {
         .above = 0.0,
         .help = "cold start: amplitude that an order may well have"},
     Key{.name = "gain",
-        .kind = KeyKind::choice,
         .default_text = "exact",
-        .choices = oscillator_gains,
+        .choices = "exact scheduled",
         .help =
             "exact: worked out at every sample; scheduled: the settled one of the present speed, cheaper, "
             "slower to start"},
@@ -179,16 +166,14 @@ inline constexpr std::array oscillator_own_keys = {
         .at_most = 0.2,
         .help = "angle from position: largest share by which the ripple may correct the gear ratio"},
     Key{.name = "output",
-        .kind = KeyKind::choice,
         .default_text = "torque",
-        .choices = oscillator_outputs,
+        .choices = "torque minus-ripple",
         .help = "torque: the estimate, smoothed; minus-ripple: the log's own torque less the ripple"},
 };
 inline constexpr std::array oscillator_map_keys = {
     Key{.name = "zero",
-        .kind = KeyKind::choice,
         .default_text = "known",
-        .choices = oscillator_zeros,
+        .choices = "known unknown",
         .help = "with a map: unknown finds the motor's angle anew within one turn, as after a new encoder"},
     Key{.name = "return",
         .default_text = "5",

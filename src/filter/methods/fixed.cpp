@@ -12,8 +12,6 @@
 namespace ripplenotch {
 namespace {
 
-constexpr std::array<std::string_view, 2> widths = {"analog", "digital"};
-
 constexpr std::array keys = {
     Key{.name = "centers",
         .kind = KeyKind::list,
@@ -30,9 +28,8 @@ constexpr std::array keys = {
         .above = 0.0,
         .help = "attenuation at the centre, e.g. 20dB; a full null when not given"},
     Key{.name = "width",
-        .kind = KeyKind::choice,
         .default_text = "analog",
-        .choices = widths,
+        .choices = "analog digital",
         .help = "whether Q is that of the analogue prototype (the paper) or of the sampled filter (SciPy's "
                 "iirnotch)"},
 };

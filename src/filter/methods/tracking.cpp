@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <utility>
 
 #include "design/tracking_run.hpp"
 #include "filter/method.hpp"
@@ -19,9 +18,6 @@
 
 namespace ripplenotch {
 namespace {
-
-constexpr std::array<std::string_view, 3> composites = {"single", "double", "triple"};
-constexpr std::array<std::string_view, 2> low_rules = {"fade", "park"};
 
 constexpr std::array keys = {
     gear_ratio_key,
@@ -46,9 +42,8 @@ constexpr std::array keys = {
         .at_most = 1.0,
         .help = "share of each order that is removed, one per order, e.g. 1:0.5"},
     Key{.name = "composite",
-        .kind = KeyKind::choice,
         .default_text = "single",
-        .choices = composites,
+        .choices = "single double triple",
         .help = "how many narrower notches side by side make up one of this width"},
     Key{.name = "min",
         .dimension = Dimension::frequency,
@@ -61,9 +56,8 @@ constexpr std::array keys = {
         .at_least = 0.0,
         .help = "low=fade: the share rises from 0 at min to all of it at min + fade"},
     Key{.name = "low",
-        .kind = KeyKind::choice,
         .default_text = "fade",
-        .choices = low_rules,
+        .choices = "fade park",
         .help = "slower than min: fade (out above it already) or park (the centre stays at min, the depth "
                 "ends at a quarter of it)"},
     Key{.name = "speed-lowpass",
@@ -135,13 +129,17 @@ RunningDesign running(const Settings& settings, Hertz sample_rate) {
     return tracking_design(settings, sample_rate);
 }
 
-double warped(double center_hz, double relative, double sample_rate_hz) {
-    return portable::tan(std::numbers::pi * center_hz * relative / sample_rate_hz);
-}
+struct PortableMath {
+    using rn_real = double;
+    static double rn_sqrt(double value) { return std::sqrt(value); }
+    static double rn_warped(double center_hz, double relative, double sample_rate_hz) {
+        return portable::tan(std::numbers::pi * center_hz * relative / sample_rate_hz);
+    }
+};
 
 class TrackingFilter final : public CausalFilter {
   public:
-    explicit TrackingFilter(TrackingDesign design) : run_(std::move(design), warped) {}
+    explicit TrackingFilter(const TrackingDesign& design) : run_(design) {}
 
     void process(const Samples& in, std::span<double> out) override {
         for (std::size_t k = 0; k < out.size(); ++k)
@@ -150,7 +148,7 @@ class TrackingFilter final : public CausalFilter {
     void restart() override { run_.restart(); }
 
   private:
-    TrackingRun<double> run_;
+    TrackingRun<PortableMath> run_;
 };
 
 std::unique_ptr<CausalFilter> start(const Settings& settings, Hertz sample_rate, const CandidateTable*) {
@@ -173,14 +171,15 @@ double multiplications(const Settings& settings, const CandidateTable*) {
 
 FrozenFilter frozen(const Settings& settings, Hertz sample_rate, const CandidateTable*, DegPerSec speed) {
     const TrackingDesign p = tracking_design(settings, sample_rate);
-    const TrackingRun<double> run(p, warped);
+    TrackingRun<PortableMath> run(p);
     FrozenFilter filter;
     for (std::size_t i = 0; i < p.orders.size(); ++i) {
-        const double hz = run.hz(i, speed.value()), center_hz = run.center_hz(hz);
-        const double left = run.left_at_center(i, hz);
+        const int line = static_cast<int>(i);
+        const double hz = run.rn_hz(line, speed.value()), center_hz = run.rn_center(hz);
+        const double left = run.rn_left(line, hz);
         if (left >= 1.0) continue;
         for (const double relative : p.spread) {
-            NotchSpec notch{.center = Hertz(center_hz * relative), .q = run.q_at(center_hz)};
+            NotchSpec notch{.center = Hertz(center_hz * relative), .q = run.rn_q(center_hz)};
             if (left > 0.0) notch.depth_db = -20.0 * portable::log10(left);
             filter.cascade.push_back(design_notch(notch, sample_rate));
         }

@@ -2,16 +2,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/functions/many_numbers.hpp"
 #include "model/effects.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
-namespace {
-
-void cosines(std::span<double> angles_deg) { portable::cos_degrees(angles_deg, angles_deg); }
-
-}  // namespace
 
 const Effect effects::coulomb_friction{
     .name = "coulomb-friction",
@@ -34,10 +28,8 @@ const Effect effects::coulomb_friction{
                        {0.2, 0.001, 100.0, 0.2})},
     .resists = true,
     .apply = [](const Situation& situation, Values values, Torques torque_nm) {
-        const auto& velocity_deg_s = situation.motion.velocity_deg_s;
-        with_values(
-            torque_nm.size(), [&](std::size_t k) { return velocity_deg_s[k] / values[1]; },
-            portable::many_tanh, [&](std::size_t k, double step) { torque_nm[k] += values[0] * step; });
+        with_directions(situation.motion, values[1],
+                        [&](std::size_t k, double step) { torque_nm[k] += values[0] * step; });
     }};
 
 const Effect effects::asymmetric_friction{
@@ -63,11 +55,8 @@ const Effect effects::asymmetric_friction{
                    assumed(logarithmic("width_deg_s", "deg/s", "speed at which 58 % of it has built up",
                                        {0.2, 0.001, 100.0, 0.2}))},
     .apply = [](const Situation& situation, Values values, Torques torque_nm) {
-        const auto& velocity_deg_s = situation.motion.velocity_deg_s;
-        with_values(
-            torque_nm.size(), [&](std::size_t k) { return velocity_deg_s[k] / values[1]; },
-            portable::many_tanh,
-            [&](std::size_t k, double step) { torque_nm[k] += 0.5 * values[0] * step * step; });
+        with_directions(situation.motion, values[1],
+                        [&](std::size_t k, double step) { torque_nm[k] += 0.5 * values[0] * step * step; });
     }};
 
 const Effect effects::viscous_friction{
@@ -231,7 +220,8 @@ const Effect effects::position_dependent_friction{
         const Motion& motion = situation.motion;
         with_two_values(
             torque_nm.size(), [&](std::size_t k) { return values[0] * motion.position_deg[k] + values[2]; },
-            cosines, [&](std::size_t k) { return motion.velocity_deg_s[k] / values[3]; }, portable::many_tanh,
+            cosines_of, [&](std::size_t k) { return motion.velocity_deg_s[k] / values[3]; },
+            portable::many_tanh,
             [&](std::size_t k, double cosine, double step) { torque_nm[k] += values[1] * cosine * step; });
     }};
 

@@ -180,10 +180,8 @@ const Effect effects::ripple_direction_dependence{
         if (!concerns(order, values[3])) return;
         if (values[0] == 0.0 && values[1] == 0.0) return;
         std::vector<double> direction(gain.size());
-        const auto& velocity_deg_s = situation.motion.velocity_deg_s;
-        with_values(
-            gain.size(), [&](std::size_t k) { return velocity_deg_s[k] / values[2]; }, portable::many_tanh,
-            [&](std::size_t k, double step) { direction[k] = step; });
+        with_directions(situation.motion, values[2],
+                        [&](std::size_t k, double step) { direction[k] = step; });
         with_cosines_and_sines(
             gain.size(), [&](std::size_t k) { return values[1] * direction[k]; },
             [&](std::size_t k, double of_turn, double sine_of_turn) {

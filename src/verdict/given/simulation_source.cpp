@@ -18,13 +18,12 @@
 namespace ripplenotch {
 namespace {
 
-constexpr std::array<std::string_view, 1> aligns = {"start"};
 // Those of a file of its own; the last ones hold for a column of the log as well.
 constexpr Key log_keys[] = {
     {.name = "file", .kind = KeyKind::text, .required = true, .help = "the simulation's log"},
     {.name = "column", .kind = KeyKind::text, .required = true, .help = "of its torque"},
     {.name = "validate", .kind = KeyKind::text, .help = "its log for the validation log"},
-    {.name = "align", .kind = KeyKind::choice, .choices = aligns, .help = "start: both logs begin together"},
+    {.name = "align", .choices = "start", .help = "start: both logs begin together"},
     {.name = "scale",
      .kind = KeyKind::number,
      .help = "factor that is known; left out: 1, unless the log shows another"},
