@@ -84,7 +84,7 @@ def raw_numbers(text):
         table = bool(line) and (table or "+/-" in line)  # the rows under such a head
         if re.match(r" *ripplenotch [a-z]|read as|-", line):
             continue
-        most = WITH_ERROR if table or re.search(r"\+/-|95 %|gear ratio|second comb|^(?:order|tone|unknown)\b", line) else MOST_DIGITS
+        most = WITH_ERROR if table or re.search(r"\+/-|95 %|gear ratio|probability|second comb|^(?:order|tone|unknown)\b", line) else MOST_DIGITS
         yield from (f"{number} in: {line.strip()[:120]}" for number in NUMBER.findall(line) if digits(number) > most)
 
 

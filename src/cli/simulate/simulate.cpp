@@ -45,7 +45,7 @@ struct JointModelOptions {
 // "1:0.8Nm:0deg" is order, amplitude, phase; the phase may be left out.
 Term parse_ripple(const std::string& text) {
     const auto pieces = split(text, ':');
-    if (pieces.size() != 2 && pieces.size() != 3) {
+    if ((pieces.size() != 2 && pieces.size() != 3) || pieces[1].empty()) {
         raise<UsageError>(
             "--ripple: '{}' is not ORDER:AMPLITUDE or ORDER:AMPLITUDE:PHASE, for example 1:0.8Nm:0deg", text);
     }
