@@ -56,7 +56,7 @@ class Converter : public LogWriter {
     std::vector<bool> has_position_;
 };
 
-// "torque_filtered [Nm]" beside "tau [Nm]", "torque_filtered_Nm" beside "torque_Nm": a new column's name in
+// "torque_filtered [Nm]" next to "tau [Nm]", "torque_filtered_Nm" next to "torque_Nm": a new column's name in
 // the style of the torque column's.
 std::string appended_name(const std::string& wanted, const std::string& torque_name) {
     const NameAndUnit parts = split_unit(torque_name, Role::torque);

@@ -56,6 +56,49 @@ TEST_CASE("orders are found in a motion that is never steady, with amplitude and
     }
 }
 
+TEST_CASE("an order above half the sample rate is found where the speed distinguishes it from its image") {
+    const auto log = [](double swing, std::uint32_t seed) {
+        return tests::make_trace({.rate_hz = 250.0,
+                                  .seconds = 20.0,
+                                  .speed_deg_s = [=](double t) { return 22.0 + swing * std::sin(0.8 * t); },
+                                  .ripple = {{2200.0, 0.3, 0.4}},  // at 134 Hz
+                                  .noise_nm = 0.1,
+                                  .seed = seed});
+    };
+    for (const std::uint32_t seed : {1U, 2U, 3U}) {
+        const MotionLines found = lines_of(log(3.0, seed));
+        REQUIRE(found.lines.size() == 1);
+        CHECK(found.lines[0].kind == LineKind::order);
+        CHECK_THAT(found.lines[0].order_output, WithinAbs(2200.0, 0.5));
+        CHECK_THAT(found.lines[0].amplitude_nm, WithinRel(0.3, 0.05));
+        // At one speed it cannot be distinguished from its image at 116 Hz: neither is searched.
+        const MotionLines steady = lines_of(log(0.0, seed));
+        CHECK(steady.lines.empty());
+        REQUIRE(steady.searched.has_value());
+        CHECK(steady.searched->highest_order < (250.0 - 2200.0 * 22.0 / 360.0) * 360.0 / 22.0);
+    }
+}
+
+TEST_CASE("a tone at rest does not take from an order that has nearly its frequency in motion") {
+    Trace log =
+        tests::make_trace({.rate_hz = 500.0,
+                           .seconds = 24.0,
+                           .speed_deg_s = [](double t) { return std::fmod(t, 8.0) < 4.0 ? 22.0 : 0.0; },
+                           .ripple = {{100.0, 0.5, 0.3}},  // at 6.1 Hz
+                           .noise_nm = 0.05,
+                           .seed = 4});
+    for (std::size_t k = 0; k < log.time_s.size(); ++k)
+        if (log.velocity_deg_s[k] == 0.0)
+            log.torque_nm[k] += 0.6 * std::cos(2.0 * std::numbers::pi * 7.0 * log.time_s[k]);
+    const MotionLines found = lines_of(log);
+    REQUIRE(found.lines.size() == 2);
+    for (const MotionLine& line : found.lines) {
+        const bool tone = line.kind == LineKind::tone;
+        CHECK_THAT(tone ? line.hz : line.order_output, WithinRel(tone ? 7.0 : 100.0, 0.002));
+        CHECK_THAT(line.amplitude_nm, WithinRel(tone ? 0.6 : 0.5, 0.03));
+    }
+}
+
 TEST_CASE(
     "lines that stand four resolutions apart in short sweeps are all found, though each hides the others") {
     // To and fro over 30 deg: orders 96, 192, 288, 384 are 8, 16, 24 and 32 cycles in a sweep.

@@ -19,9 +19,10 @@ constexpr double cycles_beside_trend = 3.0;  // in a sweep that counts: its tren
 // In a sweep in motion: slower tones are those of the motion.
 constexpr double cycles_of_motion = 12.0;
 constexpr double top_of_rate = 0.4;  // of the sample rate: an anti-alias filter leaves little above
-// Orders above half the sample rate have images below, from which a sweep distinguishes them whose speed
-// spreads one frequency so far. Up to here of the rate: the images of slow noise are above.
-constexpr double distinct_cells = 2.5, top_folded_of_rate = 0.75;
+// Orders above half the sample rate are searched up to here of it, in sweeps whose speed spreads one
+// frequency over the width of a line, which distinguishes an order from its image below. Chosen, not derived:
+// above are the images of noise slower than a quarter of the rate, which rises towards the motion.
+constexpr double top_folded_of_rate = 0.75;
 constexpr double corner_s = 0.01;   // chosen, not derived: corners of the motion are no sharper in a torque
 constexpr double step_cells = 0.3;  // of the sums, in 1 / longest sweep
 constexpr double cycles_with_course = 15.0;  // from so many in a sweep on an amplitude may change within it
@@ -89,7 +90,7 @@ LineScan::LineScan(std::span<const Sweep> sweeps, std::span<const TraceView> log
         piece.top = top_of_rate * rate;
         if (axis == Axis::angle) {
             const double spread = (sweep.quick_deg_s - sweep.slow_deg_s) / std::abs(sweep.mean_deg_s);
-            piece.folded_from = std::max(piece.top, distinct_cells / std::max(1e-9, spread * piece.length));
+            piece.folded_from = std::max(piece.top, line_cells / std::max(1e-9, spread * piece.length));
             piece.folded_to =
                 std::min(range.highest_folded, top_folded_of_rate * sweep.rate_hz * 360.0 / sweep.fast_deg_s);
         }

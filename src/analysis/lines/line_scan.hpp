@@ -18,6 +18,9 @@
 
 namespace ripplenotch {
 
+/// Half width of a line and of what is left of it, in 1 / longest sweep: nearer, two lines are one.
+inline constexpr double line_cells = 2.5;
+
 /// A line on one of the axes.
 struct KnownLine {
     Axis axis = Axis::angle;

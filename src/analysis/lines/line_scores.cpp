@@ -15,7 +15,6 @@ namespace {
 
 constexpr double again_evidence = 4.6;  // -ln 0.01: what sweeps other than the best one must reach
 constexpr double level_cells = 30.0;    // over which scores that are high everywhere are no lines
-constexpr double same_line_cells = 2.5;
 
 /// -ln of the probability that the sum of n variables of Exp(1) exceeds s.
 double tail_of_sum(double s, double n) {
@@ -314,7 +313,7 @@ double LineScan::detectable_nm(double from, double to, double false_alarm,
         const double at = from + (to - from) * (static_cast<double>(t) + 0.5) / trials;
         const std::size_t k = bin_of(at);
         if (std::any_of(lines.begin(), lines.end(),
-                        [&](double line) { return std::abs(place(k) - line) < same_line_cells / longest_; }))
+                        [&](double line) { return std::abs(place(k) - line) < line_cells / longest_; }))
             continue;
         double information = 0.0;
         for (std::size_t i = 0; i < pieces_.size(); ++i)

@@ -12,8 +12,6 @@ namespace ripplenotch {
 
 namespace {
 
-constexpr double line_cells = 2.5;  // half width of a line and of what is left of it, in 1 / longest sweep
-
 struct SpeedRange {
     double slow = 0.0, fast = 0.0;
     double quick = 0.0;  ///< without the fastest quarter of each sweep
@@ -69,11 +67,9 @@ class LineSearch {
         std::copy_if(taken_.begin(), taken_.end(), std::back_inserter(lines),
                      [this](const Taken& taken) { return is_line(taken); });
         // What was left of a line by the removal of another is none, measured together with that.
-        while (true) {
+        do {
             measure_together(lines);
-            const auto shown = std::erase_if(lines, [](const Taken& taken) { return !taken.shown; });
-            if (shown == 0) break;
-        }
+        } while (std::erase_if(lines, [](const Taken& taken) { return !taken.shown; }) > 0);
         std::vector<MotionLine> found;
         for (Taken& taken : lines) {
             taken.line.false_alarm = false_alarm_of(taken);

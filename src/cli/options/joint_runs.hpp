@@ -31,7 +31,7 @@ struct JointResult {
     std::function<void()> afterwards = {};  ///< when all is written: --plot, limits that are broken
 };
 
-/// What a command on one log is asked, beside its own options.
+/// What a command on one log is asked, except its own options.
 struct LogRequest {
     CommonOptions common;
     PlotRequest plot;

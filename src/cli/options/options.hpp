@@ -204,7 +204,7 @@ struct GearHelp {
 
 void attach_gear(Options& options, GearOptions& gear, const GearHelp& help = {});
 
-/// How a log is read beside this gear: motion that is measured before the gear is told by its ratio, and
+/// How a log is read with this gear: motion that is measured before the gear is stated by its ratio, and
 /// divided by it.
 [[nodiscard]] ReadOptions read_options(ReadOptions log, const std::optional<GearAccount>& gear);
 

@@ -320,7 +320,7 @@ std::string gear_words(const GearAccount& gear) {
     return ratio + " --orders " + orders_text(gear.orders, gear.ratio, ",");
 }
 
-// A name for the filtered log beside this one: "filtered.csv".
+// A name for the filtered log next to this one: "filtered.csv".
 std::string filtered_name(const std::string& log) {
     // A name that the filtered log can keep; others hold what is not written or is packed.
     static const std::set<std::string> written = {".csv", ".txt", ".npy", ".mat", ".h5"};

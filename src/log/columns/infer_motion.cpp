@@ -38,7 +38,7 @@ std::vector<double> slopes(const std::vector<double>& time_s, const std::vector<
 }
 
 // Piece by piece: long enough to average noise, many enough for a median. A step of ten usual ones ends a
-// piece: nobody knows the velocity within.
+// piece: the velocity within is not known.
 std::vector<MotionPieces::Piece> pieces_of(const std::vector<double>& t, const std::vector<double>& v,
                                            const std::vector<double>& q) {
     std::vector<double> steps;

@@ -241,7 +241,7 @@ double ns_per_unit(const std::string& source, const StoredArray& clock) {
     return 1e9;
 }
 
-// The columns of `base`, its clock first, and beside them what --columns names of those of `others`. All
+// The columns of `base`, its clock first, and next to them what --columns names of those of `others`. All
 // groups have a clock.
 void join_arrays(const std::shared_ptr<StoredBytes>& file, const ArrayGroup& base,
                  const std::vector<const ArrayGroup*>& others, PathStyle style, const ReadOptions& options,

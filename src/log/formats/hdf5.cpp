@@ -42,7 +42,7 @@ namespace {
 // libhdf5's objects, closed when they go. The one door to the library.
 // The names of version 1.10, which later ones keep.
 
-/// A number of libhdf5, negative where there is none; closed when nobody has it any more.
+/// A number of libhdf5, negative where there is none; closed with its last owner.
 class Hdf5Handle {
   public:
     Hdf5Handle() = default;

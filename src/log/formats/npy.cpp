@@ -117,7 +117,7 @@ class NpyWriter final : public LogWriter {
             for (std::size_t i = 0; i < block.size(); ++i)
                 block.bytes.copy(records + i * record_out_, record_in_, i * record_in_);
         }
-        // A value that nobody changed keeps its bits, whatever the unit.
+        // A value that is not changed keeps its bits, whatever the unit.
         const bool as_written = !append_ && block.held_bad_values == 0;
         for (std::size_t j = 0; j < fields_.size(); ++j) {
             const std::span<const double> raw =

@@ -87,7 +87,7 @@ inline constexpr std::string_view npy_magic = "\x93NUMPY";
 
 class RecordColumns final : public Columns {
   public:
-    /// `first_bytes` of the records have been read from `source`. Where nobody knows how many there are, the
+    /// `first_bytes` of the records have been read from `source`. Where their number is not known, the
     /// end of the bytes is that of the rows, and header.rows is rows_unknown.
     RecordColumns(std::unique_ptr<ByteSource> source, std::string first_bytes, NpyHeader header,
                   std::string head);

@@ -49,11 +49,11 @@ std::size_t HeldColumns::next(std::size_t rows, NumberRows& into, std::string& b
     return count;
 }
 
-// Signals with clocks of their own, of another topic, another array or other rows, beside the rows of one.
+// Signals with clocks of their own, of another topic, another array or other rows, joined to the rows of one.
 
 namespace {
 
-constexpr std::size_t rows_at_once = 4096;  // of which the usual step is told, too
+constexpr std::size_t rows_at_once = 4096;  // of which the usual step is measured, too
 constexpr double periods_apart = 3.0, least_ns = 1e6, largest_ns = 9.2e18;
 
 enum class Join { nearest, hold, linear };
