@@ -123,10 +123,9 @@ struct AskedJoints {
 [[nodiscard]] Log read_log(LogReader& reader, const ReadOptions& options);
 
 /// All joints that have a velocity or position and a torque (options.torque_of_each), in one pass: their rows
-/// are the same. The torque of a joint without one is not a number. What is reported of the layout is
-/// reported of all of them. In the pieces of read_log_in_part where there are more than `most_rows`: the log
-/// is gone through twice for each joint then. O(joints most_rows) memory. Throws what open_log and read_log
-/// throw.
+/// are the same. The torque of a joint without one is not a number. What the layout says holds for all
+/// of them. In the pieces of read_log_in_part where there are more than `most_rows`: the log is gone through
+/// twice for each joint then. O(joints most_rows) memory. Throws what open_log and read_log throw.
 [[nodiscard]] std::vector<Log> read_joints_at_once(const std::string& path, const ReadOptions& options,
                                                    std::size_t most_rows = all_rows);
 

@@ -115,8 +115,7 @@ ExitCode run_one(const DiagnoseRequest& request, GivenSource& given, const std::
     JointDiagnosis one = diagnosed_joint(request, std::nullopt, given, command_line);
     if (!one.diagnosis.not_accepted.empty()) raise<UsageError>("{}", one.diagnosis.not_accepted.front());
     write_improved(request, one);
-    write_text("-",
-               request.common.json ? write_diagnosis(one.document(), one.provenance) : story(request, one),
+    write_text("-", request.common.json ? write_diagnosis(one.facts(), one.provenance) : story(request, one),
                ByteSink::Overwrite::no);
     draw_plot(request.plot, request.common, one.provenance,
               [&] { return diagnosis_figure(request.path, one.diagnosis, one.log.trace.view()); });
@@ -135,7 +134,7 @@ std::string list_of(const std::vector<JointDiagnosis>& all, const std::string& c
     Provenance provenance{{}, command_line};
     std::vector<DiagnosedJoint> joints;
     for (const JointDiagnosis& one : all) {
-        joints.push_back(one.document());
+        joints.push_back(one.facts());
         for (const InputRecord& input : one.provenance.inputs) {
             const auto same = [&](const InputRecord& known) { return known.name == input.name; };
             if (std::none_of(provenance.inputs.begin(), provenance.inputs.end(), same))

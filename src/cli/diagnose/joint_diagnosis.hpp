@@ -54,7 +54,7 @@ struct JointDiagnosis {
 
     [[nodiscard]] bool is_conclusive() const;
     /// What its document says; it is borrowed.
-    [[nodiscard]] DiagnosedJoint document() const {
+    [[nodiscard]] DiagnosedJoint facts() const {
         return {joint, diagnosis, gear, given.account ? &*given.account : nullptr, mjcf ? &*mjcf : nullptr};
     }
 };
