@@ -75,7 +75,7 @@ TEST_CASE("The library cannot tell what the program cannot tell, in the same wor
 
     const Identification found = identify_readings({&log, 1}, {});
     const Identification of_program = load_identification(folder.file("joint.json"));
-    CHECK_THAT(found.verdict, StartsWith("Cannot tell: if it is deg/s and deg, as assumed, "));
+    CHECK_THAT(found.verdict, StartsWith("Cannot tell: the log does not state its units"));
     CHECK(found.verdict == of_program.verdict);
     CHECK(found.notes == of_program.notes);
     CHECK_FALSE(found.conclusive);

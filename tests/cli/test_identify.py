@@ -105,7 +105,7 @@ class Doubts(Case):
         path.write_text("\n".join(rows) + "\n")
         done = run("identify", str(path), "--require-conclusive", "-q")
         self.assertEqual(done.returncode, 5, done.stdout)
-        self.assertTrue(done.stdout.startswith("Cannot tell: if it is deg/s and deg, as assumed, "), done.stdout)
+        self.assertTrue(done.stdout.startswith("Cannot tell: the log does not state its units"), done.stdout)
         self.assertIn("Ripple at 12 (0.4 A), 18 (0.3 A) cycles per turn of the motor", done.stdout)
         self.assertIn("--unit velocity=rad/s --side motor settles it", done.stdout)
         found = identified(str(path))

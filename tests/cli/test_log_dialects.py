@@ -338,8 +338,9 @@ class WhatIsSaidWithoutAUnit(Case):
         (self.folder / "log.csv").write_bytes(DIALECTS["plain words"][0])
         done = self.run_tool("identify", "log.csv", "-q")
         self.assertEqual((done.returncode, done.stderr), (0, ""))
-        self.assertTrue(done.stdout.startswith("Cannot tell: if it is rad/s and rad, as assumed, ripple"), done.stdout)
-        self.assertIn(". If the speed is in deg/s, ", done.stdout)
+        self.assertTrue(done.stdout.startswith("Cannot tell: the log does not state its units"), done.stdout)
+        self.assertIn("note: if it is rad/s and rad, as assumed: Ripple", done.stdout)
+        self.assertIn("note: if the speed is in deg/s (", done.stdout)
         self.assertEqual(self.run_tool("identify", "log.csv", "--require-conclusive").returncode, 5)
         found = json.loads(self.run_tool("identify", "log.csv", "--json", "-q").stdout)
         self.assertFalse(found["conclusive"])
@@ -506,7 +507,7 @@ class OtherShapes(Case):
         done = self.run_tool("filter", "log.csv", "--gear-ratio", str(RATIO), "--method", "lowpass,cutoff=20Hz", "-o", "out.csv")
         self.assertIn("warning: no unit is stated for what is read: took 'v'", done.stderr)
         done = self.run_tool("identify", "log.csv", "--gear-ratio", str(RATIO))
-        self.assertTrue(done.stdout.startswith("Cannot tell: if "), done.stdout)
+        self.assertTrue(done.stdout.startswith("Cannot tell: the log does not state its units"), done.stdout)
         self.assertIn("--unit velocity=deg/s --side joint", done.stdout)
 
     def test_joints_paired_one_off_are_refused_and_listed_by_info(self):

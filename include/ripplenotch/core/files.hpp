@@ -72,6 +72,8 @@ class ByteSource {
 
 /// Reads a whole file, or standard input when the path is "-".
 [[nodiscard]] std::string read_all(const std::string& path);
+/// The path as people should see it: "-" is "standard input".
+[[nodiscard]] std::string input_name(const std::string& path);
 
 /// Where results go: a file that appears under its name only when finished, or standard output when the path
 /// is "-". Destroying an unfinished sink removes what it wrote. A reader that has gone away (| head) ends the

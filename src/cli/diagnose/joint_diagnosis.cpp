@@ -218,7 +218,7 @@ void check_model(const DiagnoseRequest& request) {
         raise<UsageError>("--gear-ratio is missing; give it, or --model FILE, which states it");
     if (!request.model.empty() && request.model != model_from_log && request.gear.ratio)
         raise<UsageError>("--gear-ratio: the model of {} states the gear ratio; change it there",
-                          request.model == "-" ? "standard input" : request.model);
+                          input_name(request.model));
     check_gear(request.gear);
     if (request.path == "-" && request.model == model_from_log)
         raise<UsageError>(
@@ -269,8 +269,6 @@ namespace {
 // along the samples searched.
 constexpr std::size_t max_rows_diagnosed = std::size_t{1} << 17, max_rows_with_arm = 40'960;
 
-std::string model_source(const std::string& model) { return model == "-" ? "standard input" : model; }
-
 // `source`: who gave its gear ratio.
 ModelWithGiven model_of(const DiagnoseRequest& request, const std::string& path, const ReadOptions& reading,
                         Provenance& provenance, std::string& source) {
@@ -281,9 +279,9 @@ ModelWithGiven model_of(const DiagnoseRequest& request, const std::string& path,
         source = std::move(made.source);
         return {std::move(made.model)};
     }
-    source = path.empty() ? "--gear-ratio" : model_source(path);
+    source = path.empty() ? "--gear-ratio" : input_name(path);
     if (path.empty()) return {{GearRatio(*request.gear.ratio), {}}};
-    ModelWithGiven model = read_model_with_given(read_all(path), model_source(path));
+    ModelWithGiven model = read_model_with_given(read_all(path), input_name(path));
     if (path != "-") provenance.inputs.push_back(input_record(path));
     return model;
 }

@@ -164,8 +164,7 @@ ExitCode merge_lines(const FeatureRequest& request) {
     std::string text;
     std::size_t lines = 0, failed = 0;
     for (const std::string& path : request.logs) {
-        for (const FeatureLine& line :
-             feature_lines_from_text(read_all(path), path == "-" ? "standard input" : path)) {
+        for (const FeatureLine& line : feature_lines_from_text(read_all(path), input_name(path))) {
             const auto [before, is_new] = seen.try_emplace({line.log, line.joint}, &path);
             if (!is_new)
                 raise<DataError>("{}: joint '{}' of {} stands in {} already; merge each line once", path,

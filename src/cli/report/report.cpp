@@ -42,7 +42,7 @@ struct LogReport {
     std::string log;      ///< its path
     std::string piped;    ///< the log itself, where it came through standard input
     Words reading, gear;  ///< options of the log, and of its gear
-    bool quiet = false;
+    bool other_motors = false, quiet = false;
 };
 
 /// A folder for what the commands write, which ends with it.
@@ -100,8 +100,9 @@ class JointReport {
 
     /// Throws where identify refuses the log: the other commands would repeat its message.
     std::vector<PageSection> sections() {
-        command({"identify", log_, "--json", "-o", workspace_.path("joint.json")}, reading_ + ratio(),
-                report_.quiet);
+        command({"identify", log_, "--json", "-o", workspace_.path("joint.json"), "--other-motors",
+                 report_.other_motors ? "yes" : "no"},
+                reading_ + ratio(), report_.quiet);
         const Json found = taken("joint.json", "Which ripple, and which gear");
         const Json advice = tried({"recommend", log_}, reading_ + report_.gear, "recommendation.json",
                                   "Which method, and why");
@@ -449,7 +450,7 @@ struct ReportRequest {
     GearOptions gear;
     std::vector<std::string> results;
     std::string output = "-";
-    bool force = false, quiet = false;
+    bool force = false, quiet = false, other_motors = false;
 };
 
 // Where the build and the installation put it, as seen from the program itself.
@@ -504,12 +505,11 @@ ExitCode run_report(const ReportRequest& request, const Options& options) {
         std::string text = path == "-" ? read_all(path) : beginning_of(path);
         if (!path.ends_with(".json") && is_log(text)) {
             logs.push_back({path, path == "-" ? std::move(text) : "", options.given(reading_group),
-                            options.given(gear_group), request.quiet});
+                            options.given(gear_group), request.other_motors, request.quiet});
             names.push_back(shown_name(path));
             continue;
         }
-        for (PageSection& section :
-             sections_of_result(path == "-" ? text : read_all(path), path == "-" ? "standard input" : path))
+        for (PageSection& section : sections_of_result(path == "-" ? text : read_all(path), input_name(path)))
             page.sections.push_back(std::move(section));
     }
     if (!logs.empty() && logs.size() < request.results.size())
@@ -535,6 +535,8 @@ std::function<ExitCode()> attach_report(Options& options) {
         options.flag("--force", request->force, "overwrite existing files");
         options.flag("-q,--quiet", request->quiet, "no warnings on standard error");
     }
+    options.flag("--other-motors", request->other_motors,
+                 "look in each joint for ripple of the other joints' motors as well, which takes a while");
     attach_gear(options, request->gear);
     attach_log(options, request->reading);
     return [request, &options] { return run_report(*request, options); };

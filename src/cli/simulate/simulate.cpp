@@ -60,7 +60,7 @@ ModelWithGiven assemble_model(const JointModelOptions& options, bool takes_given
     Model& model = whole.model;
     check_gear(options.gear);
     if (options.model) {
-        const std::string source = *options.model == "-" ? "standard input" : *options.model;
+        const std::string source = input_name(*options.model);
         if (options.gear.ratio) {
             raise<UsageError>("--gear-ratio: the model of {} states the gear ratio; change it there", source);
         }
@@ -85,9 +85,7 @@ ModelWithGiven assemble_model(const JointModelOptions& options, bool takes_given
 
 // The gear of the assembled model, with what was typed or read as its source.
 GearAccount assembled_gear(const JointModelOptions& joint, const Model& model) {
-    std::string source = !joint.model          ? "--gear-ratio"
-                         : *joint.model == "-" ? "standard input"
-                                               : *joint.model;
+    std::string source = joint.model ? input_name(*joint.model) : "--gear-ratio";
     if (!joint.ripples.empty()) source += ", --ripple";
     return gear_of(model, std::move(source));
 }

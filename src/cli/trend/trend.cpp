@@ -76,8 +76,7 @@ struct TrendRequest {
 std::vector<FeatureLine> read_lines(const TrendRequest& request, Provenance& provenance) {
     std::vector<FeatureLine> lines;
     for (const std::string& path : request.files) {
-        const std::string source = path == "-" ? "standard input" : path;
-        std::vector<FeatureLine> own = feature_lines_from_text(read_all(path), source);
+        std::vector<FeatureLine> own = feature_lines_from_text(read_all(path), input_name(path));
         provenance.inputs.push_back({path, path == "-" ? "" : sha256_as_read(path), own.size()});
         std::move(own.begin(), own.end(), std::back_inserter(lines));
     }

@@ -149,19 +149,13 @@ std::unique_ptr<ByteSource> Spool::open() const {
     return std::make_unique<ByteSource>(file_, name_);
 }
 
-namespace {
-
-constexpr std::size_t first_room = std::size_t{1} << 14;  // for a whole file: most are tables and models
-
-std::string shown_name(const std::string& path) {
+std::string input_name(const std::string& path) {
     return path == "-" ? "standard input" : visible_text(path);
 }
 
-}  // namespace
-
 ByteSource::ByteSource(const std::string& path) : ByteSource(std::make_shared<const OpenFile>(path)) {}
 
-ByteSource::ByteSource(std::shared_ptr<const OpenFile> file) : ByteSource(file, shown_name(file->path())) {
+ByteSource::ByteSource(std::shared_ptr<const OpenFile> file) : ByteSource(file, input_name(file->path())) {
     if (to_be_hashed(*file_, name_)) hash_ = std::make_unique<Sha256>();
 }
 
@@ -228,7 +222,7 @@ std::string read_all(const std::string& path) {
     ByteSource source(path);
     std::string bytes;
     std::size_t have = 0, got = 1;
-    for (std::size_t room = first_room; got > 0; room = 2 * have) {
+    for (std::size_t room = std::size_t{1} << 14; got > 0; room = 2 * have) {
         if (bytes.size() < room) bytes.resize(room);
         got = source.read(bytes.data() + have, bytes.size() - have);
         have += got;

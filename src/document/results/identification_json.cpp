@@ -157,7 +157,7 @@ Identification identification_from_json(std::string_view text, const std::string
 }
 
 Identification load_identification(const std::string& path) {
-    return identification_from_json(read_all(path), path == "-" ? "standard input" : path);
+    return identification_from_json(read_all(path), input_name(path));
 }
 
 std::string identification_text(const Identification& identification, const Provenance& provenance) {

@@ -181,9 +181,7 @@ MapFit map_from_json(std::string_view text, const std::string& source) {
     return result_of<MapFit>(text, source, "map");
 }
 
-MapFit load_map(const std::string& path) {
-    return map_from_json(read_all(path), path == "-" ? "standard input" : path);
-}
+MapFit load_map(const std::string& path) { return map_from_json(read_all(path), input_name(path)); }
 
 bool is_map(const std::string& path) {
     constexpr std::size_t head = 200;

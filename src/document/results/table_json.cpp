@@ -163,7 +163,7 @@ CandidateTable table_from_json(std::string_view text, const std::string& source)
 }
 
 CandidateTable load_table(const std::string& path) {
-    return table_from_json(read_all(path), path == "-" ? "standard input" : path);
+    return table_from_json(read_all(path), input_name(path));
 }
 
 bool one_q_a_band(const CandidateTable& table) {

@@ -24,7 +24,7 @@ namespace {
 
 // Which orders are ripple, and the form of their map: by blocks of windows that are left out of the fit.
 
-using Eigen::ArrayXd, Eigen::MatrixXcd, Eigen::MatrixXd;
+using Eigen::ArrayXd, Eigen::MatrixXcd, Eigen::MatrixXd, Eigen::VectorXcd;
 
 // Probability that a map has an order that is not there in addition to those that are.
 constexpr double other_order_false_alarm = 0.05;
@@ -107,20 +107,21 @@ double least_reduction(double level) { return -2.0 * portable::log(level); }
 // Leakage of a torque that repeats with the joint's position has the same phase in all sweeps, and so at
 // every order nearby. A line of the motor has not: the same amplitudes turned by another order's angle
 // cancel.
-bool stands_above_neighbours(const MapData& data, const MapForm& form, std::size_t order) {
-    const auto reduction = [&](const MapData& of) { return MapRegression(of, form, order).own_reduction(); };
-    const double ratio = data.counted.gear_ratio, own = reduction(data);
+bool stands_above_neighbours(const MapData& data, const MapForm& form, std::size_t order,
+                             const VectorXcd& amplitudes) {
+    const double ratio = data.counted.gear_ratio;
     const double start = std::min(nearest_order + data.counted.orders[order] / ratio, farthest_start);
-    for (int k = 0; k < 2 * compared_orders; ++k) {
-        const double aside = (k % 2 == 0 ? 1.0 : -1.0) * (start + order_span * (k / 2) / compared_orders);
-        MapData turned = data;
-        for (MapWindow& window : turned.windows) {
-            const double cycles = aside * ratio * window.state.position_deg / 360.0;
-            window.value[order] *= portable::phasor(2.0 * std::numbers::pi * (cycles - std::floor(cycles)));
+    MatrixXcd turned = amplitudes.replicate(1, 1 + 2 * compared_orders);  // the first as it is
+    for (Eigen::Index w = 0; w < turned.rows(); ++w) {
+        const double turns = ratio * data.windows[static_cast<std::size_t>(w)].state.position_deg / 360.0;
+        for (int k = 0; k < 2 * compared_orders; ++k) {
+            const double aside = (k % 2 == 0 ? 1.0 : -1.0) * (start + order_span * (k / 2) / compared_orders);
+            const double cycles = aside * turns;
+            turned(w, k + 1) *= portable::phasor(2.0 * std::numbers::pi * (cycles - std::floor(cycles)));
         }
-        if (own < above_neighbours * reduction(turned)) return false;
     }
-    return true;
+    const Eigen::VectorXd found = MapRegression(data, form, order, amplitudes).reductions(turned);
+    return found(0) >= above_neighbours * found.tail(2 * compared_orders).maxCoeff();
 }
 
 /// Rotation test. Torque that is not locked to the motor has in each block of a log, and at each order, a
@@ -139,7 +140,8 @@ class RotationTest {
         reductions_.resize(orders);
         largest_.resize(orders);
         on_two_cores(orders, [&](std::size_t order) {
-            for (const MapForm& form : forms_) reductions_[order].emplace_back(data, form, order);
+            for (const MapForm& form : forms_)
+                reductions_[order].emplace_back(MapRegression(data, form, order));
             largest_[order] = largest(order, reductions_[order]);
         });
     }
@@ -182,8 +184,8 @@ class RotationTest {
         MatrixXcd form;
         double squares, mean, spread;  ///< of the log itself; of random phases
 
-        Reduction(const MapData& data, const MapForm& map_form, std::size_t order)
-            : form(MapRegression(data, map_form, order).reduction()),
+        explicit Reduction(const MapRegression& of)
+            : form(of.reduction()),
               squares(form.sum().real()),
               mean(form.trace().real()),
               // Of a Hermitian form of independent unit phasors the terms off the diagonal vary.
@@ -262,15 +264,16 @@ double detectable_amplitude(const MapData& data, const MapRegression& own, const
     const double threshold = test.threshold(order);
     const MapForm& simplest = test.forms().front();
     const auto found = [&](double amplitude_nm, Eigen::Index trial) {
-        MapData injected = data;
-        for (MapWindow& window : injected.windows) {
-            window.value[order] *= phasors(static_cast<Eigen::Index>(window.block), trial);
-            window.value[order] += amplitude_nm * phasors(phasors.rows() - 1, trial);
+        VectorXcd injected = amplitudes_of(data, order);
+        for (Eigen::Index w = 0; w < injected.size(); ++w) {
+            const auto block = static_cast<Eigen::Index>(data.windows[static_cast<std::size_t>(w)].block);
+            injected(w) *= phasors(block, trial);
+            injected(w) += amplitude_nm * phasors(phasors.rows() - 1, trial);
         }
-        const RotationTest::Reduction reduction(injected, simplest, order);
+        const RotationTest::Reduction reduction(MapRegression(data, simplest, order, injected));
         if (!(reduction.deviations() > threshold) || !(reduction.squares > least_reduction(test.level())))
             return false;
-        return stands_above_neighbours(injected, simplest, order);
+        return stands_above_neighbours(data, simplest, order, injected);
     };
     double amplitude_nm = std::sqrt(own.noise() / static_cast<double>(data.windows.size()));
     for (; amplitude_nm < most_injected * std::sqrt(own.energy()); amplitude_nm *= injection_step) {
@@ -307,7 +310,7 @@ void choose_map(const MapData& data, double level, MapFit& fit) {
         score.order = data.frame.orders[i].value();
         score.false_alarm = test.false_alarm(i);
         is_line[i] = score.false_alarm > other_order_false_alarm ||
-                     stands_above_neighbours(data, test.best_form(i), i);
+                     stands_above_neighbours(data, test.best_form(i), i, amplitudes_of(data, i));
     }
     fit.false_alarm = test.motor_false_alarm(is_line);
     for (std::size_t i = 0; i < orders; ++i) {

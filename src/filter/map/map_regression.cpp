@@ -17,13 +17,24 @@ constexpr double least_noise_share = 1e-8;   ///< share of the energy: a simulat
 
 }  // namespace
 
-MapRegression::MapRegression(const MapData& data, const MapForm& form, std::size_t order) {
+Eigen::VectorXcd amplitudes_of(const MapData& data, std::size_t order) {
+    Eigen::VectorXcd values(static_cast<Eigen::Index>(data.windows.size()));
+    for (std::size_t w = 0; w < data.windows.size(); ++w)
+        values(static_cast<Eigen::Index>(w)) = data.windows[w].value[order];
+    return values;
+}
+
+MapRegression::MapRegression(const MapData& data, const MapForm& form, std::size_t order)
+    : MapRegression(data, form, order, amplitudes_of(data, order)) {}
+
+MapRegression::MapRegression(const MapData& data, const MapForm& form, std::size_t order,
+                             const Eigen::VectorXcd& values)
+    : weighted_(static_cast<Eigen::Index>(form.columns()), values.size()) {
     RippleMap frame = data.frame;
     frame.form = form;
-    for (const MapWindow& window : data.windows) {
+    for (const MapWindow& window : data.windows)
         noise_ += window.noise[order] / static_cast<double>(data.windows.size());
-        energy_ += std::norm(window.value[order]) / static_cast<double>(data.windows.size());
-    }
+    energy_ = values.squaredNorm() / static_cast<double>(data.windows.size());
     noise_ = std::max(noise_, least_noise_share * energy_);
     const auto columns = static_cast<Eigen::Index>(form.columns());
     const Matrix none = Matrix::Zero(columns, columns);
@@ -31,24 +42,27 @@ MapRegression::MapRegression(const MapData& data, const MapForm& form, std::size
     gram_ = penalty(frame);
     right_ = Vector::Zero(columns);
     std::vector<double> row(form.columns());
-    for (const MapWindow& window : data.windows) {
+    Vector x(columns);
+    for (Eigen::Index w = 0; w < values.size(); ++w) {
+        const MapWindow& window = data.windows[static_cast<std::size_t>(w)];
         map_weights(frame, window.state, row);
         const std::complex<double> second =
             std::conj(second_comb_phasor(frame, order, window.state.position_deg));
-        Vector x(columns);
         for (std::size_t c = 0; c < row.size(); ++c)
             x(static_cast<Eigen::Index>(c)) = row[c] * (form.is_second_comb(c) ? second : 1.0);
         // Half of the noise is in each part; that of one window is known from a few numbers only.
         const double weight = 4.0 * independent_share / (window.noise[order] + noise_);
-        const std::complex<double> value = window.value[order];
-        const Matrix square = weight * x * x.adjoint();
+        weighted_.col(w) = weight * x;
+        const Matrix square = weighted_.col(w) * x.adjoint();
         Block& block = blocks_[window.block];
+        block.windows.push_back(w);
         block.gram += square;
-        block.right += weight * value * x;
+        block.right += values(w) * weighted_.col(w);
         if (!window.scored) continue;
+        block.scored.push_back(w);
         block.scored_gram += square;
-        block.scored_right += weight * value * x;
-        block.squares.total += weight * std::norm(value);
+        block.scored_right += values(w) * weighted_.col(w);
+        block.squares.total += weight * std::norm(values(w));
         block.squares.noise += weight * window.noise[order];
         block.squares.weights += weight;
     }
@@ -146,13 +160,16 @@ Eigen::MatrixXd MapRegression::residuals() const {
     return found;
 }
 
-double MapRegression::own_reduction() const {
-    double sum = 0.0;
+Eigen::VectorXd MapRegression::reductions(const Matrix& values) const {
+    const Matrix right = weighted_ * values;
+    Eigen::VectorXd sums = Eigen::VectorXd::Zero(values.cols());
     for (const Block& block : blocks_) {
-        const Vector fit = HermitianFactors(gram_ - block.gram).solve(right_ - block.right);
-        sum += fit.dot(2.0 * block.scored_right - block.scored_gram * fit).real();
+        const Matrix own = weighted_(Eigen::all, block.windows) * values(block.windows, Eigen::all);
+        const Matrix scored = weighted_(Eigen::all, block.scored) * values(block.scored, Eigen::all);
+        const Matrix fits = HermitianFactors(gram_ - block.gram).solve(right - own);
+        sums += fits.conjugate().cwiseProduct(2.0 * scored - block.scored_gram * fits).real().colwise().sum();
     }
-    return sum;
+    return sums;
 }
 
 Eigen::MatrixXcd MapRegression::reduction() const {

@@ -19,12 +19,18 @@ struct MapSquares {
     double weights = 0.0;  ///< a sum of 1 is 1 / weights Nm^2, as a mean over the windows
 };
 
+/// The amplitudes of one order by window, Nm.
+[[nodiscard]] Eigen::VectorXcd amplitudes_of(const MapData& data, std::size_t order);
+
 /// Ridge regression. Its prior is a random walk: from the slowest to the fastest speed, and from one
 /// direction to the other, an amplitude changes by about the order's own amplitude, however many speeds there
 /// are in between.
 class MapRegression {
   public:
     MapRegression(const MapData& data, const MapForm& form, std::size_t order);
+    /// The same of other amplitudes, one for each window.
+    MapRegression(const MapData& data, const MapForm& form, std::size_t order,
+                  const Eigen::VectorXcd& values);
 
     /// By column, from all blocks but those `left_out` (by number; nothing: from all).
     [[nodiscard]] Eigen::VectorXcd values(const std::vector<bool>& left_out = {}) const;
@@ -40,8 +46,9 @@ class MapRegression {
     /// The Hermitian form Q for which u* Q u is the reduction of the squares of left-out blocks, all
     /// amplitudes of block b turned by the unit phasor u_b.
     [[nodiscard]] Eigen::MatrixXcd reduction() const;
-    /// The reduction of the log itself, with all phases as they are: the sum of that form's entries.
-    [[nodiscard]] double own_reduction() const;
+    /// The reduction with all phases as they are, the sum of that form's entries, of each column of
+    /// amplitudes that are as large as this regression's, one row for each window.
+    [[nodiscard]] Eigen::VectorXd reductions(const Eigen::MatrixXcd& values) const;
     [[nodiscard]] double noise() const { return noise_; }    ///< mean over the windows, Nm^2
     [[nodiscard]] double energy() const { return energy_; }  ///< the same of the squared amplitudes
 
@@ -52,10 +59,12 @@ class MapRegression {
         Matrix gram, scored_gram;
         Vector right, scored_right;
         MapSquares squares;
+        std::vector<Eigen::Index> windows = {}, scored = {};  ///< by number
     };
     [[nodiscard]] Eigen::MatrixXd penalty(const RippleMap& frame) const;
 
     double noise_ = 0.0, energy_ = 0.0;
+    Matrix weighted_;  ///< the form's columns at each window, times its weight: a column for each window
     Matrix gram_;
     Vector right_;
     std::vector<Block> blocks_;

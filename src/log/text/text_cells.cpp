@@ -172,6 +172,9 @@ std::optional<CellNumber> cell_number(std::string_view cell, char decimal_mark) 
         cell.substr(0, size).find(decimal_mark) == std::string_view::npos)
         return std::nullopt;
     while (!rest.empty() && is_blank(rest.front())) rest.remove_prefix(1);
+    // Lines are tried with every separator: what stands behind the first number is mostly the rest of the
+    // line.
+    if (rest.find_first_of(",;\t") != std::string_view::npos) return std::nullopt;
     if (!rest.empty() && !usual_unit(rest, Role::other) && !is_device_unit(rest)) return std::nullopt;
     return CellNumber{*number, size, rest};
 }

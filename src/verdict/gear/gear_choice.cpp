@@ -15,6 +15,7 @@
 
 #include "ripplenotch/analysis/identification.hpp"
 #include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/files.hpp"
 #include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/quantity.hpp"
@@ -97,7 +98,7 @@ GearStatement JointFile::facts(std::optional<GearRatio> given) const {
 
 JointFile load_joint(const std::string& path) {
     if (path.empty()) raise<UsageError>("--joint-file: the name is empty");
-    return {path, path == "-" ? "standard input" : path, load_identification(path)};
+    return {path, input_name(path), load_identification(path)};
 }
 
 namespace {

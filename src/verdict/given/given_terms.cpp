@@ -312,7 +312,7 @@ ModelWithGiven residual_model(const ResidualOptions& residual, const std::string
     // Without a model nothing depends on its ratio.
     if (!residual.model) return {{GearRatio(1.0), {}}};
     const std::string path = with_joint(*residual.model, joint);
-    return read_model_with_given(read_all(path), path == "-" ? "standard input" : path);
+    return read_model_with_given(read_all(path), input_name(path));
 }
 
 std::vector<double> predicted_torque(const ResidualOptions& residual, const ModelWithGiven& model,

@@ -63,24 +63,6 @@ constexpr double stand_in_ratio = 100.0;
 constexpr double same_ratio = 0.02;  // by hand
 constexpr double least_ratio = 3.0;  // less is no gear: what was logged turns with the motor
 
-std::string lower_first(std::string text) {
-    // "Ripple", "No ripple"; not "UR5e ...".
-    if (text.size() > 1 && std::islower(static_cast<unsigned char>(text[1])) != 0)
-        text[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(text[0])));
-    while (!text.empty() && text.back() == '.') text.pop_back();
-    return text;
-}
-
-// A verdict in short, up to the error of the ratio; the notes have it whole. An undecided ratio of one
-// reading is worded differently from an undecided log.
-std::string briefly(const std::string& verdict) {
-    constexpr std::string_view doubtful = "Cannot tell the gear ratio: ";
-    if (verdict.starts_with(doubtful))
-        return "the gear ratio is open: " + briefly(verdict.substr(doubtful.size()));
-    return lower_first(
-        verdict.substr(0, std::min({verdict.find(". "), verdict.find(" (95 %)"), verdict.size() - 1})));
-}
-
 bool in_motor_units(std::span<const Log> logs) {
     return std::any_of(logs.begin(), logs.end(), [](const Log& log) { return log.layout.motor_units; });
 }
@@ -176,14 +158,12 @@ bool agree(const Identification& a, const Identification& b) {
 Identification cannot_tell(Identification found, const std::string& assumed,
                            const std::vector<std::pair<OtherReading, Identification>>& others,
                            const std::string& options) {
-    std::string verdict = fmt::format("Cannot tell: {}, {}", assumed, briefly(found.verdict));
-    for (const auto& [reading, other] : others) {
-        verdict += fmt::format(". If {}, {}", reading.words, briefly(other.verdict));
+    found.notes.push_back(fmt::format("{}: {}", assumed, found.verdict));
+    for (const auto& [reading, other] : others)
         found.notes.push_back(fmt::format("if {} ({}): {}", reading.words, reading.option, other.verdict));
-    }
-    found.notes.insert(found.notes.end() - static_cast<std::ptrdiff_t>(others.size()),
-                       fmt::format("{}: {}", assumed, found.verdict));
-    found.verdict = fmt::format("{}. {} settles it.", verdict, options);
+    found.verdict = fmt::format(
+        "Cannot tell: the log does not state its units, and its lines depend on them. {} settles it.",
+        options);
     found.doubts.push_back(
         {DoubtReason::unit, fmt::format("the log does not state its units; {} settles it", options)});
     found.conclusive = false;
