@@ -81,8 +81,12 @@ class DiagnosisRun {
             raise<DataError>("the log has {} rows; a diagnosis needs at least {}", log.size(),
                              fewest_samples_diagnosed);
         along_ = log_along(log, options.given, options.smoothing);
-        if (validation != nullptr)
+        along_.motion.others_deg_s.assign(options.others_deg_s.begin(), options.others_deg_s.end());
+        if (validation != nullptr) {
             other_ = log_along(*validation, options.validation_given, options.smoothing);
+            other_->motion.others_deg_s.assign(options.validation_others_deg_s.begin(),
+                                               options.validation_others_deg_s.end());
+        }
         model_.beside_simulation = simulated_ != nullptr;
     }
 
@@ -206,6 +210,7 @@ class DiagnosisRun {
                                                                    .model = model_,
                                                                    .simulation = simulation,
                                                                    .given_terms = given,
+                                                                   .others_deg_s = options_.others_deg_s,
                                                                    .without = without,
                                                                    .is_good_row = along_.use});
         good_ = along_.use;

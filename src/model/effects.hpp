@@ -63,6 +63,11 @@ inline Parameter assumed(Parameter row) {
     return row;
 }
 
+inline Parameter refused(Parameter row) {
+    row.left_out = LeftOut::refused;
+    return row;
+}
+
 // Parameters that several effects have, with one meaning and one set of bounds.
 
 /// Width of the step that a friction makes at standstill.
@@ -73,9 +78,7 @@ inline Parameter width_parameter() {
 
 /// Cycles per turn, amplitude and phase of a cosine of an angle.
 inline Parameter cycles_parameter(std::string_view name, std::string_view help, double start, double upper) {
-    Parameter row = plain(name, "", help, {start, 0.01, upper, start});
-    row.left_out = LeftOut::refused;
-    return row;
+    return refused(plain(name, "", help, {start, 0.01, upper, start}));
 }
 inline Parameter cosine_amplitude_parameter() {
     return linear("amplitude_nm", "Nm", "zero to peak", {0.5, 0.0, 1e5});

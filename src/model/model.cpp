@@ -136,6 +136,19 @@ void refuse_missing_values(const Model& model) {
     }
 }
 
+// Throws UsageError for a term that depends on a joint whose motion is not known.
+void refuse_unknown_joints(const Model& model, const Motion& motion) {
+    for (const Term& term : model.terms) {
+        if (!term.effect->other_joint) continue;
+        const auto joint = static_cast<std::size_t>(*term.values[*term.effect->other_joint]);
+        if (joint <= motion.others_deg_s.size() && !motion.others_deg_s[joint - 1].empty()) continue;
+        raise<UsageError>(
+            "{} needs the motion of joint {} of the arm: a log of all joints, and the arm in the model or as "
+            "--arm",
+            term.effect->name, joint);
+    }
+}
+
 // Torque of the terms that bear load; nothing when no effect needs it.
 std::vector<double> load_nm(const Model& model, const Situation& situation) {
     std::vector<double> load;
@@ -176,6 +189,7 @@ void add_joint_torque(const Model& model, const Situation& situation, std::span<
 std::vector<double> evaluate(const Model& model, const Motion& logged, std::span<const double> noise_nm,
                              Chance chance) {
     refuse_missing_values(model);
+    refuse_unknown_joints(model, logged);
     GearRatio ratio = model.gear_ratio;
     const std::optional<Motion> changed = motion_behind(model, logged, ratio);
     const Motion& motion = changed ? *changed : logged;

@@ -23,6 +23,10 @@ inline const Motion& rich_motion() {
         "sine,amplitude=30deg,frequency=0.8Hz,duration=1.5s,phase=0deg"};
     static const Motion motion = [] {
         Motion made = make_motion(specs, Hertz(500.0));
+        // Another joint of an arm, which turns all the time.
+        made.others_deg_s.emplace_back();
+        for (const double t : made.time_s)
+            made.others_deg_s.back().push_back(40.0 * portable::sin_degrees(400.0 * t + 20.0));
         // What a simulation may know of the joint.
         for (const double t : made.time_s)
             made.known_nm.push_back(0.3 + 0.8 * portable::sin_degrees(290.0 * t));
@@ -37,6 +41,7 @@ inline Motion first_part(const Motion& motion, std::size_t count) {
                          &part.known_nm}) {
         column->resize(count);
     }
+    for (auto& column : part.others_deg_s) column.resize(count);
     return part;
 }
 

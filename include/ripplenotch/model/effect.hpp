@@ -24,6 +24,9 @@ struct Motion {
     /// Torque at the joint that is known besides the model's effects: of the user's simulation, of an arm's
     /// rigid bodies. The sensor's effects act on it, and gear and bearings carry it. size() entries, or none.
     std::vector<double> known_nm = {};
+    /// Velocities of the arm's joints in the order of its chain, size() entries each; empty for this joint.
+    /// None where no arm is known.
+    std::vector<std::vector<double>> others_deg_s = {};
     [[nodiscard]] std::size_t size() const { return time_s.size(); }
 };
 
@@ -112,6 +115,8 @@ struct Effect {
     bool linear_in_torque = true;  ///< sensor, converter: acts on a sum as the sum of its actions
     std::optional<std::size_t> ripple_order = std::nullopt;  ///< joint: it is a ripple term, and this
                                                              ///< parameter is its order
+    /// joint: this parameter is the place, from 1, of another joint of the arm on whose motion it depends
+    std::optional<std::size_t> other_joint = std::nullopt;
     /// ripple: from 0.5 on this parameter lets it act on the whole torque, as a sensor's effect does and by
     /// `apply`; see side_of(term)
     std::optional<std::size_t> whole = std::nullopt;

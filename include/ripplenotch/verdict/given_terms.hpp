@@ -79,11 +79,14 @@ class GivenArm {
     /// Columns for the rows of the log that the arm was fitted to, or for those of another one; `log` is
     /// reading() or other().
     [[nodiscard]] GivenTerm term(std::size_t joint, const ArmReading& log);
+    /// Velocities of the joints along reading() or other(), that of `joint` and of those that slide empty.
+    [[nodiscard]] std::vector<std::vector<double>> others_deg_s(std::size_t joint, const ArmReading& log);
     [[nodiscard]] ArmAccount account(std::size_t joint);
     /// The same of an arm whose values are stated, which has no fit.
     [[nodiscard]] ArmAccount stated_account(std::size_t joint, Seconds smoothing) const;
 
   private:
+    [[nodiscard]] const std::vector<Motion>& motions(const ArmReading& log, Seconds smoothing);
     ArmSource option_;
     std::optional<Seconds> smoothing_;
     std::size_t max_rows_;
@@ -134,6 +137,8 @@ struct GivenTerms {
     std::optional<SimulatedTerm> simulated;  ///< as stated
     /// The simulation's own motion at the rows of the log; empty where it has none.
     std::vector<double> simulated_velocity_deg_s, simulated_position_deg;
+    /// Velocities of the arm's joints at the rows of each log, as Motion has them.
+    std::vector<std::vector<double>> others_deg_s, validation_others_deg_s;
     std::optional<StatedArm> arm;          ///< as stated, or as --arm has it
     std::optional<ArmAccount> account;     ///< of the arm
     std::optional<MapFit> ripple;          ///< as stated, or as it is found with the arm
@@ -180,12 +185,16 @@ void take_joint_of(const ModelWithGiven& model, std::optional<std::string>& join
 
 // What is given of a log's torque where nothing is left to be fitted: for commands that predict a torque.
 
+/// What a Motion has of an arm and a simulation; empty where nothing is given.
+struct KnownAlong {
+    std::vector<double> known_nm;
+    std::vector<std::vector<double>> others_deg_s;
+};
+
 /// The sum of what the model and the options state; rows of the log that it does not span are taken out.
-/// Nothing given: empty. Throws UsageError for a value that is still to be fitted, and what GivenSource
-/// throws.
-[[nodiscard]] std::vector<double> stated_torque_along(const GivenOptions& options,
-                                                      const ModelWithGiven& model, const ReadOptions& reading,
-                                                      const GivenLog& log);
+/// Throws UsageError for a value that is still to be fitted, and what GivenSource throws.
+[[nodiscard]] KnownAlong stated_along(const GivenOptions& options, const ModelWithGiven& model,
+                                      const ReadOptions& reading, const GivenLog& log);
 
 // --residual and --simulated of commands that look for ripple: in measured less predicted torque, where what
 // the model knows is gone.

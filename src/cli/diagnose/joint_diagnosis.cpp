@@ -47,6 +47,7 @@ Motion motion_of(const DiagnoseRequest& request, const JointDiagnosis& one) {
     Motion motion = motion_along(one.log.trace.view(), request.smoothing);
     const std::vector<double>& beside = one.diagnosis.beside_given_nm;
     if (beside.empty()) return motion;
+    motion.others_deg_s = one.given.others_deg_s;
     motion.known_nm = one.log.trace.torque_nm;
     for (std::size_t k = 0; k < beside.size(); ++k) motion.known_nm[k] -= beside[k];
     return motion;
@@ -362,6 +363,8 @@ Diagnosis diagnosed(const DiagnoseRequest& request, Model model, const JointDiag
              .accept = request.accept,
              .given = one.given.log,
              .validation_given = one.given.validation,
+             .others_deg_s = one.given.others_deg_s,
+             .validation_others_deg_s = one.given.validation_others_deg_s,
              .found_ripple = ripple,
              .simulated_velocity_deg_s = one.given.simulated_velocity_deg_s,
              .simulated_position_deg = one.given.simulated_position_deg,

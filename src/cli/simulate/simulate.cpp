@@ -152,11 +152,11 @@ Course course_of(const SimulateOptions& options, const ModelWithGiven& model) {
     take_joint_of(model, reading.joint);
     Log log = read_log(options.log, reading);
     say_layout(options.common, log.layout);
-    std::vector<double> known_nm =
-        stated_torque_along({options.simulated, std::nullopt}, model, reading, {options.log, log});
+    KnownAlong known = stated_along({options.simulated, std::nullopt}, model, reading, {options.log, log});
     say_warnings(options.common, log.recording.warnings);
     Motion motion = motion_along(log.trace.view(), options.smoothing);
-    motion.known_nm = std::move(known_nm);
+    motion.known_nm = std::move(known.known_nm);
+    motion.others_deg_s = std::move(known.others_deg_s);
     return {std::move(motion),
             log.trace.velocity_deg_s,
             log.trace.torque_nm,

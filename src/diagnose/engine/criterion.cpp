@@ -311,7 +311,10 @@ const LinearFit& Criterion::fit(const SearchedTerms& given) {
             base_.states(effect.name) ||
             (base_.is_simulated && (effect.name == "coulomb-friction" || effect.name == "viscous-friction"));
         if (!effect.resists || may_drive) continue;
-        if (found.factors[static_cast<Index>(made.first_of_term[i])] < 0.0) found.is_physical = false;
+        std::size_t column = made.first_of_term[i];
+        for (const Parameter& parameter : effect.parameters)
+            if (parameter.linear && found.factors[static_cast<Index>(column++)] < 0.0)
+                found.is_physical = false;
     }
     if (!found.is_physical) found.squares = refused_squares;
     return found;

@@ -97,6 +97,7 @@ Result searched(const Input& input) {
     good.resize(input.log.size(), 1);
     if (input.is_good_row.empty()) result.faults = find_converter_faults(input.log.torque_nm, good);
     recorded.mark_spoiled_rows(good);
+    recorded.set_others(input.others_deg_s);
     const KnownSide known{&input.model, input.given_terms, input.simulation.has_value(),
                           input.simulation && input.simulation->is_scale_known};
     Prepared prepared = prepare(recorded, known, result.faults);
@@ -188,8 +189,8 @@ Result find_missing_effects(const Input& input) {
     const bool has_ripple = std::ranges::any_of(
         input.model.terms, [](const Term& term) { return bool(term.effect->ripple_order); });
     if (ripples.empty() || has_ripple) return result;
-    Input again{input.log,         with_ripple,   input.simulation,
-                input.given_terms, input.without, input.is_good_row};
+    Input again{input.log,          with_ripple,   input.simulation, input.given_terms,
+                input.others_deg_s, input.without, input.is_good_row};
     Result second = searched(again);
     if (std::ranges::none_of(second.terms, follows_ripple)) return result;
     second.terms.insert(second.terms.begin(), ripples.begin(), ripples.end());

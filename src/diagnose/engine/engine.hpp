@@ -25,6 +25,8 @@ struct Input {
     std::optional<Simulation> simulation = {};
     /// Known torque with priors, a column per value and an entry per row of the log: an arm's rigid bodies.
     std::span<const GivenTerm> given_terms = {};
+    /// Velocities of the arm's joints, an entry per row of the log: see Motion.
+    std::span<const std::vector<double>> others_deg_s = {};
     std::span<const std::string> without = {};  ///< names of effects that are not tried
     /// Of each row: 0 where it does not hold the joint's torque; empty: that is found in the torque itself.
     std::span<const unsigned char> is_good_row = {};

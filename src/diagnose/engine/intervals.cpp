@@ -82,6 +82,7 @@ Linearised::Linearised(Criterion& criterion, const SearchedTerms& sorted)
     searched_places_.resize(sorted.size());
     for (std::size_t t = 0; t < sorted.size(); ++t) {
         for (std::size_t v = 0; v < sorted[t].kind->searched.size(); ++v) {
+            if (sorted[t].kind->searched[v].is_choice) continue;
             searched_places_[t][v] = design_.columns.size() + slopes.size();
             const double step = 1e-3 * std::max(std::abs(sorted[t].values[v]), 1e-3);
             SearchedTerms less = sorted, more = sorted;
@@ -231,6 +232,10 @@ std::vector<ValuedTerm> valued_terms(Criterion& criterion, const SearchedTerms& 
         std::vector<Derived> values =
             linear_values(term, fit, fit.design().first_of_term[t], base.columns.size(), base.orders.size());
         for (std::size_t v = 0; v < term.kind->searched.size(); ++v) {
+            if (term.kind->searched[v].is_choice) {
+                valued.term.values[term.kind->searched[v].parameter] = term.values[v];
+                continue;
+            }
             Derived searched{
                 term.kind->searched[v].parameter, term.values[v], {{fit.searched_place(t, v), 1.0}}};
             if (term.is("gear-ratio")) {
@@ -258,9 +263,23 @@ std::vector<ValuedTerm> valued_terms(Criterion& criterion, const SearchedTerms& 
     return found;
 }
 
+namespace {
+
+// Student's t of nineteen degrees of freedom at 0.05 / 70: the best is taken of five other joints at fourteen
+// ratios each. At 0.05 a shoulder and an elbow that share nothing were told 0.42 +/- 0.41.
+constexpr double shared_ratio_errors = 4.0;
+
+}  // namespace
+
 bool may_be_absent(const ValuedTerm& valued) {
     const std::vector<Parameter>& parameters = valued.term.effect->parameters;
     const bool has_factor = std::ranges::any_of(parameters, &Parameter::linear);
+    // Where the other joint's share may be none, nothing is shared.
+    if (valued.term.effect->other_joint && std::ranges::any_of(valued.values, [&](const FittedValue& value) {
+            return parameters[value.parameter].name == "ratio" &&
+                   std::abs(value.value) < shared_ratio_errors * *value.standard_error;
+        }))
+        return true;
     return std::ranges::all_of(valued.values, [&](const FittedValue& value) {
         const Parameter& parameter = parameters[value.parameter];
         if (has_factor ? !parameter.linear : &value != &valued.values.front()) return true;
@@ -279,9 +298,10 @@ SearchedTerms polished(Criterion& criterion, const SearchedTerms& terms) {
             const auto t = static_cast<std::size_t>(std::ranges::find(sorted, term) - sorted.begin());
             for (std::size_t v = 0; v < term.kind->searched.size() && term.kind->is_refined; ++v) {
                 const SearchedValue& bounds = term.kind->searched[v];
+                if (bounds.is_choice || std::abs(term.values[v]) == bounds.plain) continue;
                 const double value = term.values[v] + fit.searched_step(t, v);
                 const double upper = bounds.upper * width_scale(*term.kind, bounds, criterion.recorded());
-                const bool is_within = bounds.lower < value && value < upper;
+                const bool is_within = bounds.lower < std::abs(value) && std::abs(value) < upper;
                 if (is_within || term.kind->role == Role::motor_angle) term.values[v] = value;
             }
         }

@@ -266,6 +266,12 @@ void RecordedMotion::remove_velocity_bias(double bias_deg_s) {
         raw_position_deg_[k] -= bias_deg_s * (motion_.time_s[k] - motion_.time_s.front());
 }
 
+void RecordedMotion::set_others(std::span<const std::vector<double>> per_row_deg_s) {
+    motion_.others_deg_s.clear();
+    for (const auto& one : per_row_deg_s)
+        motion_.others_deg_s.push_back(one.empty() ? std::vector<double>{} : on_clock(one));
+}
+
 void RecordedMotion::exclude(std::size_t first, std::size_t count) {
     std::fill_n(recorded_.begin() + static_cast<std::ptrdiff_t>(first), count, 0);
 }

@@ -47,6 +47,8 @@ class RecordedMotion {
 
     /// Derives motion, moved simulation and usable samples with a smoothing window of this length.
     void smooth(double window_s);
+    /// Velocities of the arm's joints, an entry per row of the log, for motion().
+    void set_others(std::span<const std::vector<double>> per_row_deg_s);
     /// Takes an error of the velocity out of the positions that are its integral; with the next smooth().
     void remove_velocity_bias(double bias_deg_s);
     [[nodiscard]] double removed_bias_deg_s() const { return removed_bias_deg_s_; }

@@ -67,6 +67,7 @@ SearchedTerms refined(Criterion& criterion, SearchedTerms terms, std::size_t pla
     for (int sweep = 0; sweep < sweeps; ++sweep) {
         for (std::size_t value = 0; value < kind.searched.size(); ++value) {
             SearchedValue bounds = kind.searched[value];
+            if (bounds.is_choice) continue;
             bounds.upper *= width_scale(kind, bounds, criterion.recorded());
             search.value = value;
             if (is_delay) {
@@ -85,8 +86,9 @@ SearchedTerms refined(Criterion& criterion, SearchedTerms terms, std::size_t pla
                 continue;
             }
             search.run(5, 0.35, shrink, [&](double from, double by) {
-                return std::optional(
-                    rounded(std::clamp(from * portable::exp(by), bounds.lower, bounds.upper), 5));
+                const double size =
+                    std::clamp(std::abs(from) * portable::exp(by), bounds.lower, bounds.upper);
+                return std::optional(rounded(std::copysign(size, from), 5));
             });
         }
     }

@@ -71,14 +71,26 @@ double t_value(const std::vector<double>& values) {
     return sum(values) / (std::sqrt(squares / std::max(count - 1.0, 1.0) * count) + 1e-300);
 }
 
-// A transform, a ratio or a ripple changes what the saturated regression can explain.
+// A transform, a ratio, a ripple or the motion of another joint changes what the saturated regression can
+// explain.
 bool changes_noise(const SearchedTerm& term) {
     return term.is_transform() || term.kind->role == Role::motor_angle || term.is("ripple") ||
-           term.is("start-stop-ringing");
+           term.is("start-stop-ringing") || term.kind->effect->other_joint;
 }
 
 bool has_sensor(const SearchedTerms& terms) {
     return std::ranges::any_of(terms, [](const SearchedTerm& t) { return t.kind->role == Role::sensor; });
+}
+
+// The best of several valleys, which may be another one beside the terms that were adopted since.
+bool has_choice(const SearchedTerm& term) {
+    return std::ranges::any_of(term.kind->searched, &SearchedValue::is_choice);
+}
+
+bool has_plain_size(const SearchedTerm& term) {
+    for (std::size_t v = 0; v < term.kind->searched.size(); ++v)
+        if (std::abs(term.values[v]) == term.kind->searched[v].plain) return true;
+    return false;
 }
 
 bool is_at_bound(const SearchedTerm& term, const RecordedMotion& recorded) {
@@ -89,6 +101,7 @@ bool is_at_bound(const SearchedTerm& term, const RecordedMotion& recorded) {
     for (std::size_t i = 0; i < term.kind->searched.size(); ++i) {
         const double size = std::abs(term.values[i]);
         const SearchedValue& bounds = term.kind->searched[i];
+        if (bounds.is_choice) continue;
         const double upper = bounds.upper * width_scale(*term.kind, bounds, recorded);
         if (size <= bounds.lower * 1.02 || size >= upper * 0.98) return true;
     }
@@ -109,6 +122,22 @@ SearchedTerms with(SearchedTerms terms, const SearchedTerm& more) {
 SearchedTerms without_place(SearchedTerms terms, std::size_t place) {
     terms.erase(terms.begin() + static_cast<std::ptrdiff_t>(place));
     return terms;
+}
+
+}  // namespace
+
+namespace {
+
+// With the plain size of a searched value of the newest term, where it reaches nearly as much.
+SearchedTerms plainer(Criterion& criterion, const SearchedTerms& fewer, const SearchedTerms& longer) {
+    const double before = criterion.cost(fewer);
+    SearchedTerms plain = longer;
+    for (std::size_t v = 0; v < plain.back().kind->searched.size(); ++v)
+        if (const double size = plain.back().kind->searched[v].plain; size > 0.0)
+            plain.back().values[v] = std::copysign(size, plain.back().values[v]);
+    const bool is_as_good =
+        before - criterion.cost(plain) > plain_ratio_share * (before - criterion.cost(longer));
+    return is_as_good ? plain : longer;
 }
 
 }  // namespace
@@ -289,6 +318,7 @@ bool Search::may_be_missing(const TermKind& kind, const SearchedTerms& terms) co
     const bool needs_ripple = kind.role == Role::ripple_change || kind.role == Role::motor_angle;
     if (needs_ripple && (base_.orders.empty() || base_.ratio.value() <= 0.0)) return false;
     if (kind.role == Role::sensor) return !has_sensor(terms);
+    if (kind.effect->other_joint && recorded_.motion().others_deg_s.empty()) return false;
     if (name == "simulation-scale") return !base_.known_nm.empty() && base_.is_scale_known;
     // Once it is removed from the motion it is not searched again.
     if (name == "velocity-bias")
@@ -321,6 +351,13 @@ std::vector<SearchedTerm> Search::begins(const TermKind& kind, const SearchedTer
         for (int part = 0; part <= payload_parts; ++part) {
             const double time_s = rounded(duration_s * (0.05 + 0.9 * part / payload_parts), 5);
             if (moves_both_ways_about(time_s)) found.push_back({&kind, {time_s, 0.0}});
+        }
+    } else if (kind.effect->other_joint) {
+        const auto& others = recorded_.motion().others_deg_s;
+        for (std::size_t joint = 0; joint < others.size(); ++joint) {
+            if (std::ranges::all_of(others[joint], [](double v) { return v == 0.0; })) continue;
+            for (const double ratio : kind.searched[1].grid)
+                found.push_back({&kind, {static_cast<double>(joint + 1), ratio}});
         }
     } else if (name == "velocity-bias") {
         const double step = bias_step_deg_s(recorded_, base_);
@@ -409,7 +446,8 @@ std::vector<SearchedTerms> Search::extensions(Criterion& criterion, const Search
     if (may_delay) candidates.push_back({{&term_kind("delay"), {smallest_delay_s, 0.0}}, 0.0});
     std::vector<SearchedTerms> found;
     for (const Candidate& candidate : candidates)
-        found.push_back(refined(criterion, with(terms, candidate.term), terms.size()));
+        found.push_back(
+            plainer(criterion, terms, refined(criterion, with(terms, candidate.term), terms.size())));
     std::ranges::stable_sort(found, [&](const SearchedTerms& a, const SearchedTerms& b) {
         return criterion.cost(a) < criterion.cost(b);
     });
@@ -470,6 +508,31 @@ SearchState Search::with_new_noise(const SearchState& state) const {
     return {state.terms, std::make_shared<Criterion>(recorded_, base_, std::move(noise))};
 }
 
+// Friction of this joint alone can be taken for one that it shares at another ratio than the plain one: both
+// are tried at once.
+std::optional<SearchedTerms> Search::with_own_friction(Criterion& criterion, const SearchedTerms& terms,
+                                                       std::size_t shared) const {
+    const TermKind& own = term_kind("coulomb-friction");
+    if (!has_choice(terms[shared]) || has_plain_size(terms[shared]) || !may_be_missing(own, terms) ||
+        is_left_out(own))
+        return std::nullopt;
+    const auto best = [&](const SearchedTerms& fewer, const TermKind& kind) {
+        std::optional<SearchedTerms> found;
+        for (const SearchedTerm& begin : begins(kind, fewer)) {
+            const SearchedTerms longer = with(fewer, begin);
+            if (!found || criterion.fit(longer).squares < criterion.fit(*found).squares) found = longer;
+        }
+        return plainer(criterion, fewer, refined(criterion, *found, fewer.size()));
+    };
+    const SearchedTerms fewer = without_place(terms, shared);
+    SearchedTerms both = best(best(fewer, own), *terms[shared].kind);
+    const SearchedTerms alone = without_place(both, fewer.size());
+    if (criterion.cost(both) >= criterion.cost(terms) - least_reduction ||
+        !admission(criterion, alone, both).is_admissible)
+        return std::nullopt;
+    return both;
+}
+
 // What is needless goes, what is better comes in its place.
 void Search::exchange(SearchState& state, std::vector<SearchedTerms>& seen) const {
     Criterion& criterion = *state.criterion;
@@ -489,13 +552,16 @@ void Search::exchange(SearchState& state, std::vector<SearchedTerms>& seen) cons
             if (!admission(criterion, fewer, terms).is_admissible) offer(fewer);
         }
         const bool is_all_needed = !best;
+        for (std::size_t i = 0; i < terms.size() && is_all_needed; ++i)
+            if (const auto both = with_own_friction(criterion, terms, i)) offer(*both);
         for (std::size_t i = 0; i < terms.size() && is_all_needed; ++i) {
             const SearchedTerms fewer = without_place(terms, i);
             auto rivals = extensions(criterion, fewer, exchange_finalists);
             rivals.resize(std::min(rivals.size(), tried_of_finalists));
             for (const SearchedTerms& rival : rivals) {
-                if (rival.back().kind == terms[i].kind ||
-                    criterion.cost(rival) >= criterion.cost(terms) - least_reduction ||
+                const bool is_same = rival.back().kind == terms[i].kind;
+                if ((is_same && !has_choice(terms[i])) ||
+                    criterion.cost(rival) >= criterion.cost(terms) - (is_same ? 0.0 : least_reduction) ||
                     !admission(criterion, fewer, rival).is_admissible)
                     continue;
                 if (!is_preferred(criterion, fewer, {terms, terms[i]}, {rival, rival.back()})) offer(rival);

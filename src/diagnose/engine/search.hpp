@@ -78,6 +78,9 @@ class Search {
     void add_lines(Criterion& criterion, const SearchedTerms& terms, std::vector<SearchedTerm>& found) const;
     std::vector<Candidate> ranked(Criterion& criterion, const SearchedTerms& terms) const;
     SearchState path(SearchState state, std::vector<RefusedTerm>& refused) const;
+    [[nodiscard]] std::optional<SearchedTerms> with_own_friction(Criterion& criterion,
+                                                                 const SearchedTerms& terms,
+                                                                 std::size_t shared) const;
     void exchange(SearchState& state, std::vector<SearchedTerms>& seen) const;
     [[nodiscard]] double squares_with_rests(const Criterion& criterion, const SearchedTerms& terms) const;
     [[nodiscard]] SearchState with_new_noise(const SearchState& state) const;

@@ -25,6 +25,7 @@ inline constexpr double dominant_gap_share = 0.4;
 /// A plainer term is preferred if it reaches this share of the other's reduction.
 inline constexpr double plain_delay_share = 0.985;
 inline constexpr double plain_friction_share = 0.96;
+inline constexpr double plain_ratio_share = 0.99;
 
 /// Squares over those of the noise from which paths that begin with other terms compete.
 inline constexpr double much_left = 1.5;

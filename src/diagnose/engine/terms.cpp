@@ -11,7 +11,10 @@ namespace ripplenotch::engine {
 namespace {
 
 constexpr double friction_step_deg_s = 0.5;  // width of the step by which loads and ripples turn over
-constexpr double payload_step_s = 0.5;       // in which the time of a change is refined
+// A ratio decides where the sum of two speeds turns over: it is found with a friction as soft as a robot's
+// and not with a step.
+constexpr double coupled_step_deg_s = 2.0;
+constexpr double payload_step_s = 0.5;  // in which the time of a change is refined
 
 SearchedValue searched(const Effect& effect, std::string_view parameter, double lower, double upper,
                        std::vector<double> grid) {
@@ -53,6 +56,14 @@ std::vector<TermKind> make_term_kinds() {
     search(warm_up, "time_constant_s", 2.0, 200.0, {4.0, 10.0, 25.0});
     assume(warm_up, "width_deg_s", friction_step_deg_s);
     assume(add("load-friction", Role::joint_torque), "width_deg_s", friction_step_deg_s);
+    TermKind& coupled = add("coupled-joint-friction", Role::joint_torque);
+    search(coupled, "joint", 1.0, 100.0, {});
+    coupled.searched.back().is_choice = true;
+    // Nearer to 0 it is the Coulomb friction of this joint alone.
+    search(coupled, "ratio", 0.25, 30.0,
+           {-4.0, -2.0, -1.4, -1.0, -0.7, -0.5, -0.3, 0.3, 0.5, 0.7, 1.0, 1.4, 2.0, 4.0});
+    coupled.searched.back().plain = 1.0;
+    assume(coupled, "width_deg_s", coupled_step_deg_s);
     search(add("coulomb-friction", Role::joint_torque), "width_deg_s", 0.03, 8.0, {0.1, 0.4, 1.5});
     TermKind& stribeck = add("stribeck-friction", Role::joint_torque);
     search(stribeck, "stribeck_speed_deg_s", 0.8, 60.0, {2.0, 5.0, 12.0, 25.0});

@@ -37,6 +37,8 @@ struct SearchedValue {
     double lower = 0.0, upper = 0.0;
     std::vector<double> grid;  ///< where the search begins; empty: at places that the log determines
     double step = 0.0;         ///< of the refinement in the value itself; 0: in its logarithm
+    double plain = 0.0;        ///< size that is taken where it explains nearly as much; 0: none
+    bool is_choice = false;    ///< one of several things: not refined, without a bound or an error
 };
 
 struct TermKind {

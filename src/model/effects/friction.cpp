@@ -258,4 +258,46 @@ const Effect effects::friction_warm_up{
             [&](std::size_t k, double step, double left) { torque_nm[k] += values[0] * step * left; });
     }};
 
+const Effect effects::coupled_joint_friction{
+    .name = "coupled-joint-friction",
+    .summary = "friction of a motor that turns with this joint and another one: of a wrist, of a belt",
+    .equation =
+        "torque = torque_nm * tanh((v + ratio * v_joint) / width_deg_s) + coefficient_nm_per_deg_s * ratio * "
+        "v_joint; what the coefficient makes of v is viscous-friction",
+    .symptom = "a residual that turns over where another joint reverses, and changes with its speed",
+    .look_alikes = {{"coulomb-friction", "the other joint rests or moves with this one",
+                     "this joint in steady motion while the other one reverses"},
+                    {"friction-warm-up", "the other joint moves in a part of the log",
+                     "the other joint moves early and late in the log"},
+                    {"hysteresis", "both joints reverse together",
+                     "this joint in steady motion while the other one reverses"}},
+    .source =
+        "Staubli's wrists, whose axes 5 and 6 share a motor's friction: Gautier and Khalil, in FIGAROH's "
+        "TX40",
+    .domain = Domain::speed,
+    .parameters = {linear("torque_nm", "Nm", "its Coulomb friction, as this joint bears it", {0.5, 0.0, 1e5}),
+                   linear("coefficient_nm_per_deg_s", "Nm/(deg/s)",
+                          "its viscous friction, as this joint bears it", {0.005, 0.0, 1e4}),
+                   refused(plain("joint", "", "place of the other joint in the arm, from 1",
+                                 {1.0, 1.0, 100.0, 1.0})),
+                   plain("ratio", "",
+                         "turns of the motor for a turn of the other joint, over those for one of this",
+                         {1.0, -100.0, 100.0, 1.0}),
+                   width_parameter()},
+    .resists = true,
+    .other_joint = 2,
+    .apply = [](const Situation& situation, Values values, Torques torque_nm) {
+        const Motion& motion = situation.motion;
+        const auto joint = static_cast<std::size_t>(values[2]) - 1;
+        const bool is_known = joint < motion.others_deg_s.size() && !motion.others_deg_s[joint].empty();
+        const auto other = [&](std::size_t k) {
+            return is_known ? values[3] * motion.others_deg_s[joint][k] : 0.0;
+        };
+        with_values(
+            torque_nm.size(),
+            [&](std::size_t k) { return (motion.velocity_deg_s[k] + other(k)) / values[4]; },
+            portable::many_tanh,
+            [&](std::size_t k, double step) { torque_nm[k] += values[0] * step + values[1] * other(k); });
+    }};
+
 }  // namespace ripplenotch

@@ -272,9 +272,22 @@ MapFit GivenArm::ripple(std::size_t joint, GearRatio ratio) {
 GivenTerm GivenArm::term(std::size_t joint, const ArmReading& log) {
     const ArmFit& found = fit(joint);
     const ArmLog view = log.view();
-    std::vector<Motion>& motions = motions_[{&log, found.smoothing.value()}];
-    if (motions.empty()) motions = arm_motions(view, found.smoothing);
-    return arm_term(chain(), found, view, joint, ArmKnowledge::other_joints, {}, motions);
+    return arm_term(chain(), found, view, joint, ArmKnowledge::other_joints, {},
+                    motions(log, found.smoothing));
+}
+
+const std::vector<Motion>& GivenArm::motions(const ArmReading& log, Seconds smoothing) {
+    std::vector<Motion>& found = motions_[{&log, smoothing.value()}];
+    if (found.empty()) found = arm_motions(log.view(), smoothing);
+    return found;
+}
+
+std::vector<std::vector<double>> GivenArm::others_deg_s(std::size_t joint, const ArmReading& log) {
+    std::vector<std::vector<double>> velocities(chain().size());
+    for (std::size_t j = 0; j < velocities.size(); ++j)
+        if (j != joint && chain().joints[j].kind == JointKind::revolute)
+            velocities[j] = motions(log, default_smoothing)[j].velocity_deg_s;
+    return velocities;
 }
 
 ArmAccount GivenArm::stated_account(std::size_t joint, Seconds smoothing) const {

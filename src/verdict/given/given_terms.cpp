@@ -35,8 +35,8 @@ namespace {
 constexpr std::string_view arm_name = "arm", ripple_name = "ripple",
                            once = "arm: standard input cannot be read twice; give the log as a file";
 
-// The term's rows that the log still has; both are in order of time and come from one file.
-GivenTerm at_rows_of(const Log& log, const Log& whole, GivenTerm term) {
+// The rows of columns that the log still has; both are in order of time and come from one file.
+void keep_rows_of(const Log& log, const Log& whole, std::vector<std::vector<double>>& columns) {
     const std::vector<double>& kept_s = log.trace.time_s;
     std::vector<std::size_t> rows;
     for (std::size_t k = 0; k < whole.trace.size() && rows.size() < kept_s.size(); ++k) {
@@ -45,12 +45,17 @@ GivenTerm at_rows_of(const Log& log, const Log& whole, GivenTerm term) {
     if (rows.size() != kept_s.size())
         raise<DataError>("arm: {} of {} rows of {} are not among those of all joints",
                          kept_s.size() - rows.size(), kept_s.size(), log.layout.source);
-    for (std::vector<double>& column : term.torque_nm) {
+    for (std::vector<double>& column : columns) {
+        if (column.empty()) continue;
         std::vector<double> kept;
         kept.reserve(rows.size());
         for (const std::size_t row : rows) kept.push_back(column[row]);
         column = std::move(kept);
     }
+}
+
+GivenTerm at_rows_of(const Log& log, const Log& whole, GivenTerm term) {
+    keep_rows_of(log, whole, term.torque_nm);
     return term;
 }
 
@@ -75,10 +80,13 @@ bool holds_ripple(const MapFit& fit) {
     return fit.doubt.empty() && (!fit.map.orders.empty() || !fit.map.others.empty());
 }
 
-// The terms of an arm along one log: its torque, and that of the ripple.
-void add_arm_terms(std::vector<GivenTerm>& terms, GivenArm& arm, const GivenTerms& stated,
-                   const ArmReading& reading, const Log& log, std::size_t joint) {
+// The terms of an arm along one log, its torque and that of the ripple; and the motion of its joints.
+void add_arm_terms(std::vector<GivenTerm>& terms, std::vector<std::vector<double>>& others_deg_s,
+                   GivenArm& arm, const GivenTerms& stated, const ArmReading& reading, const Log& log,
+                   std::size_t joint) {
     const Log& whole = reading.logs[joint];
+    others_deg_s = arm.others_deg_s(joint, reading);
+    keep_rows_of(log, whole, others_deg_s);
     const std::optional<ArmValues>& values = stated.arm->values;
     GivenTerm term = values
                          ? stated_term(arm_name, stated_torque(arm.chain(), *values, *stated.arm->smoothing,
@@ -204,10 +212,10 @@ void GivenSource::add_arm(GivenTerms& terms, const ModelWithGiven& stated, const
             if (!holds_ripple(*terms.ripple)) terms.ripple.reset();
         }
     }
-    add_arm_terms(terms.log, *given, terms, given->reading(), log.log, joint);
+    add_arm_terms(terms.log, terms.others_deg_s, *given, terms, given->reading(), log.log, joint);
     if (validation == nullptr) return;
-    add_arm_terms(terms.validation, *given, terms, given->other(validation->path, reading), validation->log,
-                  joint);
+    add_arm_terms(terms.validation, terms.validation_others_deg_s, *given, terms,
+                  given->other(validation->path, reading), validation->log, joint);
 }
 
 namespace {
@@ -283,16 +291,16 @@ ModelWithGiven improved_model(const GivenTerms& given, const Diagnosis& diagnosi
     return model;
 }
 
-std::vector<double> stated_torque_along(const GivenOptions& options, const ModelWithGiven& model,
-                                        const ReadOptions& reading, const GivenLog& log) {
+KnownAlong stated_along(const GivenOptions& options, const ModelWithGiven& model, const ReadOptions& reading,
+                        const GivenLog& log) {
     if (!options.any() && !model.any_given()) return {};
     GivenSource source(options);
-    const GivenTerms given = source.read(model, reading, log, nullptr);
+    GivenTerms given = source.read(model, reading, log, nullptr);
     if (given.fitted_arm)
         raise<UsageError>(
             "the model does not state arm.links; give the value, or fit it to a log first: diagnose "
             "--improved-model");
-    return known_torque_nm(given.log, log.log.trace.size());
+    return {known_torque_nm(given.log, log.log.trace.size()), std::move(given.others_deg_s)};
 }
 
 namespace {
@@ -320,6 +328,7 @@ std::vector<double> predicted_torque(const ResidualOptions& residual, const Mode
     GivenOptions options;
     if (residual.simulated) options.simulated = with_joint(*residual.simulated, log.log.trace.joint);
     std::vector<GivenTerm> terms;
+    std::vector<std::vector<double>> others_deg_s;
     if (options.any() || model.any_given()) {
         GivenTerms given = GivenSource(options).read(model, reading, log, nullptr);
         if (given.fitted_arm)
@@ -328,9 +337,11 @@ std::vector<double> predicted_torque(const ResidualOptions& residual, const Mode
                 *residual.model);
         settle_simulation(given.log, log.log.trace);
         terms = std::move(given.log);
+        others_deg_s = std::move(given.others_deg_s);
     }
     Motion motion = motion_along(log.log.trace.view(), default_smoothing);
     motion.known_nm = known_torque_nm(terms, log.log.trace.size());
+    motion.others_deg_s = std::move(others_deg_s);
     return predict_nm(model.model, motion);
 }
 
