@@ -225,6 +225,7 @@ class ColumnsInRange final : public Columns, public RowsInRange {
         : Columns(whole->columns().name(), whole->columns().info()),
           RowsInRange(options, whole->layout(), 0),
           whole_(std::move(whole)) {}
+    void keep(std::vector<bool> wanted) override { whole_->keep(std::move(wanted)); }
     std::size_t next(std::size_t /*rows*/, NumberRows& into, std::string& bytes) override {
         const std::size_t before = kept();
         while (kept() == before && add_rows(into, bytes)) {
@@ -242,11 +243,6 @@ class ColumnsInRange final : public Columns, public RowsInRange {
     [[nodiscard]] std::size_t row_bytes() const override { return base().row_bytes(); }
 
   private:
-    void chosen() override {
-        std::vector<bool> kept(info().size());
-        for (std::size_t c = 0; c < kept.size(); ++c) kept[c] = wanted(c);
-        whole_->keep(std::move(kept));
-    }
     /// The next of the log, as far as they are inside; false when there are none left.
     bool add_rows(NumberRows& into, std::string& bytes) {
         const std::size_t count = whole_->take(numbers_, bytes_);

@@ -75,12 +75,12 @@ bool same_numbers(const StoredArray& one, const StoredArray& other) {
     if (one.type.kind != other.type.kind || one.type.size != other.type.size ||
         one.type.big_endian != other.type.big_endian)
         return false;
-    const auto left = one.open(0), right = other.open(0);
+    const NextNumbers left = one.open(0), right = other.open(0);
     for (std::size_t done = 0; done < one.shape.rows; done += compared_at_once) {
         const std::size_t rows = std::min(compared_at_once, one.shape.rows - done);
         ColumnNumbers a, b;
-        left->read(rows, a);
-        right->read(rows, b);
+        left(rows, a);
+        right(rows, b);
         if (a.values != b.values || a.counts != b.counts) return false;
     }
     return true;
@@ -152,13 +152,13 @@ class ArrayColumns final : public Columns {
         : Columns(file->name(), info_of(columns)),
           file_(std::move(file)),
           rows_left_(columns.front().array->shape.rows) {
-        for (const ArrayColumn& column : columns) cursors_.push_back(column.array->open(column.number));
+        for (const ArrayColumn& column : columns) numbers_.push_back(column.array->open(column.number));
     }
     std::size_t next(std::size_t rows, NumberRows& into, std::string& /*bytes*/) override {
         const std::size_t count = std::min(rows, rows_left_);
         rows_left_ -= count;
-        for (std::size_t c = 0; c < cursors_.size(); ++c)
-            if (wanted(c) && count > 0) cursors_[c]->read(count, into[c]);
+        for (std::size_t c = 0; c < numbers_.size(); ++c)
+            if (wanted(c) && count > 0) numbers_[c](count, into[c]);
         if (count > 0 && rows_left_ == 0) file_->require_unchanged();
         return count;
     }
@@ -166,7 +166,7 @@ class ArrayColumns final : public Columns {
   private:
     std::shared_ptr<StoredBytes> file_;
     std::size_t rows_left_;
-    std::vector<std::unique_ptr<ColumnCursor>> cursors_;
+    std::vector<NextNumbers> numbers_;  ///< by column
 };
 
 std::string column_path(const StoredArray& array, std::size_t number, PathStyle style) {

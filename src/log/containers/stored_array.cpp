@@ -140,33 +140,6 @@ class UnpackedPart final : public StoredBytes {
 constexpr std::uint64_t most_columns = 64;
 constexpr std::size_t gathered_at_once = std::size_t{1} << 18;
 
-class StridedCursor final : public ColumnCursor {
-  public:
-    StridedCursor(std::shared_ptr<StoredBytes> bytes, std::uint64_t start, std::uint64_t stride,
-                  NpyField type)
-        : bytes_(std::move(bytes)), at_(start), stride_(stride), type_(std::move(type)) {
-        type_.offset = 0;
-    }
-    void read(std::size_t rows, ColumnNumbers& into) override {
-        const std::size_t at_once = std::max<std::size_t>(1, gathered_at_once / stride_);
-        for (std::size_t done = 0; done < rows;) {
-            const std::size_t count = std::min(at_once, rows - done);
-            span_.resize((count - 1) * stride_ + type_.size);
-            bytes_->read_at(at_, span_.data(), span_.size());
-            load_column(span_.data(), stride_, type_, count, into);
-            at_ += count * stride_;
-            done += count;
-        }
-    }
-
-  private:
-    std::shared_ptr<StoredBytes> bytes_;
-    std::uint64_t at_;
-    std::size_t stride_;
-    NpyField type_;
-    std::string span_;
-};
-
 }  // namespace
 
 std::size_t read_as_far(int descriptor, std::uint64_t offset, char* into, std::size_t size) {
@@ -247,9 +220,21 @@ std::shared_ptr<StoredBytes> unpack_part(std::shared_ptr<StoredBytes> packed, st
     return std::make_shared<UnpackedPart>(std::move(packed), offset, size, kind, most, checksum);
 }
 
-std::unique_ptr<ColumnCursor> strided_cursor(std::shared_ptr<StoredBytes> bytes, std::uint64_t start,
-                                             std::uint64_t stride, NpyField type) {
-    return std::make_unique<StridedCursor>(std::move(bytes), start, stride, std::move(type));
+NextNumbers strided_numbers(std::shared_ptr<StoredBytes> bytes, std::uint64_t start, std::uint64_t stride,
+                            NpyField type) {
+    type.offset = 0;
+    return [bytes = std::move(bytes), at = start, stride, type = std::move(type), span = std::string()](
+               std::size_t rows, ColumnNumbers& into) mutable {
+        const std::size_t at_once = std::max<std::size_t>(1, gathered_at_once / stride);
+        for (std::size_t done = 0; done < rows;) {
+            const std::size_t count = std::min(at_once, rows - done);
+            span.resize((count - 1) * stride + type.size);
+            bytes->read_at(at, span.data(), span.size());
+            load_column(span.data(), stride, type, count, into);
+            at += count * stride;
+            done += count;
+        }
+    };
 }
 
 std::optional<ArrayShape> shape_over_time(const std::vector<std::uint64_t>& dimensions) {

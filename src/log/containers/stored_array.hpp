@@ -95,13 +95,9 @@ void require_checksum(StoredBytes& bytes, std::uint64_t offset, std::uint64_t si
                                                        std::uint64_t most,
                                                        std::optional<std::uint32_t> checksum = {});
 
-/// The numbers of one column, from its first row on.
-class ColumnCursor {
-  public:
-    virtual ~ColumnCursor() = default;
-    /// Appends the next `rows` numbers. Throws DataError where they are not there.
-    virtual void read(std::size_t rows, ColumnNumbers& into) = 0;
-};
+/// Appends the next `rows` numbers of one column, from its first row on. Throws DataError where they are not
+/// there.
+using NextNumbers = std::function<void(std::size_t rows, ColumnNumbers& into)>;
 
 /// An array of one dimension or two as columns over time. The longer side is time.
 struct ArrayShape {
@@ -117,14 +113,13 @@ struct StoredArray {
     ArrayShape shape;
     NpyField type;  ///< of a number; its offset means nothing
     std::string unit;
-    std::function<std::unique_ptr<ColumnCursor>(std::size_t column)> open;
+    std::function<NextNumbers(std::size_t column)> open;
     std::string read_as;  ///< in place of the path, where that says less than the container does
 };
 
 /// Numbers at equal distances in stored bytes.
-[[nodiscard]] std::unique_ptr<ColumnCursor> strided_cursor(std::shared_ptr<StoredBytes> bytes,
-                                                           std::uint64_t start, std::uint64_t stride,
-                                                           NpyField type);
+[[nodiscard]] NextNumbers strided_numbers(std::shared_ptr<StoredBytes> bytes, std::uint64_t start,
+                                          std::uint64_t stride, NpyField type);
 
 /// How a column of a matrix is written.
 enum class PathStyle {

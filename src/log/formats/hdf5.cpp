@@ -144,49 +144,37 @@ std::optional<NpyField> hdf5_number(hid_t type) {
     return field;
 }
 
-/// A column of a dataset of one dimension or two, or one number of an array in every row.
-class DatasetCursor final : public ColumnCursor {
-  public:
-    DatasetCursor(std::shared_ptr<Hdf5File> file, Hdf5Handle dataset, std::string path, Hdf5Memory memory,
-                  std::size_t dimensions, std::size_t time_dimension, std::size_t column)
-        : file_(std::move(file)),
-          dataset_(std::move(dataset)),
-          path_(std::move(path)),
-          memory_(std::move(memory)),
-          dimensions_(dimensions),
-          time_dimension_(time_dimension),
-          column_(column) {}
-    void read(std::size_t rows, ColumnNumbers& into) override {
-        std::vector<hsize_t> start(dimensions_, 0), count(dimensions_, 1);
-        start[time_dimension_] = at_;
-        count[time_dimension_] = rows;
-        if (memory_.count == 1 && dimensions_ == 2) start[1 - time_dimension_] = column_;
-        const Hdf5Handle space(::H5Dget_space(dataset_.id()), ::H5Sclose);
-        const hsize_t length = rows;
-        const Hdf5Handle memory_space(::H5Screate_simple(1, &length, nullptr), ::H5Sclose);
-        ::H5Sselect_hyperslab(space.id(), H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr);
-        const std::size_t size = memory_.field.size;
-        read_.resize(rows * memory_.count * size);
-        if (::H5Dread(dataset_.id(), memory_.type.id(), memory_space.id(), space.id(), H5P_DEFAULT,
-                      read_.data()) < 0) {
-            raise<DataError>(
-                "{}: read row {} of {}, expected {} rows of numbers; the file is cut off or damaged",
-                file_->bytes->name(), at_ + 1, path_, rows);
-        }
-        const std::size_t picked = memory_.count > 1 ? column_ * size : 0;
-        load_column(read_.data() + picked, memory_.count * size, memory_.field, rows, into);
-        at_ += rows;
-    }
-
-  private:
-    std::shared_ptr<Hdf5File> file_;
-    Hdf5Handle dataset_;
-    std::string path_;  ///< of the dataset
-    Hdf5Memory memory_;
-    std::size_t dimensions_, time_dimension_, column_;
-    std::uint64_t at_ = 0;
-    std::string read_;
+/// A dataset of one dimension or two.
+struct Hdf5Dataset {
+    std::shared_ptr<Hdf5File> file;
+    Hdf5Handle dataset;
+    std::string path;
+    Hdf5Memory memory;
+    std::size_t dimensions, time_dimension;
 };
+
+// The numbers of a column, or one number of an array in every row, from row `at` on.
+void read_dataset(const Hdf5Dataset& from, std::size_t column, std::uint64_t at, std::size_t rows,
+                  ColumnNumbers& into) {
+    const Hdf5Memory& memory = from.memory;
+    std::vector<hsize_t> start(from.dimensions, 0), count(from.dimensions, 1);
+    start[from.time_dimension] = at;
+    count[from.time_dimension] = rows;
+    if (memory.count == 1 && from.dimensions == 2) start[1 - from.time_dimension] = column;
+    const Hdf5Handle space(::H5Dget_space(from.dataset.id()), ::H5Sclose);
+    const hsize_t length = rows;
+    const Hdf5Handle memory_space(::H5Screate_simple(1, &length, nullptr), ::H5Sclose);
+    ::H5Sselect_hyperslab(space.id(), H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr);
+    const std::size_t size = memory.field.size;
+    std::string read(rows * memory.count * size, '\0');
+    if (::H5Dread(from.dataset.id(), memory.type.id(), memory_space.id(), space.id(), H5P_DEFAULT,
+                  read.data()) < 0) {
+        raise<DataError>("{}: read row {} of {}, expected {} rows of numbers; the file is cut off or damaged",
+                         from.file->bytes->name(), at + 1, from.path, rows);
+    }
+    const std::size_t picked = memory.count > 1 ? column * size : 0;
+    load_column(read.data() + picked, memory.count * size, memory.field, rows, into);
+}
 
 constexpr std::size_t rows_of_a_chunk = 16384;  // rows
 
@@ -410,10 +398,12 @@ class Hdf5Walk {
         const auto longest = std::ranges::max_element(dimensions);
         const auto time_dimension = static_cast<std::size_t>(longest - dimensions.begin());
         StoredArray array{path, shape, memory.field, unit, {}, ""};
-        array.open = [file = file_, dataset, name, memory, rank = dimensions.size(),
-                      time_dimension](std::size_t column) {
-            return std::make_unique<DatasetCursor>(file, dataset, "/" + name, memory, rank, time_dimension,
-                                                   column);
+        const auto from = std::make_shared<const Hdf5Dataset>(
+            Hdf5Dataset{file_, dataset, "/" + name, memory, dimensions.size(), time_dimension});
+        array.open = [from](std::size_t column) {
+            return [from, column, at = std::uint64_t{0}](std::size_t rows, ColumnNumbers& into) mutable {
+                read_dataset(*from, column, std::exchange(at, at + rows), rows, into);
+            };
         };
         // MATLAB counts dimensions from the other end.
         if (matlab_) array.shape.time_is_first = !array.shape.time_is_first;

@@ -170,54 +170,41 @@ std::int64_t whole_of(const Json& number, double unit) {
                                       : std::llround(value);
 }
 
-class Reader final : public MessageReader {
-  public:
-    Reader(std::shared_ptr<const Program> program, const std::vector<bool>& wanted)
-        : program_(std::move(program)), wanted_(wanted) {}
+const Json* find(const Json& json, const Pointer& at) { return json.contains(at) ? &json.at(at) : nullptr; }
 
-    void read(std::string_view message, std::vector<LeafNumber>& into) override {
-        read(parsed(message), into);
-    }
-    void read(const Json& json, std::vector<LeafNumber>& into) const {
-        for (const Program::List& list : program_->lists)
-            if (const Json* const found = find(json, list.at);
-                found != nullptr && found->is_array() && found->size() > list.elements)
-                refuse_length(list.elements + 1, list.path + " and more", list.elements);
-        for (const Program::Name& name : program_->names)
-            if (const Json* const found = find(json, name.at);
-                found != nullptr && found->is_string() && *found != name.text)
-                refuse_name(found->get<std::string>(), name.path, name.text);
-        for (std::size_t leaf = 0; leaf < program_->leaves.size(); ++leaf)
-            if (wanted_[leaf]) into[leaf] = {};
-        for (const Program::Number& number : program_->numbers) {
-            if (!wanted_[number.leaf]) continue;
-            const Json* const found = find(json, number.at);
-            const bool whole = program_->leaves[number.leaf].type.whole();
-            if (found == nullptr || !(whole ? found->is_number() : is_number(*found)))
-                raise<DataError>(
-                    "no number as {}, expected one as in the first message; record messages of one shape on "
-                    "a topic",
-                    number.path);
-            LeafNumber& leaf = into[number.leaf];
-            if (whole) {
-                if (__builtin_add_overflow(leaf.count, whole_of(*found, number.ns_per_unit.value_or(1.0)),
-                                           &leaf.count))
-                    raise<DataError>("a time that is no number of seconds as {}", number.path);
-                leaf.value = static_cast<double>(leaf.count);
-            } else {
-                leaf.value = found->is_boolean() ? (found->get<bool>() ? 1.0 : 0.0) : found->get<double>();
-            }
+// As ReadMessage does.
+void read_numbers(const Program& program, const Json& json, const std::vector<bool>& wanted,
+                  std::vector<LeafNumber>& into) {
+    for (const Program::List& list : program.lists)
+        if (const Json* const found = find(json, list.at);
+            found != nullptr && found->is_array() && found->size() > list.elements)
+            refuse_length(list.elements + 1, list.path + " and more", list.elements);
+    for (const Program::Name& name : program.names)
+        if (const Json* const found = find(json, name.at);
+            found != nullptr && found->is_string() && *found != name.text)
+            refuse_name(found->get<std::string>(), name.path, name.text);
+    for (std::size_t leaf = 0; leaf < program.leaves.size(); ++leaf)
+        if (wanted[leaf]) into[leaf] = {};
+    for (const Program::Number& number : program.numbers) {
+        if (!wanted[number.leaf]) continue;
+        const Json* const found = find(json, number.at);
+        const bool whole = program.leaves[number.leaf].type.whole();
+        if (found == nullptr || !(whole ? found->is_number() : is_number(*found)))
+            raise<DataError>(
+                "no number as {}, expected one as in the first message; record messages of one shape on a "
+                "topic",
+                number.path);
+        LeafNumber& leaf = into[number.leaf];
+        if (whole) {
+            if (__builtin_add_overflow(leaf.count, whole_of(*found, number.ns_per_unit.value_or(1.0)),
+                                       &leaf.count))
+                raise<DataError>("a time that is no number of seconds as {}", number.path);
+            leaf.value = static_cast<double>(leaf.count);
+        } else {
+            leaf.value = found->is_boolean() ? (found->get<bool>() ? 1.0 : 0.0) : found->get<double>();
         }
     }
-
-  private:
-    static const Json* find(const Json& json, const Pointer& at) {
-        return json.contains(at) ? &json.at(at) : nullptr;
-    }
-
-    std::shared_ptr<const Program> program_;
-    std::vector<bool> wanted_;
-};
+}
 
 bool is_list_of_objects(const Json& json) {
     return json.is_array() && !json.empty() &&
@@ -278,21 +265,20 @@ ColumnLog columns_of_json(const std::string& source, std::string_view text) {
     const std::size_t begin = text.find_first_not_of(" \t\r\n"), end = text.find('\n', begin);
     const std::size_t next = end == std::string_view::npos ? end : text.find_first_not_of(" \t\r\n", end);
     const bool lines = next != std::string_view::npos && text[begin] == '{' && text[next] == '{';
-    std::optional<Reader> reader;
+    std::optional<Program> program;
     std::vector<LeafNumber> numbers_of_row;
     std::vector<ColumnInfo> info;
     NumberRows numbers;
     std::size_t row = 0;
     const auto add_row = [&](const Json& object) {
-        if (!reader) {
-            const auto program = std::make_shared<const Program>(std::move(JsonLayOut(object).program));
+        if (!program) {
+            program = std::move(JsonLayOut(object).program);
             for (const MessageLeaf& leaf : program->leaves)
                 info.push_back({leaf.path, leaf.read_as, leaf.stamp ? "ns" : "", leaf.type.whole(), true});
             numbers_of_row.resize(info.size());
             numbers.resize(info.size());
-            reader.emplace(program, std::vector<bool>(info.size(), true));
         }
-        reader->read(object, numbers_of_row);
+        read_numbers(*program, object, std::vector<bool>(info.size(), true), numbers_of_row);
         for (std::size_t c = 0; c < info.size(); ++c) {
             numbers[c].values.push_back(numbers_of_row[c].value);
             if (info[c].whole) numbers[c].counts.push_back(numbers_of_row[c].count);
@@ -353,8 +339,9 @@ ColumnLog make_json(std::unique_ptr<ByteSource> source, std::string text, const 
 
 MessageLayout lay_out_json(std::string_view first) {
     const auto program = std::make_shared<const Program>(std::move(JsonLayOut(parsed(first)).program));
-    return {program->leaves, [program](const std::vector<bool>& wanted) -> std::unique_ptr<MessageReader> {
-                return std::make_unique<Reader>(program, wanted);
+    return {program->leaves, [program](std::string_view message, const std::vector<bool>& wanted,
+                                       std::vector<LeafNumber>& into) {
+                read_numbers(*program, parsed(message), wanted, into);
             }};
 }
 

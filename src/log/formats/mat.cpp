@@ -340,8 +340,8 @@ class MatWalk {
         array.open = [bytes, own = *shape, type = array.type, start = numbers.data](std::size_t column) {
             // A matrix is stored column by column.
             const bool together = own.vector || own.time_is_first;
-            return strided_cursor(bytes, start + column * type.size * (together ? own.rows : 1),
-                                  type.size * (together ? 1 : own.columns), type);
+            return strided_numbers(bytes, start + column * type.size * (together ? own.rows : 1),
+                                   type.size * (together ? 1 : own.columns), type);
         };
         arrays.push_back(std::move(array));
     }

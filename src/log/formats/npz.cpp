@@ -148,7 +148,7 @@ void add_arrays(const ZipMember& member, const std::string& name, const NpyHeade
             array.open = [bytes = member.bytes, from = start + field.offset, stride = header.record_size,
                           field, check](std::size_t) {
                 check();
-                return strided_cursor(bytes, from, stride, field);
+                return strided_numbers(bytes, from, stride, field);
             };
             arrays.push_back(std::move(array));
         }
@@ -160,8 +160,8 @@ void add_arrays(const ZipMember& member, const std::string& name, const NpyHeade
     array.open = [bytes = member.bytes, start, type, together = header.by_columns, rows = header.rows,
                   record = header.record_size, check = checked_once(member)](std::size_t c) {
         check();
-        return strided_cursor(bytes, start + c * type.size * (together ? rows : 1),
-                              together ? type.size : record, type);
+        return strided_numbers(bytes, start + c * type.size * (together ? rows : 1),
+                               together ? type.size : record, type);
     };
     arrays.push_back(std::move(array));
 }

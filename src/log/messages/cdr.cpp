@@ -405,24 +405,6 @@ class CdrWalk {
     const std::vector<std::string>* names_ = nullptr;  ///< of joints, in the record that is laid out
 };
 
-class CdrReader final : public MessageReader {
-  public:
-    CdrReader(std::shared_ptr<const CdrShape> shape, const std::vector<bool>& wanted)
-        : shape_(std::move(shape)), wanted_(wanted) {
-        const auto lists =
-            std::ranges::count_if(shape_->lists, [](const auto& list) { return !!list.length; });
-        useful_ = static_cast<std::size_t>(lists + std::ranges::count(wanted_, true));
-    }
-    void read(std::string_view message, std::vector<LeafNumber>& into) override {
-        CdrWalk(message, *shape_, useful_, wanted_, into).record(shape_->type, "");
-    }
-
-  private:
-    std::shared_ptr<const CdrShape> shape_;
-    std::vector<bool> wanted_;  ///< by leaf
-    std::size_t useful_;
-};
-
 }  // namespace
 
 std::string_view known_ros_schema(std::string_view type) {
@@ -436,8 +418,11 @@ MessageLayout lay_out_cdr(std::string_view schema, const std::string& name, std:
     const auto shape = std::make_shared<CdrShape>();
     shape->type = parse_ros_schema(schema, name);
     CdrWalk(message, *shape).record(shape->type, "");
-    return {shape->leaves, [shape](const std::vector<bool>& wanted) -> std::unique_ptr<MessageReader> {
-                return std::make_unique<CdrReader>(shape, wanted);
+    const auto lists = std::ranges::count_if(shape->lists, [](const auto& list) { return !!list.length; });
+    return {shape->leaves, [shape, lists](std::string_view next, const std::vector<bool>& wanted,
+                                          std::vector<LeafNumber>& into) {
+                const auto useful = static_cast<std::size_t>(lists + std::ranges::count(wanted, true));
+                CdrWalk(next, *shape, useful, wanted, into).record(shape->type, "");
             }};
 }
 

@@ -51,16 +51,18 @@ class MessageColumns final : public Columns {
           leaf_of_(leaves_of(layout_, header_clock)),
           row_(layout_.leaves.size() + 1) {
         source_->restart({channel});
-        chosen();
     }
     std::size_t next(std::size_t rows, NumberRows& into, std::string& /*bytes*/) override {
+        std::vector<bool> leaves(row_.size(), false);
+        for (std::size_t c = 0; c < leaf_of_.size(); ++c) leaves[leaf_of_[c]] = wanted(c);
+        leaves.pop_back();
         RecordedMessage message;
         std::size_t count = 0;
         while (!ended_ && count < rows) {
             ended_ = !source_->next(message);
             if (ended_) break;
             try {
-                reader_->read(message.bytes, row_);
+                layout_.read(message.bytes, leaves, row_);
             } catch (const DataError& error) {
                 raise<DataError>("{}: message {}, {}: read {}", name(), message.number, topic_, error.what());
             }
@@ -90,19 +92,12 @@ class MessageColumns final : public Columns {
         }
         return info;
     }
-    void chosen() override {
-        std::vector<bool> leaves(row_.size(), false);
-        for (std::size_t c = 0; c < leaf_of_.size(); ++c) leaves[leaf_of_[c]] = wanted(c);
-        leaves.pop_back();
-        reader_ = layout_.program(leaves);
-    }
 
     std::unique_ptr<MessageSource> source_;
     std::string topic_;
     MessageLayout layout_;
     std::vector<std::size_t> leaf_of_;  ///< by column; the last number of a row is the time of recording
     std::vector<LeafNumber> row_;
-    std::unique_ptr<MessageReader> reader_;
     bool ended_ = false;  ///< behind it some sources would begin again
 };
 
@@ -316,7 +311,7 @@ class TopicChoice {
         std::vector<LeafNumber> first(wanted.size());
         const auto clock = static_cast<std::size_t>(stamp - topic.layout.leaves.begin());
         wanted[clock] = true;
-        topic.layout.program(wanted)->read(topic.first, first);
+        topic.layout.read(topic.first, wanted, first);
         return first[clock].count != 0;  // who does not stamp leaves it at 0
     }
 

@@ -79,24 +79,19 @@ struct LeafNumber {
     std::int64_t count = 0;
 };
 
-class MessageReader {
-  public:
-    virtual ~MessageReader() = default;
-    /// By leaf; what is not wanted is left as it is. Throws DataError, without a source's name, where a
-    /// message is not as the first one was: shorter, a list of another length, a joint of another name.
-    virtual void read(std::string_view message, std::vector<LeafNumber>& into) = 0;
-};
+/// How the numbers of a message are read, by leaf: what is not `wanted` is left as it is. Throws DataError,
+/// without a source's name, where a message is not as the first one was: shorter, a list of another length, a
+/// joint of another name.
+using ReadMessage = std::function<void(std::string_view message, const std::vector<bool>& wanted,
+                                       std::vector<LeafNumber>& into)>;
 
-/// What read() throws of a list and of a joint's name.
+/// What reading throws of a list and of a joint's name.
 [[noreturn]] void refuse_length(std::size_t count, const std::string& path, std::size_t expected);
 [[noreturn]] void refuse_name(std::string_view name, const std::string& path, const std::string& expected);
 
-/// How to read the messages of a topic. `wanted`: by leaf.
-using MessageProgram = std::function<std::unique_ptr<MessageReader>(const std::vector<bool>& wanted)>;
-
 struct MessageLayout {
     std::vector<MessageLeaf> leaves;
-    MessageProgram program;
+    ReadMessage read;
 };
 
 /// lay_out_message() of messages in CDR, whose type `name` is defined first in `schema`.

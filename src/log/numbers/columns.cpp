@@ -170,6 +170,13 @@ class JoinedColumns final : public Columns {
           ns_per_unit_(ns_per_unit),
           counted_(counted),
           sides_(std::move(sides)) {}
+    void keep(std::vector<bool> wanted) override {
+        std::vector<bool> of_base(wanted.begin(),
+                                  wanted.begin() + static_cast<std::ptrdiff_t>(base_->info().size()));
+        of_base[0] = true;
+        base_->keep(std::move(of_base));
+        Columns::keep(std::move(wanted));
+    }
     std::size_t next(std::size_t rows, NumberRows& into, std::string& bytes) override {
         std::vector<std::size_t> complete;
         while (complete.empty()) {
@@ -197,11 +204,6 @@ class JoinedColumns final : public Columns {
             info.back().whole = false;
         }
         return info;
-    }
-    void chosen() override {
-        std::vector<bool> of_base(base_->info().size(), true);
-        for (std::size_t c = 1; c < of_base.size(); ++c) of_base[c] = wanted(c);
-        base_->keep(std::move(of_base));
     }
     /// False where a side has no value.
     bool read_sides(std::int64_t time_ns) {

@@ -45,10 +45,7 @@ class Columns {
     [[nodiscard]] const std::string& name() const { return name_; }
     [[nodiscard]] const std::vector<ColumnInfo>& info() const { return info_; }
     /// From here on only these columns are wanted; what becomes of the others' numbers does not matter.
-    void keep(std::vector<bool> wanted) {
-        wanted_ = std::move(wanted);
-        chosen();
-    }
+    virtual void keep(std::vector<bool> wanted) { wanted_ = std::move(wanted); }
     /// Appends the next rows, about as many as are asked for, to `into`, which has an entry for each column,
     /// and their bytes to `bytes` where they can be written again. Returns how many; 0 at the end. Throws
     /// DataError, beginning with the name.
@@ -68,9 +65,6 @@ class Columns {
     [[nodiscard]] bool wanted(std::size_t column) const { return wanted_[column]; }
 
   private:
-    /// Other columns are wanted.
-    virtual void chosen() {}
-
     std::string name_;
     std::vector<ColumnInfo> info_;
     std::vector<bool> wanted_;
