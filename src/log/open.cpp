@@ -95,23 +95,15 @@ void require_built(const LogFormat& format, const std::string& source) {
         format.name, format.lacks);
 }
 
-/// A reader whose rows are those of another one, changed.
-class ChangedRows : public LogReader {
+/// The rows of another reader with the shifts of their columns added, and a speed that was stated as the
+/// velocity of all joints. Joints without a velocity get the slope of their position, where the layout says
+/// so: central differences from row to row, one-sided at both ends of the log. A step of more than half a
+/// turn is taken as a wrap.
+class ChangedRows final : public LogReader {
   public:
-    explicit ChangedRows(std::unique_ptr<LogReader> reader) : reader_(std::move(reader)) {}
-    [[nodiscard]] const Layout& layout() const override { return reader_->layout(); }
-    [[nodiscard]] const LogReader& base() const override { return reader_->base(); }
-
-  protected:
-    std::unique_ptr<LogReader> reader_;
-};
-
-/// With the slope of the position as the velocity of joints that have none: central differences from row to
-/// row, one-sided at both ends of the log. A step of more than half a turn is taken as a wrap.
-class DerivedVelocity final : public ChangedRows {
-  public:
-    explicit DerivedVelocity(std::unique_ptr<LogReader> reader) : ChangedRows(std::move(reader)) {
-        const std::vector<JointColumns> joints = layout().all_chosen();
+    explicit ChangedRows(std::unique_ptr<LogReader> reader) : reader_(std::move(reader)) {
+        const std::vector<JointColumns> joints =
+            layout().velocity_from_position ? layout().all_chosen() : std::vector<JointColumns>();
         for (std::size_t j = 0; j < joints.size(); ++j) {
             if (joints[j].velocity || !joints[j].position) continue;
             const Column& position = layout().columns[*joints[j].position];
@@ -119,7 +111,11 @@ class DerivedVelocity final : public ChangedRows {
         }
     }
 
+    [[nodiscard]] const Layout& layout() const override { return reader_->layout(); }
+    [[nodiscard]] const LogReader& base() const override { return reader_->base(); }
+
     bool next(RowBlock& block) override {
+        if (joints_.empty()) return read_stated(block);
         if (!std::exchange(begun_, true)) look_ahead();
         if (!more_) {
             if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
@@ -145,7 +141,7 @@ class DerivedVelocity final : public ChangedRows {
     void look_ahead() {
         try {
             do {
-                more_ = reader_->next(ahead_);
+                more_ = read_stated(ahead_);
             } while (more_ && ahead_.size() == 0 && ahead_.bytes.empty());
         } catch (...) {
             failure_ = std::current_exception();
@@ -173,18 +169,7 @@ class DerivedVelocity final : public ChangedRows {
         joint.before = point(block, size - 1);
     }
 
-    std::vector<Joint> joints_;  ///< without a velocity of their own
-    RowBlock ahead_;             ///< the block after the one that is passed on
-    bool begun_ = false, more_ = false;
-    std::exception_ptr failure_;  ///< of the block ahead; for when its turn comes
-};
-
-/// With the shifts of the columns added, and a speed that was stated as the velocity of all joints.
-class StatedRows final : public ChangedRows {
-  public:
-    using ChangedRows::ChangedRows;
-
-    bool next(RowBlock& block) override {
+    bool read_stated(RowBlock& block) {
         if (!reader_->next(block)) return false;
         const std::vector<JointColumns> joints = layout().all_chosen();
         for (std::size_t j = 0; j < joints.size(); ++j) {
@@ -202,6 +187,12 @@ class StatedRows final : public ChangedRows {
         }
         return true;
     }
+
+    std::unique_ptr<LogReader> reader_;
+    std::vector<Joint> joints_;  ///< without a velocity of their own
+    RowBlock ahead_;             ///< the block after the one that is passed on
+    bool begun_ = false, more_ = false;
+    std::exception_ptr failure_;  ///< of the block ahead; for when its turn comes
 };
 
 }  // namespace
@@ -333,8 +324,8 @@ std::unique_ptr<LogReader> open_log(std::unique_ptr<ByteSource> source, const Re
                           layout.source, format.name);
     const bool shifted =
         std::ranges::any_of(layout.columns, [](const Column& column) { return column.shift != 0.0; });
-    if (shifted || layout.constant_speed) reader = std::make_unique<StatedRows>(std::move(reader));
-    if (reader->layout().velocity_from_position) return std::make_unique<DerivedVelocity>(std::move(reader));
+    if (shifted || layout.constant_speed || layout.velocity_from_position)
+        return std::make_unique<ChangedRows>(std::move(reader));
     return reader;
 }
 

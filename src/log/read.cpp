@@ -40,7 +40,7 @@ std::optional<Log> read_pieces(const std::shared_ptr<const Spool>& log, const Re
                                std::size_t most_rows, std::size_t joint = 0) {
     LogPasses passes(log, options, joint);
     passes.keep_rows(most_bytes_kept);
-    passes.first([](const TraceView&) {});
+    passes.first();
     const std::size_t rows = passes.facts().rows;
     if (rows <= most_rows) return std::nullopt;
     const std::size_t in_piece = std::max<std::size_t>(1, most_rows / most_pieces);
@@ -74,44 +74,69 @@ std::optional<Log> read_pieces(const std::shared_ptr<const Spool>& log, const Re
     return part;
 }
 
-// The position as it was logged has been looked at; from here on it is the joint's, or there is none. One
-// that is not, or runs the other way, is held against the clock as it was logged.
-void settle_angle(Log& log) {
-    JointsPosition joints;
-    const auto found = joints.of(log.recording.angle, log.trace.view());
-    std::vector<double> position(found.begin(), found.end());
-    const bool as_logged = position.empty() || log.recording.angle.verdict == AngleFacts::Verdict::reversed;
-    if (!as_logged) log.trace.position_deg = position;
-    MotionPieces motion(log.trace.size());
-    motion.add(log.trace.view());
-    const ClockCheck check = motion.check(log.trace.sample_rate);
-    log.clock_factor = check.factor;
-    log.recording.warnings = recording_warnings(log.recording, check.warning);
-    if (as_logged) log.trace.position_deg = std::move(position);
+// What is known when all rows have gone by once; `joint` of the account stands at `place` of the layout.
+void know(Log& log, const Account& account, std::size_t place, std::size_t joint,
+          std::optional<double> wrap) {
+    log.recording = account.recording(log.layout, place, joint);
+    log.layout.chosen = log.layout.all_chosen()[place];
+    log.layout.others.clear();
+    log.trace.source = log.layout.source;
+    log.trace.joint = log.layout.chosen.joint;
+    log.trace.sample_rate = log.recording.clock.mean_rate;
+    if (wrap) log.layout.warn("wrapped position", wrap_in_words(*wrap), true);
 }
 
-// What is known when all rows are there.
+/// The rows once more, in memory or in passing: their position made continuous, and then the joint's.
+class SecondLook {
+  public:
+    /// `log`: as know() leaves it. `rows` of all of it.
+    SecondLook(Log& log, std::optional<double> wrap, std::size_t rows) : log_(log), motion_(rows) {
+        if (wrap) unwrapper_.emplace(*wrap);
+    }
+    /// The next rows as they were logged, with the joint's position in place of theirs. Valid until the next
+    /// call.
+    TraceView joints(TraceView rows) {
+        if (unwrapper_) {
+            continuous_.assign(rows.position_deg.begin(), rows.position_deg.end());
+            unwrapper_->apply(continuous_);
+            rows.position_deg = continuous_;
+        }
+        for (const double angle : rows.position_deg) {
+            low_ = std::min(low_, angle);
+            high_ = std::max(high_, angle);
+        }
+        TraceView joints = rows;
+        joints.position_deg = position_.of(log_.recording.angle, rows);
+        // One that is not the joint's, or runs the other way, is held against the clock as it was logged.
+        const bool reversed = log_.recording.angle.verdict == AngleFacts::Verdict::reversed;
+        motion_.add(reversed || !joints.has_position() ? rows : joints);
+        return joints;
+    }
+    void finish() {
+        const ClockCheck check = motion_.check(log_.trace.sample_rate);
+        log_.clock_factor = check.factor;
+        if (low_ <= high_) log_.position_range_deg.emplace(low_, high_);
+        log_.recording.warnings = recording_warnings(log_.recording, check.warning);
+    }
+
+  private:
+    Log& log_;
+    MotionPieces motion_;
+    std::optional<Unwrapper> unwrapper_;
+    std::vector<double> continuous_;
+    JointsPosition position_;
+    double low_ = std::numeric_limits<double>::infinity(), high_ = -low_;
+};
+
 void finish(Log& log, const Account& account, const LogReader& reader, std::size_t joint) {
     const Layout& whole = reader.layout();
-    const Layout& layout = whole.each.empty() ? whole : whole.each[joint];
-    const std::size_t place = whole.each.empty() ? joint : 0;
-    const JointColumns chosen = layout.all_chosen()[place];
-    log.layout = layout;
-    log.trace.source = layout.source;
-    log.trace.joint = chosen.joint;
-    const auto period = wrap_period(log.trace.position_deg);
-    if (period) Unwrapper(*period).apply(log.trace.position_deg);
-    log.recording = account.recording(layout, place, joint);
-    log.layout.chosen = chosen;
-    log.layout.others.clear();
-    log.trace.sample_rate = log.recording.clock.mean_rate;
-    if (!log.trace.position_deg.empty()) {
-        const auto [low, high] =
-            std::minmax_element(log.trace.position_deg.begin(), log.trace.position_deg.end());
-        log.position_range_deg.emplace(*low, *high);
-    }
-    if (period) log.layout.warn("wrapped position", wrap_in_words(*period), true);
-    settle_angle(log);
+    log.layout = whole.each.empty() ? whole : whole.each[joint];
+    const auto wrap = wrap_period(log.trace.position_deg);
+    know(log, account, whole.each.empty() ? joint : 0, joint, wrap);
+    SecondLook look(log, wrap, log.trace.size());
+    const auto position = look.joints(log.trace.view()).position_deg;
+    log.trace.position_deg = std::vector<double>(position.begin(), position.end());
+    look.finish();
 }
 
 // Empty where there are more than `most_rows`.
@@ -165,7 +190,7 @@ class LogPasses::Work {
           joint_(joint),
           reader_(open_log(spool_->open(), options_)) {}
 
-    void first(const Use& use);
+    void first();
     void second(const Use& use);
 
     Log log;
@@ -174,19 +199,12 @@ class LogPasses::Work {
 
   private:
     Account run(const Use& use);
-    void look_at(const TraceView& rows);
-
-    void go_on_from(const Use& logged, const Use& use);
 
     std::shared_ptr<const Spool> spool_;
     ReadOptions options_;
     std::size_t joint_;
     std::unique_ptr<LogReader> reader_;  ///< of the pass that comes next; made when it begins, but the first
     WrapWatch wrap_;
-    std::size_t rows_ = 0;
-    double sum_s_ = 0.0;
-    bool has_position_ = false;
-    std::size_t numbers_ = 0;
     std::vector<Trace> kept_;  ///< the parts of the first pass, where all of them are
 };
 
@@ -196,9 +214,9 @@ Account LogPasses::Work::run(const Use& use) {
     Account account(reader_->layout(), opening);
     constexpr std::array<std::size_t, 1> at_first_row = {0};
     RowBlock block;
-    std::size_t held_bad_values = 0;
+    log.held_bad_values = 0;
     while (next_block(opening, *reader_, block)) {
-        held_bad_values += block.held_bad_values;
+        log.held_bad_values += block.held_bad_values;
         for (const RunPart& part : account.add(block)) {
             if (!part.usable || part.count == 0) continue;
             TraceView rows = view_of(block, joint_, part.first, part.count);
@@ -208,96 +226,45 @@ Account LogPasses::Work::run(const Use& use) {
         }
     }
     if (options_.needs_torque) account.clock().require();
-    if (facts.rows == 0) log.layout = reader_->layout();
-    log.held_bad_values = held_bad_values;
     reader_.reset();
     return account;
 }
 
-void LogPasses::Work::look_at(const TraceView& rows) {
-    if (rows_ == 0) facts.first_s = rows.time_s.front();
-    rows_ += rows.size();
-    facts.last_s = rows.time_s.back();
-    for (const double time : rows.time_s) sum_s_ += time;
-    wrap_.follow(rows.position_deg);
-    has_position_ = has_position_ || rows.has_position();
-}
-
-void LogPasses::Work::first(const Use& use) {
+void LogPasses::Work::first() {
+    log.layout = reader_->layout();
+    double sum_s = 0.0;
+    bool has_position = false;
     const Account account = run([&](const TraceView& rows) {
-        look_at(rows);
-        numbers_ += 4 * rows.size();
-        if (numbers_ > most_kept) {
+        facts.rows += rows.size();
+        for (const double time : rows.time_s) sum_s += time;
+        wrap_.follow(rows.position_deg);
+        has_position = has_position || rows.has_position();
+        if (4 * facts.rows > most_kept) {
             kept_.clear();
         } else {
             append(kept_.emplace_back(), rows, false);
             kept_.back().run_starts.assign(rows.run_starts.begin(), rows.run_starts.end());
         }
-        use(rows);
     });
-    facts.rows = rows_;
-    log.recording = account.recording(log.layout, joint_);
-    log.layout.chosen = log.layout.all_chosen()[joint_];
-    log.layout.others.clear();
-    log.trace.source = log.layout.source;
-    log.trace.joint = log.layout.chosen.joint;
-    log.trace.sample_rate = log.recording.clock.mean_rate;
+    know(log, account, joint_, joint_, wrap_.period());
     const AngleFacts& angle = log.recording.angle;
     const auto rows = static_cast<double>(facts.rows);
-    facts.mean_s = sum_s_ / rows;
+    facts.mean_s = sum_s / rows;
     const bool by_position = angle.source() == AngleFacts::Source::position;
     const double sign = angle.verdict == AngleFacts::Verdict::reversed ? -1.0 : 1.0;
-    if (by_position && has_position_) facts.mean_position_deg = sign * wrap_.sum() / rows;
-    if (const auto period = wrap_.period()) log.layout.warn("wrapped position", wrap_in_words(*period), true);
+    if (by_position && has_position) facts.mean_position_deg = sign * wrap_.sum() / rows;
 }
 
-// `logged` gets the rows with the position as it was logged, made continuous; then `use` gets the joint's.
-void LogPasses::Work::go_on_from(const Use& logged_use, const Use& use) {
-    std::optional<Unwrapper> unwrapper;
-    if (const auto period = wrap_.period()) unwrapper.emplace(*period);
-    std::vector<double> continuous;
-    JointsPosition joints;
-    const auto go_on = [&](const TraceView& logged) {
-        TraceView rows = logged;
-        if (unwrapper) {
-            continuous.assign(rows.position_deg.begin(), rows.position_deg.end());
-            unwrapper->apply(continuous);
-            rows.position_deg = continuous;
-        }
-        logged_use(rows);
-        rows.position_deg = joints.of(log.recording.angle, rows);
-        use(rows);
-    };
+void LogPasses::Work::second(const Use& use) {
+    SecondLook look(log, wrap_.period(), facts.rows);
+    const auto go_on = [&](const TraceView& rows) { use(look.joints(rows)); };
     if (kept_.empty()) static_cast<void>(run(go_on));
     for (const Trace& part : kept_) {
         TraceView rows = part.view();
         rows.sample_rate = log.trace.sample_rate;
         go_on(rows);
     }
-}
-
-// As read_log compares the clock with the motion: by the joint's position; by the logged one where that is
-// not the joint's, or runs the other way.
-void LogPasses::Work::second(const Use& use) {
-    MotionPieces motion(facts.rows);
-    const bool turned = log.recording.angle.verdict == AngleFacts::Verdict::reversed;
-    double low = std::numeric_limits<double>::infinity(), high = -low;
-    TraceView as_logged;
-    const auto look_at = [&](const TraceView& rows) {
-        as_logged = rows;
-        for (const double angle : rows.position_deg) {
-            low = std::min(low, angle);
-            high = std::max(high, angle);
-        }
-    };
-    go_on_from(look_at, [&](const TraceView& rows) {
-        motion.add(turned || !rows.has_position() ? as_logged : rows);
-        use(rows);
-    });
-    const ClockCheck check = motion.check(log.trace.sample_rate);
-    log.clock_factor = check.factor;
-    if (low <= high) log.position_range_deg.emplace(low, high);
-    log.recording.warnings = recording_warnings(log.recording, check.warning);
+    look.finish();
 }
 
 LogPasses::LogPasses(const std::string& path, const ReadOptions& options)
@@ -310,7 +277,7 @@ LogPasses::~LogPasses() = default;
 
 void LogPasses::keep_rows(std::size_t most_bytes) { work_->most_kept = most_bytes / sizeof(double); }
 
-void LogPasses::first(const Use& use) { work_->first(use); }
+void LogPasses::first() { work_->first(); }
 
 void LogPasses::second(const Use& use) { work_->second(use); }
 

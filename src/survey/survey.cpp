@@ -166,7 +166,7 @@ Surveyed survey_long(const std::shared_ptr<const Spool>& spool, const ReadOption
                      std::size_t most_rows) {
     LogPasses passes(spool, options);
     Surveyed found;
-    passes.first([](const TraceView&) {});
+    passes.first();
     const std::size_t count = passes.facts().rows;
     const Hertz sample_rate = passes.log().trace.sample_rate;
     PassingRows rows(count, sample_rate);

@@ -37,8 +37,7 @@ struct Log {
 
 /// What is known of the joint that is read after the first pass.
 struct LogFacts {
-    std::size_t rows = 0;  ///< without those left out
-    double first_s = 0.0, last_s = 0.0;
+    std::size_t rows = 0;            ///< without those left out
     double mean_s = 0.0;             ///< of the times
     double mean_position_deg = 0.0;  ///< of the continuous position; 0 where there is none
 };
@@ -59,9 +58,8 @@ class LogPasses {
     /// Before the first pass: rows that take no more memory than this are kept for the passes behind it,
     /// which then do not read again what costs more to read than to keep.
     void keep_rows(std::size_t most_bytes);
-    /// Once, first: rows without a sample rate, their position as it stands in the file. Throws DataError as
-    /// read_log does.
-    void first(const Use& use);
+    /// Once, first. Throws DataError as read_log does.
+    void first();
     [[nodiscard]] const LogFacts& facts() const;
 
     /// Once, second: rows with a sample rate, and a continuous position if it is the joint's. Then all is

@@ -138,7 +138,7 @@ std::string order_peaks(const OrderSpectrum& spectrum) {
 
 LogSpectrum streamed_spectrum(LogPasses& log, const SpectrumOptions& options,
                               const std::function<void()>& tell) {
-    log.first([](const TraceView&) {});
+    log.first();
     const LogFacts& facts = log.facts();
     const Hertz sample_rate = log.log().trace.sample_rate;
     const std::size_t length = piece_length(facts.rows, sample_rate, options);

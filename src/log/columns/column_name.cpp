@@ -21,7 +21,7 @@ namespace {
 
 // The table of names, by word.
 
-enum class Meaning {
+enum class Meaning : unsigned {
     time,
     velocity,
     torque,
@@ -39,13 +39,10 @@ enum class Meaning {
     clock,
 };
 
-struct NameLine {
-    std::string_view family, beside, names;
+struct WordLine {
+    std::string_view words;
     Meaning meaning;
     int rank;
-    std::string_view unit;
-    Shaft side;
-    std::string_view source;
 };
 struct Symbol {
     std::string_view text;
@@ -59,9 +56,13 @@ struct DriveObject {
     std::string_view unit, words;
 };
 
-#define NAME(family, beside, names, meaning, rank, unit, side, source) \
-    NameLine{family, beside, names, Meaning::meaning, rank, unit, Shaft::side, source},
-constexpr std::array name_lines = {
+#define WORDS(language, meaning, rank, words) WordLine{words, Meaning::meaning, rank},
+constexpr std::array word_lines = {
+#include "log/columns/names.def"
+};
+#define NAME(family, beside, names, role, unit, side, source) \
+    Convention{family, beside, names, Role::role, unit, Shaft::side, source},
+constexpr std::array all_conventions = {
 #include "log/columns/names.def"
 };
 #define SYMBOL(text, role, rivals) Symbol{text, Role::role, rivals},
@@ -74,12 +75,6 @@ constexpr std::array drive_objects = {
 #include "log/columns/names.def"
 };
 
-Role role_of(Meaning meaning) {
-    constexpr std::array roles = {Role::time, Role::velocity, Role::torque, Role::position};
-    const auto at = static_cast<std::size_t>(meaning);
-    return at < roles.size() ? roles[at] : Role::other;
-}
-
 /// What a word may mean.
 struct Sense {
     unsigned meanings = 0;
@@ -88,8 +83,9 @@ struct Sense {
         return (meanings >> static_cast<unsigned>(meaning) & 1U) != 0;
     }
     [[nodiscard]] Role role() const {
-        for (const Meaning m : {Meaning::time, Meaning::velocity, Meaning::torque, Meaning::position})
-            if (is(m)) return role_of(m);
+        // The roles, in this order, are the first of the meanings.
+        for (unsigned role = 0; role < static_cast<unsigned>(Role::other); ++role)
+            if (is(Meaning{role})) return Role{static_cast<int>(role)};
         return Role::other;
     }
 };
@@ -97,10 +93,9 @@ struct Sense {
 Sense sense_of(std::string_view word) {
     static const auto table = [] {
         std::map<std::string_view, Sense> senses;
-        for (const NameLine& line : name_lines) {
-            if (!line.unit.empty()) continue;
-            for_each_word(line.names, [&](std::string_view name) {
-                Sense& sense = senses[name];
+        for (const WordLine& line : word_lines) {
+            for_each_word(line.words, [&](std::string_view one) {
+                Sense& sense = senses[one];
                 sense.meanings |= 1U << static_cast<unsigned>(line.meaning);
                 sense.rank = std::max(sense.rank, line.rank);
             });
@@ -577,17 +572,7 @@ ColumnName read_column_name(std::string_view name, bool linear_axis) {
     return column;
 }
 
-const std::vector<Convention>& conventions() {
-    static const auto table = [] {
-        std::vector<Convention> found;
-        for (const NameLine& line : name_lines)
-            if (!line.unit.empty())
-                found.push_back({line.family, line.beside, line.names, role_of(line.meaning), line.unit,
-                                 line.side, line.source});
-        return found;
-    }();
-    return table;
-}
+std::span<const Convention> conventions() { return all_conventions; }
 
 std::vector<ColumnName> read_column_names(const std::vector<std::string>& names,
                                           const std::vector<std::string>& units) {

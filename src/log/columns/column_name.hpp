@@ -4,6 +4,7 @@
 
 #include <array>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -107,6 +108,6 @@ struct Convention {
     std::string_view source;  ///< where it is written down
 };
 
-[[nodiscard]] const std::vector<Convention>& conventions();
+[[nodiscard]] std::span<const Convention> conventions();
 
 }  // namespace ripplenotch

@@ -189,7 +189,6 @@ class Decision {
 
     // What all joints share is decided once.
     Layout each_alone() {
-        for (const JointGroup& group : groups_) give_roles(group, nullptr);
         const Layout file = layout_;
         const std::vector<bool> stated = stated_;
         std::vector<Layout> each;
@@ -200,7 +199,7 @@ class Decision {
             stated_ = stated;
             linear_.clear();
             unscaled_.clear();
-            choose(*group_named(joint));
+            choose(group_named(joint));
             settle();
             each.push_back(layout_);
         }
@@ -287,25 +286,13 @@ class Decision {
                 "command takes several",
                 source_, layout_.asked.size(), fmt::join(layout_.asked, ", "), layout_.asked.front());
         }
-        for (const JointGroup& each : groups_) give_roles(each, nullptr);
-        if (group != nullptr)
-            choose(*group);
-        else if (options_.needs_torque)
-            require_torque_and_velocity();
+        choose(group);
     }
 
-    // Of a joint that is read, only the columns that are.
-    void choose(const JointGroup& group) {
-        for (const Role role : motion_roles) {
-            for (const std::size_t c : group.of(role)) {
-                const std::string name = layout_.columns[c].name;
-                layout_.columns[c] = {};
-                layout_.columns[c].name = name;
-                stated_[c] = false;
-            }
-        }
-        layout_.chosen = columns_of(group);
-        give_roles(group, &layout_.chosen);
+    // Of a joint that is read, only the columns that are; null for none.
+    void choose(const JointGroup* group) {
+        if (group != nullptr) layout_.chosen = columns_of(*group);
+        for (const JointGroup& each : groups_) give_roles(each, &each == group ? &layout_.chosen : nullptr);
         if (options_.needs_torque) require_torque_and_velocity();
     }
 
