@@ -103,7 +103,7 @@ class SecondLook {
         }
         for (const double angle : rows.position_deg) {
             low_ = std::min(low_, angle);
-            high_ = std::max(high_, angle);
+            high_ = std::max(angle, high_);  // of equal zeros the last one, with its sign
         }
         TraceView joints = rows;
         joints.position_deg = position_.of(log_.recording.angle, rows);

@@ -29,12 +29,6 @@ struct MotionEvidence {
     bool velocity_counts = false, position_counts = false;  ///< they are whole numbers throughout
 };
 
-/// Vectors of equal length, in seconds and file units; velocity or position may be empty. Rows with a
-/// not-a-number are left out.
-[[nodiscard]] MotionEvidence motion_evidence(const std::vector<double>& time_s,
-                                             const std::vector<double>& velocity,
-                                             const std::vector<double>& position);
-
 /// What is known of a velocity or position column before its values are looked at.
 struct MotionColumn {
     Role role = Role::velocity;
@@ -88,48 +82,5 @@ struct MotionsSeen {
 /// `layout` what was inferred, what stays assumed, and which other readings are as possible.
 void infer_motion(const ColumnFacts& facts, const ReadOptions& options,
                   const std::vector<MotionColumns>& joints, MotionsSeen& seen, Layout& layout);
-
-// Every way in which a joint's velocity and position could be written, and how much speaks against each.
-
-/// One column's unit and side under a reading.
-struct ReadColumn {
-    std::string_view unit;
-    double unit_factor = 1.0;  ///< to deg/s or deg
-    Shaft side = Shaft::joint;
-    double factor = 1.0;  ///< to the joint's deg/s or deg: by unit and ratio
-};
-
-struct MotionReading {
-    ReadColumn velocity, position;
-    std::optional<double> ratio;  ///< between the motor and the joint, where a side is the motor's
-    bool against_header = false;  ///< a unit that the log states is wrong
-    double cost = 0.0;            ///< the likeliest has the least
-
-    [[nodiscard]] const ReadColumn& of(const MotionColumn& column) const {
-        return column.role == Role::velocity ? velocity : position;
-    }
-    [[nodiscard]] bool of_motor() const {
-        return velocity.side == Shaft::motor || position.side == Shaft::motor;
-    }
-    [[nodiscard]] bool speed_in_motor_units() const { return velocity.side == Shaft::motor && !ratio; }
-};
-
-/// A reading is as possible as the likeliest when it costs less than this much more.
-inline constexpr double open_margin = 1.0;
-
-/// The columns that a motion has, with the factors of stated units in `layout`.
-struct MotionQuestion {
-    const MotionColumns& columns;
-    const MotionEvidence& evidence;
-    const Layout& layout;
-    std::optional<double> gear_ratio;
-};
-
-/// Whether the column's name says that it is measured before the gear.
-[[nodiscard]] bool names_motor(const MotionColumn& column);
-
-/// All readings that fit the evidence, the likeliest first. `with_scale` false: position and velocity need
-/// not belong together. Those against the header come last.
-[[nodiscard]] std::vector<MotionReading> motion_readings(const MotionQuestion& question, bool with_scale);
 
 }  // namespace ripplenotch

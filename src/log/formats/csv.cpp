@@ -6,7 +6,7 @@
 #include <cstring>
 #include <vector>
 
-#include "log/formats.hpp"
+#include "log/open.hpp"
 #include "log/text/csv_reader.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"

@@ -4,7 +4,7 @@
 #include <array>
 #include <string_view>
 
-#include "log/formats.hpp"
+#include "log/open.hpp"
 
 namespace ripplenotch {
 namespace {

@@ -12,7 +12,6 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "log/formats.hpp"
 #include "log/messages/message_columns.hpp"
 #include "log/open.hpp"
 #include "ripplenotch/core/error.hpp"

@@ -12,8 +12,8 @@
 #include <string_view>
 
 #include "log/containers/stored_array.hpp"
-#include "log/formats.hpp"
 #include "log/messages/message_columns.hpp"
+#include "log/open.hpp"
 #include "log/unpack/unpacked_source.hpp"
 #include "ripplenotch/core/error.hpp"
 

@@ -9,7 +9,6 @@
 #include <optional>
 
 #include "log/containers/stored_array.hpp"
-#include "log/formats.hpp"
 #include "log/npy/npy_header.hpp"
 #include "log/numbers/column_reader.hpp"
 #include "log/open.hpp"

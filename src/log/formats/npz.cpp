@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "log/containers/stored_array.hpp"
-#include "log/formats.hpp"
 #include "log/npy/npy_header.hpp"
+#include "log/open.hpp"
 #include "ripplenotch/core/error.hpp"
 
 namespace ripplenotch {

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "log/formats.hpp"
 #include "log/npy/npy_header.hpp"
+#include "log/open.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/spec.hpp"

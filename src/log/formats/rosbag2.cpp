@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "log/formats.hpp"
+#include "log/open.hpp"
 
 #if defined(RIPPLENOTCH_HAS_SQLITE)
 
