@@ -201,8 +201,7 @@ std::function<ExitCode()> attach_diagnose(Options& options) {
                  "explain one effect (equation, parameters, symptom, look-alikes), and end; needs no LOG");
     options.number("--smoothing", request->smoothing, Dimension::time,
                    "window of the fit to the log's velocity, which gives speed and acceleration");
-    attach_conclusive(options, request->require_conclusive,
-                      "exit with 5 unless the log is explained in the end");
+    attach_conclusive(options, request->require_conclusive);
     attach_plot(options, request->plot, request->common);
     attach_log(options, request->log);
     {

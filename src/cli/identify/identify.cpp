@@ -492,11 +492,8 @@ std::function<ExitCode()> attach_identify(Options& options) {
                     "expected motor order of the strongest line, 1 to 16");
     options.number("--false-alarm", request->identify.false_alarm, Dimension::none,
                    "false-alarm probability for noise only: that any line is reported");
-    static constexpr std::array<std::string_view, 2> yes_or_no = {"yes", "no"};
-    options.choice("--other-motors", request->other_motors, yes_or_no,
-                   "look for ripple of the motors of the log's other joints; no takes a fifth of the time");
-    attach_conclusive(options, request->require_conclusive,
-                      "exit with code 5 when the logs do not settle it");
+    attach_other_motors(options, request->other_motors);
+    attach_conclusive(options, request->require_conclusive);
     attach_residual(options, request->residual);
     attach_plot(options, request->plot, request->common);
     attach_log(options, request->log);

@@ -138,6 +138,7 @@ std::string map_report(const MapFit& fit, const std::vector<std::string>& logs) 
 struct MapRequest : LogRequest {
     std::vector<std::string> logs;
     Degrees zero;
+    std::string other_motors = "yes";
     bool require_conclusive = false;
     std::optional<std::string> joint_files = {};  ///< --joint-file where it names one for each joint
 };
@@ -192,8 +193,10 @@ ExitCode run_map_once(const MapRequest& request, const std::string& command_line
     say(request.common, gear_in_words(*gear));
     const std::vector<Log> logs = read_map_logs(request, *gear, provenance);
     if (choice.joint()) provenance.inputs.push_back(input_record(choice.joint()->path));
-    const std::vector<JointLogs> arm =
-        read_arm(request.logs, logs.front().layout, read_options(request.log, gear), rows_of_each(request));
+    std::vector<JointLogs> arm;
+    if (request.other_motors == "yes")
+        arm = read_arm(request.logs, logs.front().layout, read_options(request.log, gear),
+                       rows_of_each(request));
     const OtherMotors others = motors_of(
         arm, logs, [&](const JointLogs& joint) { return gear_of_other(request, joint, provenance); });
     for (const std::string& joint : others.not_known)
@@ -284,8 +287,8 @@ std::function<ExitCode()> attach_map(Options& options) {
     attach_gear(options, request->gear);
     options.number("--zero", request->zero, Dimension::angle,
                    "joint position at which the wave generator's angle counts as 0");
-    attach_conclusive(options, request->require_conclusive,
-                      "exit with code 5 when the logs do not settle it");
+    attach_other_motors(options, request->other_motors);
+    attach_conclusive(options, request->require_conclusive);
     attach_plot(options, request->plot, request->common);
     attach_log(options, request->log);
     attach_common(options, request->common, {"a ripple map", ".txt .json"});

@@ -361,9 +361,15 @@ void attach_output(Options& options, std::string& output, std::string_view help)
     options.writes("-o");
 }
 
-void attach_conclusive(Options& options, bool& required, std::string_view help) {
+void attach_other_motors(Options& options, std::string& wanted) {
+    static constexpr std::array<std::string_view, 2> yes_or_no = {"yes", "no"};
+    options.choice("--other-motors", wanted, yes_or_no,
+                   "look for ripple of the motors of the log's other joints; no takes a fifth of the time");
+}
+
+void attach_conclusive(Options& options, bool& required) {
     const Options::Group group(options, output_group);
-    options.flag("--require-conclusive", required, help);
+    options.flag("--require-conclusive", required, "exit with code 5 when the log does not settle it");
 }
 
 void attach_json(Options& options, CommonOptions& common, std::string_view help) {

@@ -180,7 +180,9 @@ void attach_common(Options& options, CommonOptions& common, const OutputNames& n
 void attach_json(Options& options, CommonOptions& common,
                  std::string_view help = "one JSON object instead of text");
 void attach_output(Options& options, std::string& output, std::string_view help);
-void attach_conclusive(Options& options, bool& required, std::string_view help);
+/// --other-motors yes or no.
+void attach_other_motors(Options& options, std::string& wanted);
+void attach_conclusive(Options& options, bool& required);
 /// How it writes and what it says: --force, --quiet and --verbose.
 void attach_manner(Options& options, CommonOptions& common);
 [[nodiscard]] bool ends_with_json(std::string_view path);

@@ -642,8 +642,7 @@ std::function<ExitCode()> attach_recommend(Options& options) {
                  "only methods that this export target holds; see docs/export");
     options.number("--train", request->train_percent, Dimension::none,
                    "per cent of the log that methods learn from; they are evaluated on the rest");
-    attach_conclusive(options, request->require_conclusive,
-                      "exit with code 5 when the log does not settle it");
+    attach_conclusive(options, request->require_conclusive);
     attach_log(options, request->log);
     request->options = &options;
     attach_common(options, request->common, {"a recommendation", ".txt .json", true});

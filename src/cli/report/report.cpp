@@ -39,10 +39,10 @@ namespace {
 using Words = std::vector<std::string>;
 
 struct LogReport {
-    std::string log;      ///< its path
-    std::string piped;    ///< the log itself, where it came through standard input
-    Words reading, gear;  ///< options of the log, and of its gear
-    bool other_motors = false, quiet = false;
+    std::string log;              ///< its path
+    std::string piped;            ///< the log itself, where it came through standard input
+    Words reading, gear, motors;  ///< options of the log, of its gear, and whether to look for other motors
+    bool quiet = false;
 };
 
 /// A folder for what the commands write, which ends with it.
@@ -100,9 +100,8 @@ class JointReport {
 
     /// Throws where identify refuses the log: the other commands would repeat its message.
     std::vector<PageSection> sections() {
-        command({"identify", log_, "--json", "-o", workspace_.path("joint.json"), "--other-motors",
-                 report_.other_motors ? "yes" : "no"},
-                reading_ + ratio(), report_.quiet);
+        command({"identify", log_, "--json", "-o", workspace_.path("joint.json")},
+                reading_ + ratio() + report_.motors, report_.quiet);
         const Json found = taken("joint.json", "Which ripple, and which gear");
         const Json advice = tried({"recommend", log_}, reading_ + report_.gear, "recommendation.json",
                                   "Which method, and why");
@@ -210,7 +209,7 @@ class JointReport {
         if (at == std::string::npos)
             return method.find(".json") == std::string::npos ? std::optional(method) : std::nullopt;
         const Json made =
-            tried({"map", log_},
+            tried(Words{"map", log_} + report_.motors,
                   without_range() + Words{"--to", shortest(advice.at("split_s").get<double>()) + "s"} + gear_,
                   "map.json", "The ripple map");
         if (made.empty()) return std::nullopt;
@@ -505,7 +504,8 @@ ExitCode run_report(const ReportRequest& request, const Options& options) {
         std::string text = path == "-" ? read_all(path) : beginning_of(path);
         if (!path.ends_with(".json") && is_log(text)) {
             logs.push_back({path, path == "-" ? std::move(text) : "", options.given(reading_group),
-                            options.given(gear_group), request.other_motors, request.quiet});
+                            options.given(gear_group),
+                            Words{"--other-motors", request.other_motors ? "yes" : "no"}, request.quiet});
             names.push_back(shown_name(path));
             continue;
         }
