@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/matrices/least_squares.hpp"
@@ -109,10 +110,6 @@ void CloseUp::add(const CourseSample& sample) {
     const auto& [time_s, speed_deg_s, before_nm, after_nm] = sample;
     const bool full = now_.time_s.size() == max_in_stretch;
     if (!now_.time_s.empty() && (full || time_s - now_.time_s.front() >= stretch_s)) end_stretch();
-    if (!now_.time_s.empty()) {
-        const double step = (before_nm - after_nm) - (now_.before_nm.back() - now_.after_nm.back());
-        if (std::isfinite(step)) now_.taken_off += step * step;
-    }
     now_.time_s.push_back(time_s);
     now_.before_nm.push_back(before_nm);
     now_.after_nm.push_back(after_nm);
@@ -120,6 +117,15 @@ void CloseUp::add(const CourseSample& sample) {
 
 void CloseUp::end_stretch() {
     ++ended_;
+    // By the median of its parts: a jump is in one of them, ripple in all.
+    std::array<double, 5> parts{};
+    for (std::size_t k = 1; k < now_.time_s.size(); ++k) {
+        const double step =
+            (now_.before_nm[k] - now_.after_nm[k]) - (now_.before_nm[k - 1] - now_.after_nm[k - 1]);
+        if (std::isfinite(step)) parts[k * parts.size() / now_.time_s.size()] += step * step;
+    }
+    std::sort(parts.begin(), parts.end());
+    now_.taken_off = parts[parts.size() / 2];
     if (now_.taken_off > best_.taken_off) best_ = now_;
     now_ = {};
 }

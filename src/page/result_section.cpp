@@ -477,10 +477,11 @@ std::string heading_of(const std::string& kind) {
 }
 
 PageState state_of(const Json& result) {
-    // An order that a filter amplifies is worse than any doubt.
+    // An order that a filter amplifies is worse than any doubt: in whole decibels, as they are printed.
+    constexpr double printed_db = -0.5;
     const auto amplifies = [](const Json& method) {
         const auto all = extremes(list_at(method, "attenuation_db"), "/db");
-        return all && all->first < 0.0;
+        return all && all->first < printed_db;
     };
     const auto take = result.find("take");
     for (const Json& method : list_at(result, "methods"))
@@ -488,7 +489,8 @@ PageState state_of(const Json& result) {
             amplifies(method))
             return PageState::bad;
     for (const Json& order : list_at(result, "orders"))
-        if (const auto db = number_under(order, "/attenuation_db"); db && *db < 0.0) return PageState::bad;
+        if (const auto db = number_under(order, "/attenuation_db"); db && *db < printed_db)
+            return PageState::bad;
     const auto conclusive = result.find("conclusive");
     if (conclusive == result.end() || !conclusive->is_boolean()) return PageState::none;
     return conclusive->get<bool>() ? PageState::good : PageState::doubtful;

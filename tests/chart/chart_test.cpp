@@ -93,7 +93,9 @@ TEST_CASE("torque before and after keeps its peaks over two million samples, and
     for (std::size_t k = 0; k < count; ++k)
         course.add({.time_s = 0.001 * static_cast<double>(k),
                     .speed_deg_s = 90.0,
-                    .before_nm = k == 1'234'567 ? 55.0 : 1.0,
+                    .before_nm = k == 1'234'567 ? 55.0
+                                 : k % 2 == 0   ? 1.0
+                                                : 1.1,
                     .after_nm = k == 1'234'570 ? -7.0 : 0.5});
     StreamReport report;
     report.switches = {{{100, 0, 3, 20.0, 0.4}, 0.1}, {{900, 3, 4, 80.0, -0.2}, 0.9}};

@@ -78,6 +78,8 @@ TEST_CASE("a verdict is good, doubtful or bad by its data") {
     CHECK(state_of(Json::parse(R"({"conclusive": true, "take": "a", "methods": [
         {"method": "a", "attenuation_db": [{"order": 1, "db": 20.0}, {"order": 2, "db": -3.3}]}]})")) ==
           PageState::bad);
+    CHECK(state_of(Json::parse(R"({"conclusive": true, "take": "a", "methods": [
+        {"method": "a", "attenuation_db": [{"order": 1, "db": -0.07}]}]})")) == PageState::good);
 }
 
 TEST_CASE("a page begins with what was asked, the verdict and three numbers, and folds its ledgers") {

@@ -38,7 +38,7 @@ class CloseUp {
   private:
     struct Stretch {
         std::vector<double> time_s, before_nm, after_nm;
-        double taken_off = 0.0;  ///< squares of the steps of before less after
+        double taken_off = 0.0;  ///< squares of the steps of before less after in its median fifth
     };
     void end_stretch();
 

@@ -12,6 +12,7 @@
 #include <iterator>
 #include <memory>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -153,7 +154,7 @@ class JointReport {
             section.title = title;
             // The page names the log once.
             for (Figure& drawn : section.figures)
-                if (drawn.title.ends_with(": ")) drawn.title.resize(drawn.title.size() - 2);
+                drawn.title.resize(std::min(drawn.title.size(), drawn.title.find(": ")));
             sections_.push_back(std::move(section));
         }
         return Json::parse(text);
@@ -202,18 +203,25 @@ class JointReport {
         add("The whole log, before and after", std::move(whole));
     }
 
-    /// The method with the map that it needs, made of the first part of the log; none for other files.
+    /// The method with the table or map that it needs, the map made of the first part of the log; none for
+    /// other files.
     std::optional<std::string> with_files(std::string method, const Json& advice) {
-        constexpr std::string_view map = "map=map.json";
-        const std::size_t at = method.find(map);
-        if (at == std::string::npos)
-            return method.find(".json") == std::string::npos ? std::optional(method) : std::nullopt;
-        const Json made =
-            tried(Words{"map", log_} + report_.motors,
-                  without_range() + Words{"--to", shortest(advice.at("split_s").get<double>()) + "s"} + gear_,
-                  "map.json", "The ripple map");
+        const std::size_t file = method.find(".json");
+        if (file == std::string::npos) return method;
+        const std::size_t name = method.rfind('=', file) + 1;
+        const std::string needed = method.substr(name, file + 5 - name);
+        Json made;
+        if (needed == "table.json") {
+            std::istringstream design(advice.at("take_commands").at(0).get<std::string>());
+            const Words words{std::istream_iterator<std::string>(design), {}};
+            made = tried(Words(words.begin() + 1, words.end() - 2), {}, needed, "The table of notches");
+        } else if (needed == "map.json") {
+            const std::string split_s = shortest(advice.at("split_s").get<double>()) + "s";
+            made = tried(Words{"map", log_} + report_.motors,
+                         without_range() + Words{"--to", split_s} + gear_, needed, "The ripple map");
+        }
         if (made.empty()) return std::nullopt;
-        return method.replace(at, map.size(), "map=" + workspace_.path("map.json"));
+        return method.insert(name, workspace_.path(""));
     }
 
     // recommend splits what --from and --to leave; its parts have ends of their own.
