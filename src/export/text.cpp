@@ -196,6 +196,15 @@ void check_identifier(std::string_view name, std::string_view what) {
         raise<UsageError>("{}: '{}' is no name; use letters, digits and _, no digit first", what, name);
 }
 
+std::string in_quotes(std::string_view text) {
+    std::string out = "\"";
+    for (const char c : text) {
+        if (c == '"' || c == '\\') out += '\\';
+        out += static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) > 0x7e ? '?' : c;
+    }
+    return out + "\"";
+}
+
 std::string upper_case(std::string text) {
     for (char& c : text) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
     return text;

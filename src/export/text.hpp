@@ -116,6 +116,9 @@ void check_identifier(std::string_view name, std::string_view what);
 
 [[nodiscard]] std::string upper_case(std::string text);
 
+/// A string of JSON; what is no printable ASCII is a question mark.
+[[nodiscard]] std::string in_quotes(std::string_view text);
+
 /// The filter that runs at every speed. Throws UsageError for one that is chosen by speed: `target` cannot.
 [[nodiscard]] const ExportBand& only_band(const FilterSet& filters, std::string_view target);
 

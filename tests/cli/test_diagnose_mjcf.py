@@ -71,7 +71,7 @@ class Joint(Case):
 
     def mujocos_torque(self, name, joint, rows):
         told = json.dumps({"xml": (self.folder / name).read_text(), "joint": joint, "rows": rows})
-        done = ended(0, subprocess.run(["node", SOURCE / "scripts/prove_diagnose/mujoco/along.mjs"], input=told, cwd=NODE, capture_output=True,
+        done = ended(0, subprocess.run(["node", SOURCE / "tests/cli/along.mjs"], input=told, cwd=NODE, capture_output=True,
                                        text=True))
         return json.loads(done.stdout)
 
@@ -113,6 +113,22 @@ class AlongLog(Joint):
         for name, said in (("after.xml", after["gap"]["after_nm"]), ("before.xml", after["gap"]["before_nm"]),
                            ("after.xml", after["mjcf"]["gap_after_nm"]), ("before.xml", after["mjcf"]["gap_before_nm"])):
             self.assertAlmostEqual(self.gap(name, rows) / said, 1.0, delta=0.01, msg=name)
+
+    def test_an_exported_model_has_the_torque_of_simulate_within_1_percent(self):
+        self.logged(*EFFECTS)
+        effects = [{"effect": name, **{key: float(value) for key, value in (pair.split("=") for pair in pairs)}}
+                   for name, *pairs in (effect.split(",") for effect in EFFECTS)]
+        for effect in effects:
+            if effect["effect"] == "hysteresis":
+                effect["initial_state"] = 0
+        (self.folder / "model.json").write_text(json.dumps({"schema": "ripplenotch/model/1", "gear_ratio": 100, "effects": effects}))
+        self.run_tool("export", "model.json", "--to", "mjcf", "-o", "exported.xml")
+        self.run_tool("simulate", "log.csv", "--model", "model.json", "-o", "one.csv", "--force")
+        table = [row.split(",") for row in (self.folder / "one.csv").read_text().splitlines()]
+        ours = [float(row[table[0].index("torque_nm")]) for row in table[1:]]
+        theirs = self.mujocos_torque("exported.xml", "joint", self.motion())
+        size = math.sqrt(sum(nm * nm for nm in ours))
+        self.assertLess(math.sqrt(sum((one - other) ** 2 for one, other in zip(ours, theirs))), 0.01 * size)
 
     def test_so_it_does_for_what_it_holds_of_a_model_that_it_cannot_hold_whole(self):
         self.logged(*EFFECTS, "offset,torque_nm=0.5", "quadratic-viscous-friction,coefficient_nm_per_deg2_s2=1e-4")

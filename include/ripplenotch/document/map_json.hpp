@@ -19,8 +19,8 @@ namespace ripplenotch {
 /// map_from_json of a file, or of standard input when the path is "-".
 [[nodiscard]] MapFit load_map(const std::string& path);
 
-/// Whether the file of this name is such a document, by its first line that says so. False for what is no
-/// regular file: it could not be read again.
-[[nodiscard]] bool is_map(const std::string& path);
+/// Whether the file of this name is a document of this kind ("map", "model"), by its first lines. False for
+/// what is no regular file: it could not be read again.
+[[nodiscard]] bool is_document(const std::string& path, std::string_view kind);
 
 }  // namespace ripplenotch

@@ -53,6 +53,9 @@ struct JointMjcf {
     std::vector<MjcfBristle> bristles;
 };
 
+/// Of the model, with its effect gear-ratio.
+[[nodiscard]] GearRatio ratio_of(const Model& model);
+
 /// Decomposes the model. Every value has to be stated. Armature, damping, frictionloss, cogging and the
 /// weight of a link are as defined in docs/effects; hysteresis is a LuGre bristle without damping whose
 /// friction is the same at every speed (Dahl's model). Throws std::bad_optional_access where values are left

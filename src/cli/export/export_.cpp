@@ -28,9 +28,11 @@
 #include "ripplenotch/core/progress.hpp"
 #include "ripplenotch/core/visible_text.hpp"
 #include "ripplenotch/document/map_json.hpp"
+#include "ripplenotch/document/model_json.hpp"
 #include "ripplenotch/document/simulation_json.hpp"
 #include "ripplenotch/document/table_json.hpp"
 #include "ripplenotch/evaluate/contender.hpp"
+#include "ripplenotch/export/joint_target.hpp"
 #include "ripplenotch/export/target.hpp"
 #include "ripplenotch/filter/engine.hpp"
 #include "ripplenotch/verdict/gear_choice.hpp"
@@ -252,6 +254,38 @@ ExitCode export_map(const ExportRequest& request, const std::string& command_lin
                             request.tolerance_percent);
 }
 
+// `export` of the model of a joint, to what simulates it.
+
+// A function and arguments are not run here: what they hold is told instead, and why they do not hold the
+// rest.
+ExitCode export_model(const ExportRequest& request, const std::string& command_line) {
+    if (request.common.json) raise<UsageError>("--json: export of a model has no JSON result yet");
+    const Spec spec = parse_spec(request.to);
+    const JointTarget& target = find_joint_target(spec.name);
+    check_output_name(request.common.output, target.name, target.endings);
+    const Settings settings = settings_of(spec, target.keys);
+    const ModelWithGiven model = read_model_with_given(read_all(request.table), request.table);
+    if (model.any_given())
+        raise<DataError>(
+            "{}: an arm or a simulation is part of the model, which the target has not; export "
+            "a model of the effects alone",
+            request.table);
+    if (const auto missing = missing_values(model.model); !missing.empty())
+        raise<DataError>(
+            "{}: the model does not state {}; diagnose --improved-model writes a model that does",
+            request.table, missing.front());
+    const WrittenJoint written =
+        target.write(model.model, settings, generated_by({{input_record(request.table)}, command_line}));
+    write_export({written.text, {}}, request.common);
+    std::string told = fmt::format("{}: {}\n", request.common.output, target.summary);
+    for (const MjcfPart& part : written.holds) told += fmt::format("held: {}: {}\n", part.effect, part.words);
+    for (const MjcfPart& part : written.not_held)
+        told += fmt::format("not held: {}: {}\n", part.effect, part.words);
+    if (model.ripple) told += "not held: ripple_map: export it from map.json\n";
+    tell_check(told, request.common);
+    return ExitCode::done;
+}
+
 // What was read back, for people.
 
 std::string depth_text(const SectionCheck& check) {
@@ -364,7 +398,8 @@ void say_violations(const ExportReport& report) {
 
 ExitCode run_export(const ExportRequest& request, const std::string& command_line) {
     check_export(request);
-    if (is_map(request.table)) return export_map(request, command_line);
+    if (is_document(request.table, "map")) return export_map(request, command_line);
+    if (is_document(request.table, "model")) return export_model(request, command_line);
     if (request.motor_of) raise<UsageError>("--motor-of is for maps, and {} is none", request.table);
     const Spec spec = parse_spec(request.to);
     const Target& target = find_target(spec.name);
@@ -417,10 +452,10 @@ ExitCode run_export(const ExportRequest& request, const std::string& command_lin
 std::function<ExitCode()> attach_export(Options& options) {
     auto request = std::make_shared<ExportRequest>();
     options.argument("TABLE", request->table, false,
-                     "table.json from design, or map.json from map; - is standard input");
+                     "table.json from design, map.json from map, or model.json; - is standard input");
     options.text("--to,--target", request->to, "TARGET[,KEY=VALUE...]",
-                 fmt::format("{}; of a map {}; see docs/export", name_list(export_targets()),
-                             name_list(map_targets())));
+                 fmt::format("{}; of a map {}; of a model {}; see docs/export", name_list(export_targets()),
+                             name_list(map_targets()), name_list(joint_targets())));
     options.text("--method", request->method, "SPEC",
                  fmt::format("instead of a table: {} with its keys, as filter has them, for example "
                              "switching,table=table.json,hysteresis=1deg/s",

@@ -183,11 +183,12 @@ MapFit map_from_json(std::string_view text, const std::string& source) {
 
 MapFit load_map(const std::string& path) { return map_from_json(read_all(path), input_name(path)); }
 
-bool is_map(const std::string& path) {
+bool is_document(const std::string& path, std::string_view kind) {
     constexpr std::size_t head = 200;
     std::error_code failed;
     if (!std::filesystem::is_regular_file(path, failed)) return false;
-    return read_all(path).substr(0, head).find("ripplenotch/map/1") != std::string::npos;
+    const std::string schema = "ripplenotch/" + std::string(kind) + "/1";
+    return read_all(path).substr(0, head).find(schema) != std::string::npos;
 }
 
 }  // namespace ripplenotch

@@ -205,14 +205,6 @@ MjcfWave wave_of(std::string name, double amplitude_nm, double poles, double pha
     return {std::move(name), amplitude_nm, poles, turn_rad(phase_deg + 90.0)};
 }
 
-GearRatio ratio_of(const Model& model) {
-    GearRatio ratio = model.gear_ratio;
-    Motion none;
-    for (const Term& term : model.terms)
-        if (term.effect->name == "gear-ratio") term.effect->change_motion(values_of(term), none, ratio);
-    return ratio;
-}
-
 // Two weights on one joint are one.
 void add_weight(JointMjcf& mjcf, double nm, double phase_deg) {
     const double angle = phase_deg / degrees_per_radian;
@@ -333,6 +325,14 @@ class Taking {
 };
 
 }  // namespace
+
+GearRatio ratio_of(const Model& model) {
+    GearRatio ratio = model.gear_ratio;
+    Motion none;
+    for (const Term& term : model.terms)
+        if (term.effect->name == "gear-ratio") term.effect->change_motion(values_of(term), none, ratio);
+    return ratio;
+}
 
 JointMjcf joint_mjcf(const Model& model) {
     Taking taking(model);

@@ -23,15 +23,6 @@ namespace {
 
 // The JSON library is in the module document, which depends on this one; the output here is this module's own
 // text and numbers, so that quoting is all that is needed.
-std::string in_quotes(std::string_view text) {
-    std::string out = "\"";
-    for (const char c : text) {
-        if (c == '"' || c == '\\') out += '\\';
-        out += static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) > 0x7e ? '?' : c;
-    }
-    return out + "\"";
-}
-
 std::string list_of(const Biquad& f) {
     return "[" + joined(std::array{f.b0, f.b1, f.b2, 1.0, f.a1, f.a2}, ", ", decimal) + "]";
 }

@@ -63,7 +63,8 @@ const Effect effects::payload_change{
     .name = "payload-change",
     .summary = "a mass is picked up or put down: inertia and gravity change at a time",
     .equation =
-        "torque = (1 + tanh((t - time_s) / ramp_s)) / 2 * (inertia_kgm2 * dv/dt in rad/s2 + cosine_nm * "
+        "torque = (1 + tanh((t - time_s) / ramp_s)) / 2 * (inertia_kgm2 * acceleration * pi / 180 + "
+        "cosine_nm * "
         "cos(q) + sine_nm * sin(q))",
     .symptom = "a residual that follows acceleration and position from a time on, and is absent before it",
     .look_alikes = {{"gravity", "the change is near the beginning of the log",
