@@ -116,7 +116,9 @@ void check_identifier(std::string_view name, std::string_view what);
 
 [[nodiscard]] std::string upper_case(std::string text);
 
-/// A string of JSON; what is no printable ASCII is a question mark.
+/// A string of JSON; what is no printable ASCII is a question mark. The JSON library is in the module
+/// document, which depends on this one; the output here is this module's own text and numbers, so that
+/// quoting is all that is needed.
 [[nodiscard]] std::string in_quotes(std::string_view text);
 
 /// The filter that runs at every speed. Throws UsageError for one that is chosen by speed: `target` cannot.

@@ -23,7 +23,7 @@ print(json.dumps({name: float(np.max(np.abs(np.array(torque) - runpy.run_path(na
 # Beside the catalogue's first guesses: what a torque needs to be told from none.
 VALUES = {"payload-change": {"time_s": 1.0, "ramp_s": 0.1, "cosine_nm": 0.4, "sine_nm": -0.3}, "tone": {"frequency_hz": 7.0, "phase_deg": 30.0},
           "drift": {"rate_nm_s": -0.2}, "gear-ratio": {"error_percent": 0.5}}
-NOT_IN_PYTHON = {"hysteresis", "backlash", "start-stop-ringing", "simulation-scale"}
+NOT_IN_PYTHON = {"hysteresis", "backlash", "start-stop-ringing", "simulation-scale", "coupled-joint-friction"}
 
 
 class Joint(Case):

@@ -13,6 +13,7 @@
 #include "export/text.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/visible_text.hpp"
 #include "ripplenotch/export/joint_target.hpp"
 
 namespace ripplenotch {
@@ -218,7 +219,7 @@ std::string python_of(const Term& term) {
 }
 
 std::string why_not_in_python(const Effect& effect) {
-    if (effect.side == Side::joint) return "its torque is no function of the present motion";
+    if (effect.side == Side::joint) return "its torque is no function of the present motion of this joint";
     if (effect.side == Side::ripple) return "the ripple is written as it is without";
     return others_part(effect);
 }

@@ -21,8 +21,6 @@ namespace {
 
 // The filters as plain JSON, for programs of one's own: everything the other targets round, unrounded.
 
-// The JSON library is in the module document, which depends on this one; the output here is this module's own
-// text and numbers, so that quoting is all that is needed.
 std::string list_of(const Biquad& f) {
     return "[" + joined(std::array{f.b0, f.b1, f.b2, 1.0, f.a1, f.a2}, ", ", decimal) + "]";
 }
