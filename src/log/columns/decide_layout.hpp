@@ -4,7 +4,6 @@
 // for every format, so that a CSV and an NPY of the same names are understood alike. Ambiguity is an error
 // that lists the readings and the option that decides.
 
-#include <compare>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -18,21 +17,11 @@ namespace ripplenotch {
 
 struct ColumnName;
 
-/// The columns of one joint's motion.
-struct MotionPlace {
-    std::optional<std::size_t> velocity, position;
-    auto operator<=>(const MotionPlace&) const = default;
-};
-
-/// The rows of the motion of some joints: equal lengths, or empty where there is no such column. Time in the
-/// file's unit, less its origin.
+/// Rows of some columns, of equal lengths. Time in the file's unit, less its origin.
 struct MotionSample {
-    struct Joint {
-        std::vector<double> velocity, position;
-    };
     std::vector<double> time;
-    std::vector<Joint> joints;
-    bool whole = false;  ///< the log has no more rows
+    std::vector<std::vector<double>> values;  ///< by column, in the order in which they were asked for
+    bool whole = false;                       ///< the log has no more rows
 };
 
 /// A scale that the head of a file states for a column, and not whether the values have it.
@@ -63,7 +52,7 @@ struct ColumnFacts {
     std::string dialect_options;         ///< "--delimiter ',' --decimal ." and the like, for Layout::options
     /// Rows of velocities and positions, as they stand in the file, not-a-number where a cell is no number:
     /// those of the first `bytes`, and at least those at hand. Of all joints in one pass.
-    std::function<MotionSample(const Layout& layout, const std::vector<MotionPlace>& places,
+    std::function<MotionSample(const Layout& layout, const std::vector<std::size_t>& columns,
                                std::size_t bytes)>
         motion_sample;
 };

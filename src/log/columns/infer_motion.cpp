@@ -381,24 +381,31 @@ class Inference {
 
     /// Looks at those that have not been looked at.
     const MotionsSeen::Opening& look_at(std::size_t bytes) {
-        std::vector<MotionPlace> places;
+        std::vector<const MotionColumns*> joints;
+        std::vector<std::size_t> columns;
         MotionsSeen::Opening& opening = seen_.openings[bytes];
-        for (const MotionColumns& joint : joints_)
-            if (opening.of.count(joint.place()) == 0) places.push_back(joint.place());
-        if (places.empty()) return opening;
-        MotionSample rows = facts_.motion_sample(layout_, places, bytes);
+        for (const MotionColumns& joint : joints_) {
+            if (opening.of.count(joint.place()) > 0) continue;
+            joints.push_back(&joint);
+            for (const MotionColumn& column : joint.all()) columns.push_back(column.column);
+        }
+        if (joints.empty()) return opening;
+        MotionSample rows = facts_.motion_sample(layout_, columns, bytes);
         opening.whole = rows.whole;
         const double factor = layout_.chosen.time   ? layout_.columns[*layout_.chosen.time].factor
                               : layout_.stated_rate ? 1.0 / layout_.stated_rate->value()
                                                     : 1.0;
         for (double& time : rows.time) time *= factor;
-        for (std::size_t j = 0; j < places.size(); ++j) {
-            const MotionPlace& place = places[j];
-            if (place.velocity) {
-                const Column& column = layout_.columns[*place.velocity];
-                for (double& value : rows.joints[j].velocity) value += column.shift / column.factor;
+        auto values = rows.values.begin();
+        for (const MotionColumns* joint : joints) {
+            std::vector<double> velocity, position;
+            if (joint->velocity) {
+                const Column& column = layout_.columns[joint->velocity->column];
+                velocity = std::move(*values++);
+                for (double& value : velocity) value += column.shift / column.factor;
             }
-            opening.of[place] = motion_evidence(rows.time, rows.joints[j].velocity, rows.joints[j].position);
+            if (joint->position) position = std::move(*values++);
+            opening.of[joint->place()] = motion_evidence(rows.time, velocity, position);
         }
         return opening;
     }

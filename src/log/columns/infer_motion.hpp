@@ -39,6 +39,9 @@ struct MotionColumn {
     std::optional<Shaft> stated_side;
 };
 
+/// The columns of a velocity and a position.
+using MotionPlace = std::pair<std::optional<std::size_t>, std::optional<std::size_t>>;
+
 /// The motion of one joint; one of the two may be missing.
 struct MotionColumns {
     std::string joint;
@@ -52,10 +55,8 @@ struct MotionColumns {
         return found;
     }
     [[nodiscard]] MotionPlace place() const {
-        MotionPlace place;
-        for (const MotionColumn& one : all())
-            (one.role == Role::velocity ? place.velocity : place.position) = one.column;
-        return place;
+        const auto column = [](const auto& one) { return one ? std::optional(one->column) : std::nullopt; };
+        return {column(velocity), column(position)};
     }
     /// That which tells the speed: the velocity, where there is one.
     [[nodiscard]] const MotionColumn& of_speed() const { return velocity ? *velocity : *position; }

@@ -5,10 +5,10 @@
 
 #include <algorithm>
 #include <array>
-#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -24,21 +24,20 @@ namespace {
 // Which arrays of a container were recorded at the same moments. Simulink's structs have a time beside each
 // signal (tau.Time, tau.Data), HDF5 files a group for each device, dSPACE an axis for all.
 
-/// Arrays of one clock, or of one length where nothing says whose clock they have.
-struct ArrayGroup {
-    std::size_t rows = 0;
-    std::vector<const StoredArray*> arrays;  ///< in the order of the file; of equal clocks only the first
-    const StoredArray* clock = nullptr;      ///< one of them
-};
-
-// Columns of arrays side by side: what they are called, and their numbers.
-
 /// One column of an array under its own path.
 struct ArrayColumn {
     std::string path;     ///< "log.q_dot(:,3)"
     std::string read_as;  ///< what it means beside the others: "q_dot[3]"
     const StoredArray* array;
     std::size_t number;
+};
+
+/// Arrays of one clock, or of one length where nothing says whose clock they have.
+struct ArrayGroup {
+    std::size_t rows = 0;
+    std::vector<const StoredArray*> arrays;  ///< in the order of the file; of equal clocks only the first
+    const StoredArray* clock = nullptr;      ///< one of them
+    std::vector<ArrayColumn> columns;        ///< of all of them
 };
 
 constexpr std::size_t compared_at_once = std::size_t{1} << 15;  // rows
@@ -84,59 +83,6 @@ bool same_numbers(const StoredArray& one, const StoredArray& other) {
         if (a.values != b.values || a.counts != b.counts) return false;
     }
     return true;
-}
-
-// In order of their rows. The clock of an array is the vector named as a time in its own folder or in the
-// nearest one around it, if it has as many rows; clocks that hold the same numbers are one. Reads clocks
-// where several have the same length.
-std::vector<ArrayGroup> groups_of(const std::vector<StoredArray>& arrays) {
-    const auto rows_of = [&](std::size_t a) { return arrays[a].shape.rows; };
-    std::map<std::pair<std::string, std::size_t>, std::size_t>
-        times;  // the first in a folder, of so many rows
-    for (std::size_t a = 0; a < arrays.size(); ++a)
-        if (rows_of(a) >= 2 && names_time(arrays[a]))
-            times.emplace(std::pair(path_around(without_empty_words(arrays[a].path)), rows_of(a)), a);
-    const auto nearest = [&](std::size_t a) -> std::optional<std::size_t> {
-        std::string folder = path_around(arrays[a].path);
-        while (true) {
-            if (const auto found = times.find({folder, rows_of(a)}); found != times.end())
-                return found->second;
-            if (folder.empty()) return std::nullopt;
-            folder = path_around(folder);
-        }
-    };
-    std::vector<std::size_t> distinct;
-    std::map<std::size_t, std::size_t> equal_to;
-    const auto first_of_equals = [&](std::size_t clock) {
-        if (const auto known = equal_to.find(clock); known != equal_to.end()) return known->second;
-        const auto first = std::ranges::find_if(distinct, [&](std::size_t other) {
-            return rows_of(other) == rows_of(clock) && same_numbers(arrays[other], arrays[clock]);
-        });
-        if (first != distinct.end()) return equal_to[clock] = *first;
-        distinct.push_back(clock);
-        return equal_to[clock] = clock;
-    };
-    std::vector<std::optional<std::size_t>> clocks;
-    for (std::size_t a = 0; a < arrays.size(); ++a) {
-        clocks.push_back(nearest(a));
-        if (clocks[a]) clocks[a] = first_of_equals(*clocks[a]);
-    }
-    std::map<std::pair<std::size_t, std::size_t>, ArrayGroup> groups;  // by rows and clock
-    for (std::size_t a = 0; a < arrays.size(); ++a) {
-        if (rows_of(a) < 2) continue;
-        // An array that nothing is said of has the only clock of its length.
-        const auto fits = [&](std::size_t clock) { return rows_of(clock) == rows_of(a); };
-        if (!clocks[a] && std::ranges::count_if(distinct, fits) == 1)
-            clocks[a] = *std::ranges::find_if(distinct, fits);
-        ArrayGroup& group = groups[{rows_of(a), clocks[a].value_or(arrays.size())}];
-        group.rows = rows_of(a);
-        if (clocks[a]) group.clock = &arrays[*clocks[a]];
-        const bool copy = equal_to.count(a) > 0 && equal_to[a] != a;  // of a clock in another folder
-        if (!copy) group.arrays.push_back(&arrays[a]);
-    }
-    std::vector<ArrayGroup> found;
-    for (auto& [key, group] : groups) found.push_back(std::move(group));
-    return found;
 }
 
 std::vector<ColumnInfo> info_of(const std::vector<ArrayColumn>& columns) {
@@ -231,6 +177,62 @@ std::vector<ArrayColumn> columns_of(const ArrayGroup& group, PathStyle style) {
     return columns;
 }
 
+// In order of their rows. The clock of an array is the vector named as a time in its own folder or in the
+// nearest one around it, if it has as many rows; clocks that hold the same numbers are one. Reads clocks
+// where several have the same length.
+std::vector<ArrayGroup> groups_of(const std::vector<StoredArray>& arrays, PathStyle style) {
+    const auto rows_of = [&](std::size_t a) { return arrays[a].shape.rows; };
+    std::map<std::pair<std::string, std::size_t>, std::size_t>
+        times;  // the first in a folder, of so many rows
+    for (std::size_t a = 0; a < arrays.size(); ++a)
+        if (rows_of(a) >= 2 && names_time(arrays[a]))
+            times.emplace(std::pair(path_around(without_empty_words(arrays[a].path)), rows_of(a)), a);
+    const auto nearest = [&](std::size_t a) -> std::optional<std::size_t> {
+        std::string folder = path_around(arrays[a].path);
+        while (true) {
+            if (const auto found = times.find({folder, rows_of(a)}); found != times.end())
+                return found->second;
+            if (folder.empty()) return std::nullopt;
+            folder = path_around(folder);
+        }
+    };
+    std::vector<std::size_t> distinct;
+    std::map<std::size_t, std::size_t> equal_to;
+    const auto first_of_equals = [&](std::size_t clock) {
+        if (const auto known = equal_to.find(clock); known != equal_to.end()) return known->second;
+        const auto first = std::ranges::find_if(distinct, [&](std::size_t other) {
+            return rows_of(other) == rows_of(clock) && same_numbers(arrays[other], arrays[clock]);
+        });
+        if (first != distinct.end()) return equal_to[clock] = *first;
+        distinct.push_back(clock);
+        return equal_to[clock] = clock;
+    };
+    std::vector<std::optional<std::size_t>> clocks;
+    for (std::size_t a = 0; a < arrays.size(); ++a) {
+        clocks.push_back(nearest(a));
+        if (clocks[a]) clocks[a] = first_of_equals(*clocks[a]);
+    }
+    std::map<std::pair<std::size_t, std::size_t>, ArrayGroup> groups;  // by rows and clock
+    for (std::size_t a = 0; a < arrays.size(); ++a) {
+        if (rows_of(a) < 2) continue;
+        // An array that nothing is said of has the only clock of its length.
+        const auto fits = [&](std::size_t clock) { return rows_of(clock) == rows_of(a); };
+        if (!clocks[a] && std::ranges::count_if(distinct, fits) == 1)
+            clocks[a] = *std::ranges::find_if(distinct, fits);
+        ArrayGroup& group = groups[{rows_of(a), clocks[a].value_or(arrays.size())}];
+        group.rows = rows_of(a);
+        if (clocks[a]) group.clock = &arrays[*clocks[a]];
+        const bool copy = equal_to.count(a) > 0 && equal_to[a] != a;  // of a clock in another folder
+        if (!copy) group.arrays.push_back(&arrays[a]);
+    }
+    std::vector<ArrayGroup> found;
+    for (auto& [key, group] : groups) {
+        group.columns = columns_of(group, style);
+        found.push_back(std::move(group));
+    }
+    return found;
+}
+
 double ns_per_unit(const std::string& source, const StoredArray& clock) {
     if (const auto stated = stated_clock_ns(clock.unit, last_word(clock.path))) return *stated;
     if (clock.type.kind != 'f')
@@ -244,15 +246,14 @@ double ns_per_unit(const std::string& source, const StoredArray& clock) {
 // The columns of `base`, its clock first, and next to them what --columns names of those of `others`. All
 // groups have a clock.
 void join_arrays(const std::shared_ptr<StoredBytes>& file, const ArrayGroup& base,
-                 const std::vector<const ArrayGroup*>& others, PathStyle style, const ReadOptions& options,
-                 ColumnLog& log) {
-    std::vector<ArrayColumn> columns = columns_of(base, style);
+                 const std::vector<const ArrayGroup*>& others, const ReadOptions& options, ColumnLog& log) {
+    std::vector<ArrayColumn> columns = base.columns;
     const auto clock_column =
         std::ranges::find_if(columns, [&](const ArrayColumn& column) { return column.array == base.clock; });
     std::rotate(columns.begin(), clock_column, clock_column + 1);
     std::vector<SideColumn> sides;
     for (const ArrayGroup* other : others) {
-        for (const ArrayColumn& column : columns_of(*other, style)) {
+        for (const ArrayColumn& column : other->columns) {
             if (asked_role(options, column.path).empty()) continue;
             if (column.array == other->clock)
                 raise<UsageError>(
@@ -268,17 +269,17 @@ void join_arrays(const std::shared_ptr<StoredBytes>& file, const ArrayGroup& bas
     join_columns(log, ns_per_unit(file->name(), *base.clock), std::move(sides), options);
 }
 
-int column_names_tell(const std::vector<ArrayColumn>& columns) {
+int column_names_tell(const ArrayGroup& group) {
     std::vector<std::string> names;
-    for (const ArrayColumn& column : columns) names.push_back(column.read_as);
+    for (const ArrayColumn& column : group.columns) names.push_back(column.read_as);
     return names_tell(names);
 }
 
 // The first of the group's columns that --columns names by path, the torque's before others; "" where there
 // is none.
-std::string first_asked(const ArrayGroup& group, PathStyle style, const ReadOptions& options) {
+std::string first_asked(const ArrayGroup& group, const ReadOptions& options) {
     std::string first;
-    for (const ArrayColumn& column : columns_of(group, style)) {
+    for (const ArrayColumn& column : group.columns) {
         const std::string role = asked_role(options, column.path);
         if (role == "torque" || (first.empty() && !role.empty())) first = column.path;
     }
@@ -287,10 +288,10 @@ std::string first_asked(const ArrayGroup& group, PathStyle style, const ReadOpti
 
 // The groups that --columns names, that of the torque first.
 std::vector<const ArrayGroup*> asked_groups(const std::string& source, const std::vector<ArrayGroup>& groups,
-                                            PathStyle style, const ReadOptions& options) {
+                                            const ReadOptions& options) {
     std::vector<const ArrayGroup*> found;
     for (const ArrayGroup& group : groups) {
-        const std::string first = first_asked(group, style, options);
+        const std::string first = first_asked(group, options);
         const bool torque = asked_role(options, first) == "torque";
         if (!first.empty()) found.insert(torque ? found.begin() : found.end(), &group);
     }
@@ -299,8 +300,8 @@ std::vector<const ArrayGroup*> asked_groups(const std::string& source, const std
         raise<UsageError>(
             "--columns: {} of {} has {} rows, {} has {}: their clocks differ; name arrays of one length, or "
             "each with its own time",
-            first_asked(*found[0], style, options), source, found[0]->rows,
-            first_asked(*found[1], style, options), found[1]->rows);
+            first_asked(*found[0], options), source, found[0]->rows, first_asked(*found[1], options),
+            found[1]->rows);
     }
     return found;
 }
@@ -317,19 +318,18 @@ std::string listed(const std::vector<ContentEntry>& contents) {
 constexpr std::size_t fewest_rows_of_signal = 200, times_longer = 10;
 
 // The longest of the groups whose names say most; null where there is none.
-const ArrayGroup* choose_group(const std::vector<ArrayGroup>& groups, PathStyle style) {
+const ArrayGroup* choose_group(const std::vector<ArrayGroup>& groups) {
     const ArrayGroup* chosen = nullptr;
     int best = -1;
     const auto is_parameter = [&](const ArrayGroup& group) {
         return group.rows < fewest_rows_of_signal &&
                std::ranges::any_of(groups, [&](const ArrayGroup& other) {
-                   return other.rows >= times_longer * group.rows &&
-                          column_names_tell(columns_of(other, style)) > 0;
+                   return other.rows >= times_longer * group.rows && column_names_tell(other) > 0;
                });
     };
     for (const ArrayGroup& group : groups) {
         if (is_parameter(group)) continue;
-        const int tells = column_names_tell(columns_of(group, style));
+        const int tells = column_names_tell(group);
         if (tells < best || (tells == best && group.rows == chosen->rows)) continue;
         best = tells;
         chosen = &group;
@@ -338,7 +338,7 @@ const ArrayGroup* choose_group(const std::vector<ArrayGroup>& groups, PathStyle 
 }
 
 std::vector<ContentEntry> contents_of(const std::vector<StoredArray>& arrays,
-                                      const std::function<bool(const StoredArray&)>& is_read) {
+                                      const std::set<const StoredArray*>& read) {
     std::vector<ContentEntry> contents;
     for (const StoredArray& array : arrays) {
         const ArrayShape& shape = array.shape;
@@ -346,7 +346,7 @@ std::vector<ContentEntry> contents_of(const std::vector<StoredArray>& arrays,
                                   : shape.time_is_first ? fmt::format("{} x {}", shape.rows, shape.columns)
                                                         : fmt::format("{} x {}", shape.columns, shape.rows);
         contents.push_back(
-            {array.path, words, type_name(array.type), array.unit, std::nullopt, is_read(array)});
+            {array.path, words, type_name(array.type), array.unit, {}, read.count(&array) > 0});
     }
     return contents;
 }
@@ -358,22 +358,16 @@ ColumnLog columns_of_arrays(const std::shared_ptr<StoredBytes>& file, const std:
                             const std::vector<ContentEntry>& extra, const ReadOptions& options) {
     ColumnLog log;
     log.format = format;
-    const std::vector<ArrayGroup> groups = groups_of(arrays);
-    std::vector<const ArrayGroup*> chosen = asked_groups(file->name(), groups, style, options);
+    const std::vector<ArrayGroup> groups = groups_of(arrays, style);
+    std::vector<const ArrayGroup*> chosen = asked_groups(file->name(), groups, options);
     if (chosen.empty())
-        if (const ArrayGroup* const best = choose_group(groups, style)) chosen.push_back(best);
-    const auto reads = [&](const StoredArray& array) {
-        if (chosen.empty()) return false;
-        const auto& whole = chosen.front()->arrays;
-        if (std::ranges::find(whole, &array) != whole.end()) return true;
-        return std::any_of(chosen.begin() + 1, chosen.end(), [&](const ArrayGroup* group) {
-            const auto columns = columns_of(*group, style);
-            return std::ranges::any_of(columns, [&](const ArrayColumn& column) {
-                return column.array == &array && !asked_role(options, column.path).empty();
-            });
-        });
-    };
-    log.contents = contents_of(arrays, reads);
+        if (const ArrayGroup* const best = choose_group(groups)) chosen.push_back(best);
+    std::set<const StoredArray*> read;
+    for (const ArrayGroup* group : chosen)
+        for (const ArrayColumn& column : group->columns)
+            if (group == chosen.front() || !asked_role(options, column.path).empty())
+                read.insert(column.array);
+    log.contents = contents_of(arrays, read);
     log.contents.insert(log.contents.end(), extra.begin(), extra.end());
     if (chosen.empty()) {
         raise<DataError>(
@@ -384,9 +378,9 @@ ColumnLog columns_of_arrays(const std::shared_ptr<StoredBytes>& file, const std:
     if (chosen.size() > 1) {
         const ArrayGroup& base = *chosen.front();
         chosen.erase(chosen.begin());
-        join_arrays(file, base, chosen, style, options, log);
+        join_arrays(file, base, chosen, options, log);
     } else {
-        log.columns = std::make_unique<ArrayColumns>(file, columns_of(*chosen.front(), style));
+        log.columns = std::make_unique<ArrayColumns>(file, chosen.front()->columns);
     }
     return log;
 }

@@ -79,9 +79,7 @@ class MatTableWriter final : public TableWriter {
     void rows(std::span<const std::span<const double>> columns) override {
         for (std::size_t c = 0; c < columns.size(); ++c) {
             bytes_.resize(8 * columns[c].size());
-            NpyField field;
-            for (std::size_t r = 0; r < columns[c].size(); ++r, field.offset += 8)
-                store_float(bytes_.data(), field, columns[c][r]);
+            store_column(bytes_.data(), 8, {}, {columns[c], {}});
             columns_[c].put(bytes_);
         }
         if (!columns.empty()) rows_ += columns[0].size();

@@ -190,11 +190,8 @@ class NpyTableWriter final : public TableWriter {
         const std::size_t count = columns.empty() ? 0 : columns[0].size();
         const std::size_t width = 8 * columns.size();
         bytes_.resize(count * width);
-        for (std::size_t c = 0; c < columns.size(); ++c) {
-            const NpyField field{"", 'f', 8, false, 8 * c};
-            for (std::size_t r = 0; r < count; ++r)
-                store_float(bytes_.data() + r * width, field, columns[c][r]);
-        }
+        for (std::size_t c = 0; c < columns.size(); ++c)
+            store_column(bytes_.data(), width, {"", 'f', 8, false, 8 * c}, {columns[c], {}});
         array_->put(bytes_, count);
     }
     void end() override { array_->end(); }

@@ -303,14 +303,6 @@ std::int64_t load_count(const char* record, const NpyField& field) {
     return load_word<std::int64_t>(record + field.offset, field.big_endian);
 }
 
-void store_float(char* record, const NpyField& field, double value) {
-    if (field.size == 4) {
-        store_word(record + field.offset, field.big_endian, static_cast<float>(value));
-    } else {
-        store_word(record + field.offset, field.big_endian, value);
-    }
-}
-
 void load_column(const char* records, std::size_t record_size, const NpyField& field, std::size_t rows,
                  ColumnNumbers& into) {
     const std::size_t before = into.values.size();
@@ -337,12 +329,15 @@ void store_column(char* records, std::size_t record_size, const NpyField& field,
     const auto [values, as_written, factor] = column;
     // What most logs are, without a question for each value.
     const bool plain = field.size == 8 && is_native(field) && factor == 1.0;
-    for (std::size_t i = 0; i < values.size(); ++i, records += record_size) {
+    char* into = records + field.offset;
+    for (std::size_t i = 0; i < values.size(); ++i, into += record_size) {
         if (!as_written.empty() && values[i] == as_written[i]) continue;
         if (plain)
-            std::memcpy(records + field.offset, &values[i], sizeof(double));
+            std::memcpy(into, &values[i], sizeof(double));
+        else if (field.size == 4)
+            store_word(into, field.big_endian, static_cast<float>(values[i] / factor));
         else
-            store_float(records, field, values[i] / factor);
+            store_word(into, field.big_endian, values[i] / factor);
     }
 }
 

@@ -34,18 +34,17 @@ struct NpyField {
 /// Of "int16", "uint8", "float64" or, as NumPy has them, "i2", "u1", "f8"; none for other words.
 [[nodiscard]] std::optional<NpyField> number_type(std::string_view word);
 
-/// A number of a record, and back; `record` points at its first byte.
+/// A number of a record; `record` points at its first byte.
 [[nodiscard]] double load_field(const char* record, const NpyField& field);
 /// The whole number of a field that is whole().
 [[nodiscard]] std::int64_t load_count(const char* record, const NpyField& field);
-void store_float(char* record, const NpyField& field, double value);
 
 /// Appends the numbers of `rows` records that stand `record_size` bytes from each other.
 void load_column(const char* records, std::size_t record_size, const NpyField& field, std::size_t rows,
                  ColumnNumbers& into);
 
-/// store_float of `values`, each divided by `factor`, into records that follow each other; records whose
-/// value is that of `as_written` are left as they are. `as_written` is empty, or as long as `values`.
+/// `values`, each divided by `factor`, into the floats of records that follow each other; records whose value
+/// is that of `as_written` are left as they are. `as_written` is empty, or as long as `values`.
 struct StoredColumn {
     std::span<const double> values, as_written;
     double factor = 1.0;

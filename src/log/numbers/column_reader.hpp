@@ -41,8 +41,6 @@ class ColumnReader final : public LogReader {
     [[nodiscard]] std::vector<std::string> names() const;
     void read_ahead(std::size_t rows);
     [[nodiscard]] double time_at(const NumberRows& numbers, std::size_t row, const Layout& layout) const;
-    [[nodiscard]] MotionSample motion_sample(const Layout& layout,
-                                             const std::vector<MotionPlace>& places) const;
     /// Numbers of a column as in the file, up to the first of `rows` that is wrong, which it returns.
     std::size_t judge(RowBlock& block, const WantedColumn& wanted, std::size_t rows) const;
     [[noreturn]] void complain(const WantedColumn& wanted, std::size_t row, double value,

@@ -66,11 +66,11 @@ CsvReader::CsvReader(TextOpening opening, const ReadOptions& options)
 
 // `opening` may be read on while the layout is decided.
 void CsvReader::decide(std::string& opening) {
-    dialect_.motion_sample = [this, &opening](const Layout& layout, const std::vector<MotionPlace>& places,
+    dialect_.motion_sample = [this, &opening](const Layout& layout, const std::vector<std::size_t>& columns,
                                               std::size_t bytes) {
         if (!source_ended_ && opening.size() < bytes) source_ended_ = read_on(*source_, opening, bytes);
         MotionSample sample = text_motion_sample(std::string_view(opening).substr(dialect_.data_offset),
-                                                 dialect_, layout, places);
+                                                 dialect_, layout, columns);
         sample.whole = source_ended_;
         return sample;
     };

@@ -382,21 +382,19 @@ TextDialect sniff_text(std::string_view bytes, bool whole, const ByteSource& sou
 }
 
 MotionSample text_motion_sample(std::string_view bytes, const TextDialect& dialect, const Layout& layout,
-                                const std::vector<MotionPlace>& places) {
+                                const std::vector<std::size_t>& columns) {
     std::vector<WantedColumn> wanted = time_columns(layout);
-    for (std::size_t j = 0; j < places.size(); ++j) {
-        if (places[j].velocity) wanted.push_back({*places[j].velocity, slot_of(velocity_slot, j)});
-        if (places[j].position) wanted.push_back({*places[j].position, slot_of(position_slot, j)});
-    }
+    for (std::size_t k = 0; k < columns.size(); ++k)
+        wanted.push_back({columns[k], slot_of(velocity_slot, k)});
     const RowParser parser(
         {dialect.rules, dialect.columns, wanted, {}, stamp_rule(layout, dialect.rules.decimal_mark)});
     const auto lenient = [](const auto&...) { return std::optional(not_a_number); };
-    ParsedRow row(places.size());
+    ParsedRow row(columns.size());
     CellSplit split;
     const bool timed = layout.chosen.time.has_value();
     std::size_t lines = 0;
     double sum = 0.0;
-    MotionSample sample{{}, std::vector<MotionSample::Joint>(places.size())};
+    MotionSample sample{{}, std::vector<std::vector<double>>(columns.size())};
     for (std::size_t begin = 0; begin < bytes.size();) {
         const std::size_t found = bytes.find('\n', begin);
         if (found == std::string_view::npos) break;
@@ -408,11 +406,8 @@ MotionSample text_motion_sample(std::string_view bytes, const TextDialect& diale
         sample.time.push_back(layout.time_is_steps ? sum
                               : timed              ? row.values[time_slot]
                                                    : static_cast<double>(lines));
-        for (std::size_t j = 0; j < places.size(); ++j) {
-            auto& [velocity, position] = sample.joints[j];
-            if (places[j].velocity) velocity.push_back(row.values[slot_of(velocity_slot, j)]);
-            if (places[j].position) position.push_back(row.values[slot_of(position_slot, j)]);
-        }
+        for (std::size_t k = 0; k < columns.size(); ++k)
+            sample.values[k].push_back(row.values[slot_of(velocity_slot, k)]);
     }
     return sample;
 }

@@ -102,6 +102,6 @@ struct TextLines {
 /// All whole lines of `bytes`, which begin with the first row. Rows that are none are left out. Without a
 /// time column, time counts the rows.
 [[nodiscard]] MotionSample text_motion_sample(std::string_view bytes, const TextDialect& dialect,
-                                              const Layout& layout, const std::vector<MotionPlace>& places);
+                                              const Layout& layout, const std::vector<std::size_t>& columns);
 
 }  // namespace ripplenotch
