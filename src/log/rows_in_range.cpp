@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "log/clock/stamp.hpp"
-#include "log/numbers/column_reader.hpp"
+#include "log/numbers/columns.hpp"
 #include "log/text/csv_reader.hpp"
 #include "log/text/text_dialect.hpp"
 #include "ripplenotch/core/error.hpp"

@@ -148,9 +148,9 @@ std::string shown_time(double value, std::int64_t origin) {
                : fmt::format("{}", whole);
 }
 
-const Round* round_of(const TimeStep& step) {
+const Round* round_of(double before, double read) {
     for (const Round& round : rounds) {
-        const double on = step.read + round.length - step.before;
+        const double on = read + round.length - before;
         if (on >= 0.0 && on <= longest_step_share * round.length) return &round;
     }
     return nullptr;
@@ -337,10 +337,10 @@ void settle_clock(const ColumnFacts& facts, bool unit_is_stated, Layout& layout)
     }
 }
 
-std::string time_backward(const TimeStep& step) {
-    const std::string seen = fmt::format("read the time {} after {}, ", shown_time(step.read, step.origin),
-                                         shown_time(step.before, step.origin));
-    if (const Round* round = round_of(step)) {
+std::string time_backward(double before, double read, std::int64_t origin) {
+    const std::string seen =
+        fmt::format("read the time {} after {}, ", shown_time(read, origin), shown_time(before, origin));
+    if (const Round* round = round_of(before, read)) {
         return seen + fmt::format(
                           "expected time to run forward; it falls as {} does that begins anew (at {}): take "
                           "the rows before with --to, or count rows with --sample-rate",

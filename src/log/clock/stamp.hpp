@@ -61,16 +61,10 @@ struct TimeAxis {
 /// begins with `label` and what was typed, for a date where the log has none, and a time beyond its day.
 [[nodiscard]] double on_axis(const TimePoint& point, const TimeAxis& axis, std::string_view label);
 
-// What is said where the time of a row lies before that of the row before.
-
-struct TimeStep {
-    double before = 0.0, read = 0.0;  ///< in the unit of the column, less the origin
-    std::int64_t origin = 0;
-};
-
-/// Both times as the log has them where they are whole numbers, else less the origin. Where the time falls by
-/// what a counter of 16 or 32 bits holds, or by a day of seconds, milliseconds, microseconds or nanoseconds,
+/// What is said where the time `read` in a row lies `before` that of the row before, both in the unit of the
+/// column, less the origin: as the log has them where they are whole numbers. Where the time falls by what a
+/// counter of 16 or 32 bits holds, or by a day of seconds, milliseconds, microseconds or nanoseconds,
 /// less a step, it began anew there: that is said.
-[[nodiscard]] std::string time_backward(const TimeStep& step);
+[[nodiscard]] std::string time_backward(double before, double read, std::int64_t origin);
 
 }  // namespace ripplenotch

@@ -52,11 +52,6 @@ struct ColumnName {
 /// The same for "j3", "joint3", "J3" and "3"; other names in lower case.
 [[nodiscard]] std::string joint_key(std::string_view joint);
 
-/// The joints of `joints`, in their order, that --joint asks for: "all", or names, numbers and ranges with
-/// commas between them, "j1,j3-j5". Throws UsageError, with the joints that there are.
-[[nodiscard]] std::vector<std::string> select_joints(const std::string& source, const std::string& asked,
-                                                     const std::vector<std::string>& joints);
-
 // A part of decide_layout: which columns belong to one joint, and which of them is its velocity, its torque,
 // its position.
 

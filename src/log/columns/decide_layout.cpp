@@ -14,6 +14,7 @@
 #include "log/columns/units.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/spec.hpp"
 
 namespace ripplenotch {
 
@@ -136,6 +137,146 @@ std::string why_unused(const KnownColumns& known, std::size_t column, const std:
     });
     return rivalled ? fmt::format("another column is the {} by its name", role)
                     : fmt::format("a {} of no joint that is read", role);
+}
+
+// --joint: which joints of a log are meant by names, numbers, lists and ranges.
+
+using Joints = std::vector<std::string>;
+
+/// What stands before the number at the end of a name, "panda_joint" of "panda_joint3".
+std::string_view letters_of(std::string_view name) {
+    return name.substr(0, name.find_last_not_of("0123456789") + 1);
+}
+
+/// By its name, else by "3", "j3" or "joint3" for each other, else by the number that its name ends in.
+std::optional<std::size_t> place_of(const Joints& joints, const std::string& word) {
+    const auto place = [&](Joints::const_iterator at) {
+        const auto number = static_cast<std::size_t>(at - joints.begin());
+        return at == joints.end() ? std::nullopt : std::optional(number);
+    };
+    if (const auto named = place(std::ranges::find(joints, word)); named || word.empty()) return named;
+    if (const auto alike = place(std::ranges::find(joints, joint_key(word), joint_key))) return alike;
+    const auto ends_in_it = [&](const std::string& joint) {
+        return letters_of(joint).size() + word.size() == joint.size() && joint.ends_with(word);
+    };
+    if (!is_digits(word) || std::ranges::count_if(joints, ends_in_it) != 1) return std::nullopt;
+    return place(std::ranges::find_if(joints, ends_in_it));
+}
+
+/// Both ends of "j1-j3". A name that holds a hyphen may be one, so that each hyphen is tried.
+std::optional<std::pair<std::size_t, std::size_t>> range_of(const Joints& joints, const std::string& entry) {
+    for (std::size_t dash = entry.find('-'); dash != std::string::npos; dash = entry.find('-', dash + 1)) {
+        const auto first = place_of(joints, entry.substr(0, dash)),
+                   last = place_of(joints, entry.substr(dash + 1));
+        if (first && last) return std::pair(*first, *last);
+    }
+    return std::nullopt;
+}
+
+[[noreturn]] void refuse(const std::string& source, const std::string& asked, const std::string& entry,
+                         const Joints& joints) {
+    if (joints.size() == 1 && joints[0].empty())
+        raise<UsageError>("--joint {}: {} holds one joint without a name; leave --joint out", asked, source);
+    if (joints.empty()) raise<UsageError>("--joint {}: {} has none with velocity and torque", asked, source);
+    raise<UsageError>(
+        "--joint {}: {} has no joint '{}'; it has {} (names, numbers and ranges: --joint {})", asked, source,
+        entry, fmt::join(joints, ", "),
+        joints.size() < 3 ? joints.front() : fmt::format("{},{}-{}", joints[0], joints[1], joints.back()));
+}
+
+// The joints of `joints`, in their order, that --joint asks for: "all", or names, numbers and ranges with
+// commas between them, "j1,j3-j5". Throws UsageError, with the joints that there are.
+std::vector<std::string> select_joints(const std::string& source, const std::string& asked,
+                                       const std::vector<std::string>& joints) {
+    std::vector<bool> taken(joints.size());
+    // Numbered joints are counted by their numbers, whatever the order of their columns; others by the order
+    // of the log.
+    const auto take_between = [&](const std::string& entry, std::size_t first, std::size_t last) {
+        const std::string_view letters = letters_of(joints[first]);
+        const auto number = [&](std::size_t j) {
+            return parse_number(std::string_view(joints[j]).substr(letters.size()));
+        };
+        const bool numbered = letters == letters_of(joints[last]) && number(first) && number(last);
+        if (numbered ? *number(first) > *number(last) : first > last)
+            raise<UsageError>("--joint {}: '{}' runs backwards; {} has {}", asked, entry, source,
+                              fmt::join(joints, ", "));
+        for (std::size_t j = 0; j < joints.size(); ++j) {
+            const bool between = numbered ? letters_of(joints[j]) == letters && number(j) &&
+                                                *number(j) >= *number(first) && *number(j) <= *number(last)
+                                          : j >= first && j <= last;
+            if (between) taken[j] = true;
+        }
+    };
+    const auto take = [&](const std::string& entry) {
+        if (entry == "all")
+            taken.assign(joints.size(), true);
+        else if (const auto one = place_of(joints, entry))
+            taken[*one] = true;
+        else if (const auto range = range_of(joints, entry))
+            take_between(entry, range->first, range->second);
+        else
+            refuse(source, asked, entry, joints);
+    };
+    // A name may hold a comma or a hyphen itself.
+    if (place_of(joints, asked))
+        take(asked);
+    else
+        for (const std::string_view entry : split(asked, ',')) take(std::string(entry));
+    std::vector<std::string> selected;
+    for (std::size_t j = 0; j < joints.size(); ++j)
+        if (taken[j]) selected.push_back(joints[j]);
+    return selected;
+}
+
+// The option line that would force a reading, ready to paste: what was decided, in the words the user would
+// have used.
+
+// A name that --columns can carry, else the column's number.
+std::string handle(const ColumnFacts& facts, std::size_t column) {
+    if (facts.names.empty() || facts.names[column].empty()) return std::to_string(column + 1);
+    const std::string& name = facts.names[column];
+    const bool awkward =
+        name.find_first_of(",=") != std::string::npos || std::ranges::count(facts.names, name) > 1;
+    return awkward ? std::to_string(column + 1) : name;
+}
+
+std::string quoted(const std::string& word) {
+    if (word.find_first_of(" \t;'\"()[]*&|<>$#") == std::string::npos) return word;
+    std::string out = "'";
+    for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return out + "'";
+}
+
+std::string options_line(const Layout& layout, const ColumnFacts& facts, const ReadOptions& options) {
+    std::vector<std::string> words = {"--format " + layout.format};
+    if (!facts.dialect_options.empty()) words.push_back(facts.dialect_options);
+    std::vector<std::string> columns, units;
+    for (const auto& column :
+         {layout.chosen.time, layout.chosen.velocity, layout.chosen.torque, layout.chosen.position}) {
+        if (!column) continue;
+        const Column& c = layout.columns[*column];
+        columns.push_back(fmt::format("{}={}", role_name(c.role), handle(facts, *column)));
+        units.push_back(c.scale.empty()
+                            ? "--unit " + quoted(fmt::format("{}={}", role_name(c.role), c.unit))
+                            : "--scale " + quoted(fmt::format("{}={}", role_name(c.role), c.scale)));
+    }
+    std::vector<std::string> sides;
+    for (const auto& column : {layout.chosen.velocity, layout.chosen.position}) {
+        if (column && layout.columns[*column].side == Shaft::motor)
+            sides.push_back(fmt::format("{}=motor", role_name(layout.columns[*column].role)));
+    }
+    if (!columns.empty()) words.push_back("--columns " + quoted(fmt::format("{}", fmt::join(columns, ","))));
+    words.insert(words.end(), units.begin(), units.end());
+    if (!sides.empty()) words.push_back(fmt::format("--side {}", fmt::join(sides, ",")));
+    if (!layout.chosen.joint.empty()) words.push_back("--joint " + quoted(layout.chosen.joint));
+    if (layout.stated_rate) words.push_back("--sample-rate " + shortest(layout.stated_rate->value()) + "Hz");
+    if (options.constant_speed)
+        words.push_back("--constant-speed " + shortest(options.constant_speed->value()) + "deg/s");
+    if (options.nm_per_ampere) words.push_back("--kt " + shortest(*options.nm_per_ampere));
+    if (options.lead_m) words.push_back("--lead " + shortest(1e3 * *options.lead_m) + "mm");
+    if (options.skip_lines > 0) words.push_back(fmt::format("--skip-lines {}", options.skip_lines));
+    if (options.hold_bad_values) words.push_back("--hold-bad-values");
+    return fmt::format("{}", fmt::join(words, " "));
 }
 
 class Decision {

@@ -90,10 +90,6 @@ void settle_clock(const ColumnFacts& facts, bool unit_is_stated, Layout& layout)
 /// Where all units are stated, only the first of the two.
 inline constexpr std::size_t longer_opening = std::size_t{1} << 20, longest_opening = std::size_t{1} << 23;
 
-/// The option line that would force this reading.
-[[nodiscard]] std::string options_line(const Layout& layout, const ColumnFacts& facts,
-                                       const ReadOptions& options);
-
 /// True when the values have two or more different numbers among them.
 [[nodiscard]] bool varies(const std::vector<double>& values);
 

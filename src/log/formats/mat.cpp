@@ -79,7 +79,7 @@ class MatTableWriter final : public TableWriter {
     void rows(std::span<const std::span<const double>> columns) override {
         for (std::size_t c = 0; c < columns.size(); ++c) {
             bytes_.resize(8 * columns[c].size());
-            store_column(bytes_.data(), 8, {}, {columns[c], {}});
+            store_column(bytes_.data(), 8, {}, columns[c]);
             columns_[c].put(bytes_);
         }
         if (!columns.empty()) rows_ += columns[0].size();

@@ -218,11 +218,9 @@ class McapMessages final : public MessageSource {
         }
         return std::nullopt;
     }
-    void restart(const std::vector<std::size_t>& channels) override {
+    void restart(std::size_t channel) override {
         records_.restart();
-        wanted_.assign(channels_.size(), false);
-        for (const std::size_t channel : channels) wanted_[channel] = true;
-        all_ = false;
+        wanted_ = channel;
         number_ = 0;
     }
     bool next(RecordedMessage& message) override {
@@ -253,7 +251,7 @@ class McapMessages final : public MessageSource {
             last_id_ = id;
             last_index_ = found->second;
         }
-        if (!all_ && (last_index_ >= wanted_.size() || !wanted_[last_index_])) return false;
+        if (wanted_.value_or(last_index_) != last_index_) return false;
         static_cast<void>(fields.bytes(4));  // sequence
         message.channel = last_index_;
         message.log_time_ns = static_cast<std::int64_t>(fields.number(8));
@@ -319,8 +317,7 @@ class McapMessages final : public MessageSource {
     std::vector<MessageChannel> channels_;
     std::map<std::uint16_t, std::size_t> index_of_;
     std::map<std::uint16_t, std::uint64_t> counts_;
-    std::vector<bool> wanted_;
-    bool all_ = true;
+    std::optional<std::size_t> wanted_;  ///< the one channel whose messages are; else all
     int last_id_ = -1;
     std::size_t last_index_ = 0;
     std::uint64_t number_ = 0;

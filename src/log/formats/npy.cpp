@@ -10,7 +10,7 @@
 
 #include "log/containers/stored_array.hpp"
 #include "log/npy/npy_header.hpp"
-#include "log/numbers/column_reader.hpp"
+#include "log/numbers/columns.hpp"
 #include "log/open.hpp"
 #include "ripplenotch/core/error.hpp"
 
@@ -121,8 +121,8 @@ class NpyWriter final : public LogWriter {
         for (std::size_t j = 0; j < fields_.size(); ++j) {
             const std::span<const double> raw =
                 as_written ? std::span(block.joints[j].torque_nm) : std::span<double>();
-            store_column(records, record_out_, fields_[j],
-                         {std::span(torque_nm[j]).first(block.size()), raw, factors_[j]});
+            store_column(records, record_out_, fields_[j], std::span(torque_nm[j]).first(block.size()), raw,
+                         factors_[j]);
         }
         return {records, size};
     }
@@ -191,7 +191,7 @@ class NpyTableWriter final : public TableWriter {
         const std::size_t width = 8 * columns.size();
         bytes_.resize(count * width);
         for (std::size_t c = 0; c < columns.size(); ++c)
-            store_column(bytes_.data(), width, {"", 'f', 8, false, 8 * c}, {columns[c], {}});
+            store_column(bytes_.data(), width, {"", 'f', 8, false, 8 * c}, columns[c]);
         array_->put(bytes_, count);
     }
     void end() override { array_->end(); }

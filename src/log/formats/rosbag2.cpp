@@ -84,10 +84,8 @@ class Rosbag2Messages final : public MessageSource {
         return count.step() ? std::optional<std::uint64_t>(static_cast<std::uint64_t>(count.number(0)))
                             : std::nullopt;
     }
-    void restart(const std::vector<std::size_t>& channels) override {
-        const std::string ids =
-            joined(channels, ",", [&](std::size_t channel) { return std::to_string(ids_[channel]); });
-        restart_all(fmt::format("WHERE topic_id IN ({})", ids));
+    void restart(std::size_t channel) override {
+        restart_all(fmt::format("WHERE topic_id = {}", ids_[channel]));
     }
     bool next(RecordedMessage& message) override {
         while (messages_->step()) {

@@ -25,6 +25,13 @@ std::string refusal_of(const MessageChannel& channel) {
     return {};
 }
 
+MessageLayout lay_out_message(const MessageChannel& channel, std::string_view first) {
+    if (channel.encoding == "json") return lay_out_json(first);
+    const std::string_view schema =
+        channel.schema.empty() ? known_ros_schema(channel.type) : std::string_view(channel.schema);
+    return lay_out_cdr(schema, channel.type, first);
+}
+
 /// The leaves that are columns, the clock first: a leaf, or the time of recording, which stands behind them
 /// all.
 std::vector<std::size_t> leaves_of(const MessageLayout& layout, bool header_clock) {
@@ -50,7 +57,7 @@ class MessageColumns final : public Columns {
           layout_(std::move(layout)),
           leaf_of_(leaves_of(layout_, header_clock)),
           row_(layout_.leaves.size() + 1) {
-        source_->restart({channel});
+        source_->restart(channel);
     }
     std::size_t next(std::size_t rows, NumberRows& into, std::string& /*bytes*/) override {
         std::vector<bool> leaves(row_.size(), false);
@@ -333,13 +340,6 @@ void refuse_name(std::string_view name, const std::string& path, const std::stri
     raise<DataError>(
         "'{}' as {}, expected '{}' as in the first message; record the joints on topics of their own",
         name.substr(0, 60), path, expected);
-}
-
-MessageLayout lay_out_message(const MessageChannel& channel, std::string_view first) {
-    if (channel.encoding == "json") return lay_out_json(first);
-    const std::string_view schema =
-        channel.schema.empty() ? known_ros_schema(channel.type) : std::string_view(channel.schema);
-    return lay_out_cdr(schema, channel.type, first);
 }
 
 ColumnLog columns_of_messages(const OpenMessages& open, const std::string& format,

@@ -39,12 +39,10 @@ class MessageSource {
     [[nodiscard]] virtual const std::vector<MessageChannel>& channels() const = 0;
     /// False at the end. Throws DataError, beginning with the source's name.
     virtual bool next(RecordedMessage& message) = 0;
-    /// Begins again, with the messages of these channels only.
-    virtual void restart(const std::vector<std::size_t>& channels) = 0;
+    /// Begins again, with the messages of this channel only.
+    virtual void restart(std::size_t channel) = 0;
     /// Messages of a channel in the whole recording, where it says so itself.
-    [[nodiscard]] virtual std::optional<std::uint64_t> count_of(std::size_t /*channel*/) const {
-        return std::nullopt;
-    }
+    [[nodiscard]] virtual std::optional<std::uint64_t> count_of(std::size_t channel) const = 0;
     [[nodiscard]] virtual const std::string& name() const = 0;
 };
 
@@ -94,18 +92,17 @@ struct MessageLayout {
     ReadMessage read;
 };
 
-/// lay_out_message() of messages in CDR, whose type `name` is defined first in `schema`.
+// Messages are laid out by the first of a topic: lists of numbers have the lengths that they have in it, and
+// keep them. Lists longer than 64 and what is empty give no leaves. Throw DataError, without a source's name,
+// where the message does not fit its type.
+
+/// In CDR; the type `name` is defined first in `schema`.
 [[nodiscard]] MessageLayout lay_out_cdr(std::string_view schema, const std::string& name,
                                         std::string_view message);
 /// The definition of a common type, for recordings that carry none; empty where it is not known here.
 [[nodiscard]] std::string_view known_ros_schema(std::string_view type);
-/// lay_out_message() of messages in JSON, an object each. Whether a schema says more about them makes no
+/// In JSON, an object each. Whether a schema says more about them makes no
 /// difference: numbers say that they are. They are 64-bit floats, but for whole ones beyond 2^53.
 [[nodiscard]] MessageLayout lay_out_json(std::string_view first);
-
-/// Lays the messages of a channel out by its first: lists of numbers have the lengths that they have in it,
-/// and keep them. Lists longer than 64 and what is empty give no leaves. Throws DataError, without a source's
-/// name, where the message does not fit its type.
-[[nodiscard]] MessageLayout lay_out_message(const MessageChannel& channel, std::string_view first);
 
 }  // namespace ripplenotch

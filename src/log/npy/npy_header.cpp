@@ -325,8 +325,8 @@ void load_column(const char* records, std::size_t record_size, const NpyField& f
         into.counts.push_back(load_count(records + row * record_size, field));
 }
 
-void store_column(char* records, std::size_t record_size, const NpyField& field, const StoredColumn& column) {
-    const auto [values, as_written, factor] = column;
+void store_column(char* records, std::size_t record_size, const NpyField& field,
+                  std::span<const double> values, std::span<const double> as_written, double factor) {
     // What most logs are, without a question for each value.
     const bool plain = field.size == 8 && is_native(field) && factor == 1.0;
     char* into = records + field.offset;

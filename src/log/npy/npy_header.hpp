@@ -45,11 +45,9 @@ void load_column(const char* records, std::size_t record_size, const NpyField& f
 
 /// `values`, each divided by `factor`, into the floats of records that follow each other; records whose value
 /// is that of `as_written` are left as they are. `as_written` is empty, or as long as `values`.
-struct StoredColumn {
-    std::span<const double> values, as_written;
-    double factor = 1.0;
-};
-void store_column(char* records, std::size_t record_size, const NpyField& field, const StoredColumn& column);
+void store_column(char* records, std::size_t record_size, const NpyField& field,
+                  std::span<const double> values, std::span<const double> as_written = {},
+                  double factor = 1.0);
 
 struct NpyHeader {
     std::vector<NpyField> fields;

@@ -10,7 +10,6 @@
 
 #include "log/clock/stamp.hpp"
 #include "log/containers/stored_array.hpp"
-#include "log/numbers/column_reader.hpp"
 #include "log/rows_in_range.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
@@ -469,7 +468,7 @@ void ColumnReader::complain(const WantedColumn& wanted, std::size_t row, double 
     const bool time = wanted.slot == time_slot;
     const std::string sentence =
         time && value < before
-            ? time_backward({before, value, layout_.time_origin})
+            ? time_backward(before, value, layout_.time_origin)
             : fmt::format("read {}, expected a {}; {}", shortest(value),
                           std::isfinite(value) ? "number from -1e30 to 1e30" : "finite number",
                           std::isnan(value) && !time && !hold_bad_values_

@@ -239,7 +239,7 @@ void CsvReader::append_row(RowBlock& block, ParsedRow& row) {
     }
     const double time = row.values[time_slot], before = before_.values[time_slot];
     if (layout_.chosen.time && time < before) {
-        complain(1, time_backward({before, time, layout_.time_origin}));
+        complain(1, time_backward(before, time, layout_.time_origin));
     }
     if (layout_.chosen.time)
         block.time_s.push_back(time * parser_->plan().factors[time_slot]);
