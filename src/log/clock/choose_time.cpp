@@ -260,8 +260,8 @@ Clocks find_clocks(const ColumnFacts& facts, const std::vector<ColumnName>& name
         if (name.rank < best_rank) found = {{}, found.texts, {}, {}}, best_rank = name.rank;
         const bool has_unit = known != nullptr || !name.unit.empty() ||
                               (!facts.units.empty() && !facts.units[c].empty()) ||
-                              asked_unit(options, facts.names[c], Role::time) ||
-                              asked_scale(options, facts.names[c], Role::time) != nullptr;
+                              stated_of(options.units, facts.names[c], Role::time) != nullptr ||
+                              stated_of(options.scales, facts.names[c], Role::time) != nullptr;
         if (!has_unit && counts_rows(values)) {
             found.counters.push_back(c);
         } else if (runs_forward(values) || facts.sample.empty() || facts.sample[c].size() < 2) {

@@ -577,17 +577,17 @@ class Decision {
 
     // The unit that --unit or --scale states; empty where neither does.
     std::string unit_of_options(std::size_t c, Role role, const ColumnScale* scale) const {
-        const auto asked = asked_unit(options_, layout_.columns[c].name, role);
-        if (!asked && scale == nullptr) return "";
-        const auto usual = usual_unit(asked ? *asked : scale->unit, role);
+        const std::string* const asked = stated_of(options_.units, layout_.columns[c].name, role);
+        if (asked == nullptr && scale == nullptr) return "";
+        const auto usual = usual_unit(asked != nullptr ? *asked : scale->unit, role);
         const bool fits = usual && role_factor(role, *usual);
-        if (asked && !fits)
+        if (asked != nullptr && !fits)
             raise<UsageError>("--unit: '{}' is no unit of {}; write one of {}", *asked, role_name(role),
                               unit_list(role));
-        if (asked && scale != nullptr)
+        if (asked != nullptr && scale != nullptr)
             raise<UsageError>("--scale and --unit both state the unit of {}; leave one out",
                               column_label(facts_.names, c));
-        if (!fits || (!asked && role == Role::time && scale->offset != 0.0))
+        if (!fits || (asked == nullptr && role == Role::time && scale->offset != 0.0))
             raise<UsageError>("--scale: '{}' is no {}; write its unit as one of {}{}", scale->text,
                               role_name(role), unit_list(role),
                               role == Role::time ? ", without an offset" : "");
@@ -603,7 +603,7 @@ class Decision {
         const bool device = known != nullptr && is_device_unit(known->unit);
         if (written.empty() && device) written = known->unit;
         stated_[c] = !written.empty();
-        const ColumnScale* const scale = asked_scale(options_, column.name, role);
+        const ColumnScale* const scale = stated_of(options_.scales, column.name, role);
         if (const std::string unit = unit_of_options(c, role, scale); !unit.empty()) {
             written = unit;
             stated_[c] = true;

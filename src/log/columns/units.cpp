@@ -281,19 +281,6 @@ std::optional<double> stated_clock_ns(const std::string& unit, std::string_view 
     return usual ? std::optional(nanoseconds * role_factor(Role::time, *usual).value_or(1.0)) : std::nullopt;
 }
 
-std::optional<std::string> asked_unit(const ReadOptions& options, const std::string& name, Role role) {
-    for (const std::string& key : {name, std::string(role_name(role))}) {
-        if (const auto found = options.units.find(key); found != options.units.end()) return found->second;
-    }
-    return std::nullopt;
-}
-
-const ColumnScale* asked_scale(const ReadOptions& options, const std::string& name, Role role) {
-    for (const std::string& key : {name, std::string(role_name(role))})
-        if (const auto found = options.scales.find(key); found != options.scales.end()) return &found->second;
-    return nullptr;
-}
-
 ColumnScale parse_scale(std::string_view text, std::string_view label) {
     ColumnScale scale;
     scale.text = text;

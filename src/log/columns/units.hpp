@@ -4,6 +4,7 @@
 // core/quantity knows.
 
 #include <algorithm>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -92,12 +93,15 @@ struct NameAndUnit {
 
 // A part of decide_layout: units that --unit states, and what is said of units that nobody stated.
 
-/// The unit that --unit gives to the column, by its name or by its role.
-[[nodiscard]] std::optional<std::string> asked_unit(const ReadOptions& options, const std::string& name,
-                                                    Role role);
-
-/// What --scale says of the column, by its name or by its role; null where it says nothing.
-[[nodiscard]] const ColumnScale* asked_scale(const ReadOptions& options, const std::string& name, Role role);
+/// What --unit (ReadOptions::units) or --scale (ReadOptions::scales) says of a column, by its name or by its
+/// role; null where it says nothing.
+template <class Stated>
+[[nodiscard]] const Stated* stated_of(const std::map<std::string, Stated>& stated, const std::string& name,
+                                      Role role) {
+    auto found = stated.find(name);
+    if (found == stated.end()) found = stated.find(std::string(role_name(role)));
+    return found == stated.end() ? nullptr : &found->second;
+}
 
 /// Counts, per mille and other numbers of a device, which are a quantity only with a scale.
 [[nodiscard]] bool is_device_unit(std::string_view written);

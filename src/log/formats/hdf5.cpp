@@ -1,43 +1,43 @@
 // SPDX-License-Identifier: MIT
 // HDF5 files, and MAT files of version 7.3, which are such, by libhdf5.
 
-#include <array>
-#include <string_view>
-
-#include "log/open.hpp"
-
-namespace ripplenotch {
-namespace {
-
-constexpr std::string_view magic = "\x89HDF\r\n\x1a\n", matlab_head = "MATLAB 7.3";
-
-}  // namespace
-}  // namespace ripplenotch
-
 #if defined(RIPPLENOTCH_HAS_HDF5)
-
 #define H5_USE_110_API
+#include <hdf5.h>
+#endif
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <hdf5.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cerrno>
 #include <exception>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/files/byte_sink.hpp"
 #include "core/files/byte_source.hpp"
 #include "log/containers/stored_array.hpp"
+#include "log/open.hpp"
 #include "ripplenotch/core/error.hpp"
 
 namespace ripplenotch {
 namespace {
+
+constexpr std::string_view magic = "\x89HDF\r\n\x1a\n", matlab_head = "MATLAB 7.3";
+constexpr std::array<std::string_view, 2> hdf5_extensions = {".h5", ".hdf5"};
+
+// MATLAB puts a head of text in front.
+bool sniff(std::string_view bytes) { return bytes.starts_with(magic) || bytes.starts_with(matlab_head); }
+
+#if defined(RIPPLENOTCH_HAS_HDF5)
 
 // libhdf5's objects, closed when they go. The one door to the library.
 // The names of version 1.10, which later ones keep.
@@ -461,17 +461,7 @@ ColumnLog make_hdf5(std::unique_ptr<ByteSource> source, std::string first_bytes,
                              found.others, options);
 }
 
-}  // namespace
-}  // namespace ripplenotch
 #endif
-
-namespace ripplenotch {
-namespace {
-
-constexpr std::array<std::string_view, 2> hdf5_extensions = {".h5", ".hdf5"};
-
-// MATLAB puts a head of text in front.
-bool sniff(std::string_view bytes) { return bytes.starts_with(magic) || bytes.starts_with(matlab_head); }
 
 }  // namespace
 

@@ -2,25 +2,27 @@
 // The messages of a rosbag2 recording in SQLite (storage sqlite3: tables topics, messages,
 // message_definitions), by libsqlite3.
 
-#include <array>
-
-#include "log/open.hpp"
-
 #if defined(RIPPLENOTCH_HAS_SQLITE)
+#include <sqlite3.h>
+#endif
 
 #include <fmt/format.h>
-#include <sqlite3.h>
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <tuple>
 
 #include "log/messages/message_columns.hpp"
+#include "log/open.hpp"
 #include "ripplenotch/core/error.hpp"
-#include "ripplenotch/core/visible_text.hpp"
 
 namespace ripplenotch {
 namespace {
+
+constexpr std::array<std::string_view, 1> rosbag2_extensions = {".db3"};
+
+#if defined(RIPPLENOTCH_HAS_SQLITE)
 
 constexpr std::uint64_t most_in_memory = std::uint64_t{1} << 28;
 
@@ -195,14 +197,7 @@ ColumnLog make_rosbag2(std::unique_ptr<ByteSource> source, std::string first_byt
                                options);
 }
 
-}  // namespace
-}  // namespace ripplenotch
 #endif
-
-namespace ripplenotch {
-namespace {
-
-constexpr std::array<std::string_view, 1> rosbag2_extensions = {".db3"};
 
 }  // namespace
 

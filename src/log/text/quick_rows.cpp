@@ -16,41 +16,9 @@
 
 namespace ripplenotch {
 
-std::vector<WantedColumn> time_columns(const Layout& layout) {
-    std::vector<WantedColumn> wanted;
-    if (layout.chosen.time) wanted.push_back({*layout.chosen.time, time_slot});
-    if (layout.time_fraction) wanted.push_back({*layout.time_fraction, time_slot, true});
-    return wanted;
-}
-
-std::vector<WantedColumn> wanted_columns(const Layout& layout) {
-    std::vector<WantedColumn> wanted = time_columns(layout);
-    const auto want = [&wanted](std::optional<std::size_t> column, std::size_t slot) {
-        if (column) wanted.push_back({*column, slot});
-    };
-    const std::vector<JointColumns> joints = layout.all_chosen();
-    for (std::size_t j = 0; j < joints.size(); ++j) {
-        want(joints[j].velocity, slot_of(velocity_slot, j));
-        want(joints[j].torque, slot_of(torque_slot, j));
-        want(joints[j].position, slot_of(position_slot, j));
-    }
-    return wanted;
-}
-
-StampRule stamp_rule(const Layout& layout, char decimal_mark) {
-    const bool careful = layout.time_fraction || layout.time_as_text || layout.time_origin != 0;
-    return {careful, layout.time_as_text, layout.time_origin, decimal_mark, layout.stamp_form};
-}
-
-std::vector<double> slot_factors(const Layout& layout, const std::vector<WantedColumn>& wanted) {
-    std::vector<double> factors(slot_count(1 + layout.others.size()), 1.0);
-    for (const WantedColumn& one : wanted) {
-        if (!one.fraction) factors[one.slot] = layout.columns[one.column].factor;
-    }
-    return factors;
-}
-
 namespace {
+
+bool all_careful = false;
 
 // Reads [-]digits[.digits] with at most 15 digits: mantissa and power of ten are then both exact doubles, so
 // one division rounds correctly (W. D. Clinger, How to read floating point numbers accurately, 1990). Null
@@ -163,105 +131,11 @@ class RowSink {
     std::size_t room_ = 0;
 };
 
-}  // namespace
-
-std::optional<CellNumber> RowParser::number(std::string_view text, const WantedColumn& wanted) const {
-    if (!in_parts(wanted) || wanted.fraction) return plan_.rules.number(text, wanted.column);
-    const auto time = read_stamp(text, plan_.stamp);
-    return time ? std::optional(CellNumber{*time, text.size(), {}}) : std::nullopt;
-}
-
-bool RowParser::parse_cells(std::string_view line, const CellSplit& split, ParsedRow& row,
-                            const Other& other) const {
-    row.values[time_slot] = nothing_yet;
-    for (const WantedColumn& wanted : plan_.wanted) {
-        const Cell& cell = split.cells[wanted.column];
-        const auto read = number(cell.of(line), wanted);
-        std::optional<double> value = read ? std::optional(read->value) : std::nullopt;
-        if (!value || !is_reading(*value)) value = other(cell, wanted, value);
-        if (!value) return false;
-        if (wanted.slot == time_slot)
-            row.values[time_slot] += part(*value, wanted);
-        else
-            row.values[wanted.slot] = *value;
-        if (is_torque(wanted.slot)) {
-            const char* const begin = line.data() + cell.begin;
-            row.torques[joint_of(wanted.slot)] = {begin, read ? begin + read->size : line.data() + cell.end};
-        }
-    }
-    const Cell& last = split.cells.back();
-    row.content_end = line.data() + last.end + (last.quoted ? 1 : 0);
-    return true;
-}
-
-bool RowParser::parse_any(std::string_view line, ParsedRow& row, CellSplit& split, const Other& other) const {
-    if (parse(line, row)) return true;
-    split_cells(line, plan_.rules.delimiter, split);
-    return split.cells.size() == plan_.columns && parse_cells(line, split, row, other);
-}
-
-bool RowParser::parse(std::string_view line, ParsedRow& row) const {
-    const bool first_is_read = !plan_.wanted.empty() && plan_.wanted.front().column == 0;
-    if (careful_ || (!first_is_read && is_no_row(line))) return false;
-    const char *at = line.data(), *end = at + line.size();
-    const char delimiter = plan_.rules.delimiter;
-    const bool runs = delimiter == ' ';
-    if (runs) {
-        while (at < end && is_blank(*at)) ++at;
-        while (end > at && is_blank(end[-1])) --end;
-    }
-    std::size_t column = 0;
-    if (plan_.stamp.careful) row.values[time_slot] = nothing_yet;
-    const auto at_cell_end = [&](const char* p) {
-        return p == end || *p == delimiter || (runs && *p == '\t');
-    };
-    for (auto wanted = plan_.wanted.begin();; ++column) {
-        if (wanted != plan_.wanted.end() && wanted->column == column) {
-            while (!runs && at < end && *at == ' ' && delimiter != '\t') ++at;
-            double& value = row.values[wanted->slot];
-            ParsedRow::Place place{at, nullptr};
-            const bool stamp = in_parts(*wanted);
-            const char* stop = stamp ? nullptr : read_short_decimal(at, end, plan_.rules.decimal_mark, value);
-            if (stop == nullptr || !at_cell_end(stop)) {
-                stop = at;
-                while (!at_cell_end(stop)) ++stop;
-                const char* content = stop;
-                while (content > at && is_blank(content[-1])) --content;
-                const auto read = number({at, static_cast<std::size_t>(content - at)}, *wanted);
-                if (!read || !is_reading(read->value)) return false;
-                value = stamp ? value + part(read->value, *wanted) : read->value;
-                place.end = at + read->size;
-            } else {
-                place.end = stop;
-            }
-            if (is_torque(wanted->slot)) row.torques[joint_of(wanted->slot)] = place;
-            at = stop;
-            ++wanted;
-        } else {
-            while (!at_cell_end(at)) {
-                if (needs_care(*at)) return false;
-                ++at;
-            }
-        }
-        if (at == end) break;
-        ++at;
-        while (runs && at < end && is_blank(*at)) ++at;
-    }
-    row.content_end = end;
-    return column + 1 == plan_.columns;
-}
-
-namespace {
+#if defined(RIPPLENOTCH_BYTE_VECTORS)
 
 // Rows by vector instructions, stretch by stretch: find the delimiters, 64 bytes at a time; see how many rows
 // have them where they belong; read these rows column by column; let the parser of rows have the few that the
 // vectors are not sure of.
-
-}  // namespace
-
-#if defined(RIPPLENOTCH_BYTE_VECTORS)
-
-namespace {
 
 constexpr std::size_t vector_head_bytes = 512;
 constexpr std::size_t bytes_before = 33;  // of a cell's end that the vectors load
@@ -416,19 +290,133 @@ std::size_t read_rows_by_vectors(RowBlock& block, std::size_t begin, double time
     return begin;
 }
 
-}  // namespace
-
 #else
 
 std::size_t read_rows_by_vectors(RowBlock&, std::size_t begin, double, const RowParser&) { return begin; }
 
 #endif
 
-namespace {
-
-bool all_careful = false;
-
 }  // namespace
+
+std::vector<WantedColumn> time_columns(const Layout& layout) {
+    std::vector<WantedColumn> wanted;
+    if (layout.chosen.time) wanted.push_back({*layout.chosen.time, time_slot});
+    if (layout.time_fraction) wanted.push_back({*layout.time_fraction, time_slot, true});
+    return wanted;
+}
+
+std::vector<WantedColumn> wanted_columns(const Layout& layout) {
+    std::vector<WantedColumn> wanted = time_columns(layout);
+    const auto want = [&wanted](std::optional<std::size_t> column, std::size_t slot) {
+        if (column) wanted.push_back({*column, slot});
+    };
+    const std::vector<JointColumns> joints = layout.all_chosen();
+    for (std::size_t j = 0; j < joints.size(); ++j) {
+        want(joints[j].velocity, slot_of(velocity_slot, j));
+        want(joints[j].torque, slot_of(torque_slot, j));
+        want(joints[j].position, slot_of(position_slot, j));
+    }
+    return wanted;
+}
+
+StampRule stamp_rule(const Layout& layout, char decimal_mark) {
+    const bool careful = layout.time_fraction || layout.time_as_text || layout.time_origin != 0;
+    return {careful, layout.time_as_text, layout.time_origin, decimal_mark, layout.stamp_form};
+}
+
+std::vector<double> slot_factors(const Layout& layout, const std::vector<WantedColumn>& wanted) {
+    std::vector<double> factors(slot_count(1 + layout.others.size()), 1.0);
+    for (const WantedColumn& one : wanted) {
+        if (!one.fraction) factors[one.slot] = layout.columns[one.column].factor;
+    }
+    return factors;
+}
+
+std::optional<CellNumber> RowParser::number(std::string_view text, const WantedColumn& wanted) const {
+    if (!in_parts(wanted) || wanted.fraction) return plan_.rules.number(text, wanted.column);
+    const auto time = read_stamp(text, plan_.stamp);
+    return time ? std::optional(CellNumber{*time, text.size(), {}}) : std::nullopt;
+}
+
+bool RowParser::parse_cells(std::string_view line, const CellSplit& split, ParsedRow& row,
+                            const Other& other) const {
+    row.values[time_slot] = nothing_yet;
+    for (const WantedColumn& wanted : plan_.wanted) {
+        const Cell& cell = split.cells[wanted.column];
+        const auto read = number(cell.of(line), wanted);
+        std::optional<double> value = read ? std::optional(read->value) : std::nullopt;
+        if (!value || !is_reading(*value)) value = other(cell, wanted, value);
+        if (!value) return false;
+        if (wanted.slot == time_slot)
+            row.values[time_slot] += part(*value, wanted);
+        else
+            row.values[wanted.slot] = *value;
+        if (is_torque(wanted.slot)) {
+            const char* const begin = line.data() + cell.begin;
+            row.torques[joint_of(wanted.slot)] = {begin, read ? begin + read->size : line.data() + cell.end};
+        }
+    }
+    const Cell& last = split.cells.back();
+    row.content_end = line.data() + last.end + (last.quoted ? 1 : 0);
+    return true;
+}
+
+bool RowParser::parse_any(std::string_view line, ParsedRow& row, CellSplit& split, const Other& other) const {
+    if (parse(line, row)) return true;
+    split_cells(line, plan_.rules.delimiter, split);
+    return split.cells.size() == plan_.columns && parse_cells(line, split, row, other);
+}
+
+bool RowParser::parse(std::string_view line, ParsedRow& row) const {
+    const bool first_is_read = !plan_.wanted.empty() && plan_.wanted.front().column == 0;
+    if (careful_ || (!first_is_read && is_no_row(line))) return false;
+    const char *at = line.data(), *end = at + line.size();
+    const char delimiter = plan_.rules.delimiter;
+    const bool runs = delimiter == ' ';
+    if (runs) {
+        while (at < end && is_blank(*at)) ++at;
+        while (end > at && is_blank(end[-1])) --end;
+    }
+    std::size_t column = 0;
+    if (plan_.stamp.careful) row.values[time_slot] = nothing_yet;
+    const auto at_cell_end = [&](const char* p) {
+        return p == end || *p == delimiter || (runs && *p == '\t');
+    };
+    for (auto wanted = plan_.wanted.begin();; ++column) {
+        if (wanted != plan_.wanted.end() && wanted->column == column) {
+            while (!runs && at < end && *at == ' ' && delimiter != '\t') ++at;
+            double& value = row.values[wanted->slot];
+            ParsedRow::Place place{at, nullptr};
+            const bool stamp = in_parts(*wanted);
+            const char* stop = stamp ? nullptr : read_short_decimal(at, end, plan_.rules.decimal_mark, value);
+            if (stop == nullptr || !at_cell_end(stop)) {
+                stop = at;
+                while (!at_cell_end(stop)) ++stop;
+                const char* content = stop;
+                while (content > at && is_blank(content[-1])) --content;
+                const auto read = number({at, static_cast<std::size_t>(content - at)}, *wanted);
+                if (!read || !is_reading(read->value)) return false;
+                value = stamp ? value + part(read->value, *wanted) : read->value;
+                place.end = at + read->size;
+            } else {
+                place.end = stop;
+            }
+            if (is_torque(wanted->slot)) row.torques[joint_of(wanted->slot)] = place;
+            at = stop;
+            ++wanted;
+        } else {
+            while (!at_cell_end(at)) {
+                if (needs_care(*at)) return false;
+                ++at;
+            }
+        }
+        if (at == end) break;
+        ++at;
+        while (runs && at < end && is_blank(*at)) ++at;
+    }
+    row.content_end = end;
+    return column + 1 == plan_.columns;
+}
 
 CarefulRows::CarefulRows() noexcept : before_(all_careful) { all_careful = true; }
 

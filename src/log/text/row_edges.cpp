@@ -2,10 +2,15 @@
 #include "log/text/row_edges.hpp"
 
 #include "core/vectors/bytes.hpp"
+
+#if defined(RIPPLENOTCH_BYTE_VECTORS)
+
+#include <cstring>
+
 #include "log/text/text_cells.hpp"
+#include "ripplenotch/core/number.hpp"
 
 namespace ripplenotch {
-
 namespace {
 
 /// How many rows from the first on end where they should.
@@ -30,36 +35,6 @@ void find_last_edges(const char* text, std::size_t at, std::size_t size, char de
         found.line_ends += line_end ? 1 : 0;
     }
 }
-
-}  // namespace
-
-std::int32_t longest_cell(const std::int32_t* place, std::size_t count) {
-    std::int32_t longest = 0;
-    for (std::size_t i = 0; i < count; ++i) longest = std::max(longest, place[i + 1] - place[i] - 1);
-    return longest;
-}
-
-std::size_t regular_rows(const char* text, const Edges& edges, char delimiter, std::size_t columns) {
-    const std::size_t ended = ended_rows(text, edges, columns);
-    // Then there is no line end but the last of each row.
-    if (!edges.quotes && !edges.controls && ended == edges.line_ends) return ended;
-    const std::int32_t* edge = edges.place.data() + 1;
-    for (std::size_t row = 0; row < ended; ++row, edge += columns) {
-        for (std::size_t c = 0; c + 1 < columns; ++c) {
-            if (text[edge[c]] != delimiter) return row;
-        }
-        if (edges.controls && std::any_of(text + edge[-1] + 1, text + edge[columns - 1], is_control))
-            return row;
-    }
-    return ended;
-}
-
-}  // namespace ripplenotch
-
-#if defined(RIPPLENOTCH_BYTE_VECTORS)
-
-namespace ripplenotch {
-namespace {
 
 /// One bit for each byte.
 struct EdgeBits {
@@ -97,41 +72,6 @@ class EdgeFinder {
     Bytes delimiters_, quotes_{}, returns_{}, controls_{};
 };
 
-}  // namespace
-
-RIPPLENOTCH_WIDE void find_edges(const char* text, std::size_t size, char delimiter, Edges& found) {
-    EdgeFinder finder(delimiter);
-    found.place[0] = -1;
-    std::int32_t* const first = found.place.data() + 1;
-    std::int32_t* into = first;
-    std::size_t at = 0;
-    int line_ends = 0;
-    for (; at + 64 <= size; at += 64) {
-        auto [bits, ends] = finder.look_at(text + at);
-        line_ends += std::popcount(ends);
-        const int count = std::popcount(bits);
-        // Eight places without a branch, most often all there are.
-        for (int i = 0; i < 8; ++i, bits &= bits - 1)
-            into[i] = static_cast<std::int32_t>(at) + std::countr_zero(bits);
-        for (int i = 8; i < count; ++i, bits &= bits - 1)
-            into[i] = static_cast<std::int32_t>(at) + std::countr_zero(bits);
-        into += count;
-    }
-    found.count = static_cast<std::size_t>(into - first);
-    found.line_ends = static_cast<std::size_t>(line_ends);
-    found.quotes = finder.quotes();
-    found.returns = finder.returns();
-    found.controls = finder.controls();
-    find_last_edges(text, at, size, delimiter, found);
-}
-
-}  // namespace ripplenotch
-#endif
-
-namespace ripplenotch {
-
-namespace {
-
 constexpr std::uint64_t most_lane_digits = 10000000000000000U;  // 1e16
 
 /// On its way down a column.
@@ -155,20 +95,8 @@ struct CellCursor {
     std::size_t before_stride, end_stride;
 };
 
-}  // namespace
-
-}  // namespace ripplenotch
-
 // Two cells at a time, each from one load that ends where the cell ends: no step waits for the length of the
 // number before it.
-
-#if defined(RIPPLENOTCH_BYTE_VECTORS)
-#include <cstring>
-
-#include "ripplenotch/core/number.hpp"
-
-namespace ripplenotch {
-namespace {
 
 using TwoNumbers = HalfRegister<std::uint64_t>;
 
@@ -306,6 +234,53 @@ RIPPLENOTCH_WIDE bool read_long_cell(const CellCursor& at, char decimal_mark, do
 }
 
 }  // namespace
+
+std::int32_t longest_cell(const std::int32_t* place, std::size_t count) {
+    std::int32_t longest = 0;
+    for (std::size_t i = 0; i < count; ++i) longest = std::max(longest, place[i + 1] - place[i] - 1);
+    return longest;
+}
+
+std::size_t regular_rows(const char* text, const Edges& edges, char delimiter, std::size_t columns) {
+    const std::size_t ended = ended_rows(text, edges, columns);
+    // Then there is no line end but the last of each row.
+    if (!edges.quotes && !edges.controls && ended == edges.line_ends) return ended;
+    const std::int32_t* edge = edges.place.data() + 1;
+    for (std::size_t row = 0; row < ended; ++row, edge += columns) {
+        for (std::size_t c = 0; c + 1 < columns; ++c) {
+            if (text[edge[c]] != delimiter) return row;
+        }
+        if (edges.controls && std::any_of(text + edge[-1] + 1, text + edge[columns - 1], is_control))
+            return row;
+    }
+    return ended;
+}
+
+RIPPLENOTCH_WIDE void find_edges(const char* text, std::size_t size, char delimiter, Edges& found) {
+    EdgeFinder finder(delimiter);
+    found.place[0] = -1;
+    std::int32_t* const first = found.place.data() + 1;
+    std::int32_t* into = first;
+    std::size_t at = 0;
+    int line_ends = 0;
+    for (; at + 64 <= size; at += 64) {
+        auto [bits, ends] = finder.look_at(text + at);
+        line_ends += std::popcount(ends);
+        const int count = std::popcount(bits);
+        // Eight places without a branch, most often all there are.
+        for (int i = 0; i < 8; ++i, bits &= bits - 1)
+            into[i] = static_cast<std::int32_t>(at) + std::countr_zero(bits);
+        for (int i = 8; i < count; ++i, bits &= bits - 1)
+            into[i] = static_cast<std::int32_t>(at) + std::countr_zero(bits);
+        into += count;
+    }
+    found.count = static_cast<std::size_t>(into - first);
+    found.line_ends = static_cast<std::size_t>(line_ends);
+    found.quotes = finder.quotes();
+    found.returns = finder.returns();
+    found.controls = finder.controls();
+    find_last_edges(text, at, size, delimiter, found);
+}
 
 bool read_cells(const CellColumn& column, double* numbers, std::uint8_t* odd) {
     Pairs pairs(column.decimal_mark);
