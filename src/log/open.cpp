@@ -201,7 +201,7 @@ class Converter : public LogWriter {
   public:
     Converter(std::unique_ptr<ByteSink> sink, const LogReader& reader, const WriteOptions& options,
               const LogFormat& format)
-        : sink_(std::move(sink)), table_(format.table(*sink_, options)), append_(options.append) {
+        : sink_(std::move(sink)), append_(options.append) {
         const std::vector<JointColumns> joints = reader.layout().all_chosen();
         std::vector<std::string> names = {"time_s"};
         for (const JointColumns& joint : joints) {
@@ -213,7 +213,7 @@ class Converter : public LogWriter {
             if (joint.position) names.push_back(prefix + "position_deg");
             if (append_) names.push_back(prefix + options.append_name + "_nm");
         }
-        table_->begin(names);
+        table_ = format.table(*sink_, names, options);
     }
 
     void put(const RowBlock& block, Torques torque_nm, std::string_view /*bytes*/) override {
@@ -403,8 +403,7 @@ void LogFormat::write_columns(ByteSink& sink, std::span<const NumberColumn> numb
             throw std::invalid_argument("columns of a log differ in length: " + column.name);
         }
     }
-    const auto writer = table(sink, {});
-    writer->begin(names);
+    const auto writer = table(sink, names, {});
     const std::size_t rows = numbers.empty() ? 0 : numbers[0].values.size();
     Progress::current().begin("writing", "rows", rows);
     for (std::size_t first = 0; first < rows; first += rows_at_once) {

@@ -50,7 +50,6 @@ bool read_on(ByteSource& source, std::string& bytes, std::size_t size = static_c
 class TableWriter {
   public:
     virtual ~TableWriter() = default;
-    virtual void begin(std::span<const std::string> names) = 0;
     /// One span a column, of equal length.
     virtual void rows(std::span<const std::span<const double>> columns) = 0;
     virtual void end() = 0;
@@ -74,8 +73,9 @@ std::unique_ptr<LogWriter> rewrite_with(std::unique_ptr<ByteSink> sink, const Lo
 }
 
 template <class Table>
-std::unique_ptr<TableWriter> table_of(ByteSink& sink, const WriteOptions& options) {
-    return std::make_unique<Table>(sink, options);
+std::unique_ptr<TableWriter> table_of(ByteSink& sink, std::span<const std::string> names,
+                                      const WriteOptions& options) {
+    return std::make_unique<Table>(sink, names, options);
 }
 
 namespace formats {

@@ -142,8 +142,9 @@ struct LogFormat {
     /// where such rows are written as those of any log.
     std::unique_ptr<LogWriter> (*rewrite)(std::unique_ptr<ByteSink> sink, const LogReader& reader,
                                           const WriteOptions& options) = nullptr;
-    /// A writer of tables of numbers. Null where the format is read and not written.
-    std::unique_ptr<TableWriter> (*table)(ByteSink& sink, const WriteOptions& options) = nullptr;
+    /// A writer of tables of numbers with these names. Null where the format is read and not written.
+    std::unique_ptr<TableWriter> (*table)(ByteSink& sink, std::span<const std::string> names,
+                                          const WriteOptions& options) = nullptr;
 
     [[nodiscard]] bool is_written() const { return table != nullptr; }
     /// Writes columns of equal length as a new log; finishing the sink stays with the caller. Throws

@@ -10,7 +10,6 @@
 #include <cstring>
 #include <set>
 
-#include "core/files/byte_sink.hpp"
 #include "log/columns/column_name.hpp"
 #include "log/open.hpp"
 #include "ripplenotch/core/error.hpp"
@@ -48,10 +47,16 @@ class FileBytes final : public StoredBytes {
         if (errno != 0) raise<FileError>("{}: cannot read: {}", name(), std::strerror(errno));
         complain_of_end(name(), offset + have, this->size());
     }
-    [[nodiscard]] std::string openable() const override {
+    // Where it lies; a file that has lost its name, by which libraries look for it, is copied.
+    void with_name(const std::function<void(const std::string&)>& open) override {
         struct stat status {};
-        const bool named = ::fstat(descriptor_, &status) == 0 && status.st_nlink > 0;
-        return named ? fmt::format("/dev/fd/{}", descriptor_) : "";
+        if (::fstat(descriptor_, &status) == 0 && status.st_nlink > 0)
+            return open(fmt::format("/dev/fd/{}", descriptor_));
+        TemporaryBytes copy;
+        for (std::uint64_t at = 0; at < size(); at += stored_piece)
+            copy.put(
+                text_at(at, static_cast<std::size_t>(std::min<std::uint64_t>(stored_piece, size() - at))));
+        copy.with_name(open);
     }
     void require_unchanged() const override { source_->require_unchanged(); }
 
@@ -67,14 +72,13 @@ class KeptBytes final : public StoredBytes {
             bytes_.put(piece);
             size_ += piece.size();
         }
-        char first = 0;
-        if (size_ > 0) bytes_.read_at(0, &first, 1);  // all is in the file
     }
     [[nodiscard]] std::uint64_t size() const override { return size_; }
     void read_at(std::uint64_t offset, char* into, std::size_t size) override {
         if (offset > size_ || size > size_ - offset) complain_of_end(name(), offset, size_);
         bytes_.read_at(offset, into, size);
     }
+    void with_name(const std::function<void(const std::string&)>& open) override { bytes_.with_name(open); }
 
   private:
     TemporaryBytes bytes_;
@@ -98,6 +102,7 @@ class UnpackedPart final : public StoredBytes {
         while (have_ < offset + size) unpack_piece();
         bytes_.read_at(offset, into, size);
     }
+    void with_name(const std::function<void(const std::string&)>& open) override { bytes_.with_name(open); }
     void require_unchanged() const override { packed_->require_unchanged(); }
 
   private:
@@ -157,10 +162,28 @@ std::size_t read_as_far(int descriptor, std::uint64_t offset, char* into, std::s
     return have;
 }
 
-void copy_bytes(int descriptor, ByteSink& sink) {
+TemporaryBytes::TemporaryBytes()
+    : file_(std::make_unique<TemporaryFile>(temporary_folder() + "/ripplenotch-rows", std::nullopt)) {}
+
+void TemporaryBytes::put(std::string_view bytes) {
+    while (!bytes.empty()) {
+        const ssize_t taken = ::write(file_->descriptor(), bytes.data(), bytes.size());
+        if (taken < 0 && errno == EINTR) continue;
+        if (taken < 0)
+            raise<FileError>("cannot write to a temporary file; check the space in the temporary folder");
+        bytes.remove_prefix(static_cast<std::size_t>(taken));
+    }
+}
+
+void TemporaryBytes::read_at(std::uint64_t offset, char* into, std::size_t size) {
+    if (read_as_far(file_->descriptor(), offset, into, size) < size)
+        raise<FileError>("cannot read a temporary file back");
+}
+
+void TemporaryBytes::copy_to(ByteSink& sink) {
     std::vector<char> piece(std::size_t{1} << 20);
     for (std::uint64_t at = 0;;) {
-        const std::size_t got = read_as_far(descriptor, at, piece.data(), piece.size());
+        const std::size_t got = read_as_far(file_->descriptor(), at, piece.data(), piece.size());
         if (errno != 0) raise<FileError>("cannot read a temporary file back: {}", std::strerror(errno));
         if (got == 0) return;
         sink.write({piece.data(), got});
@@ -168,36 +191,9 @@ void copy_bytes(int descriptor, ByteSink& sink) {
     }
 }
 
-TemporaryBytes::TemporaryBytes() {
-    TemporaryFile file(temporary_folder() + "/ripplenotch-rows", std::nullopt);
-    const int descriptor = file.release_without_name();
-    file_.reset(::fdopen(descriptor, "w+b"));
-    if (file_) return;
-    ::close(descriptor);
-    raise<FileError>("cannot make a temporary file for an array; check the temporary folder");
-}
-
-void TemporaryBytes::put(std::string_view bytes) {
-    flushed_ = false;
-    if (std::fwrite(bytes.data(), 1, bytes.size(), file_.get()) != bytes.size())
-        raise<FileError>("cannot write to a temporary file; check the space in the temporary folder");
-}
-
-void TemporaryBytes::read_at(std::uint64_t offset, char* into, std::size_t size) {
-    flush();
-    if (read_as_far(::fileno(file_.get()), offset, into, size) < size)
-        raise<FileError>("cannot read a temporary file back");
-}
-
-void TemporaryBytes::copy_to(ByteSink& sink) {
-    flush();
-    copy_bytes(::fileno(file_.get()), sink);
-}
-
-void TemporaryBytes::flush() {
-    if (!flushed_ && std::fflush(file_.get()) != 0)
-        raise<FileError>("cannot write to a temporary file; check the space in the temporary folder");
-    flushed_ = true;
+void TemporaryBytes::with_name(const std::function<void(const std::string&)>& open) {
+    open(file_->name_for_a_moment(temporary_folder() + "/ripplenotch-rows"));
+    file_->forget_name();
 }
 
 void require_checksum(StoredBytes& bytes, std::uint64_t offset, std::uint64_t size, std::uint32_t checksum) {

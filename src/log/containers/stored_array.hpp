@@ -4,7 +4,6 @@
 // them.
 
 #include <cstdint>
-#include <cstdio>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -12,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/files/byte_sink.hpp"
 #include "log/npy/npy_header.hpp"
 #include "log/numbers/columns.hpp"
 #include "log/unpack/unpacked_source.hpp"
@@ -33,9 +33,8 @@ class StoredBytes {
         read_at(offset, text.data(), size);
         return text;
     }
-    /// A name of the open file that holds them, for libraries that open it themselves; empty where it has no
-    /// name of its own, by which they might look for it.
-    [[nodiscard]] virtual std::string openable() const { return {}; }
+    /// Calls `open` with a name under which libraries can open a file that holds them, only there and then.
+    virtual void with_name(const std::function<void(const std::string& name)>& open) = 0;
     /// When all has been read: throws FileError where somebody wrote to the file meanwhile.
     virtual void require_unchanged() const {}
     /// As messages name it.
@@ -58,8 +57,6 @@ class StoredBytes {
 /// Fewer than `size` bytes where there are no more, or where they cannot be read: then errno says why, else
 /// it is 0.
 [[nodiscard]] std::size_t read_as_far(int descriptor, std::uint64_t offset, char* into, std::size_t size);
-/// The bytes of a file from its beginning to its end. Throws FileError.
-void copy_bytes(int descriptor, ByteSink& sink);
 
 /// A file without a name in the folder for temporary files (TMPDIR). Throws FileError where there is no room.
 class TemporaryBytes {
@@ -70,15 +67,11 @@ class TemporaryBytes {
     void copy_to(ByteSink& sink);
     /// Exactly `size` bytes that have been put, anywhere; putting goes on behind the last.
     void read_at(std::uint64_t offset, char* into, std::size_t size);
+    /// As StoredBytes has it; a library may write to it, too.
+    void with_name(const std::function<void(const std::string& name)>& open);
 
   private:
-    void flush();
-
-    struct Close {
-        void operator()(std::FILE* file) const { std::fclose(file); }
-    };
-    std::unique_ptr<std::FILE, Close> file_;
-    bool flushed_ = true;
+    std::unique_ptr<TemporaryFile> file_;
 };
 
 /// A file is read where it lies; a pipe is kept in a temporary file. `first_bytes` have been read from it.

@@ -293,8 +293,8 @@ void write_cells(TextRoom& room, std::span<const std::span<const double>> column
 
 class CsvTableWriter : public TableWriter {
   public:
-    CsvTableWriter(ByteSink& sink, const WriteOptions& options) : sink_(sink), options_(options) {}
-    void begin(std::span<const std::string> names) override {
+    CsvTableWriter(ByteSink& sink, std::span<const std::string> names, const WriteOptions& options)
+        : sink_(sink), options_(options) {
         std::string text;
         for (const std::string& name : names) text += (text.empty() ? "" : ",") + name;
         sink_.write(text + '\n');

@@ -8,12 +8,10 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cerrno>
 #include <exception>
 #include <memory>
 #include <optional>
@@ -22,8 +20,6 @@
 #include <utility>
 #include <vector>
 
-#include "core/files/byte_sink.hpp"
-#include "core/files/byte_source.hpp"
 #include "log/containers/stored_array.hpp"
 #include "log/open.hpp"
 #include "ripplenotch/core/error.hpp"
@@ -57,12 +53,6 @@ class Hdf5Handle {
     std::shared_ptr<void> keeper_;
 };
 
-// Files for libhdf5, which opens by name only.
-
-constexpr std::uint64_t piece_size = std::uint64_t{1} << 20;
-
-std::string place_of_copies() { return temporary_folder() + "/ripplenotch-hdf5"; }
-
 // Without locks, which many network file systems refuse: a file that changes while it is read is noticed
 // without them.
 Hdf5Handle access_of_files() {
@@ -71,35 +61,6 @@ Hdf5Handle access_of_files() {
     ::H5Pset_file_locking(access.id(), false, true);
 #endif
     return access;
-}
-
-void write_all_to(int descriptor, std::string_view bytes) {
-    while (!bytes.empty()) {
-        const ssize_t taken = ::write(descriptor, bytes.data(), bytes.size());
-        if (taken < 0 && errno == EINTR) continue;
-        if (taken < 0) {
-            raise<FileError>("cannot write to a temporary file: {}; TMPDIR=FOLDER names another place",
-                             system_reason());
-        }
-        bytes.remove_prefix(static_cast<std::size_t>(taken));
-    }
-}
-
-// Reads them where they lie; what came through a pipe has a name for the moment of opening. Not good() where
-// the library cannot open it. Throws FileError.
-Hdf5Handle open_hdf5(StoredBytes& bytes) {
-    const Hdf5Handle access = access_of_files();
-    std::string name = bytes.openable();
-    std::optional<TemporaryFile> copy;
-    if (name.empty()) {
-        copy.emplace(place_of_copies(), std::nullopt);
-        for (std::uint64_t at = 0; at < bytes.size(); at += piece_size) {
-            const auto size = std::min(piece_size, bytes.size() - at);
-            write_all_to(copy->descriptor(), bytes.text_at(at, static_cast<std::size_t>(size)));
-        }
-        name = copy->name_for_a_moment(place_of_copies());
-    }
-    return {::H5Fopen(name.c_str(), H5F_ACC_RDONLY, access.id()), ::H5Fclose};
 }
 
 // Numbers of an HDF5 dataset, a column at a time.
@@ -182,16 +143,14 @@ constexpr std::size_t rows_of_a_chunk = 16384;  // rows
 /// so that the file waits under no name until it is whole.
 class Hdf5TableWriter final : public TableWriter {
   public:
-    Hdf5TableWriter(ByteSink& sink, const WriteOptions& /*options*/) : sink_(sink) {}
-    void begin(std::span<const std::string> names) override {
+    Hdf5TableWriter(ByteSink& sink, std::span<const std::string> names, const WriteOptions& /*options*/)
+        : sink_(sink), names_(names.begin(), names.end()), waiting_(names.size()) {
         ::H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-        names_.assign(names.begin(), names.end());
-        waiting_.resize(names_.size());
-        scratch_ = std::make_unique<TemporaryFile>(place_of_copies(), std::nullopt);
-        const std::string& name = scratch_->name_for_a_moment(place_of_copies());
-        file_ = {::H5Fcreate(name.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access_of_files().id()), ::H5Fclose};
+        scratch_.with_name([this](const std::string& name) {
+            const Hdf5Handle access = access_of_files();
+            file_ = {::H5Fcreate(name.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id()), ::H5Fclose};
+        });
         if (!file_.good()) raise<FileError>("cannot write to a temporary file; check the temporary folder");
-        scratch_->forget_name();
     }
     // A chunk at a time, wherever the caller cuts: so the bytes are alike.
     void rows(std::span<const std::span<const double>> columns) override {
@@ -204,7 +163,7 @@ class Hdf5TableWriter final : public TableWriter {
         datasets_.clear();
         require(::H5Fflush(file_.id(), H5F_SCOPE_LOCAL) >= 0);
         file_ = {};
-        copy_bytes(scratch_->descriptor(), sink_);
+        scratch_.copy_to(sink_);
     }
 
   private:
@@ -246,8 +205,7 @@ class Hdf5TableWriter final : public TableWriter {
     ByteSink& sink_;
     std::vector<std::string> names_;
     std::vector<std::vector<double>> waiting_;  ///< by column: rows of a chunk that is not full
-    std::unique_ptr<TemporaryFile>
-        scratch_;  ///< a new file without a name, for the library to write and us to read
+    TemporaryBytes scratch_;                    ///< for the library to write and us to read
     Hdf5Handle file_;
     std::vector<Hdf5Handle> datasets_;  ///< closed before the file
     hsize_t rows_ = 0;
@@ -284,7 +242,10 @@ class Hdf5Walk {
         ::H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
         ::H5PLset_loading_state(0);  // a file must not say which code is run
         file_->bytes = bytes;
-        file_->file = open_hdf5(*bytes);
+        bytes->with_name([this](const std::string& name) {
+            const Hdf5Handle access = access_of_files();
+            file_->file = {::H5Fopen(name.c_str(), H5F_ACC_RDONLY, access.id()), ::H5Fclose};
+        });
         if (!file_->file.good())
             raise<DataError>(
                 "{}: read an HDF5 file that libhdf5 cannot open, expected a whole one; the file is cut off, "

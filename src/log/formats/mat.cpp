@@ -65,10 +65,9 @@ std::string variable_name(const std::string& name) {
 class MatTableWriter final : public TableWriter {
   public:
     /// Arrays hold every digit: of the options none concerns them.
-    MatTableWriter(ByteSink& sink, const WriteOptions& /*options*/) : sink_(sink) {}
-    void begin(std::span<const std::string> names) override {
+    MatTableWriter(ByteSink& sink, std::span<const std::string> names, const WriteOptions& /*options*/)
+        : sink_(sink), columns_(names.size()) {
         for (const std::string& name : names) names_.push_back(variable_name(name));
-        columns_ = std::vector<TemporaryBytes>(names_.size());
         std::string head = "MATLAB 5.0 MAT-file, written by ripplenotch";
         head.resize(text_size, ' ');
         head.append(8, '\0');

@@ -179,26 +179,27 @@ class NpyWriter final : public LogWriter {
 class NpyTableWriter final : public TableWriter {
   public:
     /// Arrays hold every digit: of the options none concerns them.
-    NpyTableWriter(ByteSink& sink, const WriteOptions& /*options*/) : sink_(sink) {}
-    void begin(std::span<const std::string> names) override {
-        std::vector<std::string> fields;
-        for (const std::string& name : names)
-            fields.push_back(fmt::format("({}, '<f8')", python_string(name)));
-        array_.emplace(sink_, fmt::format("[{}]", fmt::join(fields, ", ")), ",");
-    }
+    NpyTableWriter(ByteSink& sink, std::span<const std::string> names, const WriteOptions& /*options*/)
+        : array_(sink, descr_of(names), ",") {}
     void rows(std::span<const std::span<const double>> columns) override {
         const std::size_t count = columns.empty() ? 0 : columns[0].size();
         const std::size_t width = 8 * columns.size();
         bytes_.resize(count * width);
         for (std::size_t c = 0; c < columns.size(); ++c)
             store_column(bytes_.data(), width, {"", 'f', 8, false, 8 * c}, columns[c]);
-        array_->put(bytes_, count);
+        array_.put(bytes_, count);
     }
-    void end() override { array_->end(); }
+    void end() override { array_.end(); }
 
   private:
-    ByteSink& sink_;
-    std::optional<CountedArray> array_;
+    static std::string descr_of(std::span<const std::string> names) {
+        std::vector<std::string> fields;
+        for (const std::string& name : names)
+            fields.push_back(fmt::format("({}, '<f8')", python_string(name)));
+        return fmt::format("[{}]", fmt::join(fields, ", "));
+    }
+
+    CountedArray array_;
     std::string bytes_;
 };
 

@@ -24,8 +24,6 @@ constexpr std::array<std::string_view, 1> rosbag2_extensions = {".db3"};
 
 #if defined(RIPPLENOTCH_HAS_SQLITE)
 
-constexpr std::uint64_t most_in_memory = std::uint64_t{1} << 28;
-
 class Statement {
   public:
     Statement(sqlite3* database, const std::string& sql, const std::string& source)
@@ -62,7 +60,7 @@ class Rosbag2Messages final : public MessageSource {
     explicit Rosbag2Messages(std::shared_ptr<StoredBytes> file)
         : file_(std::move(file)), database_(nullptr, ::sqlite3_close) {
         require_all_pages();
-        open();
+        file_->with_name([this](const std::string& path) { open(path); });
         // What lies in a stranger's schema is not run.
         ::sqlite3_db_config(database_.get(), SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
         ::sqlite3_db_config(database_.get(), SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
@@ -121,30 +119,17 @@ class Rosbag2Messages final : public MessageSource {
             "{}: read an SQLite file of {} bytes, expected {} pages of {}; it is cut off, copy it again",
             name(), file_->size(), counted ? std::to_string(pages) : "whole", page);
     }
-    // A file where it lies; bytes from elsewhere in memory, since SQLite opens names only.
-    void open() {
+    void open(const std::string& path) {
+        std::string uri = "file:";
+        for (const char c : path)
+            uri += c == '?' || c == '#' || c == '%' ? fmt::format("%{:02X}", c) : std::string(1, c);
         sqlite3* database = nullptr;
-        const std::string path = file_->openable();
-        const std::string uri = path.empty() ? ":memory:" : fmt::format("file:{}?immutable=1", path);
-        const int result = ::sqlite3_open_v2(
-            uri.c_str(), &database,
-            path.empty() ? SQLITE_OPEN_READWRITE : SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, nullptr);
+        const int result = ::sqlite3_open_v2((uri + "?immutable=1").c_str(), &database,
+                                             SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, nullptr);
         database_.reset(database);
         if (result != SQLITE_OK)
             raise<DataError>("{}: cannot be opened as an SQLite file: {}", name(),
                              ::sqlite3_errmsg(database));
-        if (!path.empty()) return;
-        const std::uint64_t size = file_->size();
-        if (size > most_in_memory)
-            raise<UsageError>(
-                "{}: a recording in SQLite of {} bytes cannot come through a pipe; name the file", name(),
-                size);
-        auto* const bytes = static_cast<unsigned char*>(::sqlite3_malloc64(size));
-        if (bytes == nullptr) raise<DataError>("{}: no memory for {} bytes", name(), size);
-        file_->read_at(0, reinterpret_cast<char*>(bytes), static_cast<std::size_t>(size));
-        const auto length = static_cast<sqlite3_int64>(size);
-        ::sqlite3_deserialize(database, "main", bytes, length, length,
-                              SQLITE_DESERIALIZE_FREEONCLOSE | SQLITE_DESERIALIZE_READONLY);
     }
     bool is_table(const std::string& table) {
         Statement found(
