@@ -90,7 +90,7 @@ std::vector<ConverterFault> find_converter_faults(std::span<const double> torque
     return found;
 }
 
-std::vector<std::size_t> find_spikes(const RecordedMotion& recorded, const SaturatedFit& fit) {
+FarSamples find_spikes(const RecordedMotion& recorded, const SaturatedFit& fit) {
     const std::vector<unsigned char>& use = recorded.usable();
     std::vector<double> r = fit.residual_nm, sizes;
     for (std::size_t k = 0; k < r.size(); ++k) {
@@ -101,11 +101,14 @@ std::vector<std::size_t> find_spikes(const RecordedMotion& recorded, const Satur
     }
     if (sizes.empty()) return {};
     const double deviation_nm = 1.4826 * median(sizes);
-    std::vector<std::size_t> far;
-    std::size_t alone = 0;
+    FarSamples found;
+    const std::vector<double>& velocity = recorded.motion().velocity_deg_s;
+    // Between which samples friction changes its sign the log does not say.
+    const auto is_reversal = [&](std::size_t k) { return velocity[k - 2] * velocity[k + 2] <= 0.0; };
+    std::size_t alone = 0, in_motion = 0;
     for (std::size_t k = 2; k + 2 < r.size(); ++k) {
         if (std::abs(r[k]) <= 8.0 * deviation_nm) continue;
-        far.push_back(k);
+        found.slots.push_back(k);
         double squares = 0.0, count = 0.0;
         const std::size_t from = k - std::min(k, spike_neighbours);
         const std::size_t to = std::min(k + spike_neighbours, r.size());
@@ -118,8 +121,11 @@ std::vector<std::size_t> find_spikes(const RecordedMotion& recorded, const Satur
                                 std::abs(r[k]) > 6.0 * std::sqrt(squares / count) &&
                                 std::abs(r[k] - 0.5 * (r[k - 1] + r[k + 1])) > 7.0 * deviation_nm;
         alone += stands_out ? 1 : 0;
+        in_motion += stands_out && !is_reversal(k) ? 1 : 0;
     }
-    return alone >= fewest_spikes ? far : std::vector<std::size_t>{};
+    if (alone < fewest_spikes) found.slots.clear();
+    found.are_spikes = in_motion >= fewest_spikes;
+    return found;
 }
 
 }  // namespace ripplenotch::engine

@@ -22,7 +22,11 @@ struct ConverterFault {
 [[nodiscard]] std::vector<ConverterFault> find_converter_faults(std::span<const double> torque_nm,
                                                                 std::vector<unsigned char>& good);
 
-/// Samples far from what all smooth laws predict and from their neighbours. Slots; empty: no spikes.
-[[nodiscard]] std::vector<std::size_t> find_spikes(const RecordedMotion& recorded, const SaturatedFit& fit);
+/// Samples far from what all smooth laws predict and from their neighbours.
+struct FarSamples {
+    std::vector<std::size_t> slots;
+    bool are_spikes = false;  ///< enough of them stand alone while the joint moves in one direction
+};
+[[nodiscard]] FarSamples find_spikes(const RecordedMotion& recorded, const SaturatedFit& fit);
 
 }  // namespace ripplenotch::engine

@@ -43,16 +43,14 @@ Prepared prepare(RecordedMotion& recorded, const KnownSide& known, std::vector<C
     }
     measure(best_s);
     now.noise = std::make_shared<const SaturatedFit>(fit_saturated(recorded, now.base, {}, now.noise.get()));
-    const std::vector<std::size_t> spikes = find_spikes(recorded, *now.noise);
-    if (!spikes.empty()) {
-        auto& fault = faults.emplace_back();
-        fault.effect = "spikes";
-        for (const std::size_t slot : spikes) {
-            recorded.exclude(slot - 1, 3);
-            fault.rows.push_back(recorded.row_of(slot));
-        }
-        measure(recorded.window_s());
+    const FarSamples far = find_spikes(recorded, *now.noise);
+    ConverterFault fault{"spikes", {}};
+    for (const std::size_t slot : far.slots) {
+        recorded.exclude(slot - 1, 3);
+        fault.rows.push_back(recorded.row_of(slot));
     }
+    if (far.are_spikes) faults.push_back(std::move(fault));
+    if (!far.slots.empty()) measure(recorded.window_s());
     return now;
 }
 
