@@ -174,7 +174,7 @@ std::vector<ContentEntry> topic_contents(
     return entries;
 }
 
-constexpr int asked = 1000;  // more than any names tell
+constexpr int tells_by_option = 1000;  // more than any names tell
 constexpr std::uint64_t bytes_looked_at = std::uint64_t{1}
                                           << 23;  // bytes of messages, before the topic is chosen
 
@@ -280,10 +280,10 @@ class TopicChoice {
                     raise<UsageError>("--columns: {}: {} is {}", source_->name(),
                                       source_->channels()[c].topic, topics_[c].refusal);
                 // The rows are those of the torque; what else is asked for is joined to them.
-                if (best < asked || is_asked(c, "torque")) chosen = c;
-                best = asked;
+                if (best < tells_by_option || is_asked(c, "torque")) chosen = c;
+                best = tells_by_option;
             }
-            if (!topics_[c].refusal.empty() || best == asked) continue;
+            if (!topics_[c].refusal.empty() || best == tells_by_option) continue;
             std::vector<std::string> names;
             for (const MessageLeaf& leaf : topics_[c].layout.leaves) names.push_back(leaf.read_as);
             if (const int tells = names_tell(names); tells > best) {
