@@ -2,6 +2,7 @@
 // The model of a joint for simulators and for Python.
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -146,13 +147,15 @@ WrittenJoint write_actuator(const Model& model, const Settings& settings,
         if (actuator.armature) one->emplace_back("armature", shortest(*actuator.armature));
         if (actuator.limit_nm) one->emplace_back("effort_limit", shortest(*actuator.limit_nm));
     }
-    Fields left;
-    for (const MjcfPart& part : written.not_held) left.emplace_back(part.effect, in_quotes(part.words));
+    std::vector<std::string> left;
+    for (const MjcfPart& part : written.not_held)
+        left.push_back(
+            fmt::format("{{\"effect\": {}, \"reason\": {}}}", in_quotes(part.effect), in_quotes(part.words)));
     written.text = object({{"made", "[" + joined(heading, ", ", in_quotes) + "]"},
                            {"step_s", shortest(settings.number("step"))},
                            {"isaac_lab", object(isaac, "  ")},
                            {"mjlab", object(mjlab, "  ")},
-                           {"not_held", object(left, "  ")}},
+                           {"not_held", fmt::format("[{}]", fmt::join(left, ",\n    "))}},
                           "") +
                    "\n";
     return written;
