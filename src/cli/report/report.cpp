@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // ripplenotch report: one self-contained HTML page from any mix of results.
 
+#include <dlfcn.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <unistd.h>
@@ -460,15 +461,18 @@ struct ReportRequest {
     bool force = false, quiet = false, other_motors = false;
 };
 
-// Where the build and the installation put it, as seen from the program itself.
+// Where the build and the installation put it, as seen from the program itself or from the Python module.
 std::optional<std::string> installed_plotly() {
     std::error_code failed;
-    const auto program = std::filesystem::read_symlink("/proc/self/exe", failed);
-    if (failed) return std::nullopt;
-    for (const auto& share :
-         {program.parent_path().parent_path() / "share", program.parent_path() / "share"}) {
-        const auto file = share / "ripplenotch" / "plotly-cartesian.min.js";
-        if (std::filesystem::exists(file, failed)) return file.string();
+    Dl_info self{};
+    const bool known = ::dladdr(reinterpret_cast<const void*>(&installed_plotly), &self) != 0;
+    for (const std::filesystem::path& file : {std::filesystem::read_symlink("/proc/self/exe", failed),
+                                              std::filesystem::path(known ? self.dli_fname : "")}) {
+        auto folder = file.parent_path();
+        for (int up = 0; up < 3; ++up, folder = folder.parent_path()) {
+            const auto found = folder / "share" / "ripplenotch" / "plotly-cartesian.min.js";
+            if (std::filesystem::exists(found, failed)) return found.string();
+        }
     }
     return std::nullopt;
 }
