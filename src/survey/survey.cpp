@@ -11,6 +11,7 @@
 #include <span>
 #include <utility>
 
+#include "core/rows/second_log.hpp"
 #include "ripplenotch/analysis/stretches.hpp"
 #include "ripplenotch/log/log.hpp"
 #include "ripplenotch/survey/survey.hpp"
@@ -145,6 +146,13 @@ std::vector<SteadyStretch> stretches_of(const Log& log) {
     return stretches;
 }
 
+// Empty for a joint that does not move.
+std::string second_log_of(const Trace& trace) {
+    const MotionSeen seen = motion_seen(trace.velocity_deg_s);
+    if (seen.positive + seen.negative <= 0.0) return {};
+    return second_log(seen, {.direction = true, .speed = true, .load = true});
+}
+
 /// One joint, and the description of its log: no rows.
 struct Surveyed {
     Log log;
@@ -157,6 +165,7 @@ Surveyed surveyed(Log log) {
     rows.add(log.trace.view());
     rows.describe(joint);
     joint.stretches = stretches_of(log);
+    joint.second_log = second_log_of(log.trace);
     log.trace = {};
     return {std::move(log), std::move(joint)};
 }
@@ -180,6 +189,7 @@ Surveyed survey_long(const std::shared_ptr<const Spool>& spool, const ReadOption
     Log thinned;
     thinned.trace = means.take();
     found.info.stretches = stretches_of(thinned);
+    found.info.second_log = second_log_of(thinned.trace);
     return found;
 }
 
@@ -260,7 +270,7 @@ std::string speeds_text(const std::vector<SteadyStretch>& stretches) {
 }
 
 // The joint that turned most decides the suitability of the whole log.
-void state_uses(LogInfo& info) {
+void state_uses(LogInfo& info, bool makes_torque) {
     const auto most =
         std::max_element(info.joints.begin(), info.joints.end(),
                          [](const JointInfo& a, const JointInfo& b) { return a.turns < b.turns; });
@@ -317,7 +327,13 @@ void state_uses(LogInfo& info) {
         filter = {"filter", true,
                   "by methods that are the same at every speed, fixed and lowpass; " + missing};
     }
-    info.uses = {spectrum, identify, filter, clock};
+    const bool is_made = makes_torque && joint.speed_deg_s && info.clock.refusal.empty();
+    Use diagnose{"diagnose", (missing.empty() || is_made) && !joint.second_log.empty(), missing};
+    if (missing.empty() || is_made)
+        diagnose.reason = of_joint + (diagnose.possible ? joint.second_log : "the joint does not move");
+    else if (!joint.torque_nm && joint.position_deg)
+        diagnose.reason += ", or --drive makes it of a command";
+    info.uses = {spectrum, identify, filter, clock, diagnose};
 }
 
 // A log of unknown columns is described like any other, since `info` is the command to inspect one.
@@ -333,7 +349,7 @@ void warn_where_nothing_is_known(LogInfo& info) {
 
 }  // namespace
 
-LogInfo survey_log(const std::string& path, ReadOptions options, std::size_t most_rows) {
+LogInfo survey_log(const std::string& path, ReadOptions options, std::size_t most_rows, bool makes_torque) {
     options.needs_torque = false;
     const std::vector<Surveyed> joints = survey_joints(path, options, most_rows);
     LogInfo info;
@@ -358,7 +374,7 @@ LogInfo survey_log(const std::string& path, ReadOptions options, std::size_t mos
     }
     warn_where_nothing_is_known(info);
     add_warnings(info, joints);
-    state_uses(info);
+    state_uses(info, makes_torque);
     return info;
 }
 

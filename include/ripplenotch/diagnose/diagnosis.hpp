@@ -7,8 +7,10 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
+#include "ripplenotch/core/driven_torque.hpp"
 #include "ripplenotch/core/trace.hpp"
 #include "ripplenotch/diagnose/setup.hpp"
 #include "ripplenotch/model/fit.hpp"
@@ -135,6 +137,16 @@ struct GivenValue {
     std::optional<Interval> ci95;
 };
 
+/// Of a log whose torque is that of a control law: that torque, and what a residual is as a position.
+struct DriveAnswer {
+    DrivenTorque torque;
+    /// By how much the model's answer to the command is off the log, rms: of the model as given, and of the
+    /// improved one.
+    double position_before_deg = 0.0, position_after_deg = 0.0;
+    /// What each finding of the improved model moves the joint by, rms.
+    std::vector<std::pair<std::string, double>> position_of_effects_deg;
+};
+
 struct DiagnosisGap {
     double before_nm = 0.0, after_nm = 0.0;  ///< rms of measured less predicted torque, all samples
     double noise_floor_nm = 0.0;             ///< the least that any smooth law leaves
@@ -170,6 +182,7 @@ struct Diagnosis {
     /// How far the log is behind the user's simulation, where that is no effect of the joint. The known
     /// torque is shifted by that.
     std::optional<SimulationLag> alignment;
+    std::optional<DriveAnswer> drive;  ///< where the torque is that of a control law
     std::size_t samples = 0, samples_used = 0;
     double smoothing_s = 0.0;  ///< window of the motion along which effects were searched
     bool has_position = false;

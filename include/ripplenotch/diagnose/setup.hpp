@@ -58,6 +58,11 @@ struct LoggedJoint {
     TraceView trace;
 };
 
+/// Of a command behind whose delay a drive's torque is: simulation.torque_nm is the command's part of it, and
+/// log.torque_nm that of position and velocity, with the opposite sign. The delay at which inertia, friction
+/// and weight of the joint leave least between the two.
+[[nodiscard]] SimulationLag lag_by_law(const TraceView& log, const SimulatedMotion& command);
+
 struct SetupContext {
     std::optional<GearRatio> gear_ratio = {};
     /// Names of the simulation's columns, as options have them; empty: it has no such column.

@@ -7,16 +7,11 @@
 #include <span>
 #include <vector>
 
+#include "ripplenotch/core/interval.hpp"
 #include "ripplenotch/model/effect.hpp"
 #include "ripplenotch/model/model.hpp"
 
 namespace ripplenotch {
-
-/// 95 % interval, of the errors being normal and the model being linear within it. With
-/// FitOptions::error_stretch they need not be white.
-struct Interval {
-    double low = 0.0, high = 0.0;
-};
 
 struct FittedValue {
     std::size_t term = 0, parameter = 0;  ///< places in the model

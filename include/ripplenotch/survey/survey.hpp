@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "ripplenotch/core/driven_torque.hpp"
 #include "ripplenotch/log/layout.hpp"
 #include "ripplenotch/log/log.hpp"
 #include "ripplenotch/log/recording.hpp"
@@ -33,12 +34,14 @@ struct JointInfo {
     std::optional<double> clock_factor;
     double turns = 0.0;                    ///< turns of the joint, both directions added up
     std::vector<SteadyStretch> stretches;  ///< standstill included
+    std::string second_log;                ///< what it must have: second_log(); empty: this one does not move
+    std::optional<DrivenTorque> drive;     ///< where its torque is that of a control law; not found by survey
     std::string options;                   ///< the option line that reads this joint
 };
 
 /// One thing to do with the log: whether it can, and why or why not.
 struct Use {
-    std::string name;  ///< "spectrum", "identify", "filter", "clock-check"
+    std::string name;  ///< "spectrum", "identify", "filter", "clock-check", "diagnose"
     bool possible = false;
     std::string reason;  ///< one sentence
 };
@@ -57,8 +60,9 @@ struct LogInfo {
 
 /// Reads the log, each joint of it unless one is chosen. Throws what reading throws; a log without torque,
 /// velocity or time is described all the same. One of more than `most_rows` goes by twice and is not held:
-/// its stretches are then those of means of as many rows as it takes.
+/// its stretches are then those of means of as many rows as it takes. `makes_torque`: a control law makes the
+/// torque, so that no column of it is missed by what needs no other.
 [[nodiscard]] LogInfo survey_log(const std::string& path, ReadOptions options,
-                                 std::size_t most_rows = most_rows_held);
+                                 std::size_t most_rows = most_rows_held, bool makes_torque = false);
 
 }  // namespace ripplenotch

@@ -15,6 +15,7 @@
 #include "ripplenotch/chart/diagnosis_figure.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/document/simulation_json.hpp"
+#include "ripplenotch/verdict/drive.hpp"
 #include "ripplenotch/verdict/gear_choice.hpp"
 
 namespace ripplenotch {
@@ -93,8 +94,10 @@ ExitCode print_effects(const DiagnoseRequest& request, const std::string& comman
 }
 
 std::string story(const DiagnoseRequest& request, const JointDiagnosis& one) {
-    return (one.given.account ? arm_text(*one.given.account) : "") +
+    return (one.diagnosis.drive ? drive_words(one.diagnosis.drive->torque) + "\n" : "") +
+           (one.given.account ? arm_text(*one.given.account) : "") +
            diagnosis_story(request.common, one.diagnosis, request.explain) +
+           (one.diagnosis.drive ? position_words(*one.diagnosis.drive) + "\n" : "") +
            (one.diagnosis.model.has_gear_ratio() ? "" : gear_in_words(one.gear) + "\n") +
            (one.mjcf ? mjcf_text(*one.mjcf) : "");
 }
@@ -182,6 +185,7 @@ std::function<ExitCode()> attach_diagnose(Options& options) {
                  "model.json of the joint; values left out are fitted; auto: gear ratio and ripple orders as "
                  "identify finds them in LOG");
     attach_given(options, request->given);
+    attach_drive(options, request->drive);
     attach_gear(options, request->gear,
                 {.ratio = "motor turns per joint turn, instead of --model", .orders = "", .joint_file = ""});
     options.flag("--friction-table", request->friction_table,
@@ -222,9 +226,9 @@ const Command commands::diagnose{
     .name = "diagnose",
     .summary = "where model and log disagree, the effect that is missing, and how far the gap shrinks",
     .description =
-        "Fits the model to the log, reports where they disagree, tries every effect of the catalogue, names "
-        "and adds\nwhat is missing, and reports what no effect explains. --improved-model writes the model "
-        "with it; named\n.xml or .mjcf, for MuJoCo, with a list of what MuJoCo cannot represent.\nExample: "
+        "Fits the model to the log, reports where they disagree, tries every effect of the catalogue, names\n"
+        "and adds what is missing, and reports what no effect explains. --improved-model writes the model\n"
+        "with it; named .xml or .mjcf, for MuJoCo, with a list of what MuJoCo cannot represent.\nExample: "
         "ripplenotch diagnose log.csv --model model.json --validate other.csv --improved-model improved.json",
     .attach = attach_diagnose,
 };

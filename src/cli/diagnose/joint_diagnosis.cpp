@@ -26,6 +26,7 @@
 #include "ripplenotch/export/joint_mjcf.hpp"
 #include "ripplenotch/model/model.hpp"
 #include "ripplenotch/model/motion.hpp"
+#include "ripplenotch/verdict/drive.hpp"
 #include "ripplenotch/verdict/gear_choice.hpp"
 #include "ripplenotch/verdict/readings.hpp"
 
@@ -142,6 +143,14 @@ bool moves(const Trace& trace) {
     return std::ranges::any_of(trace.velocity_deg_s, [](double v) { return std::abs(v) > clear_deg_s; });
 }
 
+// The torque of --drive in the place of the log's; nothing without it.
+std::optional<DrivenTorque> driven(const DiagnoseRequest& request, const ReadOptions& reading,
+                                   const std::string& path, Log& log, std::size_t most_rows) {
+    if (!request.drive) return std::nullopt;
+    return apply_drive(read_drive(with_joint(*request.drive, log.trace.joint)), reading, path, log,
+                       most_rows);
+}
+
 struct ModelOfLog {
     Model model;
     std::string source;  ///< of its gear ratio
@@ -156,6 +165,7 @@ ModelOfLog identified_model(const DiagnoseRequest& request, ReadOptions reading)
     reading.takes_motor_units = true;
     std::vector<Log> logs;
     logs.push_back(read_log_in_part(request.path, reading, most_rows_held));
+    (void)driven(request, reading, request.path, logs.back(), most_rows_held);
     IdentifyOptions options;
     std::optional<GearRatio> stated;
     if (request.gear.ratio) options.hint = stated = GearRatio(*request.gear.ratio);
@@ -221,6 +231,8 @@ void check_model(const DiagnoseRequest& request) {
         raise<UsageError>("--gear-ratio: the model of {} states the gear ratio; change it there",
                           input_name(request.model));
     check_gear(request.gear);
+    if (request.drive && request.given.arm)
+        raise<UsageError>("--drive and --arm: a control law of one joint makes no torque of the others");
     if (request.path == "-" && request.model == model_from_log)
         raise<UsageError>(
             "--model auto reads the log twice, and standard input can be read once; give a file");
@@ -353,7 +365,8 @@ std::vector<Term> found_ripple(const GivenTerms& given) {
 
 Diagnosis diagnosed(const DiagnoseRequest& request, Model model, const JointDiagnosis& one,
                     const std::optional<Log>& other) {
-    const std::vector<std::string> without = take_lag(request, one, model);
+    std::vector<std::string> without = take_lag(request, one, model);
+    if (request.drive) without.emplace_back("saturation");  // its limit is the law's own
     const std::vector<Term> ripple = found_ripple(one.given);
     try {
         return diagnose_readings(
@@ -416,7 +429,7 @@ JointDiagnosis diagnosed_joint(const DiagnoseRequest& request, const std::option
                                GivenSource& source, const std::string& command_line) {
     JointDiagnosis one;
     one.provenance.command = command_line;
-    ReadOptions reading = request.log;
+    ReadOptions reading = request.drive ? without_torque(request.log) : request.log;
     if (joint) reading.joint = *joint;
     const std::string path = joint ? with_joint(request.model, *joint) : request.model;
     std::string ratio_source;
@@ -428,19 +441,26 @@ JointDiagnosis diagnosed_joint(const DiagnoseRequest& request, const std::option
     const std::size_t most = most_rows(request.given, model);
     one.log = read(request, most, reading, request.path, one.provenance);
     one.joint = one.log.trace.joint;
+    const auto drive = driven(request, reading, request.path, one.log, most);
     std::optional<Log> other;
-    if (request.validate) other = read(request, most, reading, *request.validate, one.provenance);
+    if (request.validate) {
+        other = read(request, most, reading, *request.validate, one.provenance);
+        (void)driven(request, reading, *request.validate, *other, most);
+    }
     one.given = given_of(request, model, reading, most, source, one, other);
     for (const std::string& file : one.given.files) one.provenance.inputs.push_back(input_record(file));
     Progress::current().begin("looking for what is missing", "", 0);
     one.diagnosis = diagnosed(request, model.model, one, other);
+    if (drive)
+        one.diagnosis.drive = drive_answer(read_drive(with_joint(*request.drive, one.joint)), *drive,
+                                           one.diagnosis, motion_of(request, one), one.log.trace.view());
     advise_arm(one);
     if (one.given.setup) one.diagnosis.alignment = one.given.setup->shift;
     return one;
 }
 
 std::vector<std::string> joints_of(const DiagnoseRequest& request, GivenSource& given) {
-    ReadOptions reading = request.log;
+    ReadOptions reading = request.drive ? without_torque(request.log) : request.log;
     std::vector<std::string> joints = joints_asked_for(request.path, reading).names;
     reading.joint.reset();
     if (!request.given.arm) return joints;

@@ -26,6 +26,7 @@ struct DiagnoseRequest : LogRequest {
     std::optional<std::string> improved;  ///< file of the improved model
     bool improved_by_output = false;      ///< which was named by -o
     GivenOptions given;
+    std::optional<std::string> drive;  ///< the control law by which the torque is made
     std::optional<std::string> validate;
     std::vector<std::string> without, accept;
     bool explain = false;

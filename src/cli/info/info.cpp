@@ -10,6 +10,7 @@
 #include <string>
 
 #include "cli/command.hpp"
+#include "cli/options/options.hpp"
 #include "cli/options/plot_request.hpp"
 #include "cli/talk.hpp"
 #include "ripplenotch/core/files.hpp"
@@ -18,6 +19,7 @@
 #include "ripplenotch/document/info_json.hpp"
 #include "ripplenotch/log/format.hpp"
 #include "ripplenotch/survey/survey.hpp"
+#include "ripplenotch/verdict/drive.hpp"
 
 namespace ripplenotch {
 
@@ -161,6 +163,10 @@ std::string info_to_text(const LogInfo& log, bool all_columns) {
     if (log.bad_values_held > 0)
         text += fmt::format("held      {} bad values replaced by the value before\n", log.bad_values_held);
     text += '\n' + joints_in_log(log);
+    for (const JointInfo& joint : log.joints)
+        if (joint.drive)
+            text += fmt::format("{}{}\n", joint.joint.empty() ? "" : "joint " + joint.joint + ": ",
+                                drive_words(*joint.drive));
     text += '\n' + columns_table(log, all_columns);
     if (!log.layout.contents.empty()) text += contents_table(log);
     text += "\ngood for\n";
@@ -183,14 +189,27 @@ struct InfoRequest {
     CommonOptions common;
     ReadOptions log;
     std::vector<std::string> paths;
+    std::optional<std::string> drive;
 };
+
+// The torque of each joint that its control law makes.
+void drive_joints(const InfoRequest& request, const std::string& path, LogInfo& log) {
+    for (JointInfo& joint : log.joints) {
+        ReadOptions reading = without_torque(request.log);
+        if (!joint.joint.empty()) reading.joint = joint.joint;
+        Log one = read_log_in_part(path, reading);
+        const DriveLaw law = read_drive(with_joint(*request.drive, joint.joint));
+        joint.drive = apply_drive(law, reading, path, one, most_rows_held);
+    }
+}
 
 ExitCode run_info(const InfoRequest& request, const std::string& command_line) {
     hash_where_told(request.common);
     std::vector<LogInfo> logs;
     Provenance provenance{{}, command_line};
     for (const std::string& path : request.paths) {
-        logs.push_back(survey_log(path, request.log));
+        logs.push_back(survey_log(path, request.log, most_rows_held, request.drive.has_value()));
+        if (request.drive) drive_joints(request, path, logs.back());
         const LogInfo& log = logs.back();
         provenance.inputs.push_back({path, path == "-" ? "" : sha256_as_read(path), log.rows});
         say(request.common, log.source + ": read as if with " + log.layout.options);
@@ -211,6 +230,7 @@ ExitCode run_info(const InfoRequest& request, const std::string& command_line) {
 std::function<ExitCode()> attach_info(Options& options) {
     auto request = std::make_shared<InfoRequest>();
     options.arguments("LOG", request->paths, true, "logs to look at; - is standard input");
+    attach_drive(options, request->drive);
     attach_log(options, request->log);
     attach_common(options, request->common, {"an inventory", ".txt .json", true});
     return [request, &options] { return run_info(*request, options.command_line()); };

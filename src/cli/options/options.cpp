@@ -684,6 +684,12 @@ void attach_given(Options& options, GivenOptions& given) {
     options.text("--arm", given.arm, "SPEC", arm_option_help);
 }
 
+void attach_drive(Options& options, std::optional<std::string>& drive) {
+    options.text("--drive", drive, "SPEC",
+                 "the torque that a control law makes of a command: pd,kp=60,kd=2,command=COLUMN (Nm/rad, Nm "
+                 "s/rad), with [,velocity-command=COLUMN][,delay=4ms|fit][,limit=90Nm]");
+}
+
 void attach_residual(Options& options, ResidualOptions& residual) {
     options.text("--residual", residual.model, "FILE",
                  "look into measured less predicted torque: of this model.json, along the log");

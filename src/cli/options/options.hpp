@@ -213,6 +213,9 @@ void attach_gear(Options& options, GearOptions& gear, const GearHelp& help = {})
 /// --simulated and --arm.
 void attach_given(Options& options, GivenOptions& given);
 
+/// --drive.
+void attach_drive(Options& options, std::optional<std::string>& drive);
+
 /// --residual and --simulated.
 void attach_residual(Options& options, ResidualOptions& residual);
 

@@ -25,6 +25,7 @@
 #include "ripplenotch/log/log.hpp"
 #include "ripplenotch/model/motion.hpp"
 #include "ripplenotch/model/noise.hpp"
+#include "ripplenotch/verdict/drive.hpp"
 #include "ripplenotch/verdict/gear_choice.hpp"
 #include "ripplenotch/verdict/given_terms.hpp"
 
@@ -106,7 +107,7 @@ struct SimulateOptions {
     JointModelOptions joint;
     ReadOptions log_options;
     std::string log;  ///< empty: motions are given
-    std::optional<std::string> simulated;
+    std::optional<std::string> simulated, drive;
     std::optional<std::string> format;
     std::vector<std::string> motions;
     Seconds smoothing = default_smoothing;
@@ -150,8 +151,13 @@ Course course_of(const SimulateOptions& options, const ModelWithGiven& model) {
     }
     ReadOptions reading = read_options(options.log_options, assembled_gear(options.joint, model.model));
     take_joint_of(model, reading.joint);
+    if (options.drive) reading = without_torque(reading);
     Log log = read_log(options.log, reading);
     say_layout(options.common, log.layout);
+    if (options.drive) {
+        const DriveLaw law = read_drive(with_joint(*options.drive, log.trace.joint));
+        say(options.common, drive_words(apply_drive(law, reading, options.log, log)));
+    }
     KnownAlong known = stated_along({options.simulated, std::nullopt}, model, reading, {options.log, log});
     say_warnings(options.common, log.recording.warnings);
     Motion motion = motion_along(log.trace.view(), options.smoothing);
@@ -209,6 +215,7 @@ void check_course(const SimulateOptions& options) {
     if (options.log_options.range.given())
         raise<UsageError>("--from and --to: there is no LOG to select rows from");
     if (options.simulated) raise<UsageError>("--simulated: needs a LOG, and there is none");
+    if (options.drive) raise<UsageError>("--drive: needs a LOG, and there is none");
     if (options.motions.empty()) {
         raise<UsageError>(
             "--motion is missing, for example --motion constant,speed=60deg/s,duration=5s, or a LOG");
@@ -307,6 +314,7 @@ std::function<ExitCode()> attach_simulate(Options& options) {
     options.text("--simulated", o->simulated, "SPEC",
                  "with a LOG: torque of your own simulation as a part of the model, tau_model,scale=1 (a "
                  "column) or log,file=sim.csv,column=torque,scale=1");
+    attach_drive(options, o->drive);
     options.texts("--motion", o->motions, "NAME,KEY=VALUE,...",
                   fmt::format("how the joint moves: constant,speed=60deg/s,duration=5s; repeated ones follow "
                               "one another; motions: {}",
@@ -341,9 +349,8 @@ const Command commands::simulate{
     .name = "simulate",
     .summary = "a log from a joint model and a motion",
     .description =
-        "Writes a log with the columns time_s, velocity_deg_s, torque_nm, position_deg. The torque is the "
-        "sum of the\n"
-        "model's effects along the motion, with noise on top. The motion is given, or that of a LOG.\n"
+        "Writes a log with the columns time_s, velocity_deg_s, torque_nm, position_deg. The torque is the\n"
+        "sum of the model's effects along a motion that is given, or that of a LOG, and noise.\n"
         "Example: ripplenotch simulate --gear-ratio 100 --ripple 1:0.8Nm --motion "
         "constant,speed=60deg/s,duration=5s \\\n"
         "           --sample-rate 1kHz --noise 0.05Nm --seed 1 -o log.csv",

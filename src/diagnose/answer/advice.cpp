@@ -8,17 +8,14 @@
 #include <cmath>
 #include <set>
 #include <string_view>
+#include <utility>
+#include <vector>
 
+#include "core/rows/second_log.hpp"
 #include "ripplenotch/analysis/fourier.hpp"
 
 namespace ripplenotch {
 namespace {
-
-// A direction, rests, or slow motion that has less of the log is asked for.
-constexpr double least_part = 0.05;
-// Of the fastest speed: below it is standstill, up to there motion is slow, where kinds of friction part.
-constexpr double rest_share = 0.01, slow_share = 0.2;
-constexpr double smallest_travel_deg = 360.0;  // a smaller travel does not tell effects of the position apart
 
 // The catalogue's advice; a general one when it has none.
 std::string what_would_tell(const Effect& one, const Effect& other) {
@@ -28,30 +25,6 @@ std::string what_would_tell(const Effect& one, const Effect& other) {
         }
     }
     return "a log with rests, both directions, several speeds and a travel of more than a revolution";
-}
-
-// Features of a motion that distinguish effects.
-struct Seen {
-    double positive = 0.0, negative = 0.0, rest = 0.0, slowly = 0.0;  // shares of the samples
-    double travel_deg = 0.0;
-};
-
-Seen seen_in(const Motion& motion) {
-    double fastest = 0.0;
-    for (const double v : motion.velocity_deg_s) fastest = std::max(fastest, std::abs(v));
-    Seen seen;
-    const double one = 1.0 / static_cast<double>(motion.size());
-    for (const double v : motion.velocity_deg_s) {
-        if (std::abs(v) <= rest_share * fastest) {
-            seen.rest += one;
-            continue;
-        }
-        (v > 0.0 ? seen.positive : seen.negative) += one;
-        if (std::abs(v) <= slow_share * fastest) seen.slowly += one;
-    }
-    const auto [low, high] = std::minmax_element(motion.position_deg.begin(), motion.position_deg.end());
-    seen.travel_deg = *high - *low;
-    return seen;
 }
 
 // Everything that is undecided from this log.
@@ -66,28 +39,20 @@ std::set<std::string_view> in_doubt(const Diagnosis& diagnosis) {
     return names;
 }
 
-// Features that this log's motion lacks, for the uncertain effects.
-std::vector<std::string> missing_motion(const Diagnosis& diagnosis, const Seen& seen) {
-    bool direction = false, speed = false, position = false, load = false;
-    for (const std::string_view name : in_doubt(diagnosis)) {
+// What another log must have to decide between the uncertain effects.
+std::string second_log_of(const Diagnosis& diagnosis, const Motion& motion) {
+    const std::set<std::string_view> doubted = in_doubt(diagnosis);
+    const auto [low, high] = std::ranges::minmax(motion.position_deg);
+    MotionAsked asked{.travel_deg = high - low, .has_position = diagnosis.has_position};
+    for (const std::string_view name : doubted) {
         const Effect& effect = find_effect(name);
-        direction = direction || effect.domain == Domain::speed || effect.domain == Domain::time;
-        speed = speed || effect.domain == Domain::speed || effect.domain == Domain::order;
-        position = position || needs_position(effect);
-        load = load || effect.uses_load;
+        asked.direction = asked.direction || effect.domain == Domain::speed || effect.domain == Domain::time;
+        asked.speed = asked.speed || effect.domain == Domain::speed || effect.domain == Domain::order;
+        asked.position = asked.position || needs_position(effect);
+        asked.load = asked.load || effect.uses_load;
     }
-    std::vector<std::string> missing;
-    if (direction && std::min(seen.positive, seen.negative) < least_part)
-        missing.emplace_back("the other direction of motion");
-    if (direction && seen.rest < least_part) missing.emplace_back("rests of a second or more between moves");
-    if (speed && seen.slowly < least_part)
-        missing.push_back(
-            fmt::format("slow motion, at {:g} % of the fastest speed or less", 100.0 * slow_share));
-    if (position && diagnosis.has_position && seen.travel_deg < smallest_travel_deg)
-        missing.push_back(fmt::format("a travel of more than a turn (here {:.0f} deg)", seen.travel_deg));
-    if (load) missing.emplace_back("the same motion with another load");
-    if (!diagnosis.has_position && position) missing.emplace_back("a column with the position");
-    return missing;
+    return second_log(motion_seen(motion.velocity_deg_s), asked,
+                      std::vector<std::string_view>(doubted.begin(), doubted.end()));
 }
 
 constexpr std::array edges_hz = {1.0, 10.0};
@@ -176,11 +141,8 @@ std::vector<std::string> next_steps(const Diagnosis& diagnosis, const Motion& mo
         }
         steps.push_back(fmt::format("{}: {} would decide; {} selects one", sides, tie.advice, accept));
     }
-    if (in_doubt(diagnosis).empty()) return steps;
-    std::string words;
-    for (const std::string& one : missing_motion(diagnosis, seen_in(motion)))
-        words += (words.empty() ? "" : "; ") + one;
-    if (!words.empty()) steps.push_back("a more informative log has " + words);
+    if (std::string words = second_log_of(diagnosis, motion); !words.empty())
+        steps.push_back(std::move(words));
     return steps;
 }
 

@@ -32,6 +32,10 @@ constexpr double reversed_ratio = 4.0;
 // Two steps of Coulomb friction follow one of a width between: with one of 2 deg/s the lag was off by 1.8 ms.
 constexpr std::array step_widths_deg_s = {1.0, 8.0};
 constexpr double loop_width_deg = 2.0;
+// Of a friction that the motion makes and no delay has blurred: without these a command's delay was off
+// by 1.5 ms, and viscous friction by that times the gain of the law.
+constexpr std::array sharp_widths_deg_s = {0.25, 4.0};
+constexpr double sharp_loop_deg = 0.1;
 // Of the misfit as a delay, to the interval of a torque's lag: blocks do not show an effect that neither the
 // simulation nor a column has. 54 of 57 intervals then covered the delay, and 48 without it.
 constexpr double misfit_share = 0.25;
@@ -173,13 +177,30 @@ Alignment::Alignment(std::span<const double> log_s, std::span<const double> left
     if (log != nullptr) add_motion(*log, gear_ratio);
 }
 
+void Alignment::add(Places& group, std::span<const double> time_s, std::span<const double> values,
+                    int derivative) {
+    const SmoothedSeries series(time_s, values, smoothing_s_);
+    rows_.emplace_back();
+    for (const double t : at_s_) rows_.back().push_back(series.mean(t, derivative));
+    group.push_back(static_cast<Index>(rows_.size()) + constant - 2);
+}
+
+Places Alignment::add_sharp_friction(const TraceView& log) {
+    Places sharp;
+    std::vector<double> one(log.size());
+    for (const double width_deg_s : sharp_widths_deg_s) {
+        for (std::size_t k = 0; k < one.size(); ++k)
+            one[k] = portable::tanh(log.velocity_deg_s[k] / width_deg_s);
+        add(sharp, log.time_s, one);
+    }
+    add(sharp, log.time_s, engine::friction_loop(log.position_deg, sharp_loop_deg));
+    return sharp;
+}
+
 void Alignment::add_motion(const TraceView& log, std::optional<GearRatio> gear_ratio) {
     const std::span<const double> velocity = log.velocity_deg_s;
     const auto add = [&](Places& group, std::span<const double> values, int derivative = 0) {
-        const SmoothedSeries series(log.time_s, values, smoothing_s_);
-        rows_.emplace_back();
-        for (const double t : at_s_) rows_.back().push_back(series.mean(t, derivative));
-        group.push_back(static_cast<Index>(rows_.size()) + constant - 2);
+        this->add(group, log.time_s, values, derivative);
     };
     std::vector<double> angle_deg(log.position_deg.begin(), log.position_deg.end()), one(log.size()),
         other(log.size());

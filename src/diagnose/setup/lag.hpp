@@ -105,6 +105,8 @@ class Alignment {
     /// sine of the position; ripple; friction that grows with the torque; hysteresis. Empty where the log has
     /// not what they need.
     Places friction{constant}, inertia, gravity, ripple, load, loop;
+    /// Further columns, of friction that turns over faster than a sensor's delay lets it: of the log.
+    [[nodiscard]] Places add_sharp_friction(const TraceView& log);
 
   private:
     struct Candidate;
@@ -112,6 +114,8 @@ class Alignment {
     [[nodiscard]] Candidate refined(double delay_s, bool with_clock, const Question& of) const;
     void measure(Candidate& found, bool with_clock, const Question& of) const;
     [[nodiscard]] std::vector<double> minima_s(const Question& of) const;
+    void add(Places& group, std::span<const double> time_s, std::span<const double> values,
+             int derivative = 0);
     void add_motion(const TraceView& log, std::optional<GearRatio> gear_ratio);
 
     double smoothing_s_, range_s_, middle_s_ = 0.0;

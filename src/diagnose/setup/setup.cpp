@@ -282,6 +282,15 @@ SimulationLag lag_by_torque(const TraceView& log, const SimulatedMotion& simulat
     return lag_of_torques(torques_of(log, simulation, gear_ratio));
 }
 
+SimulationLag lag_by_law(const TraceView& log, const SimulatedMotion& command) {
+    if (!changes(log.velocity_deg_s) || !changes(command.torque_nm)) return {};
+    Alignment both = torques_of(log, command, {});
+    const Places sharp = both.add_sharp_friction(log);
+    return both.lag(
+        {Places{Alignment::measured} + both.friction + both.inertia + both.gravity + both.loop + sharp,
+         true});
+}
+
 SimulationLag lag_by_motion(const TraceView& log, const SimulatedMotion& simulation) {
     // The same series of both, if there is one: a velocity of the log may have passed a filter that its
     // position has not.

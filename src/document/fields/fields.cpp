@@ -88,6 +88,13 @@ void describe(JsonWriter& json, const Recording& recording) {
     json("rows_outside", recording.outside, if_any);
 }
 
+void describe(JsonWriter& json, const DrivenTorque& drive) {
+    json("delay_s", drive.delay_s, six);
+    json("ci95_s", drive.delay_95_s, six);
+    json("rms_nm", drive.rms_nm, six);
+    json("limited", drive.limited);
+}
+
 void add_recordings(JsonWriter& json, std::span<const Recording> recordings) {
     if (recordings.size() == 1) json("recording", recordings.front());
     if (recordings.size() > 1) json("recordings", recordings);

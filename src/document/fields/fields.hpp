@@ -9,11 +9,13 @@
 
 #include "document/archive/json_reader.hpp"
 #include "document/archive/json_writer.hpp"
+#include "ripplenotch/core/driven_torque.hpp"
 #include "ripplenotch/document/provenance.hpp"
 
 namespace ripplenotch {
 
 void describe(JsonWriter& json, const Gap& gap);
+void describe(JsonWriter& json, const DrivenTorque& drive);
 
 /// Adds "recording", or "recordings" where there are several, and nothing where there is none.
 void add_recordings(JsonWriter& json, std::span<const Recording> recordings);

@@ -144,6 +144,15 @@ void describe(JsonWriter& json, const SimulationLag& lag) {
     json("clock_error_ppm", lag.clock_error, Times{1e6}, six);
 }
 
+void describe(JsonWriter& json, const DriveAnswer& drive) {
+    describe(json, drive.torque);
+    json("position_before_deg", drive.position_before_deg, six);
+    json("position_after_deg", drive.position_after_deg, six);
+    json.group("position_of_deg", [&](JsonWriter& effects) {
+        for (const auto& [effect, deg] : drive.position_of_effects_deg) effects(effect, deg, six);
+    });
+}
+
 void describe(JsonWriter& json, const JointTravel& joint) {
     json("name", joint.name);
     json("log", joint.log);
@@ -223,6 +232,7 @@ void describe(JsonWriter& json, const DiagnosedJoint& joint) {
         json.group("simulated", [&](JsonWriter& entry) { entry("scale", given->value, six); });
     json("setup", diagnosis.setup, if_any);
     json("alignment", diagnosis.alignment, if_any);
+    json("drive", diagnosis.drive, if_any);
     json("bands", diagnosis.bands, if_any);
     json("accepted", diagnosis.accepted, if_any);
     json("next", diagnosis.next, if_any);

@@ -60,6 +60,7 @@ void describe(JsonWriter& json, const JointInfo& joint) {
     json("longest_hold", joint.recording.held.longest);
     json("clock_factor", joint.clock_factor);
     json("steady_stretches", joint.stretches);
+    json("drive", joint.drive, if_any);
     json("options", joint.options);
 }
 

@@ -77,13 +77,13 @@ Forced read_columns_option(const std::string& source, const ColumnFacts& facts, 
         const std::size_t equals = entry.find('=');
         const std::string word = entry.substr(0, equals);
         const auto role = role_of(word);
-        if (!role && !(equals == std::string::npos && word == "-")) {
+        if (!role && word != "-") {
             raise<UsageError>(
                 "--columns: '{}' is none of time, velocity, torque, position, or - to skip a column", word);
         }
         if (role && forced.column_of(*role)) raise<UsageError>("--columns: '{}' is given twice", word);
         if (equals != std::string::npos) {
-            forced.roles[column_named(source, facts, entry.substr(equals + 1))] = role;
+            forced.roles[column_named(source, facts, entry.substr(equals + 1))] = role.value_or(Role::other);
             continue;
         }
         forced.by_place = true;

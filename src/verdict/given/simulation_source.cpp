@@ -55,22 +55,6 @@ double cubic_at(const std::vector<double>& time_s, const std::vector<double>& va
     return sum;
 }
 
-// The same columns but for one role, which is this one.
-ReadOptions with_role(ReadOptions reading, const std::string& role, const std::string& column) {
-    const bool by_place =
-        std::any_of(reading.columns.begin(), reading.columns.end(),
-                    [](const std::string& entry) { return entry.find('=') == std::string::npos; });
-    if (by_place)
-        raise<UsageError>(
-            "--simulated: with --columns by place its column cannot be named; name the columns, as in "
-            "--columns velocity=dq,torque=tau");
-    std::erase_if(reading.columns, [&](const std::string& entry) { return entry.starts_with(role + "="); });
-    reading.columns.push_back(role + "=" + column);
-    reading.units.erase(role);
-    reading.scales.erase(role);
-    return reading;
-}
-
 void begin_together(std::vector<double>& time_s, const Log& log) {
     const double ahead_s = log.trace.time_s.front() - time_s.front();
     for (double& time : time_s) time += ahead_s;
@@ -143,6 +127,23 @@ Spec spec_of(std::string_view text) {
 
 }  // namespace
 
+ReadOptions with_role(ReadOptions reading, const std::string& role, const std::string& column,
+                      std::string_view option) {
+    const bool by_place =
+        std::any_of(reading.columns.begin(), reading.columns.end(),
+                    [](const std::string& entry) { return entry.find('=') == std::string::npos; });
+    if (by_place)
+        raise<UsageError>(
+            "{}: with --columns by place its column cannot be named; name the columns, as in --columns "
+            "velocity=dq,torque=tau",
+            option);
+    std::erase_if(reading.columns, [&](const std::string& entry) { return entry.starts_with(role + "="); });
+    reading.columns.push_back(role + "=" + column);
+    reading.units.erase(role);
+    reading.scales.erase(role);
+    return reading;
+}
+
 SimulationSource::SimulationSource(std::string_view text, const std::optional<SimulatedTerm>& stated) {
     const Spec spec = spec_of(text);
     const bool own = spec.name == "log";
@@ -194,7 +195,7 @@ GivenTerm SimulationSource::read_validation(const ReadOptions& reading, const st
 }
 
 ReadOptions SimulationSource::reading_of(ReadOptions reading) const {
-    if (!file_) return with_role(std::move(reading), "torque", term_.column);
+    if (!file_) return with_role(std::move(reading), "torque", term_.column, "--simulated");
     // Its own layout: of what is said about the log only the units of these columns hold.
     ReadOptions own;
     own.columns = {"torque=" + term_.column};
@@ -223,8 +224,8 @@ SimulatedMotion SimulationSource::read_motion(const ReadOptions& reading, const 
                                               const Log& log) const {
     ReadOptions own = reading_of(reading);
     own.needs_velocity = false;
-    if (!file_ && position_) own = with_role(std::move(own), "position", *position_);
-    if (!file_ && velocity_) own = with_role(std::move(own), "velocity", *velocity_);
+    if (!file_ && position_) own = with_role(std::move(own), "position", *position_, "--simulated");
+    if (!file_ && velocity_) own = with_role(std::move(own), "velocity", *velocity_, "--simulated");
     const Trace trace = read_log(file_.value_or(path), own).trace;
     SimulatedMotion motion{trace.time_s, {}, {}, trace.torque_nm};
     if (file_ || position_) motion.position_deg = trace.position_deg;

@@ -14,6 +14,11 @@
 
 namespace ripplenotch {
 
+/// The same columns but for one role, which is this one. Throws UsageError of `option` where they are stated
+/// by place.
+[[nodiscard]] ReadOptions with_role(ReadOptions reading, const std::string& role, const std::string& column,
+                                    std::string_view option);
+
 class SimulationSource {
   public:
     /// "tau_model[,scale=1][,delay=2ms][,position=q_model][,velocity=dq_model]", the same as
