@@ -105,13 +105,6 @@ std::string round_name(const Finding& finding) {
 
 }  // namespace
 
-std::string diagnosis_sentence(const Diagnosis& diagnosis) {
-    return fmt::format(
-        "{}: {}; gap from {:.3g} to {:.3g} Nm rms, noise floor {:.3g} Nm", verdict_name(diagnosis.verdict),
-        diagnosis.named.empty() ? "no effect is named" : fmt::format("{}", fmt::join(diagnosis.named, ", ")),
-        diagnosis.gap.before_nm, diagnosis.gap.after_nm, diagnosis.gap.noise_floor_nm);
-}
-
 Figure gap_figure(const std::string& title, const Diagnosis& diagnosis) {
     std::vector<Finding> rounds;
     std::ranges::copy_if(diagnosis.rounds, std::back_inserter(rounds), &Finding::is_in_model);
@@ -140,9 +133,9 @@ Figure diagnosis_figure(const std::string& source, const Diagnosis& diagnosis, c
     const std::vector<double>& before = diagnosis.residual_before_nm;
     std::vector<double> after;  // none where nothing was added: the same picture twice
     if (!diagnosis.rounds.empty()) after = diagnosis.residual_after_nm;
-    Figure figure = residual_figure(
-        fmt::format("Model and log: {}", source), diagnosis_sentence(diagnosis) + ".",
-        {log.time_s, log.velocity_deg_s, log.position_deg, before, after}, diagnosis.gap.noise_floor_nm);
+    Figure figure = residual_figure(fmt::format("Model and log: {}", source), diagnosis_sentence(diagnosis),
+                                    {log.time_s, log.velocity_deg_s, log.position_deg, before, after},
+                                    diagnosis.gap.noise_floor_nm);
     figure.name = "diagnosis";
     Panel gap = std::move(gap_figure("", diagnosis).panels.front());
     gap.title = "The gap, round by round";

@@ -491,6 +491,10 @@ PageState state_of(const Json& result) {
     for (const Json& order : list_at(result, "orders"))
         if (const auto db = number_under(order, "/attenuation_db"); db && *db < printed_db)
             return PageState::bad;
+    // Of a diagnosis: explained or matches; the others leave something open.
+    if (const Json verdict = result.value("verdict", Json());
+        result.contains("rounds") && verdict.is_string())
+        return verdict == "explained" || verdict == "matches" ? PageState::good : PageState::doubtful;
     const auto conclusive = result.find("conclusive");
     if (conclusive == result.end() || !conclusive->is_boolean()) return PageState::none;
     return conclusive->get<bool>() ? PageState::good : PageState::doubtful;
@@ -684,9 +688,9 @@ PageSection section_of_result(const std::string& text, const std::string& source
     } else if (kind == "trend") {
         section.figures.push_back(trend_figure(courses_of(json)));
     } else if (kind == "diagnosis") {
-        const Diagnosis diagnosis = gap_of(json, source);
-        section.verdict = diagnosis_sentence(diagnosis);
-        section.figures.push_back(gap_figure(fmt::format("How the gap shrank: {}", source), diagnosis));
+        section.verdict = json.value("sentence", section.verdict);
+        section.figures.push_back(
+            gap_figure(fmt::format("How the gap shrank: {}", source), gap_of(json, source)));
     }
     return section;
 }

@@ -75,6 +75,8 @@ TEST_CASE("a verdict is good, doubtful or bad by its data") {
     CHECK(state_of(Json::parse(R"({"conclusive": true})")) == PageState::good);
     CHECK(state_of(Json::parse(R"({"conclusive": false})")) == PageState::doubtful);
     CHECK(state_of(Json::parse("{}")) == PageState::none);
+    CHECK(state_of(Json::parse(R"({"verdict": "explained", "rounds": []})")) == PageState::good);
+    CHECK(state_of(Json::parse(R"({"verdict": "unexplained", "rounds": []})")) == PageState::doubtful);
     CHECK(state_of(Json::parse(R"({"conclusive": true, "take": "a", "methods": [
         {"method": "a", "attenuation_db": [{"order": 1, "db": 20.0}, {"order": 2, "db": -3.3}]}]})")) ==
           PageState::bad);
@@ -134,9 +136,13 @@ const PageTable& table_named(const PageSection& section, const std::string& titl
 }  // namespace
 
 TEST_CASE("a diagnosis has its verdict in words, the gap as a figure and its parts as facts and tables") {
-    const PageSection section = section_of(testing::full_diagnosis());
+    Diagnosis full = testing::full_diagnosis();
+    CHECK(section_of(full).verdict == full.doubt);
+    full.doubt.clear();
+    const PageSection section = section_of(full);
     CHECK(section.verdict ==
-          "partly-explained: coulomb-friction; gap from 0.435 to 0.0475 Nm rms, noise floor 0.0474 Nm");
+          "Missing: quantization, coulomb-friction 0.4999 +/- 0.0011 Nm, tone or ripple; residual 0.435 to "
+          "0.0475 Nm rms, noise 0.0474 Nm rms.");
     REQUIRE(section.figures.size() == 1);
     const Panel& panel = section.figures[0].panels[0];
     CHECK(panel.curves[0].y == std::vector<double>{0.434974, 0.0496759, 0.0475});
@@ -149,8 +155,7 @@ TEST_CASE("a diagnosis has its verdict in words, the gap as a figure and its par
     CHECK(table_named(section, "faults").rows[0][0] == "quantization");
     Diagnosis nothing_found;
     nothing_found.model.gear_ratio = GearRatio(100.0);
-    CHECK(section_of(nothing_found).verdict ==
-          "matches: no effect is named; gap from 0 to 0 Nm rms, noise floor 0 Nm");
+    CHECK(section_of(nothing_found).verdict == "Nothing is missing; residual 0 to 0 Nm rms, noise 0 Nm rms.");
 }
 
 TEST_CASE("the rounds of a diagnosis are a table that fits a page") {

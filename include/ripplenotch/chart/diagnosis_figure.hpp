@@ -23,9 +23,6 @@ struct Residuals {
 [[nodiscard]] Figure residual_figure(const std::string& title, const std::string& sentence,
                                      const Residuals& residuals, std::optional<double> noise_floor_nm);
 
-/// "explained: coulomb-friction, tone; gap from 1.01 to 0.0493 Nm rms, noise floor 0.0494 Nm"
-[[nodiscard]] std::string diagnosis_sentence(const Diagnosis& diagnosis);
-
 /// The gap from round to round down to the noise floor, each round named.
 [[nodiscard]] Figure gap_figure(const std::string& title, const Diagnosis& diagnosis);
 

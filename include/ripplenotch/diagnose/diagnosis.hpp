@@ -213,4 +213,10 @@ struct DiagnosisOptions {
 [[nodiscard]] Diagnosis diagnose(const Model& model, const TraceView& log, const TraceView* validation,
                                  const DiagnosisOptions& options = {});
 
+/// What is missing, each with its size and half of its 95 % interval, and the gap: "Missing: coulomb-friction
+/// 2.000 +/- 0.010 Nm; residual 1.83 to 0.01 Nm rms, noise 0.02 Nm rms."
+[[nodiscard]] std::string diagnosis_sentence(const Diagnosis& diagnosis);
+/// Beside a simulation: a friction below 0, which is what the simulation has too much of.
+[[nodiscard]] bool simulation_exceeds(const Diagnosis& diagnosis, const Finding& finding);
+
 }  // namespace ripplenotch

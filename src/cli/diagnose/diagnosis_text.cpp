@@ -76,35 +76,6 @@ std::string next_text(const std::vector<std::string>& steps) {
     return text;
 }
 
-std::string unit_after(std::string_view unit) { return unit.empty() ? "" : fmt::format(" {}", unit); }
-
-// "1.500 +/- 0.010 Nm": the size of a finding with half of its 95 % interval.
-std::string size_text(const Finding& finding) {
-    const Effect& effect = *finding.term.effect;
-    std::string text;
-    for (std::size_t p = 0; p < effect.parameters.size(); ++p) {
-        if (effect.parameters[p].left_out == LeftOut::refused)
-            text += fmt::format(" {} {}", effect.parameters[p].name, short_number(*finding.term.values[p]));
-    }
-    const FittedValue* size = nullptr;
-    for (const FittedValue& value : finding.values) {
-        const bool larger = size == nullptr || (effect.parameters[value.parameter].linear &&
-                                                !effect.parameters[size->parameter].linear);
-        if (larger) size = &value;
-    }
-    if (size == nullptr) return text;
-    const Parameter& parameter = effect.parameters[size->parameter];
-    text += " " + (size->ci95 ? with_error(size->value, 0.5 * (size->ci95->high - size->ci95->low))
-                              : short_number(size->value));
-    return text + unit_after(parameter.unit);
-}
-
-// A friction below 0 is what a simulation has too much of.
-bool drives(const Diagnosis& diagnosis, const Finding& finding) {
-    return diagnosis.model.beside_simulation && finding.term.effect->resists &&
-           finding.term.values.front().value_or(0.0) < 0.0;
-}
-
 std::vector<std::string> setup_sentences(const Diagnosis& diagnosis) {
     std::vector<std::string> all;
     for (const SetupFault& fault : diagnosis.setup)
@@ -124,36 +95,13 @@ std::vector<std::string> setup_sentences(const Diagnosis& diagnosis) {
     return all;
 }
 
-// What is missing with its size, then the gap.
-std::string answer(const Diagnosis& diagnosis) {
-    std::string names;
-    const auto add = [&](const std::string& name) { names += (names.empty() ? "" : ", ") + name; };
-    for (const Fault& fault : diagnosis.faults) add(std::string(fault.term.effect->name));
-    for (const Finding& finding : diagnosis.rounds) {
-        if (finding.status != FindingStatus::confirmed) continue;
-        add(fmt::format("{}{}{}", finding.term.effect->name, size_text(finding),
-                        drives(diagnosis, finding) ? " (the simulation has too much of it)" : ""));
-    }
-    for (const Tie& tie : diagnosis.ambiguous) add(joined(tie.effects, " or "));
-    const DiagnosisGap& gap = diagnosis.gap;
-    const std::string head = !names.empty()             ? "Missing: " + names
-                             : !diagnosis.setup.empty() ? "No effect can be confirmed with this set-up"
-                             : diagnosis.remaining      ? "No effect of the catalogue is named"
-                             : diagnosis.model.has_gear_ratio()
-                                 ? "Nothing is missing"
-                                 : "Nothing is missing of what was examined, which ripple is not";
-    // Of a thousand samples, which logs have, an rms is known to 2 %.
-    return fmt::format("{}; residual {:.3g} to {:.3g} Nm rms, noise {:.3g} Nm rms.", head, gap.before_nm,
-                       gap.after_nm, gap.noise_floor_nm);
-}
-
 std::string round_text(const Diagnosis& diagnosis, const Finding& finding, std::size_t number) {
     std::string text =
         fmt::format("round {}: {}, {}\n", number, finding.term.effect->name, status_name(finding.status));
     if (!finding.reason.empty()) text += fmt::format("  {}\n", finding.reason);
     for (const FittedValue& value : finding.values)
         text += fmt::format("  {}\n", value_text(finding.term, value));
-    if (drives(diagnosis, finding))
+    if (simulation_exceeds(diagnosis, finding))
         text += "  negative friction is not physical: the simulation includes too much friction already\n";
     if (finding.is_given || finding.is_in_model())
         text += fmt::format("  gap {} -> {} Nm\n", short_number(finding.gap_before_nm),
@@ -239,11 +187,12 @@ std::string gap_text(const DiagnosisGap& gap) {
 }  // namespace
 
 std::string diagnosis_story(const CommonOptions& common, const Diagnosis& diagnosis, bool explain) {
-    if (diagnosis.verdict == DiagnosisVerdict::undecided) return paragraph(common, diagnosis.doubt);
+    if (diagnosis.verdict == DiagnosisVerdict::undecided)
+        return paragraph(common, diagnosis_sentence(diagnosis));
     std::string text;
     for (const std::string& sentence : setup_sentences(diagnosis)) text += paragraph(common, sentence);
-    text += paragraph(common, answer(diagnosis)) + gap_text(diagnosis.gap) + open_text(diagnosis) +
-            remaining_text(diagnosis);
+    text += paragraph(common, diagnosis_sentence(diagnosis)) + gap_text(diagnosis.gap) +
+            open_text(diagnosis) + remaining_text(diagnosis);
     text += fmt::format("verdict: {}\nnamed: {}\n", verdict_name(diagnosis.verdict),
                         diagnosis.named.empty() ? "nothing" : joined(diagnosis.named, ", "));
     text += fmt::format("{} samples, {} used\n", diagnosis.samples, diagnosis.samples_used);

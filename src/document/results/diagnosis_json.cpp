@@ -216,6 +216,7 @@ void add_model(JsonWriter& json, const Model& model) {
 void describe(JsonWriter& json, const DiagnosedJoint& joint) {
     const Diagnosis& diagnosis = joint.diagnosis;
     json("verdict", verdict_name(diagnosis.verdict));
+    json("sentence", diagnosis_sentence(diagnosis));
     json("doubt", diagnosis.doubt, if_any);
     json("gear", joint.gear);
     json("named", diagnosis.named);
