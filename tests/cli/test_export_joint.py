@@ -20,7 +20,7 @@ m = {name: np.array(values) for name, values in told["motion"].items()}
 print(json.dumps({name: float(np.max(np.abs(np.array(torque) - runpy.run_path(name)["torque_nm"](m["q"], m["v"], m["a"], m["t"]))))
                   for name, torque in told["torques"].items()}))
 """
-# Beside the catalogue's first guesses: what a torque needs to be told from none.
+# Values added to the catalogue's first guesses, with which the torque of an effect differs from none.
 VALUES = {"payload-change": {"time_s": 1.0, "ramp_s": 0.1, "cosine_nm": 0.4, "sine_nm": -0.3}, "tone": {"frequency_hz": 7.0, "phase_deg": 30.0},
           "drift": {"rate_nm_s": -0.2}, "gear-ratio": {"error_percent": 0.5}}
 NOT_IN_PYTHON = {"hysteresis", "backlash", "start-stop-ringing", "simulation-scale", "coupled-joint-friction"}

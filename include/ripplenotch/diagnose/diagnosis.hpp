@@ -216,7 +216,7 @@ struct DiagnosisOptions {
 /// What is missing, each with its size and half of its 95 % interval, and the gap: "Missing: coulomb-friction
 /// 2.000 +/- 0.010 Nm; residual 1.83 to 0.01 Nm rms, noise 0.02 Nm rms."
 [[nodiscard]] std::string diagnosis_sentence(const Diagnosis& diagnosis);
-/// Beside a simulation: a friction below 0, which is what the simulation has too much of.
+/// A friction below 0 with a simulation in the model: the simulation has too much of it.
 [[nodiscard]] bool simulation_exceeds(const Diagnosis& diagnosis, const Finding& finding);
 
 }  // namespace ripplenotch

@@ -256,7 +256,7 @@ ExitCode export_map(const ExportRequest& request, const std::string& command_lin
 
 // `export` of the model of a joint, to what simulates it.
 
-// A function and arguments are not run here: what they hold is told instead, and why they do not hold the
+// A function and arguments are not run here: the report lists what they hold, and why they do not hold the
 // rest.
 ExitCode export_model(const ExportRequest& request, const std::string& command_line) {
     if (request.common.json) raise<UsageError>("--json: export of a model has no JSON result yet");
@@ -277,12 +277,12 @@ ExitCode export_model(const ExportRequest& request, const std::string& command_l
     const WrittenJoint written =
         target.write(model.model, settings, generated_by({{input_record(request.table)}, command_line}));
     write_export({written.text, {}}, request.common);
-    std::string told = fmt::format("{}: {}\n", request.common.output, target.summary);
-    for (const MjcfPart& part : written.holds) told += fmt::format("held: {}: {}\n", part.effect, part.words);
+    std::string text = fmt::format("{}: {}\n", request.common.output, target.summary);
+    for (const MjcfPart& part : written.holds) text += fmt::format("held: {}: {}\n", part.effect, part.words);
     for (const MjcfPart& part : written.not_held)
-        told += fmt::format("not held: {}: {}\n", part.effect, part.words);
-    if (model.ripple) told += "not held: ripple_map: export it from map.json\n";
-    tell_check(told, request.common);
+        text += fmt::format("not held: {}: {}\n", part.effect, part.words);
+    if (model.ripple) text += "not held: ripple_map: export it from map.json\n";
+    tell_check(text, request.common);
     return ExitCode::done;
 }
 

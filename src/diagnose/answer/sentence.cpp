@@ -17,8 +17,7 @@ std::string size_text(const Finding& finding) {
     std::string text;
     for (std::size_t p = 0; p < effect.parameters.size(); ++p) {
         if (effect.parameters[p].left_out == LeftOut::refused)
-            text += fmt::format(" {} {}", effect.parameters[p].name,
-                                fmt::format("{:.4g}", *finding.term.values[p]));
+            text += fmt::format(" {} {:.4g}", effect.parameters[p].name, *finding.term.values[p]);
     }
     const FittedValue* size = nullptr;
     for (const FittedValue& value : finding.values) {

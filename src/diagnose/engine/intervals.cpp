@@ -266,7 +266,7 @@ std::vector<ValuedTerm> valued_terms(Criterion& criterion, const SearchedTerms& 
 namespace {
 
 // Student's t of nineteen degrees of freedom at 0.05 / 70: the best is taken of five other joints at fourteen
-// ratios each. At 0.05 a shoulder and an elbow that share nothing were told 0.42 +/- 0.41.
+// ratios each. At 0.05 a shoulder and an elbow that share nothing had a ratio of 0.42 +/- 0.41.
 constexpr double shared_ratio_errors = 4.0;
 
 }  // namespace

@@ -82,7 +82,7 @@ bool has_sensor(const SearchedTerms& terms) {
     return std::ranges::any_of(terms, [](const SearchedTerm& t) { return t.kind->role == Role::sensor; });
 }
 
-// The best of several valleys, which may be another one beside the terms that were adopted since.
+// The best of several valleys, which may be another one with the terms that were adopted since.
 bool has_choice(const SearchedTerm& term) {
     return std::ranges::any_of(term.kind->searched, &SearchedValue::is_choice);
 }

@@ -170,7 +170,7 @@ const JointTarget actuator_target{
     .write = write_actuator,
 };
 
-// NumPy: the equations of the effects, which are told with them, as Python. One text is both.
+// NumPy: the equations of the effects as Python; the report of the export prints the same text.
 
 constexpr std::array numpy_keys = {
     Key{.name = "name", .kind = KeyKind::text, .default_text = "torque_nm", .help = "of the function"}};
