@@ -20,7 +20,3 @@ class Certificate(unittest.TestCase):
                               capture_output=True, text=True)
         print(*(line for line in done.stderr.splitlines() if "SKIPPED" in line), sep="\n")
         self.assertEqual(done.returncode, 0, done.stderr)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -103,7 +103,3 @@ class Page(unittest.TestCase):
         page = (SOURCE / "docs/export/joints.md").read_text()
         for name in ("mjcf", "actuator", "numpy"):
             self.assertIn(f"| `{name}` |", page)
-
-
-if __name__ == "__main__":
-    unittest.main()

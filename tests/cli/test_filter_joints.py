@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Several joints of a log in one pass: the same bytes as one joint after another."""
 
-import commands  # noqa: F401  first: it runs a file that is started by hand
 import json
 import math
 

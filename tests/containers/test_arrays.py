@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Arrays in NPZ, MAT and HDF5, written by NumPy, SciPy, Octave and h5py."""
 
-import commands  # noqa: F401  first: it runs a file that is started by hand
 import os
 import shutil
 import struct

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Recorded messages that name their fields: JSON in MCAP, written by tests/support/bags.py from the published layout."""
 
-import commands  # noqa: F401  first: it runs a file that is started by hand
 import json
 
 from test_messages import NAMES, Messages

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Arrays with a time beside each: what Simulink and dSPACE export, and HDF5 groups of devices."""
 
-import commands  # noqa: F401  first: it runs a file that is started by hand
 from container_case import Case, needs
 
 UNITS = ("--unit", "velocity=deg/s,position=deg,torque=Nm,time=s")

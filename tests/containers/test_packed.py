@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Logs that are compressed, and files that are no logs."""
 
-import commands  # noqa: F401  first: it runs a file that is started by hand
 import bz2
 import gzip
 import json

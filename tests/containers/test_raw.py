@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Raw dumps, written by struct."""
 
-import commands  # noqa: F401  first: it runs a file that is started by hand
 import struct
 
 from container_case import LOG, Case

@@ -24,12 +24,12 @@ def prove(*words):
                           capture_output=True, text=True, timeout=600)
 
 
-def rows(case, study, seeds, only=()):
+def rows(case, study, seeds, only=(), first=0):
     """The scores of a study's cases; case: the TestCase, which fails when one of them did not end."""
     from prove_diagnose import record as records
     record = new_folder(case) / "record.jsonl"
     chosen = [word for label in only for word in ("--only", label)]
-    done = prove("--study", study, "--seeds", str(seeds), "--record", str(record), *chosen)
+    done = prove("--study", study, "--seeds", str(seeds), "--first", str(first), "--record", str(record), *chosen)
     case.assertEqual(done.returncode, 0, done.stderr)
     found = records.read(record)[1]
     case.assertEqual([row for row in found if "error" in row], [])

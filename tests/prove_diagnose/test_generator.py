@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The generator and the tool's catalogue are two programs; each draws every effect of the other."""
 
-import commands  # noqa: F401  first: it runs a file that is started by hand
 import dataclasses
 import json
 import subprocess

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The tables that scripts put into pages of the documentation."""
 
-import commands  # noqa: F401  first: it runs a file that is started by hand
 import unittest
 
 from commands import new_folder

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """What the tables count: a diagnosis that is known to be right, wrong or undecided is scored as such."""
 
-import commands  # noqa: F401  first: it runs a file that is started by hand
 import unittest
 
 import prove  # first: it skips without numpy

@@ -3,7 +3,7 @@
 
 usage: cases.py list FILE...        the interpreter itself, whatever script started it; then "FILE CLASS", a line each, and
                                     "FILE CLASS SHORT" where the class has a short version, since it asks for SHORT
-       cases.py run FILE CLASS      exit code 77 where all that was to run was skipped
+       cases.py run FILE [TEST...]  all tests of the file, or these (CLASS, CLASS.test_name); exit code 77 where all were skipped
 """
 
 import ast
@@ -23,13 +23,14 @@ def classes_with_tests(path):
             yield node.name + (" SHORT" if short else "")
 
 
-def run(path, name):
+def run(path, names):
     sys.path.insert(0, str(path.parent))
     spec = importlib.util.spec_from_file_location(path.stem, path)
     module = importlib.util.module_from_spec(spec)
     sys.modules[path.stem] = module
     spec.loader.exec_module(module)
-    tests = unittest.defaultTestLoader.loadTestsFromTestCase(getattr(module, name))
+    load = unittest.defaultTestLoader
+    tests = load.loadTestsFromNames(names, module) if names else load.loadTestsFromModule(module)
     result = unittest.TextTestRunner(verbosity=2).run(tests)
     if not result.wasSuccessful() or result.testsRun == 0:
         return 1
@@ -43,4 +44,4 @@ if __name__ == "__main__":
             for name in classes_with_tests(pathlib.Path(file)):
                 print(file, name)
     else:
-        sys.exit(run(pathlib.Path(sys.argv[2]).resolve(), sys.argv[3]))
+        sys.exit(run(pathlib.Path(sys.argv[2]).resolve(), sys.argv[3:]))

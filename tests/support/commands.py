@@ -10,7 +10,7 @@ import sys
 import tempfile
 import unittest
 
-# A test that is started by hand (python3 tests/cli/test_map.py) takes what was built last, and runs its tests: see the end.
+# A test that is started by hand (cases.py run tests/cli/test_map.py) takes what was built last.
 SOURCE = pathlib.Path(os.environ.get("RIPPLENOTCH_SOURCE", pathlib.Path(__file__).resolve().parents[2]))
 BUILT = sorted(SOURCE.glob("build/*/ripplenotch"), key=lambda path: path.stat().st_mtime)
 TOOL = os.environ.get("RIPPLENOTCH", str(BUILT[-1]) if BUILT else "ripplenotch")
@@ -172,9 +172,3 @@ class SharedCase(Case):
 
     def setUp(self):
         pass
-
-
-BY_HAND = pathlib.Path(getattr(sys.modules["__main__"], "__file__", None) or "").resolve()
-if BY_HAND.name.startswith("test_") and "--update" not in sys.argv:
-    sys.path[:0] = [str(BY_HAND.parent), str(SOURCE / "tests/support")]
-    unittest.main(module=BY_HAND.stem)
