@@ -22,7 +22,8 @@ inline constexpr double ripple_resolution_orders = 1.5 / 8.0;
 /// The ripple at one order.
 struct RippleEstimate {
     double order = 0.0;              ///< cycles per motor turn
-    double amplitude_nm = 0.0;       ///< zero to peak, rms over the segments, noise power subtracted
+    double amplitude_nm = 0.0;       ///< zero to peak, rms over the segments, those with less noise counting
+                                     ///< more; noise power subtracted
     double standard_error_nm = 0.0;  ///< from the noise near the order and the scatter over the segments
     /// Phase in cos(order * motor angle + phase); empty without an absolute angle, and where the segments do
     /// not agree on it.

@@ -294,6 +294,16 @@ void name_other_lines(const Log& log, const GearAccount& gear, Recommendation& f
         fmt::format(". But identify finds {}: --orders states which to remove", fmt::join(others, ", "));
 }
 
+// identify sums over whole sweeps and finds lines that are too faint in the windows by which filters are
+// judged.
+void say_too_faint(const GearAccount& gear, Recommendation& found) {
+    if (found.finding != RecommendationFinding::no_ripple) return;
+    double judged_nm = 0.0;
+    for (const RippleEstimate& one : found.orders) judged_nm = std::max(judged_nm, one.detectable_nm);
+    found.why = fmt::format("identify finds {}, fainter than the {:.2g} Nm from which filters can be judged",
+                            orders_text(gear.orders, gear.ratio, ", "), judged_nm);
+}
+
 std::vector<std::string> assumptions(const RecommendRequest& request, const Parts& parts,
                                      const GearAccount& gear, bool stated) {
     std::vector<std::string> all;
@@ -575,7 +585,10 @@ RecommendationReport report_of(const RecommendRequest& request, Provenance& prov
     if (report.found.finding == RecommendationFinding::out_of_reach && target &&
         part_of(first->figures) == MethodPart::control)
         report.found.why = fmt::format("{} can hold none of the methods", target->spec.text());
-    if (stated_lines) name_other_lines(parts.whole, *report.gear, report.found);
+    if (stated_lines)
+        name_other_lines(parts.whole, *report.gear, report.found);
+    else if (request.gear.orders.empty())
+        say_too_faint(*report.gear, report.found);
     doubt_readings(parts, *report.gear, report.found);
     report.assumed = assumptions(request, parts, *report.gear, stated_lines.has_value());
     if (at_one_speed)
