@@ -4,8 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ripplenotch/chart/comparison_figure.hpp"
-#include "ripplenotch/chart/table_figure.hpp"
+#include "ripplenotch/chart/figures.hpp"
 #include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/figure/min_max.hpp"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "ripplenotch/chart/diagnosis_figure.hpp"
+#include "ripplenotch/chart/figures.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/figure/min_max.hpp"
 

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "core/matrices/least_squares.hpp"
-#include "ripplenotch/chart/spectrum_figure.hpp"
+#include "ripplenotch/chart/figures.hpp"
 #include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/figure/min_max.hpp"

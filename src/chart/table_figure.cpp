@@ -8,7 +8,7 @@
 #include <limits>
 #include <numbers>
 
-#include "ripplenotch/chart/table_figure.hpp"
+#include "ripplenotch/chart/figures.hpp"
 #include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"

@@ -7,7 +7,7 @@
 
 #include "core/matrices/least_squares.hpp"
 #include "ripplenotch/analysis/track_report.hpp"
-#include "ripplenotch/chart/track_figure.hpp"
+#include "ripplenotch/chart/figures.hpp"
 #include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "ripplenotch/chart/trend_figure.hpp"
+#include "ripplenotch/chart/figures.hpp"
 
 #include <fmt/format.h>
 

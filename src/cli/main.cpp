@@ -13,7 +13,7 @@
 #include <new>
 #include <string_view>
 
-#include "cli/run.hpp"
+#include "cli/command.hpp"
 #include "cli/talk.hpp"
 #include "core/files/byte_sink.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Parses a command line and runs the command that it names.
-#include "cli/run.hpp"
+#include "cli/command.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -15,7 +15,6 @@
 #include <optional>
 #include <sstream>
 
-#include "cli/command.hpp"
 #include "cli/options/options_implementation.hpp"
 #include "cli/reference/reference.hpp"
 #include "cli/talk.hpp"
@@ -45,17 +44,16 @@ bool is_command(std::string_view word) {
 }
 
 // CLI11 answers a mistyped command with "A subcommand is required"; people want to know which one they meant.
-ExitCode complain_unknown_command(const std::string& word) {
+[[noreturn]] void refuse_unknown_command(const std::string& word) {
     const auto names = command_names();
     std::error_code failed;
     if (std::filesystem::is_regular_file(word, failed))
-        return complain(ExitCode::usage, "",
-                        fmt::format("there is no command '{}'; for a log, {} report {} -o page.html shows "
-                                    "what is in it and which filter it needs",
-                                    word, tool_name, word));
-    return complain(ExitCode::usage, "",
-                    fmt::format("there is no command '{}'{}; commands: {}", word, did_you_mean(word, names),
-                                fmt::join(names, ", ")));
+        raise<UsageError>(
+            "there is no command '{}'; for a log, {} report {} -o page.html shows what is in it and which "
+            "filter it needs",
+            word, tool_name, word);
+    raise<UsageError>("there is no command '{}'{}; commands: {}", word, did_you_mean(word, names),
+                      fmt::join(names, ", "));
 }
 
 // CLI11 checks that required arguments are there before it looks at unknown options, and would answer a
@@ -70,14 +68,16 @@ std::optional<std::string> unknown_option(const CLI::App& command, const Command
     return std::nullopt;
 }
 
-std::string unknown_option_message(const CLI::App& command, const std::string& name) {
+void refuse_unknown_option(const CLI::App& command, const CommandWords& words) {
+    const auto name = unknown_option(command, words);
+    if (!name) return;
     std::vector<std::string> known;
     for (const CLI::Option* option : command.get_options()) {
         for (const std::string& long_name : option->get_lnames()) known.push_back("--" + long_name);
     }
     const std::string of = command.get_parent() == nullptr ? "" : command.get_name() + " ";
-    return fmt::format("there is no option {}{}{}; see {} {}--help", name,
-                       of.empty() ? " before a command" : "", did_you_mean(name, known), tool_name, of);
+    raise<UsageError>("there is no option {}{}{}; see {} {}--help", *name,
+                      of.empty() ? " before a command" : "", did_you_mean(*name, known), tool_name, of);
 }
 
 // The option of one value that came with several, if there is one.
@@ -90,11 +90,15 @@ std::optional<std::string> given_twice(const CLI::App& command) {
     return std::nullopt;
 }
 
-// What the parsing library refers to until the work is done.
-struct Declared {
+/// A command line that is understood: what the parsing library and the answer refer to.
+struct Run {
+    CLI::App app{"Torque ripple of harmonic drives in joint logs: find it, filter it, measure the cost.",
+                 std::string(tool_name)};
     std::vector<std::unique_ptr<Options::Implementation>> implementations;
     std::vector<std::unique_ptr<Options>> options;
-    std::function<ExitCode()> work;
+    std::function<Answer()> work;
+    CommonOptions of_help;
+    CommonOptions* common = &of_help;  ///< how the answer is written
 };
 
 // "help identify", "help effects", "help --json" and "version", as people type them elsewhere.
@@ -198,27 +202,27 @@ void shorten_help(CLI::App& command) {
 }
 
 // The options of all commands, or of those that the words name.
-void declare(CLI::App& app, const CommandWords& words, bool all, bool whole, std::string& running,
-             Declared& declared) {
+void declare(Run& run, const CommandWords& words, bool all, bool whole, std::string& running) {
     const bool named_first = !words.empty() && is_command(words.front());
     const auto* group = command_groups.begin();
     for (const Command* command : all_commands()) {
         // Declaring the options of every command takes longer than filtering ten thousand rows.
         if (named_first && words.front() != command->name) continue;
-        CLI::App* sub = app.add_subcommand(std::string(command->name), std::string(command->summary));
+        CLI::App* sub = run.app.add_subcommand(std::string(command->name), std::string(command->summary));
         sub->footer(std::string(command->description));
         sub->group(std::string(group->second));
         if (group->first == command->name) ++group;
         if (!all && std::find(words.begin(), words.end(), command->name) == words.end()) continue;
-        declared.implementations.push_back(
+        run.implementations.push_back(
             std::make_unique<Options::Implementation>(Options::Implementation{sub, words}));
-        declared.options.push_back(std::make_unique<Options>(*declared.implementations.back()));
-        sub->callback([&running, &declared, command, work = command->attach(*declared.options.back()),
-                       &parsed = *declared.implementations.back()] {
-            declared.work = work;
+        run.options.push_back(std::make_unique<Options>(*run.implementations.back()));
+        sub->callback([&running, &run, command, work = command->attach(*run.options.back()),
+                       &parsed = *run.implementations.back()] {
+            run.work = work;
             running = command->name;
             for (const auto& check : parsed.after_parse) check();
             parsed.check_files();
+            if (parsed.common != nullptr) run.common = parsed.common;
         });
         if (!whole) shorten_help(*sub);
     }
@@ -233,8 +237,15 @@ void check_environment() {
     }
 }
 
+/// What the parsing library refuses, in our words.
+UsageError refusal(const CLI::ParseError& error, const std::string& running) {
+    return UsageError(
+        fmt::format("{}; see {} {}--help", error.what(), tool_name, running.empty() ? "" : running + " "));
+}
+
 // Throws what goes wrong, in declaring options too: which names clash depends on the version of the library.
-ExitCode parse_and_work(CLI::App& app, CommandWords words, std::string& running, bool within_another) {
+void parse(Run& run, CommandWords words, std::string& running) {
+    CLI::App& app = run.app;
     words = in_our_words(std::move(words));
     const bool whole = std::find(words.begin(), words.end(), whole_help) != words.end();
     std::replace(words.begin(), words.end(), std::string(whole_help), std::string("--help"));
@@ -242,73 +253,72 @@ ExitCode parse_and_work(CLI::App& app, CommandWords words, std::string& running,
     const auto kind = kind_to_generate(words);
     const bool named_first = !words.empty() && is_command(words.front());
     if (named_first) running = words.front();
-    Declared declared;
-    declare(app, words, kind.has_value(), whole || kind, running, declared);
+    declare(run, words, kind.has_value(), whole || kind, running);
     if (kind) {
-        write_text("-", generated(reference_of(app), *kind), ByteSink::Overwrite::no);
-        return ExitCode::done;
+        run.work = [text = generated(reference_of(app), *kind)] { return Answer{text}; };
+        return;
     }
     if (words.empty()) {
         talk_lines(app.help());
-        return ExitCode::usage;
+        run.work = [] { return Answer{.code = ExitCode::usage}; };
+        return;
     }
-    for (const auto& implementation : declared.implementations) implementation->spell_out(words);
+    for (const auto& implementation : run.implementations) implementation->spell_out(words);
     if (words.front().empty() || words.front().front() != '-') {
-        if (!named_first) return complain_unknown_command(words.front());
-        const CLI::App& chosen = *app.get_subcommand(running);
-        if (const auto unknown = unknown_option(chosen, words)) {
-            return complain(ExitCode::usage, running, unknown_option_message(chosen, *unknown));
-        }
-    } else if (const auto unknown = unknown_option(app, {words.front()})) {
-        return complain(ExitCode::usage, "", unknown_option_message(app, *unknown));
+        if (!named_first) refuse_unknown_command(words.front());
+        refuse_unknown_option(*app.get_subcommand(running), words);
+    } else {
+        refuse_unknown_option(app, {words.front()});
     }
     try {
         app.parse(CommandWords(words.rbegin(), words.rend()));  // the library wants the last word first
     } catch (const CLI::ArgumentMismatch&) {
         const auto twice = named_first ? given_twice(*app.get_subcommand(running)) : std::nullopt;
         if (!twice) throw;
-        return complain(
-            ExitCode::usage, running,
-            fmt::format("{} is given more than once; see {} {} --help", *twice, tool_name, running));
+        raise<UsageError>("{} is given more than once; see {} {} --help", *twice, tool_name, running);
     }
     check_environment();
     watch_inputs(true);
-    hash_inputs(true);
-    if (within_another) return declared.work();
-    const ProgressBar bar(words);  // gone before a complaint is printed
-    return declared.work();
+    hash_inputs(run.common->hashes);
 }
 
-/// What the parsing library refuses, in our words.
-UsageError refusal(const CLI::ParseError& error, const std::string& running) {
-    return UsageError(
-        fmt::format("{}; see {} {}--help", error.what(), tool_name, running.empty() ? "" : running + " "));
-}
-
-ExitCode run(const CommandWords& words, std::string& running, bool within_another) {
+std::shared_ptr<Run> parsed(const CommandWords& words, std::string& running) {
+    const auto run = std::make_shared<Run>();
     try {
-        CLI::App app("Torque ripple of harmonic drives in joint logs: find it, filter it, measure the cost.",
-                     std::string(tool_name));
         try {
-            return parse_and_work(app, words, running, within_another);
+            parse(*run, words, running);
         } catch (const CLI::Success& request) {  // --help or --version
             std::ostringstream asked;
-            app.exit(request, asked, asked);
-            write_text("-", asked.str(), ByteSink::Overwrite::no);
-            return ExitCode::done;
+            run->app.exit(request, asked, asked);
+            run->work = [text = asked.str()] { return Answer{text}; };
         }
     } catch (const CLI::ParseError& error) {
         throw refusal(error, running);
     }
+    return run;
 }
 
 }  // namespace
 
-ExitCode run_command(const CommandWords& words, std::string& running) { return run(words, running, false); }
+ExitCode run_command(const CommandWords& words, std::string& running) {
+    const auto run = parsed(words, running);
+    const ProgressBar bar(words);  // gone before a complaint is printed
+    return give(run->work(), *run->common);
+}
 
 ExitCode run_within(const CommandWords& words) {
     std::string running;
-    return run(words, running, true);
+    const auto run = parsed(words, running);
+    return give(run->work(), *run->common);
+}
+
+Answer ask(const CommandWords& words) {
+    std::string running;
+    const auto run = parsed(words, running);
+    run->common->in_memory = true;
+    Answer answer = run->work();
+    answer.request = run;
+    return answer;
 }
 
 void parse_options(const std::string& of_command, CommandWords words,
@@ -319,8 +329,7 @@ void parse_options(const std::string& of_command, CommandWords words,
     Options options(implementation);
     declare(options);
     implementation.spell_out(words);
-    if (const auto unknown = unknown_option(command, words))
-        raise<UsageError>("{}", unknown_option_message(command, *unknown));
+    refuse_unknown_option(command, words);
     words.insert(words.begin(), of_command);
     try {
         app.parse(CommandWords(words.rbegin(), words.rend()));

@@ -35,13 +35,14 @@ std::string short_method(const MethodFigures& figures) {
 
 namespace {
 
-// "a ripple map (map.json)", "tracking notches (tracking,q=1)"
+// "a ripple map (map.json)", "tracking notches (tracking,q=1)", "an oscillator"
 std::string noun_of(const MethodFigures& figures) {
     const Spec spec = parse_spec(figures.method);
     const Method& method = find_method(spec.name);
     std::string made_of = short_method(figures);
     for (const auto& [key, value] : spec.values)
         if ((key == "map" && method.is_map) || (key == "table" && method.needs_table)) made_of = value;
+    if (method.noun.ends_with(made_of)) return std::string(method.noun);
     return fmt::format("{} ({})", method.noun, made_of);
 }
 
@@ -74,8 +75,9 @@ std::string two_digits(double value) {
 }
 
 std::string error_text(const Recommendation& found, const JudgedMethod& method) {
-    return fmt::format("error {} instead of {} Nm rms", two_digits(method.error_nm()),
-                       two_digits(found.taken()->error_nm()));
+    const std::string error = two_digits(method.error_nm()), least = two_digits(found.taken()->error_nm());
+    return error == least ? fmt::format("the same error of {} Nm rms", error)
+                          : fmt::format("error {} instead of {} Nm rms", error, least);
 }
 
 // Chosen, not derived: what is a trade, and how much larger the error of it may be.

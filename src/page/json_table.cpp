@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "page/json_table.hpp"
+#include "page/result_section.hpp"
 
 #include <fmt/format.h>
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <set>
@@ -13,19 +14,12 @@
 
 #include "document/fields/fields.hpp"
 #include "document/json/json.hpp"
-#include "page/json_table.hpp"
-#include "ripplenotch/chart/diagnosis_figure.hpp"
-#include "ripplenotch/chart/spectrum_figure.hpp"
-#include "ripplenotch/chart/table_figure.hpp"
-#include "ripplenotch/chart/track_figure.hpp"
-#include "ripplenotch/chart/trend_figure.hpp"
+#include "ripplenotch/chart/figures.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/visible_text.hpp"
 #include "ripplenotch/diagnose/diagnosis.hpp"
-#include "ripplenotch/document/figure_json.hpp"
-#include "ripplenotch/document/identification_json.hpp"
-#include "ripplenotch/document/map_json.hpp"
+#include "ripplenotch/document/results.hpp"
 #include "ripplenotch/document/table_json.hpp"
 #include "ripplenotch/figure/figure.hpp"
 #include "ripplenotch/page/page.hpp"
@@ -650,25 +644,34 @@ void add_fields(PageSection& section, const std::string& kind, const Json& json)
     }
 }
 
-PageSection section_of_figure(Figure figure) {
+// A page names a file without its folders.
+std::string without_folders(const std::string& path) {
+    return std::filesystem::path(path).filename().string();
+}
+
+PageSection section_of_figure(Figure figure, const std::vector<PageFact>& inputs) {
     PageSection section;
+    for (const PageFact& input : inputs)
+        if (const auto at = figure.title.find(input.name); at != std::string::npos)
+            figure.title.replace(at, input.name.size(), without_folders(input.name));
     section.title = figure.title;
     section.verdict = std::exchange(figure.sentence, "");
     section.figures.push_back(std::move(figure));
     return section;  // its JSON is all in the figure
 }
 
-}  // namespace
-
-PageSection section_of_result(const std::string& text, const std::string& source) {
+// `source` is for messages, `shown` for people.
+PageSection section_of(const std::string& text, const std::string& source, const std::string& shown) {
     const auto [kind, json] = parse_any_document(text, source);
-    PageSection section;
-    if (kind == "figure") section = section_of_figure(figure_from_json(text, source));
-    if (kind != "figure") section.title = fmt::format("{}: {}", heading_of(kind), source);
-    section.command = text_at(json, "command");
+    std::vector<PageFact> inputs;
     for (const Json& input : json.value("inputs", Json::array()))
-        section.inputs.push_back({text_at(input, "name"), text_at(input, "sha256")});
+        inputs.push_back({text_at(input, "name"), text_at(input, "sha256")});
+    PageSection section;
+    if (kind == "figure") section = section_of_figure(figure_from_json(text, source), inputs);
+    section.command = text_at(json, "command");
+    section.inputs = std::move(inputs);
     if (kind == "figure") return section;
+    section.title = fmt::format("{}: {}", heading_of(kind), shown);
     section.json = text;
     if (const auto verdict = json.find("verdict"); verdict != json.end())
         section.verdict = value_text(*verdict);
@@ -678,11 +681,11 @@ PageSection section_of_result(const std::string& text, const std::string& source
     section.key = key_numbers(kind, json);
     add_fields(section, kind, json);
     if (kind == "joint") {
-        section.figures.push_back(identification_figure(source, identification_from_json(text, source)));
+        section.figures.push_back(identification_figure(shown, identification_from_json(text, source)));
         section.figures.back().sentence.clear();  // it is the verdict above
     } else if (kind == "map") {
         if (const MapFit fit = map_from_json(text, source); !fit.map.orders.empty())
-            section.figures.push_back(map_figure(source, fit));
+            section.figures.push_back(map_figure(shown, fit));
     } else if (kind == "table") {
         section.figures.push_back(table_figure(table_from_json(text, source)));
     } else if (kind == "trend") {
@@ -690,10 +693,12 @@ PageSection section_of_result(const std::string& text, const std::string& source
     } else if (kind == "diagnosis") {
         section.verdict = json.value("sentence", section.verdict);
         section.figures.push_back(
-            gap_figure(fmt::format("How the gap shrank: {}", source), gap_of(json, source)));
+            gap_figure(fmt::format("How the gap shrank: {}", shown), gap_of(json, source)));
     }
     return section;
 }
+
+}  // namespace
 
 std::vector<PageSection> sections_of_result(const std::string& text, const std::string& source) {
     const auto [kind, whole] = parse_any_document(text, source);
@@ -707,7 +712,7 @@ std::vector<PageSection> sections_of_result(const std::string& text, const std::
          {"recommendations", "recommendation"}}};
     const auto list =
         std::find_if(lists.begin(), lists.end(), [&](const auto& known) { return known.first == kind; });
-    if (list == lists.end()) return {section_of_result(text, source)};
+    if (list == lists.end()) return {section_of(text, source, without_folders(source))};
     const auto joints = whole.find("joints");
     if (joints == whole.end() || !joints->is_array())
         raise<DataError>("{}: joints: expected a list, each entry the {} of a joint", source, list->second);
@@ -721,7 +726,8 @@ std::vector<PageSection> sections_of_result(const std::string& text, const std::
             for (const auto& [name, entry] : joint.items())
                 if (name != "joint") one[name] = entry;
         const std::string name = joint.is_object() ? text_at(joint, "joint") : "";
-        sections.push_back(section_of_result(one.dump(), fmt::format("{}, joint {}", source, name)));
+        sections.push_back(section_of(one.dump(), fmt::format("{}, joint {}", source, name),
+                                      fmt::format("{}, joint {}", without_folders(source), name)));
     }
     return sections;
 }

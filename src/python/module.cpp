@@ -6,6 +6,7 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <map>
 #include <memory>
 #include <mutex>
 #include <new>
@@ -13,8 +14,8 @@
 #include <utility>
 #include <vector>
 
+#include "cli/command.hpp"
 #include "cli/options/options.hpp"
-#include "cli/run.hpp"
 #include "cli/talk.hpp"
 #include "core/files/byte_sink.hpp"
 #include "ripplenotch/core/error.hpp"
@@ -60,13 +61,18 @@ struct Ended {
     std::string error, output, talk;
 };
 
+/// Bytes that commands read as files of these names.
+using Files = std::map<std::string, std::string>;
+
 /// `work` gives the code, or throws what commands throw. Other threads of Python run meanwhile.
 template <class Work>
-Ended ended(const Work& work) {
+Ended ended(const Files& files, const Work& work) {
     const py::gil_scoped_release release;
     Guest guest;
     Ended end;
     try {
+        std::vector<std::unique_ptr<HeldFile>> held;
+        for (const auto& [name, bytes] : files) held.push_back(std::make_unique<HeldFile>(name, bytes));
         end.code = work();
     } catch (const Error& error) {
         end.code = error.code();
@@ -79,16 +85,36 @@ Ended ended(const Work& work) {
     return end;
 }
 
-py::tuple run_words(const CommandWords& words) {
-    const Ended end = ended([&] { return run_within(words); });
+py::tuple as_tuple(const Ended& end) {
     return py::make_tuple(static_cast<int>(end.code), end.error, py::bytes(end.output), end.talk);
 }
 
-/// An array that owns the values; read-only, since it represents the log.
+py::tuple run_words(const CommandWords& words, const Files& files) {
+    return as_tuple(ended(files, [&] { return run_within(words); }));
+}
+
+py::tuple figure_of_words(const CommandWords& words, const Files& files) {
+    std::string data;
+    Ended end = ended(files, [&] {
+        const Answer answer = ask(words);
+        data = figure_data(answer);
+        return answer.code;
+    });
+    end.output = std::move(data);
+    return as_tuple(end);
+}
+
+/// An array that owns the values.
 py::array_t<double> array_of(std::vector<double>&& values) {
     auto* const kept = new std::vector<double>(std::move(values));
     const py::capsule owner(kept, [](void* gone) { delete static_cast<std::vector<double>*>(gone); });
     py::array_t<double> array(static_cast<py::ssize_t>(kept->size()), kept->data(), owner);
+    return array;
+}
+
+/// Read-only, since it represents the log.
+py::array_t<double> column_of(std::vector<double>&& values) {
+    py::array_t<double> array = array_of(std::move(values));
     array.attr("setflags")(py::arg("write") = false);
     return array;
 }
@@ -97,7 +123,6 @@ py::object log_of(Log&& log) {
     py::dict fields;
     fields["joint"] = log.trace.joint;
     fields["joints"] = log.layout.joints;
-    fields["format"] = log.layout.format;
     fields["torque_unit"] = log.recording.torque_unit;
     fields["sample_rate_hz"] = log.recording.clock.nominal_rate.value();
     fields["options"] = log.layout.options;
@@ -105,17 +130,27 @@ py::object log_of(Log&& log) {
     for (const auto* some : {&log.layout.warnings, &log.recording.warnings})
         for (const LogWarning& warning : *some) warnings.push_back(warning.text);
     fields["warnings"] = warnings;
-    fields["time_s"] = array_of(std::move(log.trace.time_s));
-    fields["velocity_deg_s"] = array_of(std::move(log.trace.velocity_deg_s));
-    fields["torque_nm"] = array_of(std::move(log.trace.torque_nm));
-    fields["position_deg"] =
-        log.trace.position_deg.empty() ? py::object(py::none()) : array_of(std::move(log.trace.position_deg));
+    fields["time_s"] = column_of(std::move(log.trace.time_s));
+    fields["velocity_deg_s"] = column_of(std::move(log.trace.velocity_deg_s));
+    fields["torque_nm"] = column_of(std::move(log.trace.torque_nm));
+    fields["position_deg"] = log.trace.position_deg.empty() ? py::object(py::none())
+                                                            : column_of(std::move(log.trace.position_deg));
     return fields;
+}
+
+py::tuple torque_of_words(const CommandWords& words, const Files& files) {
+    std::vector<double> torque_nm;
+    const Ended end = ended(files, [&] {
+        Answer answer = ask(words);
+        torque_nm = std::move(answer.columns.at(0).values);
+        return answer.code;
+    });
+    return py::make_tuple(static_cast<int>(end.code), end.error, array_of(std::move(torque_nm)), end.talk);
 }
 
 py::tuple read_words(const std::string& path, const CommandWords& words) {
     Log log;
-    const Ended end = ended([&] {
+    const Ended end = ended({}, [&] {
         ReadOptions options;
         GearOptions gear;
         parse_options("info", words, [&](Options& declared) {
@@ -136,9 +171,13 @@ py::tuple read_words(const std::string& path, const CommandWords& words) {
 PYBIND11_MODULE(_ripplenotch, module) {
     module.doc() = "What ripplenotch/__init__.py is made of. Linked with FFTW: GPL-2.0-or-later.";
     module.attr("version") = std::string(ripplenotch::version());
-    module.def("run", &ripplenotch::run_words, py::arg("words"),
-               "Runs a command. Returns its exit code, the message of its error, standard output and "
-               "standard error.");
+    module.def("run", &ripplenotch::run_words, py::arg("words"), py::arg("files"),
+               "Runs a command, which reads these bytes as files of their names. Returns its exit code, the "
+               "message of its error, standard output and standard error.");
+    module.def("figure", &ripplenotch::figure_of_words, py::arg("words"), py::arg("files"),
+               "The same with the data of the command's figure as JSON instead of standard output.");
+    module.def("torque", &ripplenotch::torque_of_words, py::arg("words"), py::arg("files"),
+               "The same of filter, with the torque that it makes as an array, in Nm; nothing is written.");
     module.def("read", &ripplenotch::read_words, py::arg("path"), py::arg("words"),
                "Reads a log with options of a log. Returns exit code, the message of its error, and the "
                "fields of the log.");

@@ -6,11 +6,7 @@
 
 #include "filter/tables.hpp"
 #include "ripplenotch/analysis/track_report.hpp"
-#include "ripplenotch/chart/comparison_figure.hpp"
-#include "ripplenotch/chart/diagnosis_figure.hpp"
-#include "ripplenotch/chart/spectrum_figure.hpp"
-#include "ripplenotch/chart/table_figure.hpp"
-#include "ripplenotch/chart/track_figure.hpp"
+#include "ripplenotch/chart/figures.hpp"
 #include "ripplenotch/design/notch.hpp"
 #include "ripplenotch/evaluate/contender.hpp"
 #include "support/catch.hpp"

@@ -11,8 +11,9 @@
 #include <random>
 #include <string>
 
-#include "ripplenotch/document/identification_json.hpp"
-#include "ripplenotch/document/map_json.hpp"
+#include "ripplenotch/analysis/identification.hpp"
+#include "ripplenotch/document/results.hpp"
+#include "ripplenotch/filter/map_fit.hpp"
 #include "ripplenotch/verdict/gear_choice.hpp"
 #include "ripplenotch/verdict/readings.hpp"
 #include "support/catch.hpp"

@@ -81,7 +81,7 @@ class Maps(Case):
             self.assertIn(f"{joint}: Cross-validated", done.stdout)
         ended(0, run("filter", wide, "--joint", "all", "--method", f"oscillator,map={self.folder}/{{joint}}_map.json",
                      "-o", self.folder / "clean.csv"))
-        for words, said in ((["-o", self.folder / "map.json"], "put {joint} into the name"), (["--json"], "put {joint} into the name")):
+        for words, said in ((["-o", self.folder / "all.json"], "put {joint} into the name"), (["--json"], "put {joint} into the name")):
             ended(2, run("map", wide, *GEAR, "--joint", "all", *words), said)
         self.assertIn("standard input can be read once only", run("map", "-", *GEAR, "--joint", "all").stderr)
 

@@ -194,6 +194,25 @@ TEST_CASE("what a pipe said waits in a file that nobody sees") {
     before.empty() ? ::unsetenv("TMPDIR") : ::setenv("TMPDIR", before.c_str(), 1);
 }
 
+TEST_CASE("bytes that are held are read as the file of their name, as long as they are held") {
+    const Folder folder;
+    const std::string path = folder.file("log");
+    write_all(path, "of the file", ByteSink::Overwrite::no);
+    watch_inputs(true);
+    hash_inputs(true);
+    CHECK(read_all(path) == "of the file");
+    for (const std::string& bytes : {std::string("abc"), std::string("what came later"), std::string()}) {
+        const HeldFile held(path, bytes);
+        CHECK(read_all(path) == bytes);
+        CHECK(read_all(path) == bytes);
+        CHECK(Spool(path).open()->by_place());
+        if (bytes == "abc")
+            CHECK(sha256_as_read(path) == "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+    }
+    CHECK(read_all(path) == "of the file");
+    watch_inputs(false);
+}
+
 TEST_CASE("bytes of an unfinished file can be rewritten") {
     const Folder folder;
     ByteSink sink(folder.file("a"), ByteSink::Overwrite::no);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "ripplenotch/document/diagnosis_json.hpp"
+#include "ripplenotch/document/results.hpp"
 
 #include "document/json/json.hpp"
+#include "ripplenotch/diagnose/diagnosis.hpp"
 #include "support/catch.hpp"
 #include "support/diagnoses.hpp"
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "ripplenotch/document/identification_json.hpp"
+#include "ripplenotch/document/results.hpp"
 
+#include "ripplenotch/analysis/identification.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "support/catch.hpp"
 

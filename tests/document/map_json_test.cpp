@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "ripplenotch/document/map_json.hpp"
+#include "ripplenotch/document/results.hpp"
 
 #include "ripplenotch/core/error.hpp"
+#include "ripplenotch/filter/map_fit.hpp"
 #include "support/catch.hpp"
 
 using namespace ripplenotch;

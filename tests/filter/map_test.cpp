@@ -11,7 +11,7 @@
 #include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/core/trace.hpp"
 #include "ripplenotch/design/ripple_map.hpp"
-#include "ripplenotch/document/map_json.hpp"
+#include "ripplenotch/document/results.hpp"
 #include "ripplenotch/filter/map_fit.hpp"
 #include "support/catch.hpp"
 

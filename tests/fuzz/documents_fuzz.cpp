@@ -7,11 +7,12 @@
 
 #include "fuzz/fuzz.hpp"
 #include "fuzz/mutate_json.hpp"
-#include "ripplenotch/document/diagnosis_json.hpp"
-#include "ripplenotch/document/figure_json.hpp"
-#include "ripplenotch/document/identification_json.hpp"
+#include "ripplenotch/analysis/identification.hpp"
+#include "ripplenotch/diagnose/diagnosis.hpp"
 #include "ripplenotch/document/model_json.hpp"
+#include "ripplenotch/document/results.hpp"
 #include "ripplenotch/document/table_json.hpp"
+#include "ripplenotch/figure/figure.hpp"
 #include "ripplenotch/page/page.hpp"
 
 using namespace ripplenotch;

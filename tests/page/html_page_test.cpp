@@ -2,10 +2,10 @@
 #include <nlohmann/json.hpp>
 
 #include "filter/tables.hpp"
-#include "page/json_table.hpp"
-#include "ripplenotch/chart/table_figure.hpp"
+#include "page/result_section.hpp"
+#include "ripplenotch/chart/figures.hpp"
 #include "ripplenotch/core/error.hpp"
-#include "ripplenotch/document/figure_json.hpp"
+#include "ripplenotch/document/results.hpp"
 #include "ripplenotch/figure/figure.hpp"
 #include "ripplenotch/page/page.hpp"
 #include "support/catch.hpp"
@@ -129,7 +129,7 @@ TEST_CASE("names of curves that take more rows on a phone have room for them the
 
 TEST_CASE("a page shows hostile text as text and lets no script run but its own two") {
     const std::string text = figure_json(full_figure());
-    Page page{hostile, {section_of_result(text, hostile)}};
+    Page page{hostile, {sections_of_result(text, hostile).front()}};
     page.sections[0].facts.push_back({hostile, hostile});
     page.sections[0].tables.push_back({hostile, {hostile}, {{hostile}}});
     page.sections[0].command = page.sections[0].json = hostile;
@@ -146,7 +146,7 @@ TEST_CASE("a page shows hostile text as text and lets no script run but its own 
 }
 
 TEST_CASE("the hash in the policy is that of the script: the empty one's is known") {
-    const Page page{"t", {section_of_result(figure_json(full_figure()), "a.json")}};
+    const Page page{"t", {sections_of_result(figure_json(full_figure()), "a.json").front()}};
     const std::string html = html_page(page, "");
     CHECK_THAT(html, Contains("'sha256-47DEQpj8HBSa+/TImW+5JCeuQeRkm5NMpJWZG3hSuFU='"));
 }
@@ -166,7 +166,7 @@ TEST_CASE("commands can be copied, by a script that the policy names") {
 }
 
 TEST_CASE("without plotly the page carries pictures, says so, and runs no script") {
-    const Page page{"t", {section_of_result(figure_json(full_figure()), "a.json")}};
+    const Page page{"t", {sections_of_result(figure_json(full_figure()), "a.json").front()}};
     const std::string html = html_page(page, std::nullopt);
     CHECK_THAT(html, Contains("plotly.js was not found"));
     CHECK_THAT(html, Contains("script-src 'none'") && !Contains("<script"));
@@ -190,7 +190,7 @@ TEST_CASE("any result becomes verdict, facts and tables with units from its name
         "clock": {"rate_hz": 1000.0, "jitter_ms": 0.0123456, "gaps": [{"from_s": 0.5, "to_s": 2.25}]},
         "steps": [{"name": "first", "level_nm": 2.0, "settle_ms": {"0.5": 147.0, "1": 130.0}},
                   {"name": "second", "level_nm": 0.123456, "note": "late"}]})";
-    const PageSection section = section_of_result(text, "c.json");
+    const PageSection section = sections_of_result(text, "c.json").front();
     CHECK(section.title == "The log: c.json");
     CHECK(section.verdict == "the clock is right");
     CHECK(section.inputs.size() == 1);
@@ -206,14 +206,15 @@ TEST_CASE("any result becomes verdict, facts and tables with units from its name
 }
 
 TEST_CASE("what is no result is refused by name") {
-    CHECK_THROWS_WITH(section_of_result("time_s,torque_nm\n", "log.csv"),
+    CHECK_THROWS_WITH(sections_of_result("time_s,torque_nm\n", "log.csv").front(),
                       Contains("log.csv") && Contains("not JSON"));
-    CHECK_THROWS_WITH(section_of_result("[1]", "a.json"),
+    CHECK_THROWS_WITH(sections_of_result("[1]", "a.json").front(),
                       Contains("a.json") && Contains("expected a result"));
-    CHECK_THROWS_WITH(section_of_result("{\"schema\": \"other/1\"}", "a.json"), Contains("other/1"));
-    CHECK_THROWS_AS(section_of_result("{\"schema\": \"ripplenotch/joint/1\"}", "a.json"), DataError);
-    CHECK_THROWS_AS(section_of_result("{\"schema\": \"ripplenotch/diagnosis/1\"}", "a.json"), DataError);
-    CHECK_THROWS_AS(section_of_result("{\"schema\": 1}", "a.json"), DataError);
+    CHECK_THROWS_WITH(sections_of_result("{\"schema\": \"other/1\"}", "a.json").front(), Contains("other/1"));
+    CHECK_THROWS_AS(sections_of_result("{\"schema\": \"ripplenotch/joint/1\"}", "a.json").front(), DataError);
+    CHECK_THROWS_AS(sections_of_result("{\"schema\": \"ripplenotch/diagnosis/1\"}", "a.json").front(),
+                    DataError);
+    CHECK_THROWS_AS(sections_of_result("{\"schema\": 1}", "a.json").front(), DataError);
 }
 
 TEST_CASE("a value has the digits that its interval or its standard error allows") {

@@ -2,7 +2,8 @@
 #include <algorithm>
 
 #include "page/result_section.hpp"
-#include "ripplenotch/document/diagnosis_json.hpp"
+#include "ripplenotch/diagnose/diagnosis.hpp"
+#include "ripplenotch/document/results.hpp"
 #include "ripplenotch/page/page.hpp"
 #include "support/catch.hpp"
 #include "support/diagnoses.hpp"
@@ -89,7 +90,7 @@ TEST_CASE("a page begins with what was asked, the verdict and three numbers, and
         "ripple_peak_to_peak_nm": {"raw": 2.60239, "filtered": 1.181297},
         "delays": [{"band": 1, "dc_delay_ms": 127.277}, {"band": 2, "dc_delay_ms": 19.81}],
         "orders": [{"order": 1.0, "raw_nm": 0.9}]})";
-    const PageSection section = section_of_result(text, "m.json");
+    const PageSection section = sections_of_result(text, "m.json").front();
     CHECK(section.title == "Effect of the filter: m.json");
     CHECK(section.in_summary);
     CHECK_THAT(section.verdict, Contains("2.6 Nm") && Contains("1.18 Nm"));
@@ -123,7 +124,7 @@ TEST_CASE("a hostile or empty document has no key numbers and throws nothing") {
 namespace {
 
 PageSection section_of(const Diagnosis& diagnosis) {
-    return section_of_result(testing::document_of(diagnosis), "d.json");
+    return sections_of_result(testing::document_of(diagnosis), "d.json").front();
 }
 
 const PageTable& table_named(const PageSection& section, const std::string& title) {

@@ -4,7 +4,7 @@
 
 #include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/diagnose/diagnosis.hpp"
-#include "ripplenotch/document/diagnosis_json.hpp"
+#include "ripplenotch/document/results.hpp"
 
 namespace ripplenotch::testing {
 

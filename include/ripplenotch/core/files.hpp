@@ -70,6 +70,21 @@ class ByteSource {
     bool ended_ = false;
 };
 
+/// Bytes in memory that this process reads where it would open the file of this name, as long as it lives:
+/// what one command makes and the next one reads needs no file.
+class HeldFile {
+  public:
+    /// Throws FileError where the system has no memory for it.
+    HeldFile(std::string name, std::string_view bytes);
+    ~HeldFile();
+    HeldFile(const HeldFile&) = delete;
+    HeldFile& operator=(const HeldFile&) = delete;
+
+  private:
+    std::string name_;
+    int descriptor_ = -1;
+};
+
 /// Reads a whole file, or standard input when the path is "-".
 [[nodiscard]] std::string read_all(const std::string& path);
 /// The path as people should see it: "-" is "standard input".

@@ -72,11 +72,8 @@ struct Page {
 /// `text` is a JSON document with schema ripplenotch/<kind>/1. joint, map, table and figure are read with all
 /// their checks; the rounds of a diagnosis become the figure of the gap; everything else in a kind becomes
 /// facts (single values), and tables (lists of objects), units taken from the names. Throws DataError for any
-/// other document.
-[[nodiscard]] PageSection section_of_result(const std::string& text, const std::string& source);
-
-/// The same for a document that may hold several results: the diagnoses of several joints become a section
-/// each.
+/// other document. One section; of a document that lists the results of several joints, one each. The folders
+/// of `source` are for messages alone.
 [[nodiscard]] std::vector<PageSection> sections_of_result(const std::string& text, const std::string& source);
 
 }  // namespace ripplenotch

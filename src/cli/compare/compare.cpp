@@ -18,9 +18,8 @@
 #include "cli/options/joint_runs.hpp"
 #include "cli/options/lists.hpp"
 #include "cli/options/options.hpp"
-#include "cli/options/plot_request.hpp"
 #include "cli/talk.hpp"
-#include "ripplenotch/chart/comparison_figure.hpp"
+#include "ripplenotch/chart/figures.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/core/number.hpp"
@@ -551,7 +550,7 @@ Comparison compare_on_log(const CompareRequest& request, Field& field, Provenanc
     if (!request.truth.empty() && !field.gear) raise_no_gear("--truth");
     const std::vector<double> truth = true_torque(request, read, log.trace.size(), provenance);
     compared.truth_nm = truth;
-    if (request.plot.wanted() && !truth.empty())
+    if ((request.common.plot || request.common.in_memory) && !truth.empty())
         compared.watch = [&course](auto&&... all) { course.add(all...); };
     leave_out_refused(field, log.recording.clock.nominal_rate, request.common);
     // The filters are those that the filter command would run.
@@ -594,7 +593,7 @@ Comparison compare_on_log(const CompareRequest& request, Field& field, Provenanc
     return comparison;
 }
 
-JointResult compare_once(const CompareRequest& request, const std::string& command_line) {
+Answer compare_once(const CompareRequest& request, const std::string& command_line) {
     Provenance provenance{{}, command_line};
     Field field = load_contenders(request.methods, request.gear, request.common, provenance);
     if (request.costs.gates.min_attenuation_db && !field.gear) raise_no_gear("--min-attenuation");
@@ -604,34 +603,33 @@ JointResult compare_once(const CompareRequest& request, const std::string& comma
                                                  : compare_on_log(request, field, provenance, course);
     add_costs(comparison, request.costs, field, request.common.verbose);
     const std::string unit = provenance.recordings.empty() ? "Nm" : provenance.recordings.front().torque_unit;
-    JointResult result{in_torque_unit(request.common.json ? comparison_text(comparison, provenance)
-                                                          : comparison_view(request.common, comparison),
-                                      unit)};
     const auto broken = violations(comparison, request.costs, field);
-    if (!broken.empty()) result.code = ExitCode::limit_violated;
-    result.afterwards = [request, provenance, broken, field = std::move(field),
-                         comparison = std::move(comparison), course = std::move(course)] {
-        draw_plot(request.plot, request.common, provenance, [&] {
-            if (!course.empty()) return course.figure(request.path, comparison);
-            return comparison_figure(comparison, field.contenders);
-        });
-        say_warnings(request.common, broken);
+    say_warnings(request.common, broken);
+    Answer answer{in_torque_unit(comparison_view(request.common, comparison), unit)};
+    if (!broken.empty()) answer.code = ExitCode::limit_violated;
+    const auto found = std::make_shared<const Comparison>(std::move(comparison));
+    answer.document = [found, provenance, unit] {
+        return in_torque_unit(comparison_text(*found, provenance), unit);
     };
-    return result;
+    answer.figure = [found, path = request.path, field = std::move(field), course = std::move(course)] {
+        return course.empty() ? comparison_figure(*found, field.contenders) : course.figure(path, *found);
+    };
+    answer.provenance = std::move(provenance);
+    return answer;
 }
 
-ExitCode run_compare(const CompareRequest& request, const std::string& command_line) {
+Answer run_compare(const CompareRequest& request, const std::string& command_line) {
     if (request.path.empty() && request.log.range.given())
         raise<UsageError>("--from and --to: there is no LOG to select rows from");
     // A signal is no joint's, and is compared on as a log of one is.
-    return run_joints(request, "comparisons", false, [&](CompareRequest& one) {
+    return ask_joints(request, "comparisons", [&](CompareRequest& one) {
         if (one.joint)
             for (std::string& method : one.methods) method = with_joint(method, *one.joint);
         return compare_once(one, command_line);
     });
 }
 
-std::function<ExitCode()> attach_compare(Options& options) {
+std::function<Answer()> attach_compare(Options& options) {
     auto request = std::make_shared<CompareRequest>();
     options.argument("LOG", request->path, false,
                      "a log; - is standard input. Without one, --step or --ramp");
@@ -647,7 +645,7 @@ std::function<ExitCode()> attach_compare(Options& options) {
     options.text("--truth", request->truth, "LOG",
                  "the same log without ripple and noise: each method's error against its torque");
     attach_costs(options, request->costs);
-    attach_plot(options, request->plot, request->common);
+    attach_plot(options, request->common);
     attach_log(options, request->log);
     attach_common(options, request->common, {"a comparison", ".txt .json", true});
     return [request, &options] { return run_compare(*request, options.command_line()); };

@@ -17,9 +17,8 @@
 
 #include "cli/command.hpp"
 #include "cli/options/options.hpp"
-#include "cli/options/plot_request.hpp"
 #include "cli/talk.hpp"
-#include "ripplenotch/chart/table_figure.hpp"
+#include "ripplenotch/chart/figures.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/core/number.hpp"
@@ -256,7 +255,6 @@ std::vector<std::string> alias_warnings(const CandidateTable& table) {
 
 struct DesignRequest {
     CommonOptions common;
-    PlotRequest plot;
     std::string joint;
     GearOptions gear;
     std::optional<double> depth_db, q;
@@ -488,7 +486,7 @@ Drawn draw(const DesignRequest& request, const TableSpec& spec, const GearChoice
     return {std::move(choice.table), std::move(note)};
 }
 
-ExitCode run_design(const DesignRequest& request, const std::string& command_line) {
+Answer run_design(const DesignRequest& request, const std::string& command_line) {
     Provenance provenance{{}, command_line};
     GearOptions options = request.gear;
     if (!request.joint.empty()) {
@@ -502,22 +500,20 @@ ExitCode run_design(const DesignRequest& request, const std::string& command_lin
         if (!against.empty()) warn(request.common, against);
     }
     const TableSpec spec = design_spec(request, gear);
-    const Drawn drawn = draw(request, spec, gear);
-    say(request.common, fmt::format("designed as if with {}", as_if_options(drawn.table.spec())));
-    say_warnings(request.common, alias_warnings(drawn.table));
-    const std::string& path = request.common.output;
-    const std::string text = request.common.json || ends_with_json(path)
-                                 ? table_to_json(drawn.table, provenance, drawn.note)
-                             : path.ends_with(".csv") ? table_to_csv(drawn.table)
-                                                      : table_to_text(drawn.table, drawn.note);
-    write_text(request.common.output, text, request.common.overwrite());
-    draw_plot(request.plot, request.common, provenance, [&] { return table_figure(drawn.table); });
-    const auto broken = violations_of(request, drawn.table);
+    const auto drawn = std::make_shared<const Drawn>(draw(request, spec, gear));
+    say(request.common, fmt::format("designed as if with {}", as_if_options(drawn->table.spec())));
+    say_warnings(request.common, alias_warnings(drawn->table));
+    const auto broken = violations_of(request, drawn->table);
     say_warnings(request.common, broken);
-    return broken.empty() ? ExitCode::done : ExitCode::limit_violated;
+    return {.text = request.common.output.ends_with(".csv") ? table_to_csv(drawn->table)
+                                                            : table_to_text(drawn->table, drawn->note),
+            .document = [drawn, provenance] { return table_to_json(drawn->table, provenance, drawn->note); },
+            .figure = [drawn] { return table_figure(drawn->table); },
+            .provenance = provenance,
+            .code = broken.empty() ? ExitCode::done : ExitCode::limit_violated};
 }
 
-std::function<ExitCode()> attach_design(Options& options) {
+std::function<Answer()> attach_design(Options& options) {
     auto request = std::make_shared<DesignRequest>();
     options.argument("JOINT", request->joint, false, "the same as --joint-file; - is standard input");
     attach_gear(options, request->gear);
@@ -543,8 +539,8 @@ std::function<ExitCode()> attach_design(Options& options) {
         "or --q: centre over -3 dB width (default: 0.25, the paper's twin-T, or what a goal takes)");
     options.number("--depth", request->depth_db, Dimension::decibel,
                    "attenuation at the centre; a full null when left out");
-    attach_plot(options, request->plot, request->common);
-    attach_common(options, request->common, {"a table", ".txt .csv .json"});
+    attach_plot(options, request->common);
+    attach_common(options, request->common, {"a table", ".txt .csv .json", true});
     return [request, &options] { return run_design(*request, options.command_line()); };
 }
 

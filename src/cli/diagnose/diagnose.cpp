@@ -12,7 +12,7 @@
 #include "cli/command.hpp"
 #include "cli/diagnose/joint_diagnosis.hpp"
 #include "cli/talk.hpp"
-#include "ripplenotch/chart/diagnosis_figure.hpp"
+#include "ripplenotch/chart/figures.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/document/simulation_json.hpp"
 #include "ripplenotch/verdict/drive.hpp"
@@ -78,19 +78,16 @@ std::string effect_text(const Effect& effect) {
     return text + fmt::format("source: {}\n", effect.source);
 }
 
-ExitCode print_effects(const DiagnoseRequest& request, const std::string& command_line) {
+Answer print_effects(const DiagnoseRequest& request, const std::string& command_line) {
     const bool stands_alone = request.path.empty() && request.model.empty() && !request.improved;
     if (!stands_alone || (request.effects && request.effect))
         raise<UsageError>(
             "--effects and --effect NAME stand alone: they print the catalogue and read no LOG");
     const Effect* only = request.effect ? &find_effect(*request.effect) : nullptr;
-    std::string text = only != nullptr ? effect_text(*only) : catalogue_text();
-    if (request.common.json) {
-        const auto effects = only != nullptr ? std::span<const Effect* const>(&only, 1) : catalogue();
-        text = write_catalogue(effects, {.inputs = {}, .command = command_line});
-    }
-    write_text("-", text, ByteSink::Overwrite::no);
-    return ExitCode::done;
+    return {.text = only != nullptr ? effect_text(*only) : catalogue_text(), .document = [=] {
+                const auto effects = only != nullptr ? std::span<const Effect* const>(&only, 1) : catalogue();
+                return write_catalogue(effects, {.inputs = {}, .command = command_line});
+            }};
 }
 
 std::string story(const DiagnoseRequest& request, const JointDiagnosis& one) {
@@ -102,27 +99,31 @@ std::string story(const DiagnoseRequest& request, const JointDiagnosis& one) {
            (one.mjcf ? mjcf_text(*one.mjcf) : "");
 }
 
-void write_improved(const DiagnoseRequest& request, JointDiagnosis& one) {
+void add_improved(const DiagnoseRequest& request, JointDiagnosis& one, Answer& answer) {
     if (!request.improved) return;
     const std::string path = with_joint(*request.improved, one.joint);
     if (names_mjcf(path)) {
-        one.mjcf = write_improved_mjcf(request, one, path);
+        answer.files.push_back({path, improved_mjcf(request, one, path), ""});
         return;
     }
-    write_text(path, write_model(improved_model(one.given, one.diagnosis), one.provenance),
-               request.common.overwrite());
-    say(request.common, fmt::format("the improved model is in {}", path));
+    answer.files.push_back({path, write_model(improved_model(one.given, one.diagnosis), one.provenance),
+                            fmt::format("the improved model is in {}", path)});
 }
 
-ExitCode run_one(const DiagnoseRequest& request, GivenSource& given, const std::string& command_line) {
-    JointDiagnosis one = diagnosed_joint(request, std::nullopt, given, command_line);
-    if (!one.diagnosis.not_accepted.empty()) raise<UsageError>("{}", one.diagnosis.not_accepted.front());
-    write_improved(request, one);
-    write_text("-", request.common.json ? write_diagnosis(one.facts(), one.provenance) : story(request, one),
-               ByteSink::Overwrite::no);
-    draw_plot(request.plot, request.common, one.provenance,
-              [&] { return diagnosis_figure(request.path, one.diagnosis, one.log.trace.view()); });
-    return request.require_conclusive && !one.is_conclusive() ? ExitCode::inconclusive : ExitCode::done;
+Answer run_one(const DiagnoseRequest& request, GivenSource& given, const std::string& command_line) {
+    const auto one =
+        std::make_shared<JointDiagnosis>(diagnosed_joint(request, std::nullopt, given, command_line));
+    if (!one->diagnosis.not_accepted.empty()) raise<UsageError>("{}", one->diagnosis.not_accepted.front());
+    Answer answer;
+    add_improved(request, *one, answer);
+    answer.text = story(request, *one);
+    answer.document = [one] { return write_diagnosis(one->facts(), one->provenance); };
+    answer.figure = [one, path = request.path] {
+        return diagnosis_figure(path, one->diagnosis, one->log.trace.view());
+    };
+    answer.provenance = one->provenance;
+    if (request.require_conclusive && !one->is_conclusive()) answer.code = ExitCode::inconclusive;
+    return answer;
 }
 
 // The columns of a joint are not held longer than they are needed.
@@ -147,26 +148,28 @@ std::string list_of(const std::vector<JointDiagnosis>& all, const std::string& c
     return write_diagnoses(joints, provenance);
 }
 
-ExitCode run_all(const DiagnoseRequest& request, GivenSource& given, const std::string& command_line) {
+Answer run_all(const DiagnoseRequest& request, GivenSource& given, const std::string& command_line) {
     const std::vector<std::string> joints = joints_of(request, given);
     std::vector<JointDiagnosis> all;
-    std::string text;
+    Answer answer;
     for (const std::string& joint : joints) {
         JointDiagnosis& one = all.emplace_back(diagnosed_joint(request, joint, given, command_line));
         for (const std::string& why : one.diagnosis.not_accepted)
             warn(request.common, fmt::format("joint {}: {}", joint, why));
-        write_improved(request, one);
-        text += fmt::format("joint {}\n{}\n", joint, story(request, one));
+        add_improved(request, one, answer);
+        answer.text += fmt::format("joint {}\n{}\n", joint, story(request, one));
         let_columns_go(one);
     }
-    write_text("-", request.common.json ? list_of(all, command_line) : text + joints_table(all),
-               ByteSink::Overwrite::no);
+    answer.text += joints_table(all);
     const bool conclusive =
         std::all_of(all.begin(), all.end(), [](const JointDiagnosis& one) { return one.is_conclusive(); });
-    return request.require_conclusive && !conclusive ? ExitCode::inconclusive : ExitCode::done;
+    if (request.require_conclusive && !conclusive) answer.code = ExitCode::inconclusive;
+    const auto kept = std::make_shared<const std::vector<JointDiagnosis>>(std::move(all));
+    answer.document = [kept, command_line] { return list_of(*kept, command_line); };
+    return answer;
 }
 
-ExitCode run_diagnose(const DiagnoseRequest& request, const std::string& command_line) {
+Answer run_diagnose(const DiagnoseRequest& request, const std::string& command_line) {
     if (request.effects || request.effect) return print_effects(request, command_line);
     if (const auto table = friction_table_of(request))
         return run_friction_table(request, *table, command_line);
@@ -178,7 +181,7 @@ ExitCode run_diagnose(const DiagnoseRequest& request, const std::string& command
                                 : run_one(request, given, command_line);
 }
 
-std::function<ExitCode()> attach_diagnose(Options& options) {
+std::function<Answer()> attach_diagnose(Options& options) {
     const auto request = std::make_shared<DiagnoseRequest>();
     options.argument("LOG", request->path, false, "the measured log; - is standard input");
     options.text("--model", request->model, "FILE",
@@ -206,7 +209,7 @@ std::function<ExitCode()> attach_diagnose(Options& options) {
     options.number("--smoothing", request->smoothing, Dimension::time,
                    "window of the fit to the log's velocity, which gives speed and acceleration");
     attach_conclusive(options, request->require_conclusive);
-    attach_plot(options, request->plot, request->common);
+    attach_plot(options, request->common);
     attach_log(options, request->log);
     {
         const Options::Group group(options, output_group);

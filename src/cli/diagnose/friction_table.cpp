@@ -7,9 +7,10 @@
 #include "cli/talk.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/visible_text.hpp"
+#include "ripplenotch/diagnose/diagnosis.hpp"
 #include "ripplenotch/diagnose/friction_table.hpp"
-#include "ripplenotch/document/diagnosis_json.hpp"
 #include "ripplenotch/document/model_json.hpp"
+#include "ripplenotch/document/results.hpp"
 #include "ripplenotch/verdict/readings.hpp"
 
 namespace ripplenotch {
@@ -64,7 +65,7 @@ void check_table_options(const DiagnoseRequest& request) {
     refuse(request.given.simulated.has_value(), "--simulated");
     refuse(request.given.arm.has_value(), "--arm");
     refuse(request.log.sample_rate.has_value(), "--sample-rate");
-    refuse(request.plot.wanted(), "--plot");
+    refuse(request.common.plot.has_value(), "--plot");
     check_improved(request, ".json");
 }
 
@@ -139,25 +140,23 @@ std::optional<Log> friction_table_of(const DiagnoseRequest& request) {
     return table;
 }
 
-ExitCode run_friction_table(const DiagnoseRequest& request, const Log& table,
-                            const std::string& command_line) {
+Answer run_friction_table(const DiagnoseRequest& request, const Log& table, const std::string& command_line) {
     Provenance provenance{{}, command_line};
     if (request.path != "-") provenance.inputs.push_back(input_record(request.path));
     say_layout(request.common, table.layout);
-    FrictionDiagnosis found;
+    const auto found = std::make_shared<FrictionDiagnosis>();
     try {
-        found = diagnose_friction({table.trace.velocity_deg_s, table.trace.torque_nm});
+        *found = diagnose_friction({table.trace.velocity_deg_s, table.trace.torque_nm});
     } catch (const DataError& error) {  // the library knows no file
         raise<DataError>("{}: {}", request.path, error.what());
     }
-    if (request.improved) {
-        write_text(*request.improved, write_model(found.model, provenance), request.common.overwrite());
-        say(request.common, fmt::format("the model is in {}", *request.improved));
-    }
-    write_text(
-        "-", request.common.json ? write_friction(found, provenance) : friction_story(request.common, found),
-        ByteSink::Overwrite::no);
-    return request.require_conclusive && !found.ambiguous.empty() ? ExitCode::inconclusive : ExitCode::done;
+    Answer answer{friction_story(request.common, *found)};
+    answer.document = [=] { return write_friction(*found, provenance); };
+    if (request.improved)
+        answer.files.push_back({*request.improved, write_model(found->model, provenance),
+                                fmt::format("the model is in {}", *request.improved)});
+    if (request.require_conclusive && !found->ambiguous.empty()) answer.code = ExitCode::inconclusive;
+    return answer;
 }
 
 }  // namespace ripplenotch

@@ -87,23 +87,19 @@ bool names_mjcf(std::string_view path) {
     return name.ends_with(".xml") || name.ends_with(".mjcf");
 }
 
-MjcfAccount write_improved_mjcf(const DiagnoseRequest& request, const JointDiagnosis& one,
-                                const std::string& path) {
+std::string improved_mjcf(const DiagnoseRequest& request, JointDiagnosis& one, const std::string& path) {
     const ModelWithGiven model = improved_model(one.given, one.diagnosis);
     const std::optional<std::string> tree = tree_of(request, one);
     JointMjcf parts = joint_mjcf(model.model);
     add_given(parts, one, tree);
     const Motion motion = motion_of(request, one);
     const Diagnosis& found = one.diagnosis;
-    const MjcfAccount account{path, parts.holds, parts.not_held,
-                              held_gap(found.baseline, motion, found.residual_before_nm),
-                              held_gap(model.model, motion, found.residual_after_nm)};
-    const std::vector<std::string> heading = mjcf_heading(one, account);
-    write_text(path,
-               tree ? write_into_mjcf(parts, read_chain_file(*tree), *tree, model.arm->joint, heading)
-                    : write_mjcf(parts, one.joint.empty() ? "joint" : one.joint, heading),
-               request.common.overwrite());
-    return account;
+    one.mjcf = MjcfAccount{path, parts.holds, parts.not_held,
+                           held_gap(found.baseline, motion, found.residual_before_nm),
+                           held_gap(model.model, motion, found.residual_after_nm)};
+    const std::vector<std::string> heading = mjcf_heading(one, *one.mjcf);
+    return tree ? write_into_mjcf(parts, read_chain_file(*tree), *tree, model.arm->joint, heading)
+                : write_mjcf(parts, one.joint.empty() ? "joint" : one.joint, heading);
 }
 
 std::string mjcf_text(const MjcfAccount& account) {
@@ -244,7 +240,7 @@ void check_joints(const DiagnoseRequest& request) {
     if (!request.all_joints()) return;
     if (request.path == "-" || request.model == "-")
         raise<UsageError>("--joint all: standard input can be read once only; give a file");
-    if (request.plot.wanted()) raise<UsageError>("--plot draws one joint, and --joint all asks for each");
+    if (request.common.plot) raise<UsageError>("--plot draws one joint, and --joint all asks for each");
     if (request.improved && !names_joint(*request.improved))
         raise<UsageError>(
             "--improved-model {}: each joint has a model of its own; put {{joint}} into the name",
@@ -272,7 +268,7 @@ void check(const DiagnoseRequest& request) {
     for (const std::string& name : request.accept) (void)find_effect(name);
     check_improved(request, ".json .xml .mjcf");
     check_joints(request);
-    if (request.plot.path == "-" && request.common.json)
+    if (request.common.plot == "-" && request.common.json)
         raise<UsageError>("--plot - and --json would both go to standard output; name a file with --plot");
 }
 

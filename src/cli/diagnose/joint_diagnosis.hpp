@@ -11,7 +11,7 @@
 #include "ripplenotch/arm/arm_setup.hpp"
 #include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/diagnose/diagnosis.hpp"
-#include "ripplenotch/document/diagnosis_json.hpp"
+#include "ripplenotch/document/results.hpp"
 #include "ripplenotch/export/joint_mjcf.hpp"
 #include "ripplenotch/model/motion.hpp"
 #include "ripplenotch/verdict/given_terms.hpp"
@@ -75,10 +75,10 @@ struct JointDiagnosis {
 /// Names that end in .xml or .mjcf.
 [[nodiscard]] bool names_mjcf(std::string_view path);
 
-/// Writes it to `path`: a joint of its own or, with --arm mjcf,file=..., that file with the joint's friction
-/// and motors in it. Throws what write_into_mjcf and write_text throw.
-[[nodiscard]] MjcfAccount write_improved_mjcf(const DiagnoseRequest& request, const JointDiagnosis& one,
-                                              const std::string& path);
+/// Its text, for a file of this name: a joint of its own or, with --arm mjcf,file=..., that file with the
+/// joint's friction and motors in it. What it holds goes to `one`. Throws what write_into_mjcf throws.
+[[nodiscard]] std::string improved_mjcf(const DiagnoseRequest& request, JointDiagnosis& one,
+                                        const std::string& path);
 
 /// What was held and what was not, a line each.
 [[nodiscard]] std::string mjcf_text(const MjcfAccount& account);
@@ -110,8 +110,8 @@ struct JointDiagnosis {
 /// table what the readers throw, and UsageError for options that a table has no use for.
 [[nodiscard]] std::optional<Log> friction_table_of(const DiagnoseRequest& request);
 
-/// Fits it and tells; -o takes the model.
-ExitCode run_friction_table(const DiagnoseRequest& request, const Log& table,
-                            const std::string& command_line);
+/// Fits it.
+[[nodiscard]] Answer run_friction_table(const DiagnoseRequest& request, const Log& table,
+                                        const std::string& command_line);
 
 }  // namespace ripplenotch

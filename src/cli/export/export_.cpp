@@ -27,14 +27,15 @@
 #include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/core/progress.hpp"
 #include "ripplenotch/core/visible_text.hpp"
-#include "ripplenotch/document/map_json.hpp"
 #include "ripplenotch/document/model_json.hpp"
+#include "ripplenotch/document/results.hpp"
 #include "ripplenotch/document/simulation_json.hpp"
 #include "ripplenotch/document/table_json.hpp"
 #include "ripplenotch/evaluate/contender.hpp"
 #include "ripplenotch/export/joint_target.hpp"
 #include "ripplenotch/export/target.hpp"
 #include "ripplenotch/filter/engine.hpp"
+#include "ripplenotch/filter/map_fit.hpp"
 #include "ripplenotch/verdict/gear_choice.hpp"
 
 namespace ripplenotch {
@@ -74,12 +75,10 @@ ReadBack read_back(const Written& written, const CommonOptions& common) {
 }
 
 // What was found out about it: on standard output, unless the file itself went there.
-void tell_check(const std::string& text, const CommonOptions& common) {
-    if (common.output != "-") {
-        write_text("-", text, ByteSink::Overwrite::no);
-    } else if (common.verbose) {
-        talk_lines(text);
-    }
+Answer told(const std::string& text, const CommonOptions& common, ExitCode code = ExitCode::done) {
+    const bool beside = common.output != "-";
+    if (!beside && common.verbose) talk_lines(text);
+    return {.text = beside ? text : "", .code = code, .beside_output = true};
 }
 
 // Where a generated file is from, and whose it is.
@@ -182,7 +181,7 @@ ExitCode within_tolerance(double error_nm, double whole_nm, std::string_view who
 
 // Writes its code, reads it back and runs it beside the method itself over a million samples.
 // Throws UsageError for a target that takes coefficients only.
-ExitCode export_code(const ExportRequest& request, const Contender& method, const std::string& command_line) {
+Answer export_code(const ExportRequest& request, const Contender& method, const std::string& command_line) {
     if (request.common.json) raise<UsageError>("--json: export of a method as code has no JSON result yet");
     const Spec spec = parse_spec(request.to);
     if (!is_code_target(spec.name)) {
@@ -197,13 +196,13 @@ ExitCode export_code(const ExportRequest& request, const Contender& method, cons
     const ReadBack again = read_back(written, request.common);
     const LoadedCode code = read_method_code(again.bytes, again.source, design, settings);
     const CodeCheck check = run_beside(method, *request.sample_rate, design, code);
-    tell_check(fmt::format("{}: {}, read back and compared with the method over {} samples in {}.\nlargest "
-                           "output          {:.4g} Nm\nlargest difference      {:.1e} Nm\n",
-                           again.source, spec.text(), samples, code.arithmetic, check.largest_nm,
-                           check.largest_error_nm),
-               request.common);
-    return within_tolerance(check.largest_error_nm, check.largest_nm, "largest output",
-                            request.tolerance_percent);
+    return told(fmt::format("{}: {}, read back and compared with the method over {} samples in {}.\nlargest "
+                            "output          {:.4g} Nm\nlargest difference      {:.1e} Nm\n",
+                            again.source, spec.text(), samples, code.arithmetic, check.largest_nm,
+                            check.largest_error_nm),
+                request.common,
+                within_tolerance(check.largest_error_nm, check.largest_nm, "largest output",
+                                 request.tolerance_percent));
 }
 
 // `export` of a ripple map.
@@ -230,7 +229,7 @@ RippleMap map_of_motor(const ExportRequest& request) {
 
 // Writes the map in the form of the target, reads it back and tells what came through. Throws UsageError,
 // DataError.
-ExitCode export_map(const ExportRequest& request, const std::string& command_line) {
+Answer export_map(const ExportRequest& request, const std::string& command_line) {
     if (request.common.json) raise<UsageError>("--json: export of a map has no JSON result yet");
     const Spec spec = parse_spec(request.to);
     const MapTarget& target = find_map_target(spec.name);
@@ -245,20 +244,21 @@ ExitCode export_map(const ExportRequest& request, const std::string& command_lin
     const ReadBack again = read_back(written, request.common);
     const LoadedMap loaded = target.read(again.bytes, again.source, map, settings);
     const MapCheck check = verify_map_export(map, loaded);
-    tell_check(fmt::format("{}: {}, read back and run at {} states in {}.\nripple of the map       {:.4g} Nm "
-                           "rms\nnot representable       {:.4g} Nm rms\nlargest error           {:.2g} Nm\n",
-                           again.source, target.name, check.states, loaded.arithmetic, check.ripple_nm,
-                           check.not_held_nm, check.largest_error_nm),
-               request.common);
-    return within_tolerance(check.largest_error_nm, check.ripple_nm, "map's ripple, rms",
-                            request.tolerance_percent);
+    return told(
+        fmt::format("{}: {}, read back and run at {} states in {}.\nripple of the map       {:.4g} Nm rms\n"
+                    "not representable       {:.4g} Nm rms\nlargest error           {:.2g} Nm\n",
+                    again.source, target.name, check.states, loaded.arithmetic, check.ripple_nm,
+                    check.not_held_nm, check.largest_error_nm),
+        request.common,
+        within_tolerance(check.largest_error_nm, check.ripple_nm, "map's ripple, rms",
+                         request.tolerance_percent));
 }
 
 // `export` of the model of a joint, to what simulates it.
 
 // A function and arguments are not run here: the report lists what they hold, and why they do not hold the
 // rest.
-ExitCode export_model(const ExportRequest& request, const std::string& command_line) {
+Answer export_model(const ExportRequest& request, const std::string& command_line) {
     if (request.common.json) raise<UsageError>("--json: export of a model has no JSON result yet");
     const Spec spec = parse_spec(request.to);
     const JointTarget& target = find_joint_target(spec.name);
@@ -282,8 +282,7 @@ ExitCode export_model(const ExportRequest& request, const std::string& command_l
     for (const MjcfPart& part : written.not_held)
         text += fmt::format("not held: {}: {}\n", part.effect, part.words);
     if (model.ripple) text += "not held: ripple_map: export it from map.json\n";
-    tell_check(text, request.common);
-    return ExitCode::done;
+    return told(text, request.common);
 }
 
 // What was read back, for people.
@@ -396,7 +395,7 @@ void say_violations(const ExportReport& report) {
     }
 }
 
-ExitCode run_export(const ExportRequest& request, const std::string& command_line) {
+Answer run_export(const ExportRequest& request, const std::string& command_line) {
     check_export(request);
     if (is_document(request.table, "map")) return export_map(request, command_line);
     if (is_document(request.table, "model")) return export_model(request, command_line);
@@ -440,16 +439,17 @@ ExitCode run_export(const ExportRequest& request, const std::string& command_lin
     report.arithmetic = arithmetic_name(loaded.bands.front().front().arithmetic);
     report.violations = export_violations(report.checks, request.tolerance_percent);
 
-    if (request.common.json) {
-        write_text("-", export_report_to_json(report, provenance), ByteSink::Overwrite::no);
-    } else {
-        tell_check(export_report_to_text(report), request.common);
-    }
     say_violations(report);
-    return report.violations.empty() ? ExitCode::done : ExitCode::limit_violated;
+    const ExitCode code = report.violations.empty() ? ExitCode::done : ExitCode::limit_violated;
+    Answer answer = request.common.json ? Answer{.code = code, .beside_output = true}
+                                        : told(export_report_to_text(report), request.common, code);
+    answer.document = [report = std::move(report), provenance] {
+        return export_report_to_json(report, provenance);
+    };
+    return answer;
 }
 
-std::function<ExitCode()> attach_export(Options& options) {
+std::function<Answer()> attach_export(Options& options) {
     auto request = std::make_shared<ExportRequest>();
     options.argument("TABLE", request->table, false,
                      "table.json from design, map.json from map, or model.json; - is standard input");

@@ -19,8 +19,9 @@
 #include "ripplenotch/core/files.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/progress.hpp"
-#include "ripplenotch/document/features_json.hpp"
+#include "ripplenotch/document/results.hpp"
 #include "ripplenotch/fleet/features.hpp"
+#include "ripplenotch/fleet/trend.hpp"
 #include "ripplenotch/verdict/gear_choice.hpp"
 #include "ripplenotch/verdict/readings.hpp"
 
@@ -159,7 +160,7 @@ FeatureWork work_of(const FeatureRequest& request) {
 }
 
 // Throws DataError for a line that is none, and for a joint of a log that stands there twice.
-ExitCode merge_lines(const FeatureRequest& request) {
+Answer merge_lines(const FeatureRequest& request) {
     std::map<std::pair<std::string, std::string>, const std::string*> seen;
     std::string text;
     std::size_t lines = 0, failed = 0;
@@ -174,14 +175,13 @@ ExitCode merge_lines(const FeatureRequest& request) {
             text += feature_line_text(line);
         }
     }
-    write_all(request.common.output, text, request.common.overwrite());
     if (failed > 0)
         warn(request.common,
              fmt::format("{} of {} lines have an error instead of descriptors", failed, lines));
-    return ExitCode::done;
+    return {.text = text, .kind = Answer::Text::bytes};
 }
 
-ExitCode run_features(FeatureRequest& request) {
+Answer run_features(FeatureRequest& request) {
     check_output_name(request.common.output, "lines of features", ".ndjson .jsonl .txt");
     if (request.merge) return merge_lines(request);
     const FeatureWork work = work_of(request);
@@ -199,13 +199,12 @@ ExitCode run_features(FeatureRequest& request) {
         }
         if (logs > 1) Progress::current().add(1);
     }
-    write_all(request.common.output, text, request.common.overwrite());
     if (failed > 0 && (logs > 1 || failed > 1))
         warn(request.common, fmt::format("{} of the lines have an error instead of descriptors", failed));
-    return failed > 0 ? ExitCode::data : ExitCode::done;
+    return {.text = text, .kind = Answer::Text::bytes, .code = failed > 0 ? ExitCode::data : ExitCode::done};
 }
 
-std::function<ExitCode()> attach_features(Options& options) {
+std::function<Answer()> attach_features(Options& options) {
     const auto request = std::make_shared<FeatureRequest>();
     options.arguments("LOG", request->logs, true, "logs, in any number");
     attach_gear(options, request->gear);

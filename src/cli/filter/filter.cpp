@@ -14,7 +14,7 @@
 #include "cli/options/joint_runs.hpp"
 #include "cli/options/lists.hpp"
 #include "cli/options/options.hpp"
-#include "cli/options/plot_request.hpp"
+#include "ripplenotch/chart/figures.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/files.hpp"
 #include "ripplenotch/core/gear_account.hpp"
@@ -162,7 +162,6 @@ std::vector<std::string> filter_summary(const FilterMetrics& metrics) {
 /// What the command line asks of filter.
 struct FilterRequest {
     CommonOptions common;
-    PlotRequest plot;
     std::string path;
     ReadOptions log;
     MethodRequest how;
@@ -198,8 +197,6 @@ struct JointWork {
     std::unique_ptr<OtherRipple> other_ripple;  ///< null where the method has no map of other motors
     std::optional<KeptRows> kept;
     FilterMetrics metrics;
-    std::optional<std::string> metrics_path;
-    std::unique_ptr<ByteSink> metrics_sink;
 };
 
 constexpr double faster_than_seen = 1.2;  ///< than any window of a map's logs, to be worth a word
@@ -245,8 +242,6 @@ JointWork start_work(const FilterRequest& request, const LogStream& stream, cons
         metrics.crossover = request.crossover;
         metrics.delays = delay_ledger(method, stream.design_rate(), {request.crossover, true});
     }
-    if (request.metrics) work.metrics_path = with_joint(*request.metrics, joint);
-    if (request.common.json) work.metrics_path.emplace(1, '-');
     return work;
 }
 
@@ -286,7 +281,7 @@ Provenance provenance_of(const FilterRequest& request, const JointWork& work,
 }
 
 /// Reports the result of a joint; true when everything is within the limits.
-bool tell(const FilterRequest& request, JointWork& work, const std::string& command_line) {
+bool tell(const FilterRequest& request, JointWork& work) {
     FilterMetrics& metrics = work.metrics;
     if (work.kept) metrics.measured = measure_kept(*work.method, *work.kept, *metrics.gear);
     work.kept.reset();
@@ -303,10 +298,6 @@ bool tell(const FilterRequest& request, JointWork& work, const std::string& comm
     for (std::string& warning : warnings) warning = in_torque_unit(std::move(warning), unit);
     say_warnings(work.common, warnings);
     for (const std::string& line : filter_summary(metrics)) say(work.common, in_torque_unit(line, unit));
-    if (work.metrics_sink) {
-        work.metrics_sink->write(metrics_to_json(metrics, provenance_of(request, work, command_line)));
-        work.metrics_sink->finish();
-    }
     say_warnings(work.common, broken);
     return broken.empty();
 }
@@ -336,12 +327,7 @@ std::vector<JointWork> start_works(const FilterRequest& request, const LogStream
                         work.method->others.size() == 1 ? "motor" : "motors",
                         joined(work.method->others, ", ", [](const RippleMap& map) { return map.joint; })));
     }
-    for (JointWork& work : works) {
-        work.filter = work.method->start(work.metrics.sample_rate);
-        // Outputs are opened before the work, so that a name that is taken costs nobody an hour.
-        if (work.metrics_path)
-            work.metrics_sink = std::make_unique<ByteSink>(*work.metrics_path, request.common.overwrite());
-    }
+    for (JointWork& work : works) work.filter = work.method->start(work.metrics.sample_rate);
     return works;
 }
 
@@ -371,7 +357,9 @@ void check_several(const FilterRequest& request) {
         raise<UsageError>(
             "--json prints the metrics of one joint; for all of them use --metrics 'NAME-{}.json'",
             joint_mark);
-    if (request.plot.wanted()) raise<UsageError>("--plot draws one joint; select one with --joint");
+    if (request.common.plot || request.common.in_memory)
+        raise<UsageError>("{} one joint; select one with --joint",
+                          request.common.in_memory ? "a torque in memory is of" : "--plot draws");
     if (request.metrics && !names_joint(*request.metrics)) {
         raise<UsageError>("--metrics {}: each joint has metrics of its own; put {} into the name",
                           *request.metrics, joint_mark);
@@ -386,12 +374,12 @@ void check_filter(const FilterRequest& request) {
     }
     if (request.metrics)
         check_output_name(*request.metrics, "a record of metrics", ".json .txt", "--metrics");
-    const bool log_on_stdout = request.common.output == "-" && request.plot.path != "-";
+    const bool log_on_stdout = request.common.output == "-" && !request.common.figure_for_rows();
     if (log_on_stdout && (request.common.json || request.metrics == "-")) {
         raise<UsageError>(
             "the filtered log and its metrics would both go to standard output; name a file with -o");
     }
-    if (request.plot.path == "-" && request.metrics == "-")
+    if (request.common.plot == "-" && request.metrics == "-")
         raise<UsageError>(
             "--plot - and --metrics - would both go to standard output; name a file for one of them");
     if (request.crossover && !(request.crossover->value() > 0.0))
@@ -405,10 +393,45 @@ std::size_t threads_of(const FilterRequest& request) {
     return std::clamp(std::thread::hardware_concurrency(), 1U, enough);
 }
 
-ExitCode run_filter(FilterRequest& request, const std::string& command_line) {
+/// Passes rows on to `writer` (which may be null) and keeps what a figure of them needs; of a log that is
+/// filtered in memory, the torque.
+class WatchedWriter : public LogWriter {
+  public:
+    WatchedWriter(std::unique_ptr<LogWriter> writer, bool keeps_torque)
+        : writer_(std::move(writer)), keeps_torque_(keeps_torque) {}
+    std::string_view prepare(RowBlock& block, Torques torque_nm, std::string& room) const override {
+        return writer_ ? writer_->prepare(block, torque_nm, room) : std::string_view{};
+    }
+    void put(const RowBlock& block, Torques torque_nm, std::string_view bytes) override {
+        const JointRows& joint = block.joints.front();
+        const auto& after = torque_nm.front();
+        for (std::size_t k = 0; k < block.size(); ++k)
+            course_.add({.time_s = block.time_s[k],
+                         .speed_deg_s = joint.velocity_deg_s[k],
+                         .before_nm = joint.torque_nm[k],
+                         .after_nm = after[k]});
+        if (keeps_torque_)
+            torque_nm_.insert(torque_nm_.end(), after.begin(),
+                              after.begin() + static_cast<std::ptrdiff_t>(block.size()));
+        if (writer_) writer_->put(block, torque_nm, bytes);
+    }
+    void finish() override {
+        if (writer_) writer_->finish();
+    }
+    [[nodiscard]] const TorqueCourse& course() const { return course_; }
+    [[nodiscard]] std::vector<double> take_torque() { return std::move(torque_nm_); }
+
+  private:
+    std::unique_ptr<LogWriter> writer_;
+    TorqueCourse course_;
+    bool keeps_torque_;
+    std::vector<double> torque_nm_;
+};
+
+Answer run_filter(FilterRequest& request, const std::string& command_line) {
     check_filter(request);
     request.how.needs_gear = request.gates.min_attenuation_db.has_value();
-    hash_inputs(request.metrics || request.common.json || request.plot.wanted());
+    hash_inputs(request.metrics || request.common.json || request.common.plot);
     JointMethods methods(request.how);
     std::optional<Spool> spool;
     if (methods.needs_log_twice()) spool.emplace(request.path);
@@ -420,40 +443,45 @@ ExitCode run_filter(FilterRequest& request, const std::string& command_line) {
     say_layout(request.common, layout);
     std::vector<JointWork> works = start_works(request, stream, methods, spool);
     std::unique_ptr<LogWriter> writer;
-    if (!request.plot.instead_of(request.common.output)) {
+    if (!request.common.figure_for_rows()) {
         const LogFormat& log_format = find_log_format(stream.reader().layout().format);
         writer = rewrite_log(request.common.output, stream.reader(),
                              output_format(request.common.output, request.output_format, log_format),
                              write_options(request, stream.torque_decimals()), request.common.overwrite());
     }
-    const WatchedWriter* watched = nullptr;
-    if (request.plot.wanted()) {
-        auto watching = std::make_unique<WatchedWriter>(std::move(writer));
-        watched = watching.get();
-        writer = std::move(watching);
-    }
+    std::shared_ptr<WatchedWriter> watched;
+    if (request.common.plot || request.common.in_memory)
+        watched = std::make_shared<WatchedWriter>(std::move(writer), request.common.in_memory);
     std::vector<JointRun> runs;
     for (JointWork& work : works) {
         runs.push_back({work.filter.get(), work.kept ? &*work.kept : nullptr, work.other_ripple.get()});
     }
-    std::vector<StreamReport> reports = stream.run(runs, writer.get(), threads_of(request));
-    bool within = true;
+    std::vector<StreamReport> reports =
+        stream.run(runs, watched ? watched.get() : writer.get(), threads_of(request));
+    Answer answer{.beside_output = true};
     for (std::size_t j = 0; j < works.size(); ++j) {
         works[j].metrics.stream = std::move(reports[j]);
         if (const std::string against = against_gear_of(request, works[j], read); !against.empty())
             warn(works[j].common, against);
-        if (!tell(request, works[j], command_line)) within = false;
+        if (!tell(request, works[j])) answer.code = ExitCode::limit_violated;
+        const auto metrics = [&] {
+            return metrics_to_json(works[j].metrics, provenance_of(request, works[j], command_line));
+        };
+        if (request.common.json) answer.document = [text = metrics()] { return text; };
+        if (request.metrics)
+            answer.files.push_back({with_joint(*request.metrics, works[j].metrics.joint), metrics(), ""});
     }
     if (const auto& messages = works.front().common.messages) messages->say_all(works.size());
-    if (watched != nullptr) {
-        const FilterMetrics& metrics = works.front().metrics;
-        draw_plot(request.plot, request.common, provenance_of(request, works.front(), command_line),
-                  [&] { return watched->course().figure(metrics.source, metrics.method, metrics.stream); });
-    }
-    return within ? ExitCode::done : ExitCode::limit_violated;
+    if (!watched) return answer;
+    answer.provenance = provenance_of(request, works.front(), command_line);
+    answer.columns = {{"torque_nm", watched->take_torque()}};
+    answer.figure = [watched, metrics = std::move(works.front().metrics)] {
+        return watched->course().figure(metrics.source, metrics.method, metrics.stream);
+    };
+    return answer;
 }
 
-std::function<ExitCode()> attach_filter(Options& options) {
+std::function<Answer()> attach_filter(Options& options) {
     auto request = std::make_shared<FilterRequest>();
     options.argument("LOG", request->path, true, "the log to filter; - is standard input");
     options.text("--method", request->how.method, "SPEC",
@@ -478,7 +506,7 @@ std::function<ExitCode()> attach_filter(Options& options) {
     attach_gates(options, request->gates);
     options.count("--threads", request->threads, 0, most_threads,
                   "threads for long logs; the output is the same for any number; 0 is one a core, at most 4");
-    attach_plot(options, request->plot, request->common);
+    attach_plot(options, request->common);
     attach_log(options, request->log);
     attach_common(options, request->common, {});
     return [request, &options] { return run_filter(*request, options.command_line()); };

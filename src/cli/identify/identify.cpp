@@ -16,16 +16,16 @@
 
 #include "cli/command.hpp"
 #include "cli/options/joint_runs.hpp"
-#include "cli/options/plot_request.hpp"
 #include "cli/talk.hpp"
 #include "core/matrices/least_squares.hpp"
 #include "ripplenotch/analysis/identification.hpp"
-#include "ripplenotch/chart/spectrum_figure.hpp"
+#include "ripplenotch/chart/figures.hpp"
 #include "ripplenotch/core/files.hpp"
 #include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/progress.hpp"
-#include "ripplenotch/document/identification_json.hpp"
+#include "ripplenotch/core/visible_text.hpp"
+#include "ripplenotch/document/results.hpp"
 #include "ripplenotch/log/log.hpp"
 #include "ripplenotch/verdict/gear_choice.hpp"
 #include "ripplenotch/verdict/given_terms.hpp"
@@ -241,7 +241,6 @@ constexpr std::size_t fewest_rows_held = most_rows_held / 4;  // of each of many
 
 struct IdentifyRequest {
     CommonOptions common;
-    PlotRequest plot;
     ReadOptions log;
     std::vector<std::string> logs;
     GearOptions gear;  ///< a ratio to check
@@ -434,56 +433,45 @@ void look_for_other_motors(const IdentifyRequest& request, std::span<const Joint
     }
 }
 
-ExitCode run_identify(IdentifyRequest& request, const std::string& command_line) {
+Answer run_identify(IdentifyRequest& request, const std::string& command_line) {
     check_identify(request);
-    hash_where_told(request.common, request.plot);
     Provenance provenance{{}, command_line};
     CommonOptions common = request.common;
     std::vector<Joint> joints = read_all_joints(request, common, provenance);
     std::vector<Identification> found = identified_joints(request, common, joints);
     look_for_other_motors(request, joints, found);
-    if (found.size() > 1 && motors_in_matrix(found).empty() && request.plot.path &&
-        !names_joint(*request.plot.path))
+    const bool has_matrix = !motors_in_matrix(found).empty();
+    if (found.size() > 1 && !has_matrix && common.plot && !names_joint(*common.plot))
         raise<UsageError>(
             "--plot {}: a picture shows one joint, and the log has {}; select one with --joint, or put {} "
             "into the name",
-            *request.plot.path, joints.size(), joint_mark);
-    std::string text;
-    for (std::size_t i = 0; i < found.size(); ++i)
-        text += (text.empty() ? "" : "\n") +
-                in_torque_unit(identification_report(request.common, found[i], log_names(joints[i])),
-                               joints[i].logs.front().recording.torque_unit);
-    text += motor_matrix(found);
-    const bool json_file = ends_with_json(request.common.output);
-    if ((request.common.json || json_file) && names_joint(request.common.output)) {
-        for (const Identification& one : found)
-            write_text(with_joint(request.common.output, one.joint), identification_text(one, provenance),
-                       request.common.overwrite());
-        if (json_file && !request.common.json) write_text("-", text, ByteSink::Overwrite::yes);
-    } else {
-        const auto json = [&] {
-            return found.size() == 1 ? identification_text(found.front(), provenance)
-                                     : identifications_text(found, provenance);
-        };
-        write_result(request.common, json, text);
-    }
-    if (found.size() > 1 && request.plot.wanted() && !names_joint(request.plot.path.value_or(""))) {
-        draw_plot(request.plot, request.common, provenance,
-                  [&] { return motor_matrix_figure(logs_in_words(request.logs), found); });
-    } else {
-        for (const Identification& one : found) {
-            PlotRequest plot = request.plot;
-            if (plot.path && names_joint(*plot.path)) plot.path = with_joint(*plot.path, one.joint);
-            draw_plot(plot, request.common, provenance,
-                      [&] { return identification_figure(logs_in_words(request.logs), one); });
-        }
+            *common.plot, joints.size(), joint_mark);
+    const std::string logs = logs_in_words(request.logs);
+    Answer all;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        const auto one = std::make_shared<const Identification>(found[i]);
+        all.joints.push_back(
+            {.text = in_torque_unit(identification_report(request.common, *one, log_names(joints[i])),
+                                    joints[i].logs.front().recording.torque_unit),
+             .document = [one, provenance] { return identification_text(*one, provenance); },
+             .figure = [one, logs] { return identification_figure(logs, *one); },
+             .provenance = provenance,
+             .joint = one->joint});
     }
     const bool conclusive =
         std::all_of(found.begin(), found.end(), [](const Identification& one) { return one.conclusive; });
-    return conclusive || !request.require_conclusive ? ExitCode::done : ExitCode::inconclusive;
+    if (all.joints.size() == 1) all = Answer(std::move(all.joints.front()));
+    if (!conclusive && request.require_conclusive) all.code = ExitCode::inconclusive;
+    if (all.joints.empty()) return all;
+    all.text = joined(all.joints, "\n", &Answer::text) + motor_matrix(found);
+    all.provenance = provenance;
+    const auto each = std::make_shared<const std::vector<Identification>>(std::move(found));
+    all.document = [each, provenance] { return identifications_text(*each, provenance); };
+    all.figure = [each, logs] { return motor_matrix_figure(logs, *each); };
+    return all;
 }
 
-std::function<ExitCode()> attach_identify(Options& options) {
+std::function<Answer()> attach_identify(Options& options) {
     const auto request = std::make_shared<IdentifyRequest>();
     options.arguments("LOG", request->logs, true, "logs of one joint; several are fitted together");
     attach_gear(options, request->gear,
@@ -495,7 +483,7 @@ std::function<ExitCode()> attach_identify(Options& options) {
     attach_other_motors(options, request->other_motors);
     attach_conclusive(options, request->require_conclusive);
     attach_residual(options, request->residual);
-    attach_plot(options, request->plot, request->common);
+    attach_plot(options, request->common);
     attach_log(options, request->log);
     attach_common(options, request->common, {"what identify found", ".txt .json"});
     return [request, &options] { return run_identify(*request, options.command_line()); };

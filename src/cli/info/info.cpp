@@ -11,12 +11,11 @@
 
 #include "cli/command.hpp"
 #include "cli/options/options.hpp"
-#include "cli/options/plot_request.hpp"
 #include "cli/talk.hpp"
 #include "ripplenotch/core/files.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/visible_text.hpp"
-#include "ripplenotch/document/info_json.hpp"
+#include "ripplenotch/document/results.hpp"
 #include "ripplenotch/log/format.hpp"
 #include "ripplenotch/survey/survey.hpp"
 #include "ripplenotch/verdict/drive.hpp"
@@ -203,8 +202,7 @@ void drive_joints(const InfoRequest& request, const std::string& path, LogInfo& 
     }
 }
 
-ExitCode run_info(const InfoRequest& request, const std::string& command_line) {
-    hash_where_told(request.common);
+Answer run_info(const InfoRequest& request, const std::string& command_line) {
     std::vector<LogInfo> logs;
     Provenance provenance{{}, command_line};
     for (const std::string& path : request.paths) {
@@ -214,20 +212,15 @@ ExitCode run_info(const InfoRequest& request, const std::string& command_line) {
         provenance.inputs.push_back({path, path == "-" ? "" : sha256_as_read(path), log.rows});
         say(request.common, log.source + ": read as if with " + log.layout.options);
     }
-    std::string text;
-    if (request.common.json) {
-        text = info_to_json(logs, provenance);
-    } else {
-        text =
-            joined(logs, "\n", [&](const LogInfo& log) { return info_to_text(log, request.common.verbose); });
-        if (const auto missing = formats_not_built(); !missing.empty())
-            text += fmt::format("\nnot in this build: {}\n", fmt::join(missing, ", "));
-    }
-    write_text(request.common.output, text, request.common.overwrite());
-    return ExitCode::done;
+    Answer answer{
+        joined(logs, "\n", [&](const LogInfo& log) { return info_to_text(log, request.common.verbose); })};
+    if (const auto missing = formats_not_built(); !missing.empty())
+        answer.text += fmt::format("\nnot in this build: {}\n", fmt::join(missing, ", "));
+    answer.document = [logs = std::move(logs), provenance] { return info_to_json(logs, provenance); };
+    return answer;
 }
 
-std::function<ExitCode()> attach_info(Options& options) {
+std::function<Answer()> attach_info(Options& options) {
     auto request = std::make_shared<InfoRequest>();
     options.arguments("LOG", request->paths, true, "logs to look at; - is standard input");
     attach_drive(options, request->drive);

@@ -13,15 +13,14 @@
 
 #include "cli/command.hpp"
 #include "cli/options/joint_runs.hpp"
-#include "cli/options/plot_request.hpp"
 #include "cli/talk.hpp"
 #include "core/matrices/least_squares.hpp"
-#include "ripplenotch/chart/track_figure.hpp"
+#include "ripplenotch/chart/figures.hpp"
 #include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/core/progress.hpp"
-#include "ripplenotch/document/map_json.hpp"
+#include "ripplenotch/document/results.hpp"
 #include "ripplenotch/filter/map_fit.hpp"
 #include "ripplenotch/log/log.hpp"
 #include "ripplenotch/verdict/gear_choice.hpp"
@@ -183,9 +182,7 @@ std::optional<GearAccount> gear_of_other(const MapRequest& request, const JointL
     return gear_of_motor(identify_readings(joint.logs, {}), stated);
 }
 
-ExitCode run_map_once(const MapRequest& request, const std::string& command_line) {
-    check_plot(request.plot, request.common);
-    hash_where_told(request.common, request.plot);
+Answer map_of_joint(const MapRequest& request, const std::string& command_line) {
     Provenance provenance{{}, command_line};
     const GearChoice choice(request.gear);
     const std::optional<GearAccount> gear = choice.of();
@@ -215,15 +212,20 @@ ExitCode run_map_once(const MapRequest& request, const std::string& command_line
     for (const std::string& note : fit.notes) say(request.common, note);
     const std::string heading = request.joint ? fit.map.joint + ": " : "";
     const std::string& unit = logs.front().recording.torque_unit;
-    write_result(
-        request.common, [&] { return in_torque_unit(map_text(fit, provenance), unit); },
-        in_torque_unit(heading + map_report(fit, request.logs), unit));
-    draw_plot(request.plot, request.common, provenance, [&] {
-        if (fit.map.orders.empty())
-            raise<DataError>("--plot: the map is empty, there is nothing to draw: {}", map_verdict(fit));
-        return map_figure(joint_in_words(request.logs.front(), fit.map.joint), fit);
-    });
-    return fit.conclusive || !request.require_conclusive ? ExitCode::done : ExitCode::inconclusive;
+    const auto found = std::make_shared<const MapFit>(std::move(fit));
+    return {
+        .text = in_torque_unit(heading + map_report(*found, request.logs), unit),
+        .document = [found, provenance, unit] { return in_torque_unit(map_text(*found, provenance), unit); },
+        .figure =
+            [found, log = request.logs.front()] {
+                if (found->map.orders.empty())
+                    raise<DataError>("--plot: the map is empty, there is nothing to draw: {}",
+                                     map_verdict(*found));
+                return map_figure(joint_in_words(log, found->map.joint), *found);
+            },
+        .provenance = provenance,
+        .code = found->conclusive || !request.require_conclusive ? ExitCode::done : ExitCode::inconclusive,
+        .joint = found->map.joint};
 }
 
 void check_each(const MapRequest& request) {
@@ -235,25 +237,15 @@ void check_each(const MapRequest& request) {
                               path);
     };
     if (request.common.output != "-" || request.common.json) require_joint("-o", request.common.output);
-    if (request.plot.path) require_joint("--plot", *request.plot.path);
+    if (request.common.plot) require_joint("--plot", *request.common.plot);
     if (!request.gear.any()) raise_no_gear("map");
 }
 
-// A joint that has no map is no reason to keep those of the others back.
-ExitCode run_or_complain(const MapRequest& request, const std::string& command_line) {
-    try {
-        return run_map_once(request, command_line);
-    } catch (const Error& error) {
-        talk(fmt::format("{} map: joint {}: {}", tool_name, *request.log.joint, error.what()));
-        return error.code();
-    }
-}
-
-// Each joint of the first log by itself, with files of its own. The exit code is that of the first joint that
-// failed; where none did, what the maps come to.
-ExitCode run_each(const MapRequest& request, const std::string& command_line) {
+// Each joint of the first log by itself, with files of its own; one that has no map keeps none of the others
+// back. The exit code is that of the first joint that failed; where none did, what the maps come to.
+Answer map_of_each(const MapRequest& request, const std::string& command_line) {
     check_each(request);
-    ExitCode maps = ExitCode::done;
+    Answer all;
     std::optional<ExitCode> failed;
     const AskedJoints joints = joints_asked_for(request.logs.front(), request.log);
     say_left_out(request.common, joints.left_out);
@@ -263,25 +255,28 @@ ExitCode run_each(const MapRequest& request, const std::string& command_line) {
         CommonOptions common = request.common;
         common.joint = joint;
         common.messages = messages;
-        common.output = with_joint(common.output, joint);
         one.take_joint(joint, common);
-        const ExitCode code = run_or_complain(one, command_line);
-        if (code == ExitCode::done || code == ExitCode::inconclusive)
-            maps = std::max(maps, code);
-        else if (!failed)
-            failed = code;
+        try {
+            const Answer& map = all.joints.emplace_back(map_of_joint(one, command_line));
+            all.text += map.text;
+            all.code = std::max(all.code, map.code);
+        } catch (const Error& error) {
+            talk(fmt::format("{} map: joint {}: {}", tool_name, joint, error.what()));
+            if (!failed) failed = error.code();
+        }
     }
     messages->say_all(joints.names.size());
-    return failed.value_or(maps);
+    all.code = failed.value_or(all.code);
+    return all;
 }
 
-ExitCode run_map(MapRequest& request, const std::string& command_line) {
+Answer run_map(MapRequest& request, const std::string& command_line) {
     if (names_joint(request.gear.joint_file.value_or(""))) request.joint_files = request.gear.joint_file;
-    return asks_for_several(request.logs.front(), request.log) ? run_each(request, command_line)
-                                                               : run_map_once(request, command_line);
+    return asks_for_several(request.logs.front(), request.log) ? map_of_each(request, command_line)
+                                                               : map_of_joint(request, command_line);
 }
 
-std::function<ExitCode()> attach_map(Options& options) {
+std::function<Answer()> attach_map(Options& options) {
     const auto request = std::make_shared<MapRequest>();
     options.arguments("LOG", request->logs, true, "logs of one joint; several make one map and are compared");
     attach_gear(options, request->gear);
@@ -289,7 +284,7 @@ std::function<ExitCode()> attach_map(Options& options) {
                    "joint position at which the wave generator's angle counts as 0");
     attach_other_motors(options, request->other_motors);
     attach_conclusive(options, request->require_conclusive);
-    attach_plot(options, request->plot, request->common);
+    attach_plot(options, request->common);
     attach_log(options, request->log);
     attach_common(options, request->common, {"a ripple map", ".txt .json"});
     return [request, &options] { return run_map(*request, options.command_line()); };

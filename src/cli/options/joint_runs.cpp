@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "cli/talk.hpp"
+#include "ripplenotch/core/visible_text.hpp"
 #include "ripplenotch/document/provenance.hpp"
 #include "ripplenotch/verdict/gear_choice.hpp"
 
@@ -61,8 +62,11 @@ void LogRequest::take_joint(const std::optional<std::string>& name, const Common
     common = of_joint;
     if (!name) return;
     joint = log.joint = name;
-    if (plot.path) plot.path = with_joint(*plot.path, *joint);
     if (gear.joint_file) gear.joint_file = with_joint(*gear.joint_file, *joint);
+}
+
+std::string joint_in_words(const std::string& path, const std::string& joint) {
+    return joint.empty() ? path : path + ", joint " + joint;
 }
 
 void say_left_out(const CommonOptions& common, const std::vector<LeftOutJoint>& joints) {
@@ -104,15 +108,6 @@ std::string in_torque_unit(std::string text, const std::string& unit) {
 
 namespace {
 
-/// What the joints that were gone over gave, and those that gave nothing.
-struct JointResults {
-    std::vector<std::string> joints;
-    std::vector<JointResult> results;
-    std::vector<LeftOutJoint> left_out;
-    std::exception_ptr first_error;
-    std::shared_ptr<JointMessages> messages;  ///< for what is said afterwards
-};
-
 void check_several(const LogRequest& request, const std::vector<std::string>& joints) {
     const auto& columns = request.log.columns;
     const auto is_of_joint = [](const std::string& entry) { return !entry.starts_with("time"); };
@@ -120,32 +115,11 @@ void check_several(const LogRequest& request, const std::vector<std::string>& jo
         raise<UsageError>(
             "--columns names columns of one joint, and {} are asked for ({}); select one with --joint",
             joints.size(), fmt::join(joints, ", "));
-    if (request.plot.path && !names_joint(*request.plot.path))
+    if (request.common.plot && !names_joint(*request.common.plot))
         raise<UsageError>(
             "--plot {}: a picture shows one joint, and {} are asked for ({}); select one with --joint, or "
             "put {} into the name",
-            *request.plot.path, joints.size(), fmt::join(joints, ", "), joint_mark);
-}
-
-template <class One>
-JointResults go_over(const CommonOptions& asked, const std::vector<std::string>& joints, const One& one) {
-    JointResults all;
-    CommonOptions common = asked;
-    common.messages = std::make_shared<JointMessages>();
-    for (const std::string& joint : joints) {
-        common.joint = joint;
-        common.output = with_joint(asked.output, joint);
-        try {
-            all.results.push_back(one(joint, common));
-            all.joints.push_back(joint);
-        } catch (const Error& error) {
-            if (!all.first_error) all.first_error = std::current_exception();
-            all.left_out.push_back({joint, error.what()});
-        }
-    }
-    common.messages->say_all(joints.size());
-    all.messages = common.messages;
-    return all;
+            *request.common.plot, joints.size(), fmt::join(joints, ", "), joint_mark);
 }
 
 /// "wide.csv" and "a,b" with quotes where CSV needs them.
@@ -156,14 +130,14 @@ std::string csv_cell(const std::string& text) {
     return cell + '"';
 }
 
-std::string with_joint_column(const JointResults& all) {
+std::string with_joint_column(const std::vector<Answer>& joints) {
     std::string whole;
-    for (std::size_t j = 0; j < all.joints.size(); ++j) {
-        std::string_view text = all.results[j].text;
-        const std::string cell = csv_cell(all.joints[j]);
+    for (const Answer& one : joints) {
+        std::string_view text = one.text;
+        const std::string cell = csv_cell(one.joint);
         for (bool header = true; !text.empty(); header = false) {
             const std::size_t end = std::min(text.find('\n'), text.size() - 1) + 1;
-            if (!header || j == 0) {
+            if (!header || &one == joints.data()) {
                 whole += header ? "joint" : cell;
                 whole += ',';
                 whole += text.substr(0, end);
@@ -174,65 +148,68 @@ std::string with_joint_column(const JointResults& all) {
     return whole;
 }
 
-std::string as_one(const JointResults& all, bool json, std::string_view kind, bool csv) {
-    if (json) {
-        std::vector<JointDocument> documents;
-        for (std::size_t j = 0; j < all.joints.size(); ++j)
-            documents.push_back({all.joints[j], all.results[j].text});
-        return joint_documents_text(kind, documents);
-    }
-    if (csv) return with_joint_column(all);
-    std::string whole;
-    for (std::size_t j = 0; j < all.joints.size(); ++j)
-        whole += (j > 0 ? "\n" : "") + all.joints[j] + ": " + all.results[j].text;
-    return whole;
-}
-
-void write_own(const JointResult& result, const std::string& path, const CommonOptions& common) {
-    if (result.write)
-        result.write();
+Answer of_all(std::vector<Answer> joints, std::string_view documents) {
+    Answer all;
+    all.kind = joints.front().kind;
+    if (all.kind == Answer::Text::rows)
+        all.text = with_joint_column(joints);
     else
-        write_text(path, result.text, common.overwrite());
+        all.text = joined(joints, "\n", [](const Answer& one) { return one.joint + ": " + one.text; });
+    for (const Answer& one : joints)
+        if (one.code != ExitCode::done)
+            all.code = all.code == ExitCode::done ? one.code : std::min(all.code, one.code);
+    all.joints = std::move(joints);
+    std::vector<std::pair<std::string, std::function<std::string()>>> each;
+    for (Answer& one : all.joints) {
+        const auto shared = std::make_shared<const std::function<std::string()>>(std::move(one.document));
+        one.document = [shared] { return (*shared)(); };
+        each.emplace_back(one.joint, one.document);
+    }
+    all.document = [each, documents] {
+        std::vector<JointDocument> texts;
+        for (const auto& [joint, document] : each) texts.push_back({joint, document()});
+        return joint_documents_text(documents, texts);
+    };
+    return all;
 }
 
 }  // namespace
 
-ExitCode run_each_joint(const LogRequest& request, std::string_view documents, bool csv,
-                        const std::function<JointResult(const std::optional<std::string>& joint,
-                                                        const CommonOptions& common)>& one) {
-    const CommonOptions& common = request.common;
+Answer ask_each_joint(
+    const LogRequest& request, std::string_view documents,
+    const std::function<Answer(const std::optional<std::string>& joint, const CommonOptions& common)>& one) {
+    CommonOptions common = request.common;
     if (!can_be_read_again(request.path) && asks_for_several(request.path, request.log))
         raise<UsageError>("--joint {}: standard input can be read once only; give a file",
                           *request.log.joint);
     const AskedJoints asked = joints_asked_for(request.path, request.log);
     const bool several = asked.names.size() + asked.left_out.size() > 1 && request.log.joint;
     if (several || asked.names.size() > 1) say_left_out(common, asked.left_out);
+    // Where others are left out, the name says which is meant.
     if (asked.names.size() < 2) {
-        // Where others are left out, the name says which is meant.
-        const auto only = several ? std::optional(asked.names.front()) : std::nullopt;
-        const JointResult result = one(only, common);
-        write_own(result, common.output, common);
-        if (result.afterwards) result.afterwards();
-        return result.code;
+        Answer answer = one(several ? std::optional(asked.names.front()) : std::nullopt, common);
+        if (!asked.names.empty()) answer.joint = asked.names.front();
+        return answer;
     }
     check_several(request, asked.names);
-    const JointResults all = go_over(common, asked.names, one);
-    if (all.results.empty()) std::rethrow_exception(all.first_error);
-    say_left_out(common, all.left_out);
-    if (names_joint(common.output)) {
-        for (std::size_t j = 0; j < all.joints.size(); ++j)
-            write_own(all.results[j], with_joint(common.output, all.joints[j]), common);
-    } else {
-        write_text(common.output, as_one(all, common.json, documents, csv), common.overwrite());
+    std::vector<Answer> joints;
+    std::vector<LeftOutJoint> left_out;
+    std::exception_ptr first_error;
+    common.messages = std::make_shared<JointMessages>();
+    for (const std::string& joint : asked.names) {
+        common.joint = joint;
+        try {
+            joints.push_back(one(joint, common));
+            joints.back().joint = joint;
+        } catch (const Error& error) {
+            if (!first_error) first_error = std::current_exception();
+            left_out.push_back({joint, error.what()});
+        }
     }
-    ExitCode code = ExitCode::done;
-    for (const JointResult& result : all.results) {
-        if (result.afterwards) result.afterwards();
-        if (result.code != ExitCode::done)
-            code = code == ExitCode::done ? result.code : std::min(code, result.code);
-    }
-    all.messages->say_all(asked.names.size());
-    return code;
+    common.messages->say_all(asked.names.size());
+    if (joints.empty()) std::rethrow_exception(first_error);
+    say_left_out(request.common, left_out);
+    return of_all(std::move(joints), documents);
 }
 
 }  // namespace ripplenotch

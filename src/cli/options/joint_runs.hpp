@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "cli/command.hpp"
 #include "cli/options/options.hpp"
-#include "cli/options/plot_request.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/log/log.hpp"
 #include "ripplenotch/verdict/gear_choice.hpp"
@@ -23,18 +23,9 @@ namespace ripplenotch {
 /// Whether --joint says more than one joint: "all", a list or a range. Throws the same.
 [[nodiscard]] bool asks_for_several(const std::string& path, const ReadOptions& log);
 
-/// What a command makes of one joint.
-struct JointResult {
-    std::string text;  ///< what goes to -o: a document with --json, else CSV or a report
-    ExitCode code = ExitCode::done;
-    std::function<void()> write = {};       ///< into a file of its own; write_text() of `text` when left out
-    std::function<void()> afterwards = {};  ///< when all is written: --plot, limits that are broken
-};
-
 /// What a command on one log is asked, except its own options.
 struct LogRequest {
     CommonOptions common;
-    PlotRequest plot;
     ReadOptions log;
     std::string path;
     GearOptions gear;
@@ -45,21 +36,22 @@ struct LogRequest {
     void take_joint(const std::optional<std::string>& name, const CommonOptions& of_joint);
 };
 
-/// Runs `one` on each joint that is asked for, all where none is, and writes what they give: into a file each
-/// where -o holds {joint}; else one list with --json, one CSV with a column `joint` (`csv`: the texts are
-/// CSV, and no report), or one report below the other. `one` takes the joint and the options that go with it,
-/// or none where the log has one joint: then its result is written as it is. A joint of which it throws Error
-/// is left out with a warning; where none is left, the error of the first is thrown. `documents`: kind of the
-/// document that lists those of all joints, "spectra". The exit code is the lowest that is not
-/// ExitCode::done.
-ExitCode run_each_joint(const LogRequest& request, std::string_view documents, bool csv,
-                        const std::function<JointResult(const std::optional<std::string>& joint,
-                                                        const CommonOptions& common)>& one);
+/// "wide.csv, joint j4": for the title of a figure.
+[[nodiscard]] std::string joint_in_words(const std::string& path, const std::string& joint);
+
+/// Asks `one` about each joint that is asked for, all where none is: one list as JSON, one CSV with a column
+/// `joint`, or one text below the other. `one` takes the joint and the options that go with it, or none where
+/// the log has one joint: then its answer is the answer. A joint of which it throws Error is left out with a
+/// warning; where none is left, the error of the first is thrown. `documents`: kind of the document that
+/// lists those of all joints, "spectra". The exit code is the lowest that is not ExitCode::done.
+[[nodiscard]] Answer ask_each_joint(
+    const LogRequest& request, std::string_view documents,
+    const std::function<Answer(const std::optional<std::string>& joint, const CommonOptions& common)>& one);
 
 /// The same with the request of each joint.
 template <class Request, class One>
-ExitCode run_joints(const Request& request, std::string_view documents, bool csv, const One& one) {
-    return run_each_joint(request, documents, csv, [&](const auto& joint, const CommonOptions& common) {
+[[nodiscard]] Answer ask_joints(const Request& request, std::string_view documents, const One& one) {
+    return ask_each_joint(request, documents, [&](const auto& joint, const CommonOptions& common) {
         Request of_joint = request;
         of_joint.take_joint(joint, common);
         return one(of_joint);

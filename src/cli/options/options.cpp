@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <filesystem>
 #include <string>
 
 #include "cli/options/lists.hpp"
@@ -227,6 +228,12 @@ void Options::Implementation::check_files() const {
         for (const std::string& value : command->get_option(name)->results())
             written.contains(name) ? claims.writes(value, name) : claims.reads(value, name);
     claims.check();
+    std::error_code failed;
+    for (const std::string& name : written)
+        for (const std::string& path : command->get_option(name)->results())
+            if (common != nullptr && !common->force && std::filesystem::is_regular_file(path, failed))
+                raise<FileError>("{}: exists already; choose another name or overwrite it with --force",
+                                 path);
 }
 
 namespace {
@@ -245,6 +252,8 @@ Word in_command_line(std::string_view word) {
 }
 
 }  // namespace
+
+void Options::answers_by(CommonOptions& common) { implementation_.common = &common; }
 
 std::string Options::command_name() const { return implementation_.command->get_name(); }
 
@@ -336,6 +345,7 @@ std::vector<std::string> heading_of(const Provenance& provenance) {
 bool ends_with_json(std::string_view path) { return path.size() > 5 && path.ends_with(".json"); }
 
 void attach_manner(Options& options, CommonOptions& common) {
+    options.answers_by(common);
     const Options::Group group(options, output_group);
     options.flag("--force", common.force, "overwrite existing files");
     options.flag("-q,--quiet", common.quiet, "no warnings on standard error");
@@ -349,6 +359,9 @@ void attach_common(Options& options, CommonOptions& common, const OutputNames& n
             if (common.json) check_output_name(common.output, "JSON", ".json .txt");
         }
         common.json = common.json || (names.json_is_option && ends_with_json(common.output));
+        // Only who tells what was read needs its hash, which costs more than reading it.
+        if (!names.endings.empty())
+            common.hashes = common.json || ends_with_json(common.output) || common.plot;
     });
     attach_output(options, common.output, "where the result goes; - is standard output");
     attach_json(options, common);
@@ -455,14 +468,6 @@ std::string paragraph(const CommonOptions& common, std::string_view sentence, st
 
 std::size_t joint_columns(const CommonOptions& common) {
     return common.messages ? text_width(visible_text(common.joint)) + 2 : 0;
-}
-
-void write_result(const CommonOptions& common, const std::function<std::string()>& json,
-                  const std::string& text) {
-    const bool json_file = ends_with_json(common.output);
-    write_text(common.output, common.json || json_file ? json() : text, common.overwrite());
-    // The file is for the next command; people still want to read what came out.
-    if (json_file && !common.json) write_text("-", text, ByteSink::Overwrite::yes);
 }
 
 void take_log(const CommonOptions& common, const std::string& path, const Log& log, Provenance& provenance) {

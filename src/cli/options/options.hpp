@@ -29,6 +29,8 @@ class App;
 
 namespace ripplenotch {
 
+struct CommonOptions;
+
 inline constexpr std::string_view reading_group = "How the log is read", gear_group = "Gear",
                                   output_group = "Output";
 
@@ -115,6 +117,9 @@ class Options {
     /// Runs when all options are read, before the work.
     void after_parse(std::function<void()> check);
 
+    /// What the answer is written by, for commands that declare no more of it.
+    void answers_by(CommonOptions& common);
+
     [[nodiscard]] std::string command_name() const;
     /// The command line as it would be typed again, without -o, --improved-model, --plot, --force, -q, -v
     /// and --json; for provenance.
@@ -165,7 +170,12 @@ struct CommonOptions {
     std::string joint = {};
     std::shared_ptr<JointMessages> messages = {};
     std::string output = "-";
+    std::optional<std::string> plot = {};
     bool json = false, quiet = false, verbose = false, force = false;
+    bool hashes = true;      ///< inputs are hashed, for an answer that tells what was read
+    bool in_memory = false;  ///< the answer is for another command, and nothing is written
+    /// Rows that would go to standard output are not made: the figure takes their place.
+    [[nodiscard]] bool figure_for_rows() const { return in_memory || (plot == "-" && output == "-"); }
     [[nodiscard]] ByteSink::Overwrite overwrite() const { return {force}; }
 };
 /// What -o may be called. Names that promise another kind of file are refused (core/output_name.hpp).
@@ -239,10 +249,6 @@ void say(const CommonOptions& common, std::string_view sentence);  ///< only wit
 void say_layout(const CommonOptions& common, const Layout& layout);
 /// A log that was read: what is said of it, and its place among the inputs.
 void take_log(const CommonOptions& common, const std::string& path, const Log& log, Provenance& provenance);
-
-/// JSON where it is asked for, by --json or by the name of -o; then the text goes to standard output.
-void write_result(const CommonOptions& common, const std::function<std::string()>& json,
-                  const std::string& text);
 
 // Limits that a user sets on what a method may cost and must do; a violation is exit code 1.
 

@@ -28,7 +28,9 @@ struct Options::Implementation {
     /// Options and arguments that name files, which are read, and those among them that are written.
     std::vector<std::string> files = {};
     std::set<std::string> written = {};
-    /// Throws UsageError where files collide (file_claims.hpp).
+    CommonOptions* common = nullptr;  ///< how the answer is written
+    /// Throws UsageError where files collide (FileClaims), FileError where one that is written exists and may
+    /// not be overwritten: before any work is done.
     void check_files() const;
 
     /// The names for CLI11: "--quality" of "--quality,--q", which goes to `spelled_out`.

@@ -29,7 +29,7 @@
 #include "ripplenotch/core/visible_text.hpp"
 #include "ripplenotch/design/ripple_map.hpp"
 #include "ripplenotch/document/comparison_json.hpp"
-#include "ripplenotch/document/map_json.hpp"
+#include "ripplenotch/document/results.hpp"
 #include "ripplenotch/evaluate/contender.hpp"
 #include "ripplenotch/filter/map_fit.hpp"
 #include "ripplenotch/log/log.hpp"
@@ -619,12 +619,14 @@ RecommendationReport report_of(const RecommendRequest& request, Provenance& prov
     return report;
 }
 
-JointResult recommend_for_joint(const RecommendRequest& request, const std::string& command_line) {
+Answer recommend_for_joint(const RecommendRequest& request, const std::string& command_line) {
     Provenance provenance{{}, command_line};
     const RecommendationReport report = report_of(request, provenance);
-    JointResult result{in_torque_unit(request.common.json ? recommendation_text(report, provenance)
-                                                          : recommendation_view(request.common, report),
-                                      provenance.recordings.front().torque_unit)};
+    const std::string unit = provenance.recordings.front().torque_unit;
+    Answer result{in_torque_unit(recommendation_view(request.common, report), unit)};
+    result.document = [report, provenance, unit] {
+        return in_torque_unit(recommendation_text(report, provenance), unit);
+    };
     if (report.found.finding == RecommendationFinding::out_of_reach)
         result.code = ExitCode::limit_violated;
     else if (request.require_conclusive && !report.conclusive)
@@ -632,13 +634,13 @@ JointResult recommend_for_joint(const RecommendRequest& request, const std::stri
     return result;
 }
 
-ExitCode run_recommend(const RecommendRequest& request, const std::string& command_line) {
+Answer run_recommend(const RecommendRequest& request, const std::string& command_line) {
     check_recommend(request);
-    return run_joints(request, "recommendations", false,
+    return ask_joints(request, "recommendations",
                       [&](const RecommendRequest& one) { return recommend_for_joint(one, command_line); });
 }
 
-std::function<ExitCode()> attach_recommend(Options& options) {
+std::function<Answer()> attach_recommend(Options& options) {
     const auto request = std::make_shared<RecommendRequest>();
     options.argument("LOG", request->path, true, "a log of the joint, as it moves at work");
     attach_gear(options, request->gear);

@@ -4,10 +4,8 @@
 #include <dlfcn.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -16,23 +14,25 @@
 #include <sstream>
 #include <string>
 #include <string_view>
-#include <system_error>
 #include <utility>
 #include <vector>
 
 #include "cli/command.hpp"
-#include "cli/run.hpp"
-#include "core/files/byte_sink.hpp"
+#include "cli/options/joint_runs.hpp"
 #include "document/json/json.hpp"
-#include "page/json_table.hpp"
 #include "page/result_section.hpp"
+#include "ripplenotch/analysis/line_search.hpp"
+#include "ripplenotch/analysis/order_map.hpp"
+#include "ripplenotch/analysis/sweeps.hpp"
+#include "ripplenotch/chart/figures.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/files.hpp"
 #include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
-#include "ripplenotch/document/figure_json.hpp"
+#include "ripplenotch/core/visible_text.hpp"
 #include "ripplenotch/figure/figure.hpp"
+#include "ripplenotch/log/log.hpp"
 #include "ripplenotch/page/page.hpp"
 
 namespace ripplenotch {
@@ -41,48 +41,11 @@ namespace {
 using Words = std::vector<std::string>;
 
 struct LogReport {
-    std::string log;              ///< its path
+    std::string log, name;        ///< its path, and without folders
     std::string piped;            ///< the log itself, where it came through standard input
-    Words reading, gear, motors;  ///< options of the log, of its gear, and whether to look for other motors
+    ReadOptions read;             ///< how it is read, and which of its joints
+    Words reading, gear, motors;  ///< the same as words, without --joint, and of its gear; other motors
     bool quiet = false;
-};
-
-/// A folder for what the commands write, which ends with it.
-class Workspace {
-  public:
-    Workspace() : folder_(temporary_folder() + "/ripplenotch-report-XXXXXX") {
-        if (::mkdtemp(folder_.data()) == nullptr)
-            raise<FileError>("{}: cannot make a folder for the results: {}", folder_,
-                             std::generic_category().message(errno));
-    }
-    ~Workspace() {
-        std::error_code ignored;
-        std::filesystem::remove_all(folder_, ignored);
-    }
-    Workspace(const Workspace&) = delete;
-    Workspace& operator=(const Workspace&) = delete;
-
-    [[nodiscard]] std::string path(std::string_view name) const {
-        return fmt::format("{}/{}", folder_, name);
-    }
-    /// What a command wrote, with its files named as if they were here: the same bytes from every run.
-    [[nodiscard]] std::string text(std::string_view name) const {
-        std::string text = read_all(path(name));
-        const std::string prefix = folder_ + "/";
-        for (std::size_t at = text.find(prefix); at != std::string::npos; at = text.find(prefix, at))
-            text.erase(at, prefix.size());
-        return text;
-    }
-
-    /// Where the commands find the log: its file, or what was piped in, under a name that they can print.
-    [[nodiscard]] std::string holding(const LogReport& report) const {
-        if (report.piped.empty()) return report.log;
-        write_all(path("log.csv"), report.piped, ByteSink::Overwrite{true});
-        return path("log.csv");
-    }
-
-  private:
-    std::string folder_;
 };
 
 Words operator+(Words words, const Words& more) {
@@ -90,29 +53,43 @@ Words operator+(Words words, const Words& more) {
     return words;
 }
 
+/// The words less these options and their values.
+Words without(const Words& words, const Words& options) {
+    Words kept;
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        if (std::find(options.begin(), options.end(), words[i]) != options.end())
+            ++i;
+        else
+            kept.push_back(words[i]);
+    }
+    return kept;
+}
+
 /// One joint of a log: the answer with its picture first, then a section for each question.
 class JointReport {
   public:
-    JointReport(const LogReport& report, std::string title, Words joint)
+    /// `joint`: one of several, or empty.
+    JointReport(const LogReport& report, std::string title, const std::string& joint)
         : report_(report),
-          log_(workspace_.holding(report)),
+          read_(report.read),
           title_(std::move(title)),
-          reading_(report.reading + joint),
-          gear_(report.gear) {}
+          reading_(report.reading),
+          gear_(report.gear) {
+        if (!joint.empty()) read_.joint = joint;
+        if (read_.joint) reading_ = reading_ + Words{"--joint", *read_.joint};
+    }
 
     /// Throws where identify refuses the log: the other commands would repeat its message.
     std::vector<PageSection> sections() {
-        command({"identify", log_, "--json", "-o", workspace_.path("joint.json")},
-                reading_ + ratio() + report_.motors, report_.quiet);
-        const Json found = taken("joint.json", "Which ripple, and which gear");
-        const Json advice = tried({"recommend", log_}, reading_ + report_.gear, "recommendation.json",
-                                  "Which method, and why");
-        const Json log = tried({"info", log_}, reading_, "info.json", "How the log was read");
+        const Json found =
+            taken(answer(Words{"identify", report_.log} + reading_ + ratio() + report_.motors, report_.quiet),
+                  "Which ripple, and which gear");
+        const Json advice =
+            tried(Words{"recommend", report_.log} + reading_ + report_.gear, "Which method, and why");
+        const Json log = tried(Words{"info", report_.log} + reading_, "How the log was read");
         if (advice.contains("take")) show_recommended(advice);
-        if (const auto campbell =
-                figure({"spectrum", log_, "--map", "campbell", "-o", workspace_.path("campbell.csv")},
-                       reading_, "campbell.json"))
-            add("The spectrum at each speed", *campbell);
+        if (const Answer map = attempt({"spectrum", report_.log, "--map", "campbell"}); map.figure)
+            add("The spectrum at each speed", map.figure());
         add_notes(found, advice, log);
         sections_.insert(sections_.begin(), lead(found, advice, log));
         // The answer stands above.
@@ -128,17 +105,17 @@ class JointReport {
         const auto at = std::find(report_.gear.begin(), report_.gear.end(), "--gear-ratio");
         return at == report_.gear.end() ? Words{} : Words{at, at + 2};
     }
-    static void command(const Words& words, const Words& options, bool quiet) {
-        const ExitCode code =
-            run_within(words + options + Words{"--force"} + (quiet ? Words{"-q"} : Words{}));
-        if (code != ExitCode::done && code != ExitCode::inconclusive)
-            raise<DataError>("{} ended with exit code {}", words.front(), static_cast<int>(code));
+    static Answer answer(const Words& words, bool quiet) {
+        Answer found = ask(words + Words{"--json"} + (quiet ? Words{"-q"} : Words{}));
+        if (found.code != ExitCode::done && found.code != ExitCode::inconclusive)
+            raise<DataError>("{} ended with exit code {}", words.front(), static_cast<int>(found.code));
+        return found;
     }
 
-    /// Runs a command that writes JSON, and adds its section; one with its message where it refuses.
-    Json tried(const Words& words, const Words& options, const std::string& file, const std::string& title) {
+    /// Adds the section of a command; one with its message where it refuses.
+    Json tried(const Words& words, const std::string& title) {
         try {
-            command(words + Words{"--json", "-o", workspace_.path(file)}, options, true);
+            return taken(answer(words, true), title);
         } catch (const Error& error) {
             PageSection section;
             section.title = title;
@@ -146,28 +123,26 @@ class JointReport {
             sections_.push_back(std::move(section));
             return Json::object();
         }
-        return taken(file, title);
     }
 
-    Json taken(const std::string& file, const std::string& title) {
-        const std::string text = workspace_.text(file);
-        for (PageSection& section : sections_of_result(text, "")) {
+    Json taken(const Answer& found, const std::string& title) {
+        text_ = found.document();
+        for (PageSection& section : sections_of_result(text_, "")) {
             section.title = title;
             // The page names the log once.
             for (Figure& drawn : section.figures)
                 drawn.title.resize(std::min(drawn.title.size(), drawn.title.find(": ")));
             sections_.push_back(std::move(section));
         }
-        return Json::parse(text);
+        return Json::parse(text_);
     }
 
-    /// The figure that a command draws; a command without one, or a figure without points, is no loss.
-    std::optional<Figure> figure(const Words& words, const Words& options, const std::string& file) {
+    /// What a command draws; one that refuses is no loss.
+    [[nodiscard]] Answer attempt(const Words& words) const {
         try {
-            command(words + Words{"--plot", workspace_.path(file)}, options, true);
-            return figure_from_json(workspace_.text(file), file);
+            return ask(words + reading_ + Words{"-q"});
         } catch (const Error&) {
-            return std::nullopt;
+            return {};
         }
     }
 
@@ -193,48 +168,36 @@ class JointReport {
             if (!orders.empty()) gear_ = gear_ + Words{"--orders", orders_text(orders, ratio, ",")};
         }
         if (!advice["take"].is_string()) return;
-        const auto method = with_files(advice["take"].get<std::string>(), advice);
-        if (!method) return;
-        filtered_ = figure(Words{"filter", log_, "-o", workspace_.path("filtered.csv"), "--decimals", "6",
-                                 "--method", *method},
-                           reading_ + gear_, "filtered.json");
-        if (!filtered_ || filtered_->panels.size() < 2) return;
+        const auto method = advice["take"].get<std::string>();
+        const auto held = file_of(method, advice);
+        if (!held && method.find(".json") != std::string::npos) return;
+        const Answer filtered = attempt(Words{"filter", report_.log, "--method", method} + gear_);
+        if (!filtered.figure) return;
+        filtered_nm_ = filtered.columns.front().values;
+        filtered_ = filtered.figure();
+        if (filtered_->panels.size() < 2) return;
         Figure whole = *filtered_;
         whole.panels.erase(whole.panels.begin());
         add("The whole log, before and after", std::move(whole));
     }
 
-    /// The method with the table or map that it needs, the map made of the first part of the log; none for
-    /// other files.
-    std::optional<std::string> with_files(std::string method, const Json& advice) {
-        const std::size_t file = method.find(".json");
-        if (file == std::string::npos) return method;
-        const std::size_t name = method.rfind('=', file) + 1;
-        const std::string needed = method.substr(name, file + 5 - name);
+    /// The table or map that the method needs, the map made of the first part of the log; none for other
+    /// files.
+    std::unique_ptr<HeldFile> file_of(const std::string& method, const Json& advice) {
         Json made;
-        if (needed == "table.json") {
+        std::string name = "table.json";
+        if (method.find(name) != std::string::npos) {
             std::istringstream design(advice.at("take_commands").at(0).get<std::string>());
             const Words words{std::istream_iterator<std::string>(design), {}};
-            made = tried(Words(words.begin() + 1, words.end() - 2), {}, needed, "The table of notches");
-        } else if (needed == "map.json") {
+            made = tried(Words(words.begin() + 1, words.end() - 2), "The table of notches");
+        } else if (name = "map.json"; method.find(name) != std::string::npos) {
+            // recommend splits what --from and --to leave; its parts have ends of their own.
             const std::string split_s = shortest(advice.at("split_s").get<double>()) + "s";
-            made = tried(Words{"map", log_} + report_.motors,
-                         without_range() + Words{"--to", split_s} + gear_, needed, "The ripple map");
+            made = tried(Words{"map", report_.log} + report_.motors + without(reading_, {"--from", "--to"}) +
+                             Words{"--to", split_s} + gear_,
+                         "The ripple map");
         }
-        if (made.empty()) return std::nullopt;
-        return method.insert(name, workspace_.path(""));
-    }
-
-    // recommend splits what --from and --to leave; its parts have ends of their own.
-    [[nodiscard]] Words without_range() const {
-        Words words;
-        for (std::size_t i = 0; i < reading_.size(); ++i) {
-            if (reading_[i] == "--from" || reading_[i] == "--to")
-                ++i;
-            else
-                words.push_back(reading_[i]);
-        }
-        return words;
+        return made.empty() ? nullptr : std::make_unique<HeldFile>(name, text_);
     }
 
     PageSection lead(const Json& found, const Json& advice, const Json& log) {
@@ -266,39 +229,42 @@ class JointReport {
         return text + ".";
     }
 
+    /// The spectrum over orders; none where the joint nowhere turns far enough.
+    static std::optional<Panel> over_orders(const TraceView& trace) {
+        const Stack stack = stack_sweeps(cut_sweeps({&trace, 1}, MotionLinesOptions{}.sweeps).pieces);
+        if (stack.first >= stack.averages.size()) return std::nullopt;
+        return order_spectrum_figure("", stack, {}).panels.front();
+    }
+
     /// A detail of the torque, and the spectrum over orders, each before and after the method.
     std::optional<Figure> first_picture(const Json& found) {
-        const Words by_order{"--domain", "order"};
-        auto before = figure(Words{"spectrum", log_, "-o", workspace_.path("before.csv")} + by_order,
-                             reading_, "before.json");
-        if (before && before->panels.size() == 1) before->panels[0].y.label = "amplitude";
         Figure picture{"torque", "", "", {}};
         if (filtered_) {
             picture.panels.push_back(filtered_->panels.front());
             picture.panels.back().title = "Torque, where the ripple is largest";
         }
-        if (before && before->panels.size() == 1) {
-            Panel panel = std::move(before->panels.front());
-            panel.title = "Spectrum over orders";
-            panel.curves.resize(1);
-            panel.curves[0].name = filtered_ ? "before" : "torque";
-            panel.curves[0].ink = Ink::orange;
-            name_lines(panel, found);
-            if (filtered_) {
-                const Words spectrum{"spectrum", workspace_.path("filtered.csv"), "-o",
-                                     workspace_.path("after.csv")};
-                auto after = figure(spectrum + by_order, reading_, "after.json");
-                if (!after) after = figure(spectrum + by_order, {}, "after.json");
-                if (after && after->panels.size() == 1) {
-                    panel.curves.push_back(std::move(after->panels.front().curves.front()));
-                    panel.curves.back().name = "after";
-                    panel.curves.back().ink = Ink::blue;
-                    const auto& low = panel.curves.back().y;
-                    panel.y.from = std::min(panel.y.from.value_or(1e300),
-                                            0.7 * *std::min_element(low.begin(), low.end()));
-                }
+        Log log;
+        try {
+            log = read_log(report_.log, read_);
+        } catch (const Error&) {
+            return picture.panels.empty() ? std::nullopt : std::optional(picture);
+        }
+        if (auto panel = over_orders(log.trace.view())) {
+            panel->title = "Spectrum over orders";
+            panel->y.label = "amplitude";
+            panel->curves.resize(1);
+            panel->curves[0].name = filtered_ ? "before" : "torque";
+            panel->curves[0].ink = Ink::orange;
+            name_lines(*panel, found);
+            if (filtered_nm_.size() == log.trace.torque_nm.size()) {
+                log.trace.torque_nm = std::move(filtered_nm_);
+                Curve& after = panel->curves.emplace_back(over_orders(log.trace.view())->curves.front());
+                after.name = "after";
+                after.ink = Ink::blue;
+                panel->y.from = std::min(panel->y.from.value_or(1e300),
+                                         0.7 * *std::min_element(after.y.begin(), after.y.end()));
             }
-            picture.panels.push_back(std::move(panel));
+            picture.panels.push_back(std::move(*panel));
         }
         if (picture.panels.empty()) return std::nullopt;
         // The answer below shall be on the same screen.
@@ -386,24 +352,13 @@ class JointReport {
     static constexpr std::string_view not_shown = "What the log does not show";
 
     const LogReport& report_;
-    Workspace workspace_;
-    std::string log_, title_;
+    ReadOptions read_;
+    std::string title_, text_;  ///< of the document that was taken last
     Words reading_, gear_;
     std::vector<PageSection> sections_;
     std::optional<Figure> filtered_;
+    std::vector<double> filtered_nm_;
 };
-
-/// The joints of a log that are named, as options; one without any where it has one joint or one was chosen.
-std::vector<std::string> joints_of(const LogReport& report) {
-    if (std::find(report.reading.begin(), report.reading.end(), "--joint") != report.reading.end()) return {};
-    const Workspace workspace;
-    run_within(Words{"info", workspace.holding(report), "--json", "-o", workspace.path("info.json"), "-q"} +
-               report.reading);
-    std::vector<std::string> names;
-    for (const Json& joint : Json::parse(workspace.text("info.json")).value("joints", Json::array()))
-        if (joint["joint"].is_string()) names.push_back(joint["joint"].get<std::string>());
-    return names.size() > 1 ? names : std::vector<std::string>{};
-}
 
 // False for what commands wrote: a JSON object whose first lines name its schema.
 bool is_log(std::string_view text) {
@@ -418,7 +373,7 @@ std::string shown_name(const std::string& path) {
     return path == "-" ? "standard input" : std::filesystem::path(path).filename().string();
 }
 
-// Runs the commands on each log, and on each joint of it, one after the other: the answer with its picture
+// Asks the commands about each log, and each joint of it, one after the other: the answer with its picture
 // first, then a section for each question; before all that a table where there are several joints. What one
 // of the commands refuses is a section with its message; without a log that can be read, or a torque in it,
 // Error is thrown.
@@ -426,39 +381,44 @@ std::vector<PageSection> sections_of_logs(const std::vector<LogReport>& reports)
     PageSection overview;
     overview.leads = true;
     overview.tables.push_back({"", {"joint", "answer"}, {}});
+    auto& rows = overview.tables.front().rows;
     std::vector<PageSection> all;
-    const auto add = [&](const LogReport& report, const std::string& title, const Words& joint) {
+    const auto add = [&](const LogReport& report, const std::string& title, const std::string& joint) {
         auto sections = JointReport(report, title, joint).sections();
-        overview.tables[0].rows.push_back({title, sections.front().verdict});
+        rows.push_back({title, sections.front().verdict});
         all.insert(all.end(), std::make_move_iterator(sections.begin()),
                    std::make_move_iterator(sections.end()));
     };
     for (const LogReport& report : reports) {
-        const auto joints = joints_of(report);
-        const std::string name = shown_name(report.log);
-        for (const std::string& joint : joints) {
+        std::optional<HeldFile> held;
+        if (!report.piped.empty()) held.emplace(report.log, report.piped);
+        const AskedJoints joints = joints_asked_for(report.log, report.read);
+        if (joints.names.empty() || joints.names.size() + joints.left_out.size() == 1) {
+            add(report, report.name, "");
+            continue;
+        }
+        for (const std::string& joint : joints.names) {
             // A joint that one command refuses is said in the table; the others have their sections.
             try {
-                add(report, reports.size() > 1 ? fmt::format("{}, {}", name, joint) : joint,
-                    {"--joint", joint});
+                add(report, reports.size() > 1 ? fmt::format("{}, {}", report.name, joint) : joint, joint);
             } catch (const DataError& error) {
-                overview.tables[0].rows.push_back({joint, error.what()});
+                rows.push_back({joint, error.what()});
             }
         }
-        if (joints.empty()) add(report, name, {});
+        for (const LeftOutJoint& one : joints.left_out) rows.push_back({one.joint, one.why});
     }
-    if (overview.tables[0].rows.size() < 2) return all;
+    if (rows.size() < 2) return all;
     overview.title = "The joints";
     all.insert(all.begin(), std::move(overview));
     return all;
 }
 
 struct ReportRequest {
+    CommonOptions common;
     ReadOptions reading;
     GearOptions gear;
     std::vector<std::string> results;
-    std::string output = "-";
-    bool force = false, quiet = false, other_motors = false;
+    bool other_motors = false;
 };
 
 // Where the build and the installation put it, as seen from the program itself or from the Python module.
@@ -480,9 +440,7 @@ std::optional<std::string> installed_plotly() {
 std::optional<std::string> plotly_js_of(const ReportRequest& request) {
     const auto path = installed_plotly();
     if (!path) {
-        CommonOptions common;
-        common.quiet = request.quiet;
-        warn(common,
+        warn(request.common,
              "plotly.js is not installed (scripts/setup does it where there is npm), so the page carries "
              "pictures instead of plots");
         return std::nullopt;
@@ -504,21 +462,24 @@ std::string beginning_of(const std::string& path) {
     return text;
 }
 
-ExitCode run_report(const ReportRequest& request, const Options& options) {
-    if (ends_with_json(request.output))
-        raise<UsageError>("-o {}: a report is an HTML page; name it .html", request.output);
-    check_output_name(request.output, "a report", ".html .htm");
+Answer run_report(const ReportRequest& request, const Options& options) {
+    const std::string& output = request.common.output;
+    if (ends_with_json(output)) raise<UsageError>("-o {}: a report is an HTML page; name it .html", output);
+    check_output_name(output, "a report", ".html .htm");
     std::vector<LogReport> logs;
-    std::vector<std::string> names;
     Page page{"ripplenotch report", {}};
     for (const std::string& path : request.results) {
         // A log may be longer than the memory; what commands wrote is not.
         std::string text = path == "-" ? read_all(path) : beginning_of(path);
         if (!path.ends_with(".json") && is_log(text)) {
-            logs.push_back({path, path == "-" ? std::move(text) : "", options.given(reading_group),
+            logs.push_back({path == "-" ? "log.csv" : path,
+                            shown_name(path),
+                            path == "-" ? text : "",
+                            request.reading,
+                            without(options.given(reading_group), {"--joint"}),
                             options.given(gear_group),
-                            Words{"--other-motors", request.other_motors ? "yes" : "no"}, request.quiet});
-            names.push_back(shown_name(path));
+                            {"--other-motors", request.other_motors ? "yes" : "no"},
+                            request.common.quiet});
             continue;
         }
         for (PageSection& section : sections_of_result(path == "-" ? text : read_all(path), input_name(path)))
@@ -528,24 +489,24 @@ ExitCode run_report(const ReportRequest& request, const Options& options) {
         raise<UsageError>("a report is one of logs, or one of results; read {}",
                           fmt::join(request.results, ", "));
     if (!logs.empty()) {
-        page.title = fmt::format("{}", fmt::join(names, ", "));
+        page.title = joined(logs, ", ", &LogReport::name);
         page.sections = sections_of_logs(logs);
     }
-    write_all(request.output, html_page(page, plotly_js_of(request)), ByteSink::Overwrite{request.force});
-    return ExitCode::done;
+    return {.text = html_page(page, plotly_js_of(request)), .kind = Answer::Text::bytes};
 }
 
-std::function<ExitCode()> attach_report(Options& options) {
+std::function<Answer()> attach_report(Options& options) {
     const auto request = std::make_shared<ReportRequest>();
     options.arguments("RESULT", request->results, true,
                       "logs, of which info, identify, recommend and filter are run; or JSON that "
                       "commands wrote: joint.json, table.json, metrics, comparisons, diagnoses, figures "
                       "(--plot FILE.json); - is standard input");
-    attach_output(options, request->output, "where the page goes; - is standard output");
+    options.answers_by(request->common);
+    attach_output(options, request->common.output, "where the page goes; - is standard output");
     {
         const Options::Group group(options, output_group);
-        options.flag("--force", request->force, "overwrite existing files");
-        options.flag("-q,--quiet", request->quiet, "no warnings on standard error");
+        options.flag("--force", request->common.force, "overwrite existing files");
+        options.flag("-q,--quiet", request->common.quiet, "no warnings on standard error");
     }
     options.flag("--other-motors", request->other_motors,
                  "look in each joint for ripple of the other joints' motors as well, which takes a while");

@@ -245,9 +245,11 @@ void check_simulate(const SimulateOptions& options) {
     }
 }
 
-std::string summary(const SimulateOptions& options, const Model& model, Hertz sample_rate,
-                    std::vector<Recording> recordings, const std::optional<Followed>& followed,
-                    const std::vector<NumberColumn>& columns) {
+// Of the file as it will be written.
+std::function<std::string()> summary(const SimulateOptions& options, const Model& model, Hertz sample_rate,
+                                     std::vector<Recording> recordings,
+                                     const std::optional<Followed>& followed,
+                                     const std::vector<NumberColumn>& columns) {
     Simulation made{.model = model,
                     .gear = assembled_gear(options.joint, model),
                     .motions = options.motions,
@@ -260,7 +262,7 @@ std::string summary(const SimulateOptions& options, const Model& model, Hertz sa
                     .rows = columns[0].values.size(),
                     .columns = {},
                     .output = options.common.output,
-                    .output_sha256 = sha256_of_file(options.common.output)};
+                    .output_sha256 = {}};
     for (const NumberColumn& column : columns) made.columns.push_back(column.name);
     const auto slower = [](double a, double b) { return std::abs(a) < std::abs(b); };
     const auto [slow, fast] = std::minmax_element(columns[1].values.begin(), columns[1].values.end(), slower);
@@ -276,38 +278,38 @@ std::string summary(const SimulateOptions& options, const Model& model, Hertz sa
         provenance.inputs.push_back(input_record(options.log));
         provenance.inputs.back().rows = made.rows;
     }
-    return write_simulation(made, provenance);
+    return [made, provenance]() mutable {
+        made.output_sha256 = sha256_of_file(made.output);
+        return write_simulation(made, provenance);
+    };
 }
 
-ExitCode simulate(const SimulateOptions& options) {
+Answer simulate(const SimulateOptions& options) {
     check_simulate(options);
     const LogFormat& format = output_format(options.common.output, options.format);
     const ModelWithGiven whole = assemble_model(options.joint, options.along_log());
     const Model& model = whole.model;
     say(options.common, gear_in_words(assembled_gear(options.joint, model)));
-    ByteSink sink(options.common.output, options.common.overwrite(), format.binary);
     Course course = course_of(options, whole);
     std::vector<Recording> recordings = std::move(course.recordings);
     const Hertz sample_rate =
         recordings.empty() ? course.motion.sample_rate : recordings.front().clock.nominal_rate;
     Progress::current().begin("simulating", "", 0);
     const auto gap = followed(options, model, course);
-    const auto columns = make_columns(options, model, std::move(course));
-    format.write_columns(sink, columns);
-    sink.finish();
+    Answer answer{
+        .columns = make_columns(options, model, std::move(course)), .format = &format, .beside_output = true};
+    const auto& columns = answer.columns;
     say(options.common, fmt::format("{} rows of {} columns at {} Hz as {}", columns[0].values.size(),
                                     columns.size(), shortest(sample_rate.value()), format.name));
     if (gap) {
         say(options.common, fmt::format("measured less modelled torque: {:.4g} Nm rms of {:.4g} Nm rms",
                                         gap->residual_rms_nm, gap->measured_rms_nm));
     }
-    if (options.common.json)
-        write_text("-", summary(options, model, sample_rate, std::move(recordings), gap, columns),
-                   ByteSink::Overwrite::no);
-    return ExitCode::done;
+    answer.document = summary(options, model, sample_rate, std::move(recordings), gap, columns);
+    return answer;
 }
 
-std::function<ExitCode()> attach_simulate(Options& options) {
+std::function<Answer()> attach_simulate(Options& options) {
     auto o = std::make_shared<SimulateOptions>();
     options.argument("LOG", o->log, false, "log whose measured motion is used instead of --motion");
     attach_joint_model(options, o->joint);

@@ -18,12 +18,11 @@
 #include "cli/command.hpp"
 #include "cli/options/joint_runs.hpp"
 #include "cli/options/options.hpp"
-#include "cli/options/plot_request.hpp"
 #include "cli/talk.hpp"
 #include "ripplenotch/analysis/order_map.hpp"
 #include "ripplenotch/analysis/spectrum.hpp"
 #include "ripplenotch/analysis/sweeps.hpp"
-#include "ripplenotch/chart/spectrum_figure.hpp"
+#include "ripplenotch/chart/figures.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/files.hpp"
 #include "ripplenotch/core/number.hpp"
@@ -180,12 +179,6 @@ struct SpectrumRequest : LogRequest {
     [[nodiscard]] bool in_pieces() const { return segment && !needs_motion(); }
 };
 
-/// What goes to the output, and the figure of it.
-struct Result {
-    std::string text;
-    std::function<Figure()> figure;
-};
-
 // One row a cell: speed_deg_s, then frequency_hz, order (with a gear ratio) or order_output, then
 // amplitude_nm.
 std::string map_csv(const SpeedMap& map, std::string_view axis_name) {
@@ -229,7 +222,7 @@ MapLines map_lines(const SpectrumRequest& request, Provenance& provenance) {
     return lines;
 }
 
-Result map_result(const SpectrumRequest& request, const MapLines& lines, const Trace& trace,
+Answer map_answer(const SpectrumRequest& request, const MapLines& lines, const Trace& trace,
                   const Provenance& provenance) {
     const bool campbell = *request.map == "campbell";
     const TraceView view = trace.view();
@@ -249,33 +242,37 @@ Result map_result(const SpectrumRequest& request, const MapLines& lines, const T
         warn(request.common, words);
     else
         say(request.common, words);
-    std::string text = request.common.json ? speed_map_text(trace.joint, map, axis, lines.gear, provenance)
-                                           : map_csv(map, axis);
-    return {std::move(text),
-            [map = std::move(map), lines, source = joint_in_words(request.path, trace.joint)] {
-                return speed_map_figure(source, map, lines);
-            }};
+    const auto found = std::make_shared<const SpeedMap>(std::move(map));
+    return {
+        .text = request.is_csv() ? map_csv(*found, axis) : "",
+        .document =
+            [=, joint = trace.joint] { return speed_map_text(joint, *found, axis, lines.gear, provenance); },
+        .figure = [=, source = joint_in_words(
+                          request.path, trace.joint)] { return speed_map_figure(source, *found, lines); }};
 }
 
-Result order_result(const SpectrumRequest& request, const TraceView& trace, const std::string& joint,
+Answer order_answer(const SpectrumRequest& request, const TraceView& trace, const std::string& joint,
                     const std::string& doubt, const Provenance& provenance) {
     if (request.segment) raise<UsageError>("--segment belongs to --domain frequency");
     MotionLinesOptions options;
     options.false_alarm = request.false_alarm;
-    OrderSpectrum result{stack_sweeps(cut_sweeps({&trace, 1}, options.sweeps).pieces),
-                         find_motion_lines({&trace, 1}, options), doubt};
+    const OrderSpectrum result{stack_sweeps(cut_sweeps({&trace, 1}, options.sweeps).pieces),
+                               find_motion_lines({&trace, 1}, options), doubt};
     if (result.lines.sweeps == 0) {
         raise<DataError>(
             "{}: the joint nowhere moves {} output turns in one direction, so there is no order spectrum",
             request.path, shortest(options.sweeps.shortest_turns));
     }
-    std::string text = request.common.json
-                           ? order_spectrum_text(joint, result, request.false_alarm, provenance)
-                       : request.is_csv() ? order_csv(result.stack)
-                                          : order_peaks(result);
-    return {std::move(text), [result, source = joint_in_words(request.path, joint)] {
-                return order_spectrum_figure(source, result.stack, result.lines);
-            }};
+    const auto found = std::make_shared<const OrderSpectrum>(result);
+    return {.text = request.is_csv() ? order_csv(result.stack) : order_peaks(result),
+            .document =
+                [=, false_alarm = request.false_alarm] {
+                    return order_spectrum_text(joint, *found, false_alarm, provenance);
+                },
+            .figure =
+                [=, source = joint_in_words(request.path, joint)] {
+                    return order_spectrum_figure(source, found->stack, found->lines);
+                }};
 }
 
 // A piece that is longer than what there is is all of it.
@@ -287,21 +284,25 @@ void say_segment(const SpectrumRequest& request, const Spectrum& spectrum) {
                                      shortest(request.segment->value()), piece_s));
 }
 
-Result frequency_result(const SpectrumRequest& request, LogSpectrum found, const std::string& joint,
+Answer frequency_answer(const SpectrumRequest& request, LogSpectrum found, const std::string& joint,
                         const Provenance& provenance) {
     say_segment(request, found.spectrum);
     if (request.is_csv() && request.common.verbose && !request.common.quiet)
         talk_lines(frequency_peaks(found));
-    std::string text = request.common.json ? spectrum_text(joint, found, request.false_alarm, provenance)
-                       : request.is_csv()  ? frequency_csv(found.spectrum)
-                                           : frequency_peaks(found);
-    return {std::move(text), [found = std::move(found), source = joint_in_words(request.path, joint)] {
-                return spectrum_figure(source, found.spectrum, found.stretch.smears_orders());
-            }};
+    const auto made = std::make_shared<const LogSpectrum>(std::move(found));
+    return {.text = request.is_csv() ? frequency_csv(made->spectrum) : frequency_peaks(*made),
+            .document =
+                [=, false_alarm = request.false_alarm] {
+                    return spectrum_text(joint, *made, false_alarm, provenance);
+                },
+            .figure =
+                [=, source = joint_in_words(request.path, joint)] {
+                    return spectrum_figure(source, made->spectrum, made->stretch.smears_orders());
+                }};
 }
 
 /// The log goes by and is not held.
-Result piecewise_result(const SpectrumRequest& request, Provenance& provenance) {
+Answer piecewise_answer(const SpectrumRequest& request, Provenance& provenance) {
     ReadOptions reading = request.log;
     reading.needs_velocity = false;
     LogPasses log(request.path, reading);
@@ -311,10 +312,10 @@ Result piecewise_result(const SpectrumRequest& request, Provenance& provenance) 
     });
     provenance.inputs.push_back(input_record(request.path));
     provenance.recordings.push_back({log.log().recording});
-    return frequency_result(request, std::move(spectrum), log.log().layout.chosen.joint, provenance);
+    return frequency_answer(request, std::move(spectrum), log.log().layout.chosen.joint, provenance);
 }
 
-Result whole_result(const SpectrumRequest& request, Provenance& provenance) {
+Answer whole_answer(const SpectrumRequest& request, Provenance& provenance) {
     const MapLines lines = request.map ? map_lines(request, provenance) : MapLines{};
     if (lines.gear) say(request.common, gear_in_words(*lines.gear));
     ReadOptions reading = read_options(request.log, lines.gear);
@@ -330,37 +331,37 @@ Result whole_result(const SpectrumRequest& request, Provenance& provenance) {
     const std::string doubt =
         by_order ? reading_doubt({&log, 1}, [](const OtherReading&) { return true; }) : "";
     if (!doubt.empty()) warn(request.common, doubt);
-    if (request.map) return map_result(request, lines, log.trace, provenance);
+    if (request.map) return map_answer(request, lines, log.trace, provenance);
     const TraceView trace = log.trace.view();
-    if (request.domain == "order") return order_result(request, trace, log.trace.joint, doubt, provenance);
-    return frequency_result(
+    if (request.domain == "order") return order_answer(request, trace, log.trace.joint, doubt, provenance);
+    return frequency_answer(
         request, {whole_log(trace), torque_spectrum(trace, {request.segment, request.false_alarm})},
         log.trace.joint, provenance);
 }
 
-JointResult spectrum_of_joint(const SpectrumRequest& request, const std::string& command_line) {
+Answer spectrum_of_joint(const SpectrumRequest& request, const std::string& command_line) {
     Provenance provenance{{}, command_line};
-    Result made =
-        request.in_pieces() ? piecewise_result(request, provenance) : whole_result(request, provenance);
-    JointResult result{std::move(made.text)};
-    if (!request.is_csv())
-        result.text = in_torque_unit(std::move(result.text), provenance.recordings.front().torque_unit);
-    // A figure in the terminal takes the place of the bins, and not that of the tables.
-    if (request.is_csv() && request.plot.instead_of(request.common.output)) result.write = [] {};
-    result.afterwards = [request, provenance = std::move(provenance), figure = std::move(made.figure)] {
-        draw_plot(request.plot, request.common, provenance, figure);
+    Answer answer =
+        request.in_pieces() ? piecewise_answer(request, provenance) : whole_answer(request, provenance);
+    const std::string unit = provenance.recordings.front().torque_unit;
+    if (request.is_csv())
+        answer.kind = Answer::Text::rows;
+    else
+        answer.text = in_torque_unit(std::move(answer.text), unit);
+    answer.document = [document = std::move(answer.document), unit] {
+        return in_torque_unit(document(), unit);
     };
-    return result;
+    answer.provenance = std::move(provenance);
+    return answer;
 }
 
-ExitCode run_spectrum(SpectrumRequest& request, const std::string& command_line) {
+Answer run_spectrum(SpectrumRequest& request, const std::string& command_line) {
     if (!(request.false_alarm > 0.0) || request.false_alarm > 0.5) {
         raise<UsageError>("--false-alarm {} is not between 0 and 0.5", shortest(request.false_alarm));
     }
     request.track.speed_step = request.speed_step;
     check_speed_map(request);
     check_track(request.track);
-    hash_where_told(request.common, request.plot);
     const bool of_spectrum = request.segment || request.bins || request.domain != "frequency";
     if (request.track.wanted) {
         if (request.map || of_spectrum || request.residual.any())
@@ -377,11 +378,11 @@ ExitCode run_spectrum(SpectrumRequest& request, const std::string& command_line)
     if (request.bins && request.common.json)
         raise<UsageError>("--bins and --json: the bins are CSV, and not the lines; give one of them");
     take_joint_of(request.residual, request.log.joint);
-    return run_joints(request, "spectra", request.is_csv(),
+    return ask_joints(request, "spectra",
                       [&](const SpectrumRequest& one) { return spectrum_of_joint(one, command_line); });
 }
 
-std::function<ExitCode()> attach_spectrum(Options& options) {
+std::function<Answer()> attach_spectrum(Options& options) {
     const auto request = std::make_shared<SpectrumRequest>();
     options.argument("LOG", request->path, true, "a log; - is standard input");
     options.choice("--domain", request->domain, domain_names,
@@ -407,7 +408,7 @@ std::function<ExitCode()> attach_spectrum(Options& options) {
                    true);
     attach_track(options, request->track);
     attach_residual(options, request->residual);
-    attach_plot(options, request->plot, request->common);
+    attach_plot(options, request->common);
     attach_log(options, request->log);
     attach_common(options, request->common, {"a spectrum", ".csv .txt .npy .json", true});
     return [request, &options] { return run_spectrum(*request, options.command_line()); };

@@ -36,6 +36,6 @@ void attach_track(Options& options, TrackRequest& request);
 /// Throws UsageError where an option of the track is given without it.
 void check_track(const TrackRequest& request);
 
-ExitCode run_track(const TrackRequest& request, const std::string& command_line);
+[[nodiscard]] Answer run_track(const TrackRequest& request, const std::string& command_line);
 
 }  // namespace ripplenotch

@@ -14,7 +14,7 @@
 #include "cli/talk.hpp"
 #include "ripplenotch/analysis/sweeps.hpp"
 #include "ripplenotch/analysis/track_report.hpp"
-#include "ripplenotch/chart/track_figure.hpp"
+#include "ripplenotch/chart/figures.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/visible_text.hpp"
 #include "ripplenotch/document/spectrum_json.hpp"
@@ -143,15 +143,7 @@ std::vector<NumberColumn> columns_of(const TrackReport& report) {
     return columns;
 }
 
-void write_columns(const TrackRequest& request, const TrackReport& report) {
-    const LogFormat& format = output_format(request.common.output, std::nullopt);
-    const std::vector<NumberColumn> columns = columns_of(report);
-    ByteSink sink(request.common.output, request.common.overwrite(), format.binary);
-    format.write_columns(sink, columns);
-    sink.finish();
-}
-
-// The same as text, for the rows of several joints below one another.
+// As text, for the rows of several joints below one another.
 std::string csv_of(const TrackReport& report) {
     const std::vector<NumberColumn> columns = columns_of(report);
     std::string text = joined(columns, ",", [](const NumberColumn& column) { return column.name; }) + "\n";
@@ -226,7 +218,7 @@ TrackReport track_report_of(const TrackRequest& request, const Gear& gear, const
     return report;
 }
 
-JointResult track_joint(const TrackRequest& request, const std::string& command_line, bool one_of_several) {
+Answer track_joint(const TrackRequest& request, const std::string& command_line, bool one_of_several) {
     Provenance provenance{{}, command_line};
     const Gear gear = read_gear(request, provenance);
     const Log log = read_log_in_part(request.path, read_options(request.log, gear));
@@ -240,20 +232,18 @@ JointResult track_joint(const TrackRequest& request, const std::string& command_
         raise<DataError>("{}: no row could be measured: {}", request.path, why_nothing_tracked(report));
     if (request.against == "speed")
         report.by_speed = gather_by_speed(report.tracks, request.speed_step.value_or(DegPerSec(0.0)));
-    JointResult result;
-    if (request.common.json) {
-        result.text = in_torque_unit(track_text(report, provenance), log.recording.torque_unit);
-    } else {
-        say(request.common, in_torque_unit(report.doubt + track_verdict(report), log.recording.torque_unit));
-        if (one_of_several) result.text = csv_of(report);
-        result.write = [request, report] {
-            if (!request.plot.instead_of(request.common.output)) write_columns(request, report);
-        };
+    const std::string unit = log.recording.torque_unit;
+    Answer answer{.kind = Answer::Text::rows, .provenance = provenance};
+    if (!request.common.json) {
+        say(request.common, in_torque_unit(report.doubt + track_verdict(report), unit));
+        if (one_of_several) answer.text = csv_of(report);
+        answer.columns = columns_of(report);
+        answer.format = &output_format(request.common.output, std::nullopt);
     }
-    result.afterwards = [request, report = std::move(report), provenance] {
-        draw_plot(request.plot, request.common, provenance, [&] { return figure_of(request, report); });
-    };
-    return result;
+    const auto found = std::make_shared<const TrackReport>(std::move(report));
+    answer.document = [=] { return in_torque_unit(track_text(*found, provenance), unit); };
+    answer.figure = [=] { return figure_of(request, *found); };
+    return answer;
 }
 
 // An array has no column for a name.
@@ -266,8 +256,8 @@ void require_text_of_several(const TrackRequest& request) {
 
 }  // namespace
 
-ExitCode run_track(const TrackRequest& request, const std::string& command_line) {
-    return run_joints(request, "tracks", true, [&](const TrackRequest& one) {
+Answer run_track(const TrackRequest& request, const std::string& command_line) {
+    return ask_joints(request, "tracks", [&](const TrackRequest& one) {
         const bool several = one.common.messages != nullptr;
         if (several) require_text_of_several(request);
         return track_joint(one, command_line, several);

@@ -8,13 +8,12 @@
 #include <string>
 
 #include "cli/command.hpp"
-#include "cli/options/plot_request.hpp"
 #include "cli/talk.hpp"
-#include "ripplenotch/chart/trend_figure.hpp"
+#include "ripplenotch/chart/figures.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/files.hpp"
 #include "ripplenotch/core/progress.hpp"
-#include "ripplenotch/document/features_json.hpp"
+#include "ripplenotch/document/results.hpp"
 #include "ripplenotch/fleet/trend.hpp"
 
 namespace ripplenotch {
@@ -68,7 +67,6 @@ std::string trend_report(const Trend& trend) {
 
 struct TrendRequest {
     CommonOptions common;
-    PlotRequest plot;
     std::vector<std::string> files;
     int seed = 1;
 };
@@ -83,25 +81,26 @@ std::vector<FeatureLine> read_lines(const TrendRequest& request, Provenance& pro
     return lines;
 }
 
-ExitCode run_trend(const TrendRequest& request, const std::string& command_line) {
+Answer run_trend(const TrendRequest& request, const std::string& command_line) {
     Provenance provenance{{}, command_line};
     const std::vector<FeatureLine> lines = read_lines(request, provenance);
     if (!lines.empty() && lines.front().version != version())
         warn(request.common, fmt::format("the lines are by version {} of the tool, and this is {}",
                                          lines.front().version, version()));
-    const Trend trend = trend_of(lines, static_cast<std::uint64_t>(request.seed));
-    write_result(
-        request.common, [&] { return trend_text(trend, provenance); }, trend_report(trend));
-    draw_plot(request.plot, request.common, provenance, [&] { return trend_figure(trend); });
-    return ExitCode::done;
+    const auto trend =
+        std::make_shared<const Trend>(trend_of(lines, static_cast<std::uint64_t>(request.seed)));
+    return {.text = trend_report(*trend),
+            .document = [trend, provenance] { return trend_text(*trend, provenance); },
+            .figure = [trend] { return trend_figure(*trend); },
+            .provenance = provenance};
 }
 
-std::function<ExitCode()> attach_trend(Options& options) {
+std::function<Answer()> attach_trend(Options& options) {
     const auto request = std::make_shared<TrendRequest>();
     options.arguments("FEATURES", request->files, true,
                       "lines of features, of any number of logs; - is standard input");
     options.count("--seed", request->seed, 0, 2147483647, "of the orders that chance is counted by");
-    attach_plot(options, request->plot, request->common);
+    attach_plot(options, request->common);
     attach_common(options, request->common, {"a trend", ".txt .json"});
     return [request, &options] { return run_trend(*request, options.command_line()); };
 }

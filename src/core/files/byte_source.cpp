@@ -2,11 +2,13 @@
 #include "core/files/byte_source.hpp"
 
 #include <fcntl.h>
+#include <sys/mman.h>
 #include <unistd.h>
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <cstring>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <utility>
@@ -38,6 +40,41 @@ bool FileState::same_bytes(const FileState& other) const {
            same(written, other.written) && same(touched, other.touched);
 }
 
+namespace {
+
+/// By name, with the descriptors of their bytes.
+std::map<std::string, int>& held_files() {
+    static std::map<std::string, int> all;
+    return all;
+}
+
+void write_to(int descriptor, std::string_view bytes, const std::function<void()>& refuse) {
+    while (!bytes.empty()) {
+        const ssize_t taken = ::write(descriptor, bytes.data(), bytes.size());
+        if (taken < 0 && errno != EINTR) refuse();
+        if (taken > 0) bytes.remove_prefix(static_cast<std::size_t>(taken));
+    }
+}
+
+}  // namespace
+
+HeldFile::HeldFile(std::string name, std::string_view bytes) : name_(std::move(name)) {
+    const auto refuse = [this] {
+        raise<FileError>("{}: cannot be held in memory: {}", name_, system_reason());
+    };
+    descriptor_ = ::memfd_create("ripplenotch", MFD_CLOEXEC);
+    if (descriptor_ < 0) refuse();
+    write_to(descriptor_, bytes, refuse);
+    held_files()[name_] = descriptor_;
+    forget_input(name_);
+}
+
+HeldFile::~HeldFile() {
+    held_files().erase(name_);
+    forget_input(name_);
+    ::close(descriptor_);
+}
+
 OpenFile::OpenFile(const std::string& path) : path_(path) {
     if (path == "-") {
         owns_ = false;
@@ -51,7 +88,9 @@ OpenFile::OpenFile(const std::string& path) : path_(path) {
         widen_pipe(descriptor_);
         return;
     }
-    descriptor_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    const auto held = held_files().find(path);
+    descriptor_ = held != held_files().end() ? ::fcntl(held->second, F_DUPFD_CLOEXEC, 0)
+                                             : ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
     if (descriptor_ < 0) raise<FileError>("{}: cannot open: {}", path, system_reason());
     struct stat status {};
     if (::fstat(descriptor_, &status) == 0 && S_ISDIR(status.st_mode)) {
@@ -88,19 +127,12 @@ constexpr std::size_t piece_size = std::size_t{1} << 20;
 
 void copy_to(ByteSource& source, int descriptor, const std::string& folder) {
     std::vector<char> piece(piece_size);
-    while (const std::size_t size = source.read(piece.data(), piece.size())) {
-        std::size_t written = 0;
-        while (written < size) {
-            const ssize_t taken = ::write(descriptor, piece.data() + written, size - written);
-            if (taken < 0 && errno == EINTR) continue;
-            if (taken < 0) {
-                raise<FileError>(
-                    "{}: cannot keep {} for a second pass: {}; TMPDIR=FOLDER names another place", folder,
-                    source.name(), system_reason());
-            }
-            written += static_cast<std::size_t>(taken);
-        }
-    }
+    const auto refuse = [&] {
+        raise<FileError>("{}: cannot keep {} for a second pass: {}; TMPDIR=FOLDER names another place",
+                         folder, source.name(), system_reason());
+    };
+    while (const std::size_t size = source.read(piece.data(), piece.size()))
+        write_to(descriptor, {piece.data(), size}, refuse);
 }
 
 /// Standard input as it was read first, which no second reading would give.
@@ -259,6 +291,11 @@ void watch_inputs(bool wanted) {
     if (!wanted) hashed = false;
     const std::lock_guard lock(mutex);
     if (!wanted) inputs().clear();
+}
+
+void forget_input(const std::string& path) {
+    const std::lock_guard lock(mutex);
+    inputs().erase(path);
 }
 
 void hash_inputs(bool wanted) { hashed = watched && wanted; }

@@ -65,5 +65,7 @@ class OpenFile {
 [[nodiscard]] bool to_be_hashed(const OpenFile& file, std::string_view name);
 /// The file was read to its end; or, with an empty hash, is read at places and hashed when somebody asks.
 void note_hash(const OpenFile& file, const std::string& sha256);
+/// The file of this name may be another from now on.
+void forget_input(const std::string& path);
 
 }  // namespace ripplenotch

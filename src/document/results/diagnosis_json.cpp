@@ -1,11 +1,17 @@
 // SPDX-License-Identifier: MIT
-#include "ripplenotch/document/diagnosis_json.hpp"
+#include "ripplenotch/document/results.hpp"
 
 #include <algorithm>
 #include <iterator>
 
 #include "document/fields/fields.hpp"
 #include "document/fields/result_fields.hpp"
+#include "ripplenotch/arm/arm_fit.hpp"
+#include "ripplenotch/arm/arm_setup.hpp"
+#include "ripplenotch/core/gear_account.hpp"
+#include "ripplenotch/diagnose/diagnosis.hpp"
+#include "ripplenotch/diagnose/friction_table.hpp"
+#include "ripplenotch/export/joint_mjcf.hpp"
 
 namespace ripplenotch {
 

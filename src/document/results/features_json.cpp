@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "ripplenotch/document/features_json.hpp"
+#include "ripplenotch/document/results.hpp"
 
 #include <fmt/ranges.h>
 
@@ -10,6 +10,7 @@
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/visible_text.hpp"
 #include "ripplenotch/fleet/features.hpp"
+#include "ripplenotch/fleet/trend.hpp"
 
 namespace ripplenotch {
 

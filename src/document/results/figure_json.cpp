@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "ripplenotch/document/figure_json.hpp"
+#include "ripplenotch/document/results.hpp"
 
 #include <algorithm>
 #include <array>
@@ -9,6 +9,7 @@
 
 #include "document/fields/fields.hpp"
 #include "ripplenotch/core/error.hpp"
+#include "ripplenotch/figure/figure.hpp"
 
 namespace ripplenotch {
 

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "ripplenotch/document/identification_json.hpp"
+#include "ripplenotch/document/results.hpp"
 
 #include <algorithm>
 
 #include "core/matrices/least_squares.hpp"
 #include "document/fields/fields.hpp"
 #include "document/fields/result_fields.hpp"
+#include "ripplenotch/analysis/identification.hpp"
 #include "ripplenotch/core/files.hpp"
 
 namespace ripplenotch {

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "ripplenotch/document/info_json.hpp"
+#include "ripplenotch/document/results.hpp"
 
 #include <algorithm>
 
 #include "document/fields/fields.hpp"
+#include "ripplenotch/survey/survey.hpp"
 
 namespace ripplenotch {
 namespace {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "ripplenotch/document/map_json.hpp"
-#include "ripplenotch/core/gear_account.hpp"
+#include "ripplenotch/document/results.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,6 +10,8 @@
 #include "document/fields/result_fields.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/files.hpp"
+#include "ripplenotch/core/gear_account.hpp"
+#include "ripplenotch/filter/map_fit.hpp"
 
 namespace ripplenotch {
 

@@ -23,8 +23,8 @@ unit that the help of the option states.
 A log is what `read` returns, a path, or arrays: a mapping (a dict, a pandas.DataFrame) or a structured array with time_s [s],
 velocity_deg_s [deg/s], torque_nm [Nm] and, where it is known, position_deg [deg], each of shape (n,). Other names are read as those
 of a CSV file are, by their units (velocity_rad_s) or by columns= and unit=; columns that are no numbers are left out. Time may be
-left out where `sample_rate` is given. Arrays are written to a temporary file (folder TMPDIR) as 64-bit floats; results of them name
-no commands, since that file goes.
+left out where `sample_rate` is given. Arrays are held in memory as a file of 64-bit floats; results of them name no commands, since
+that file goes.
 
 Warnings of the tool are issued as `RipplenotchWarning`; what it refuses is raised as `UsageError`, `DataError` or `FileError`, with
 the program's message. Calls release the GIL; those of several threads take turns. Ctrl-C takes effect when a call returns.
@@ -38,9 +38,7 @@ from __future__ import annotations
 import io
 import json
 import os
-import pathlib
 import sys
-import tempfile
 import warnings
 from collections.abc import Mapping
 from typing import Any, NamedTuple, Union
@@ -130,7 +128,6 @@ class Log:
     def __init__(self, path: str, words: list[str], fields: dict[str, Any]):
         self.path = path
         self._words = words
-        self._format = fields.pop("format")
         self._state = _state(path)
         self.__dict__.update(fields)
 
@@ -307,22 +304,13 @@ def filter(log: AnyLog, method: str | None = None, **options: Any) -> np.ndarray
     options  table= (of method "switching"), gear_ratio=, orders=, joint_file=, max_delay=, min_attenuation=, and how paths and arrays
              are read
     """
-    as_text = _may_be_npy(log)
-    with _Files() as files:
-        logs = files.logs([log])
-        if (table := options.pop("table", None)) is not None:
-            if method is not None:
-                raise UsageError("read method= and table=, expected one of them; the table of a method is its key, switching,table=")
-            method = f"switching,table={files.table(table)}"
-        words = ["filter", *logs, *files.words({"method": method, **options})]
-        out = files.call([*words, "--output-format", "csv" if as_text else "npy"])
-    rows = io.BytesIO(out)
-    names = rows.readline().decode().strip().split(",") if as_text else (table := np.load(rows)).dtype.names
-    if "torque_nm" not in names:
-        raise UsageError(f"read several joints ({', '.join(names)}), expected one; say which with joint=")
-    if as_text:
-        return np.loadtxt(rows, delimiter=",", usecols=names.index("torque_nm"), ndmin=1)
-    return np.ascontiguousarray(table["torque_nm"])
+    files = _Files()
+    logs = files.logs([log])
+    if (table := options.pop("table", None)) is not None:
+        if method is not None:
+            raise UsageError("read method= and table=, expected one of them; the table of a method is its key, switching,table=")
+        method = f"switching,table={files.table(table)}"
+    return files.call(["filter", *logs, *files.words({"method": method, **options})], act=_ripplenotch.torque)
 
 
 def diagnose(log: AnyLog, model: Mapping[str, Any] | str | os.PathLike[str] | None = "auto", **options: Any) -> Diagnosis:
@@ -349,10 +337,9 @@ def diagnose(log: AnyLog, model: Mapping[str, Any] | str | os.PathLike[str] | No
         rate = options.get("sample_rate")
         raise UsageError(f"simulated: read arrays without time_s (sample_rate {rate}), expected time_s, too")
     time_s = source["time_s"] if isinstance(source, np.ndarray) else source.time_s
-    with _Files() as files:
-        path = files._new("simulated.npy")
-        np.save(path, np.rec.fromarrays([time_s, torque_nm], names="time_s,torque_nm"))
-        return _run("diagnose", [log], {"model": model, **options, "simulated": f"log,file={path},column=torque_nm"}, Diagnosis)
+    files = _Files()
+    path = files._array("simulated.npy", np.rec.fromarrays([time_s, torque_nm], names="time_s,torque_nm"))
+    return _run("diagnose", [log], {"model": model, **options, "simulated": f"log,file={path},column=torque_nm"}, Diagnosis, files)
 
 
 def recommend(log: AnyLog, **options: Any) -> Recommendation:
@@ -369,9 +356,9 @@ def report(logs: AnyLog | list[AnyLog], **options: Any) -> str:
 
     options  gear_ratio=, and how paths and arrays are read
     """
-    with _Files() as files:
-        paths = files.logs(list(logs) if isinstance(logs, (list, tuple)) else [logs])
-        return files.call(["report", *paths, *files.words(options)]).decode()
+    files = _Files()
+    paths = files.logs(list(logs) if isinstance(logs, (list, tuple)) else [logs])
+    return files.call(["report", *paths, *files.words(options)]).decode()
 
 
 def plot(command: str, *inputs: Any, **options: Any) -> list[Panel]:
@@ -381,10 +368,8 @@ def plot(command: str, *inputs: Any, **options: Any) -> list[Panel]:
         for name, x, y in panel.curves:
             axes.plot(x, y, label=name)
     """
-    with _Files() as files:
-        path = files._new("figure.json")
-        files.call([command, *files.logs(inputs), *files.words(options), "--plot", path])
-        drawn = json.loads(pathlib.Path(path).read_text(encoding="utf-8"))
+    files = _Files()
+    drawn = json.loads(files.call([command, *files.logs(inputs), *files.words(options)], act=_ripplenotch.figure))
     return [_panel(one) for one in drawn["panels"]]
 
 
@@ -395,8 +380,7 @@ def run(command: str, *inputs: Any, **options: Any) -> Result:
 
 def help(command: str) -> str:
     """The help of a command, with its options and their units."""
-    with _Files() as files:
-        return files.call([command, "--help"]).decode()
+    return _Files().call([command, "--help"]).decode()
 
 
 def _label(axis):
@@ -416,13 +400,13 @@ def _panel(drawn):
                  [(one["name"], _values(one["x"]), _values(one["y"])) for one in drawn["curves"]], heat)
 
 
-def _run(command, inputs, options, kind):
-    with _Files() as files:
-        words = [command, *files.logs(inputs), *files.words(options), "--json"]
-        text = files.call(words, kind).decode()
-        # The commands would name files that are gone.
-        result = kind(json.dumps({name: value for name, value in json.loads(text).items() if name not in _COMMANDS}, indent=2) + "\n"
-                      if any(map(_is_arrays, inputs)) else text)
+def _run(command, inputs, options, kind, files=None):
+    files = files or _Files()
+    words = [command, *files.logs(inputs), *files.words(options), "--json"]
+    text = files.call(words, kind).decode()
+    # The commands would name files that are gone.
+    result = kind(json.dumps({name: value for name, value in json.loads(text).items() if name not in _COMMANDS}, indent=2) + "\n"
+                  if any(map(_is_arrays, inputs)) else text)
     if kind is not Result and "joints" in result._fields:
         names = [str(one["joint"]) for one in result["joints"]]
         raise UsageError(f"read {len(names)} joints ({', '.join(names)}), expected one; say which with joint=, or take "
@@ -495,19 +479,6 @@ def _is_arrays(value):
     return any(column.ndim == 1 and len(column) > 1 and column.dtype.kind in "fiu" for column in columns)
 
 
-def _may_be_npy(log):
-    """Whether the log is a NumPy file, which would be written as it was read, in units and names of its own; or packed."""
-    if isinstance(log, Log):
-        return log._format == "npy"
-    if _is_arrays(log):
-        return not set(_structured(log).dtype.names) <= set(_COLUMNS)  # else 64-bit floats in the tool's units
-    try:
-        with open(_file(log), "rb") as file:
-            return file.read(6).startswith((b"\x93NUMPY", b"\x1f\x8b", b"\x28\xb5\x2f\xfd", b"\x04\x22\x4d\x18", b"\xfd7zXZ"))
-    except OSError:
-        return False  # the program says what is wrong with it
-
-
 def _outside():
     """How many calls up the caller of this module is."""
     frame, level = sys._getframe(1), 1
@@ -531,33 +502,28 @@ def _structured(arrays):
 
 
 class _Files:
-    """What one call of the program takes as files, in a temporary folder that goes with it."""
+    """What one call of the program reads as files, held in memory under names that no file has."""
 
-    def __enter__(self):
-        self._folder = None
-        self._names = set()
+    def __init__(self):
+        self._held = {}
         self._log_words = []
-        return self
 
-    def __exit__(self, *_):
-        if self._folder is not None:
-            self._folder.cleanup()
-
-    def _new(self, name):
-        if self._folder is None:
-            self._folder = tempfile.TemporaryDirectory(prefix="ripplenotch-")
+    def _hold(self, name, content):
         stem, ending = os.path.splitext(name)
         number = 1
-        while name in self._names:
+        while name in self._held or os.path.exists(name):
             number += 1
             name = f"{stem}{number}{ending}"
-        self._names.add(name)
-        return os.path.join(self._folder.name, name)
+        self._held[name] = content
+        return name
 
     def _document(self, name, value):
-        path = self._new(name)
-        pathlib.Path(path).write_text(value.to_json() if isinstance(value, Result) else json.dumps(value), encoding="utf-8")
-        return path
+        return self._hold(name, (value.to_json() if isinstance(value, Result) else json.dumps(value)).encode())
+
+    def _array(self, name, array):
+        content = io.BytesIO()
+        np.save(content, array)
+        return self._hold(name, content.getvalue())
 
     def logs(self, inputs):
         """The paths of the inputs; what the logs were read with goes before the other options."""
@@ -575,9 +541,7 @@ class _Files:
                 raise FileError(f"{value.path}: the file is another than when it was read; read it again")
             return value.path
         if _is_arrays(value):
-            path = self._new("arrays.npy")
-            np.save(path, _structured(value))
-            return path
+            return self._array("arrays.npy", _structured(value))
         if isinstance(value, Identification) or isinstance(value, Mapping) and "gear_ratio" in value:
             return self._document("joint.json", value)
         if isinstance(value, (Result, Mapping)):
@@ -599,13 +563,9 @@ class _Files:
             given[name] = value
         return self._log_words + _words(given)
 
-    def call(self, words, kind=None):
+    def call(self, words, kind=None, act=_ripplenotch.run):
         """What the command prints. `kind`: of the result that an error with a result has."""
-        code, message, out, talk = _ripplenotch.run(words)
-        if self._folder is not None:
-            inside = self._folder.name + os.sep
-            out = out.replace(inside.encode(), b"") if out[:1] == b"{" else out
-            message, talk = message.replace(inside, ""), talk.replace(inside, "")
+        code, message, out, talk = act(words, self._held)
         said = []
         for line in talk.splitlines():
             line = line.removeprefix("ripplenotch: ").removeprefix(f"ripplenotch {words[0]}: ")

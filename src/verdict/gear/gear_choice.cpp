@@ -20,7 +20,7 @@
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/quantity.hpp"
 #include "ripplenotch/core/visible_text.hpp"
-#include "ripplenotch/document/identification_json.hpp"
+#include "ripplenotch/document/results.hpp"
 
 namespace ripplenotch {
 

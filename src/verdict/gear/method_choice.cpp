@@ -16,7 +16,7 @@
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/visible_text.hpp"
 #include "ripplenotch/design/candidate_table.hpp"
-#include "ripplenotch/document/map_json.hpp"
+#include "ripplenotch/document/results.hpp"
 #include "ripplenotch/document/table_json.hpp"
 #include "ripplenotch/filter/engine.hpp"
 #include "ripplenotch/filter/map_fit.hpp"
