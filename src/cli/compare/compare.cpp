@@ -16,7 +16,6 @@
 
 #include "cli/command.hpp"
 #include "cli/options/joint_runs.hpp"
-#include "cli/options/lists.hpp"
 #include "cli/options/options.hpp"
 #include "cli/talk.hpp"
 #include "ripplenotch/chart/figures.hpp"

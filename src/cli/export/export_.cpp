@@ -17,7 +17,6 @@
 
 #include "cli/command.hpp"
 #include "cli/export/target_choice.hpp"
-#include "cli/options/lists.hpp"
 #include "cli/options/options.hpp"
 #include "cli/talk.hpp"
 #include "ripplenotch/core/error.hpp"

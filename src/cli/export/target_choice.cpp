@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <variant>
 
-#include "cli/options/lists.hpp"
+#include "cli/options/options.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/visible_text.hpp"

@@ -12,7 +12,6 @@
 
 #include "cli/command.hpp"
 #include "cli/options/joint_runs.hpp"
-#include "cli/options/lists.hpp"
 #include "cli/options/options.hpp"
 #include "ripplenotch/chart/figures.hpp"
 #include "ripplenotch/core/error.hpp"

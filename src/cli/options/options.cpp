@@ -10,7 +10,6 @@
 #include <filesystem>
 #include <string>
 
-#include "cli/options/lists.hpp"
 #include "cli/options/options_implementation.hpp"
 #include "cli/talk.hpp"
 #include "ripplenotch/core/error.hpp"
@@ -223,11 +222,11 @@ void Options::names_file(std::string_view names, std::string_view type_name) {
 void Options::writes(std::string_view name) { implementation_.written.insert(owned(name)); }
 
 void Options::Implementation::check_files() const {
-    FileClaims claims;
+    std::vector<NamedFile> in, out;
     for (const std::string& name : files)
         for (const std::string& value : command->get_option(name)->results())
-            written.contains(name) ? claims.writes(value, name) : claims.reads(value, name);
-    claims.check();
+            (written.contains(name) ? out : in).push_back({value, name});
+    refuse_collisions(in, out);
     std::error_code failed;
     for (const std::string& name : written)
         for (const std::string& path : command->get_option(name)->results())

@@ -14,6 +14,7 @@
 #include "ripplenotch/core/files.hpp"
 #include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/core/quantity.hpp"
+#include "ripplenotch/core/visible_text.hpp"
 #include "ripplenotch/document/provenance.hpp"
 #include "ripplenotch/evaluate/comparison.hpp"
 #include "ripplenotch/evaluate/contender.hpp"
@@ -161,6 +162,14 @@ class JointMessages {
     };
     std::vector<Message> messages_;
 };
+/// "csv, npy": the names of a registry's entries, in its order, for help on what can be chosen.
+template <class Entry>
+[[nodiscard]] std::string name_list(std::span<const Entry* const> entries) {
+    return joined(entries, ", ", &Entry::name);
+}
+/// A word of a command line that people paste, as a shell takes it: as it is where it is plain, else quoted.
+[[nodiscard]] std::string shell_quoted(const std::string& word);
+
 /// "joint j1", "joints j1, j3".
 [[nodiscard]] std::string joints_in_words(std::span<const std::string> joints);
 

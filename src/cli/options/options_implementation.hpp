@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Shared by options.cpp, main.cpp and reference.cpp only: the parsing library behind Options.
+// Shared by options.cpp, run.cpp and reference.cpp only: the parsing library behind Options, and what is
+// wrong with a command line that it cannot tell.
 
 #include <CLI/CLI.hpp>
 #include <functional>
 #include <map>
 #include <set>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -29,7 +31,7 @@ struct Options::Implementation {
     std::vector<std::string> files = {};
     std::set<std::string> written = {};
     CommonOptions* common = nullptr;  ///< how the answer is written
-    /// Throws UsageError where files collide (FileClaims), FileError where one that is written exists and may
+    /// Throws UsageError where files collide, FileError where one that is written exists and may
     /// not be overwritten: before any work is done.
     void check_files() const;
 
@@ -38,5 +40,20 @@ struct Options::Implementation {
     /// Rewrites the options before "--" as CLI11 knows them; -o as what it was before.
     void spell_out(std::vector<std::string>& command_line) const;
 };
+
+/// A file, or a specification with files in it ("switching,table=table.json"), and what has it: "LOG", "-o".
+struct NamedFile {
+    std::string text, as;
+};
+/// Throws UsageError where one file is written twice, or written and read; each value of a key of what is
+/// read may be a file. Pipes ("-") and what is no file (/dev/null, a folder) collide with nothing.
+void refuse_collisions(std::span<const NamedFile> read, std::span<const NamedFile> written);
+
+/// Throws UsageError with the list as it should be when `text` is one with other marks: "1 2", "1:2", "1, 2".
+void refuse_other_marks(const std::string& option, const std::string& text, Dimension dimension);
+
+/// The same for "--orders 1 2" among the words of a command line, whose second number would be taken for the
+/// name of a log. A file of that name is one.
+void refuse_split_list(const std::vector<std::string>& words, const std::string& option, Dimension dimension);
 
 }  // namespace ripplenotch

@@ -65,18 +65,6 @@ Reference reference_of(const CLI::App& app) {
     return reference;
 }
 
-std::string generated(const Reference& reference, std::string_view kind) {
-    constexpr std::string_view page_of = "man-";
-    if (kind == "man") return man_page(reference, nullptr);
-    if (kind == "complete-bash") return bash_completion(reference);
-    if (kind == "catalogue") return catalogue_text(reference);
-    for (const CommandEntry& command : reference.commands) {
-        if (kind.starts_with(page_of) && kind.substr(page_of.size()) == command.name)
-            return man_page(reference, &command);
-    }
-    raise<UsageError>("--generate {}: expected one of {}", kind, generated_kinds);
-}
-
 namespace {
 
 // Man pages in the man macros of troff: man(7).
@@ -199,8 +187,7 @@ std::string program_page(const Reference& reference) {
     return page + options_section(reference.program, false) + exit_section();
 }
 
-}  // namespace
-
+// `command`: null for the program's own page.
 std::string man_page(const Reference& reference, const CommandEntry* command) {
     if (command == nullptr) return program_page(reference);
     std::string page = head(command, command->summary);
@@ -214,8 +201,6 @@ std::string man_page(const Reference& reference, const CommandEntry* command) {
 }
 
 // For bash: commands, options, choices, and files where an option names one.
-
-namespace {
 
 std::vector<std::string> all_names(const CommandEntry& command) {
     std::vector<std::string> names;
@@ -248,8 +233,6 @@ std::string command_branch(const CommandEntry& command) {
         command.name, values, fmt::join(all_names(command), " "));
 }
 
-}  // namespace
-
 std::string bash_completion(const Reference& reference) {
     std::string branches;
     std::vector<std::string> names;
@@ -276,6 +259,20 @@ std::string bash_completion(const Reference& reference) {
         "}}\n"
         "complete -o filenames -F _{0} {0}\n",
         tool_name, fmt::join(names, " "), fmt::join(all_names(reference.program), " "), branches);
+}
+
+}  // namespace
+
+std::string generated(const Reference& reference, std::string_view kind) {
+    constexpr std::string_view page_of = "man-";
+    if (kind == "man") return man_page(reference, nullptr);
+    if (kind == "complete-bash") return bash_completion(reference);
+    if (kind == "catalogue") return catalogue_text(reference);
+    for (const CommandEntry& command : reference.commands) {
+        if (kind.starts_with(page_of) && kind.substr(page_of.size()) == command.name)
+            return man_page(reference, &command);
+    }
+    raise<UsageError>("--generate {}: expected one of {}", kind, generated_kinds);
 }
 
 }  // namespace ripplenotch

@@ -44,9 +44,6 @@ inline constexpr std::string_view generated_kinds = "man, man-COMMAND, complete-
 /// UsageError for a kind that there is not.
 [[nodiscard]] std::string generated(const Reference& reference, std::string_view kind);
 
-/// In the man macros of troff. `command`: null for the program's own page.
-[[nodiscard]] std::string man_page(const Reference& reference, const CommandEntry* command);
-[[nodiscard]] std::string bash_completion(const Reference& reference);
 /// Schema ripplenotch/catalogue/1: commands with their options, methods, export targets, effects, formats of
 /// logs and units, each as declared.
 [[nodiscard]] std::string catalogue_text(const Reference& reference);

@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "cli/command.hpp"
-#include "cli/options/lists.hpp"
 #include "cli/options/options.hpp"
 #include "cli/talk.hpp"
 #include "core/rows/row_facts.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/options/lists.hpp"
+#include "cli/options/options_implementation.hpp"
 
 #include <sys/stat.h>
 
@@ -51,32 +51,25 @@ bool same_file(const std::string& a, const std::string& b) {
 
 }  // namespace
 
-void FileClaims::reads(std::string_view text, std::string_view as) {
-    read_.push_back({std::string(text), std::string(as)});
-    for (std::size_t at = text.find('='); at != std::string_view::npos; at = text.find('=', at + 1)) {
-        const std::string_view value = text.substr(at + 1);
-        read_.push_back({std::string(value.substr(0, value.find(','))), std::string(as)});
+void refuse_collisions(std::span<const NamedFile> read, std::span<const NamedFile> written) {
+    std::vector<NamedFile> all;  // that are read
+    for (const NamedFile& one : read) {
+        all.push_back(one);
+        for (std::size_t at = one.text.find('='); at != std::string::npos; at = one.text.find('=', at + 1))
+            all.push_back({one.text.substr(at + 1, one.text.find(',', at) - at - 1), one.as});
     }
-}
-
-void FileClaims::writes(std::string_view path, std::string_view as) {
-    if (path != "-") written_.push_back({std::string(path), std::string(as)});
-}
-
-void FileClaims::check() const {
-    for (std::size_t i = 0; i < written_.size(); ++i) {
-        const Claim& out = written_[i];
-        for (std::size_t j = 0; j < i; ++j) {
-            if (!same_file(out.path, written_[j].path)) continue;
-            raise<UsageError>("{} and {} both name {}: one would overwrite the other; name two files",
-                              written_[j].as, out.as, out.path);
-        }
-        for (const Claim& in : read_) {
-            if (!same_file(out.path, in.path)) continue;
-            raise<UsageError>(
-                "{} {}: that file is read too ({}), and would be gone for good; name another file", out.as,
-                out.path, in.as);
-        }
+    for (std::size_t i = 0; i < written.size(); ++i) {
+        const NamedFile& out = written[i];
+        if (out.text == "-") continue;
+        for (const NamedFile& other : written.first(i))
+            if (same_file(out.text, other.text))
+                raise<UsageError>("{} and {} both name {}: one would overwrite the other; name two files",
+                                  other.as, out.as, out.text);
+        for (const NamedFile& in : all)
+            if (same_file(out.text, in.text))
+                raise<UsageError>(
+                    "{} {}: that file is read too ({}), and would be gone for good; name another file",
+                    out.as, out.text, in.as);
     }
 }
 
