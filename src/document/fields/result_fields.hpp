@@ -7,7 +7,6 @@
 #include "document/archive/json_reader.hpp"
 #include "document/archive/json_writer.hpp"
 #include "ripplenotch/analysis/ripple_estimate.hpp"
-#include "ripplenotch/arm/arm_fit.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/diagnose/diagnosis.hpp"
@@ -90,13 +89,8 @@ void describe(Archive& archive, Is<Model> auto& model) {
     }
 }
 
-// The members `arm` and `ripple_map` of a model.json.
-
-void describe(JsonWriter& json, const StatedArm& arm);
+/// The member `ripple_map` of a model.json.
 void describe(JsonWriter& json, const MapFit& fit);
 void describe(JsonReader& reader, MapFit& fit);
-
-/// Throws DataError as well for a joint that the chain has not, and for links of another number of joints.
-void describe(JsonReader& reader, StatedArm& arm);
 
 }  // namespace ripplenotch
