@@ -171,6 +171,10 @@ class Pages(SharedCase):
         names = ["time_s", *(f"j{joint}_{name}" for joint in (1, 2) for name in rows[0][1:])]
         (self.folder / "two.csv").write_text("\n".join(",".join(row) for row in [names] + [row + row[1:] for row in rows[1:]]))
         self.assertRegex(self.page("two.csv"), r"(?s)The joints.*<td[^>]*>j1</td>.*<td[^>]*>j2</td>.*>j1</h2>.*>j2</h2>")
+        self.assertRegex(self.page("two.csv", "--joint", "j2,j1"), r"(?s)The joints.*<td[^>]*>j1</td>.*<td[^>]*>j2</td>.*>j1</h2>.*>j2</h2>")
+        os.mkfifo(self.folder / "fifo")
+        with subprocess.Popen(["cp", DATA / "paper_60deg_s.csv", self.folder / "fifo"]):
+            self.assertIn("<h1>fifo</h1>", self.page("fifo"))
         self.assertIn("record motion in one direction at several speeds", self.page("data/paper_rest.csv"))
 
     def test_what_is_no_result_is_named(self):

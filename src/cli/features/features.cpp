@@ -74,6 +74,21 @@ void take_date(const std::string& path, const Log& log, const FeatureWork& work,
     }
 }
 
+// The numbers of a column as they stand in the log, at the rows at which read_log_in_part gives the joint's
+// motion. {joint} in its name stands for the joint's.
+std::vector<double> read_column(const std::string& path, std::string column, const std::string& joint,
+                                ReadOptions read, std::size_t most_rows) {
+    if (const std::size_t at = column.find(joint_mark); at != std::string::npos)
+        column.replace(at, joint_mark.size(), joint);
+    // The column is read in the place of the torque.
+    std::erase_if(read.columns, [](const std::string& entry) { return entry.starts_with("torque="); });
+    read.columns.push_back("torque=" + column);
+    read.units["torque"] = "Nm";
+    read.scales.erase("torque");
+    read.joint = joint.empty() ? std::nullopt : std::optional(joint);
+    return read_log_in_part(path, read, most_rows).trace.torque_nm;
+}
+
 void take_temperature(const std::string& path, const FeatureWork& work, FeatureLine& line) {
     if (work.temperature_degc) {
         line.temperature_degc = work.temperature_degc, line.temperature_source = "--temperature";

@@ -279,6 +279,26 @@ Provenance provenance_of(const FilterRequest& request, const JointWork& work,
     return provenance;
 }
 
+// Limits that a filtered log breaks: delays at the speeds that it moved at, attenuation as it was measured
+// there.
+std::vector<std::string> filter_violations(const Gates& gates, const Contender& contender,
+                                           const FilterMetrics& metrics) {
+    const StreamReport& stream = metrics.stream;
+    auto found = delay_violations(gates, contender, metrics.sample_rate, DegPerSec(stream.slowest_deg_s),
+                                  DegPerSec(stream.fastest_deg_s));
+    if (!metrics.measured) return found;
+    std::vector<OrderAttenuation> orders;
+    for (const OrderLevel& level : metrics.measured->lines.orders) {
+        OrderAttenuation entry{level.order, level.mean_hz, std::nullopt, metrics.gear->ratio};
+        if (level.windows > 0) entry.db = attenuation_db(level).value_or(most_attenuation_db);
+        orders.push_back(entry);
+    }
+    for (std::string& sentence : attenuation_violations(gates, metrics.method, orders))
+        found.push_back(std::move(sentence));
+    for (std::string& sentence : found) sentence.insert(0, metrics.source + ": ");
+    return found;
+}
+
 /// Reports the result of a joint; true when everything is within the limits.
 bool tell(const FilterRequest& request, JointWork& work) {
     FilterMetrics& metrics = work.metrics;

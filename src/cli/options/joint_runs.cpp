@@ -37,19 +37,6 @@ AskedJoints joints_asked_for(const std::string& path, const ReadOptions& log) {
     return asked_joints(Spool(path), options);
 }
 
-std::vector<double> read_column(const std::string& path, std::string column, const std::string& joint,
-                                ReadOptions read, std::size_t most_rows) {
-    if (const std::size_t at = column.find(joint_mark); at != std::string::npos)
-        column.replace(at, joint_mark.size(), joint);
-    // The column is read in the place of the torque.
-    std::erase_if(read.columns, [](const std::string& entry) { return entry.starts_with("torque="); });
-    read.columns.push_back("torque=" + column);
-    read.units["torque"] = "Nm";
-    read.scales.erase("torque");
-    read.joint = joint.empty() ? std::nullopt : std::optional(joint);
-    return read_log_in_part(path, read, most_rows).trace.torque_nm;
-}
-
 bool asks_for_several(const std::string& path, const ReadOptions& log) {
     if (!log.joint) return false;
     if (*log.joint == "all") return true;

@@ -62,12 +62,6 @@ template <class Request, class One>
 /// with "A" in its place, where that is the unit, or the verdict of a document.
 [[nodiscard]] std::string in_torque_unit(std::string text, const std::string& unit);
 
-/// The numbers of a column as they stand in the log, at the rows at which read_log_in_part gives the joint's
-/// motion. {joint} in its name stands for the joint's. Throws what read_log_in_part throws.
-[[nodiscard]] std::vector<double> read_column(const std::string& path, std::string column,
-                                              const std::string& joint, ReadOptions read,
-                                              std::size_t most_rows);
-
 /// "joint j4 is left out: it has no torque", once for each reason.
 void say_left_out(const CommonOptions& common, const std::vector<LeftOutJoint>& joints);
 

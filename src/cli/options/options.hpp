@@ -18,7 +18,6 @@
 #include "ripplenotch/document/provenance.hpp"
 #include "ripplenotch/evaluate/comparison.hpp"
 #include "ripplenotch/evaluate/contender.hpp"
-#include "ripplenotch/evaluate/filter_metrics.hpp"
 #include "ripplenotch/log/layout.hpp"
 #include "ripplenotch/log/log.hpp"
 #include "ripplenotch/verdict/gear_choice.hpp"
@@ -276,9 +275,5 @@ void attach_gates(Options& options, Gates& gates);
 /// One sentence for each order that is attenuated less than the limit, or was not measured.
 [[nodiscard]] std::vector<std::string> attenuation_violations(const Gates& gates, const std::string& method,
                                                               std::span<const OrderAttenuation> orders);
-
-/// Both, of a filtered log: delays at the speeds that it moved at, attenuation as it was measured there.
-[[nodiscard]] std::vector<std::string> filter_violations(const Gates& gates, const Contender& contender,
-                                                         const FilterMetrics& metrics);
 
 }  // namespace ripplenotch

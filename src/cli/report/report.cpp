@@ -42,7 +42,7 @@ using Words = std::vector<std::string>;
 
 struct LogReport {
     std::string log, name;        ///< its path, and without folders
-    std::string piped;            ///< the log itself, where it came through standard input
+    std::string piped;            ///< the log itself, where it came through a pipe
     ReadOptions read;             ///< how it is read, and which of its joints
     Words reading, gear, motors;  ///< the same as words, without --joint, and of its gear; other motors
     bool quiet = false;
@@ -469,12 +469,14 @@ Answer run_report(const ReportRequest& request, const Options& options) {
     std::vector<LogReport> logs;
     Page page{"ripplenotch report", {}};
     for (const std::string& path : request.results) {
-        // A log may be longer than the memory; what commands wrote is not.
-        std::string text = path == "-" ? read_all(path) : beginning_of(path);
+        // A pipe is emptied by whoever reads it first; of a file, which may be long, the beginning tells.
+        std::error_code failed;
+        const bool piped = !std::filesystem::is_regular_file(path, failed);
+        const std::string text = piped ? read_all(path) : beginning_of(path);
         if (!path.ends_with(".json") && is_log(text)) {
-            logs.push_back({path == "-" ? "log.csv" : path,
+            logs.push_back({piped ? "log.csv" : path,
                             shown_name(path),
-                            path == "-" ? text : "",
+                            piped ? text : "",
                             request.reading,
                             without(options.given(reading_group), {"--joint"}),
                             options.given(gear_group),
@@ -482,7 +484,7 @@ Answer run_report(const ReportRequest& request, const Options& options) {
                             request.common.quiet});
             continue;
         }
-        for (PageSection& section : sections_of_result(path == "-" ? text : read_all(path), input_name(path)))
+        for (PageSection& section : sections_of_result(piped ? text : read_all(path), input_name(path)))
             page.sections.push_back(std::move(section));
     }
     if (!logs.empty() && logs.size() < request.results.size())
