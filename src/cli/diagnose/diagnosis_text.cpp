@@ -169,18 +169,21 @@ std::string findings_text(const Diagnosis& diagnosis, bool explain) {
     return text;
 }
 
+// What is left open is not rounded away.
+std::string closed_text(const std::optional<double>& percent) {
+    if (!percent) return {};
+    int decimals = 1;
+    while (decimals < 4 && *percent < 100.0 && rounded(*percent, decimals).starts_with("100")) ++decimals;
+    return fmt::format(", {} % of it closed", rounded(*percent, decimals));
+}
+
 std::string gap_text(const DiagnosisGap& gap) {
-    std::string text =
-        fmt::format("gap {} -> {} Nm", short_number(gap.before_nm), short_number(gap.after_nm));
-    if (gap.closed_percent) text += fmt::format(", {} % of it closed", rounded(*gap.closed_percent, 1));
-    text += "\n";
-    if (gap.validation_before_nm) {
-        text += fmt::format("on the validation log {} -> {} Nm", short_number(*gap.validation_before_nm),
-                            short_number(*gap.validation_after_nm));
-        if (gap.validation_closed_percent)
-            text += fmt::format(", {} % of it closed", rounded(*gap.validation_closed_percent, 1));
-        text += "\n";
-    }
+    std::string text = fmt::format("gap {} -> {} Nm{}\n", short_number(gap.before_nm),
+                                   short_number(gap.after_nm), closed_text(gap.closed_percent));
+    if (gap.validation_before_nm)
+        text +=
+            fmt::format("on the validation log {} -> {} Nm{}\n", short_number(*gap.validation_before_nm),
+                        short_number(*gap.validation_after_nm), closed_text(gap.validation_closed_percent));
     return text;
 }
 

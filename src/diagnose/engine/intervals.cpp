@@ -59,7 +59,7 @@ class Linearised {
 
     Design design_;
     VectorXd factors_;
-    std::vector<std::array<std::size_t, 2>> searched_places_;
+    std::vector<std::array<std::size_t, most_searched>> searched_places_;
     VectorXd step_;
     MatrixXd covariance_;
 };

@@ -23,6 +23,7 @@ constexpr int payload_parts = 24;          // in which a change of the load is l
 constexpr double most_turned = 0.8;        // of the samples, whose direction turns with a change of the load
 constexpr int most_bias_steps = 40;        // an error of ten cycles when the log ends
 constexpr double smallest_delay_s = 1e-4;  // the valley of a delay may be narrower than any grid
+constexpr double one_error = 1.0;          // squares by which a value is off by its standard error
 constexpr double least_gap = 0.02;         // of the squares of the noise: a gap is no smaller
 
 // Of two terms that say nearly the same the plainer is preferred.
@@ -82,7 +83,6 @@ bool has_sensor(const SearchedTerms& terms) {
     return std::ranges::any_of(terms, [](const SearchedTerm& t) { return t.kind->role == Role::sensor; });
 }
 
-// The best of several valleys, which may be another one with the terms that were adopted since.
 bool has_choice(const SearchedTerm& term) {
     return std::ranges::any_of(term.kind->searched, &SearchedValue::is_choice);
 }
@@ -94,14 +94,13 @@ bool has_plain_size(const SearchedTerm& term) {
 }
 
 bool is_at_bound(const SearchedTerm& term, const RecordedMotion& recorded) {
-    if (term.kind->may_be_at_bound || !term.kind->is_refined || term.kind->role == Role::motor_angle)
-        return false;
+    if (!term.kind->is_refined || term.kind->role == Role::motor_angle) return false;
     // At the least number of cycles that is possible it is the form of a filter.
     if (term.is("start-stop-ringing") && term.values[0] * term.values[1] < 1.1 * fewest_cycles) return true;
     for (std::size_t i = 0; i < term.kind->searched.size(); ++i) {
         const double size = std::abs(term.values[i]);
         const SearchedValue& bounds = term.kind->searched[i];
-        if (bounds.is_choice) continue;
+        if (bounds.is_choice || bounds.may_be_at_bound) continue;
         const double upper = bounds.upper * width_scale(*term.kind, bounds, recorded);
         if (size <= bounds.lower * 1.02 || size >= upper * 0.98) return true;
     }
@@ -357,7 +356,8 @@ std::vector<SearchedTerm> Search::begins(const TermKind& kind, const SearchedTer
         for (std::size_t joint = 0; joint < others.size(); ++joint) {
             if (std::ranges::all_of(others[joint], [](double v) { return v == 0.0; })) continue;
             for (const double ratio : kind.searched[1].grid)
-                found.push_back({&kind, {static_cast<double>(joint + 1), ratio}});
+                found.push_back(
+                    {&kind, {static_cast<double>(joint + 1), ratio, kind.searched[2].grid.front()}});
         }
     } else if (name == "velocity-bias") {
         const double step = bias_step_deg_s(recorded_, base_);
@@ -559,12 +559,19 @@ void Search::exchange(SearchState& state, std::vector<SearchedTerms>& seen) cons
             auto rivals = extensions(criterion, fewer, exchange_finalists);
             rivals.resize(std::min(rivals.size(), tried_of_finalists));
             for (const SearchedTerms& rival : rivals) {
+                // A shape that was found while another term was missing may lie in the wrong valley.
                 const bool is_same = rival.back().kind == terms[i].kind;
-                if ((is_same && !has_choice(terms[i])) ||
-                    criterion.cost(rival) >= criterion.cost(terms) - (is_same ? 0.0 : least_reduction) ||
+                if (criterion.cost(rival) >=
+                        criterion.cost(terms) - (is_same ? one_error : least_reduction) ||
                     !admission(criterion, fewer, rival).is_admissible)
                     continue;
-                if (!is_preferred(criterion, fewer, {terms, terms[i]}, {rival, rival.back()})) offer(rival);
+                if (is_same) {
+                    SearchedTerms moved = terms;
+                    moved[i] = rival.back();
+                    offer(moved);
+                } else if (!is_preferred(criterion, fewer, {terms, terms[i]}, {rival, rival.back()})) {
+                    offer(rival);
+                }
             }
         }
         if (!best) return;

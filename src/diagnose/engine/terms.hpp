@@ -35,19 +35,19 @@ enum class Role {
 struct SearchedValue {
     std::size_t parameter = 0;  ///< place in Effect::parameters
     double lower = 0.0, upper = 0.0;
-    std::vector<double> grid;  ///< where the search begins; empty: at places that the log determines
-    double step = 0.0;         ///< of the refinement in the value itself; 0: in its logarithm
-    double plain = 0.0;        ///< size that is taken where it explains nearly as much; 0: none
-    bool is_choice = false;    ///< one of several things: not refined, without a bound or an error
+    std::vector<double> grid;      ///< where the search begins; empty: at places that the log determines
+    double step = 0.0;             ///< of the refinement in the value itself; 0: in its logarithm
+    double plain = 0.0;            ///< size that is taken where it explains nearly as much; 0: none
+    bool is_choice = false;        ///< one of several things: not refined, without a bound or an error
+    bool may_be_at_bound = false;  ///< a bound is as good a value as any
 };
 
 struct TermKind {
     const Effect* effect = nullptr;
     Role role = Role::joint_torque;
-    std::vector<SearchedValue> searched;                  ///< at most two
+    std::vector<SearchedValue> searched;                  ///< at most most_searched
     std::vector<std::pair<std::size_t, double>> assumed;  ///< other parameters that differ from their start
     bool is_refined = false;                              ///< searched between the grid's values
-    bool may_be_at_bound = false;                         ///< a bound is as good a value as any
     bool may_occur_twice = false;
     std::size_t place = 0;  ///< in term_kinds()
 };
@@ -57,10 +57,12 @@ struct TermKind {
 /// The kind of an effect of that name.
 [[nodiscard]] const TermKind& term_kind(std::string_view effect);
 
+/// Values of a term that are searched, at most.
+inline constexpr std::size_t most_searched = 3;
 /// A kind with its searched values. The gear ratio has the ratio itself as its value.
 struct SearchedTerm {
     const TermKind* kind = nullptr;
-    std::array<double, 2> values{};
+    std::array<double, most_searched> values{};
     bool operator==(const SearchedTerm&) const = default;
     std::weak_ordering operator<=>(const SearchedTerm& other) const {
         if (const auto order = kind->place <=> other.kind->place; order != 0) return order;
