@@ -12,12 +12,9 @@
 #include "core/matrices/least_squares.hpp"
 #include "core/rows/row_facts.hpp"
 #include "core/vectors/dot.hpp"
-#include "diagnose/answer/advice.hpp"
-#include "diagnose/answer/log_faults.hpp"
-#include "diagnose/answer/remaining.hpp"
-#include "diagnose/answer/settled_model.hpp"
+#include "diagnose/answer/answer.hpp"
+#include "diagnose/engine/criterion.hpp"
 #include "diagnose/engine/engine.hpp"
-#include "diagnose/engine/settings.hpp"
 #include "diagnose/engine/terms.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/portable_math.hpp"
@@ -221,7 +218,7 @@ class DiagnosisRun {
         engine_residual_nm_ = found.residual_after_nm;
         searched_before_nm_ = found.rms_before_nm;
         std::size_t taken = 0;
-        take_faults(found);
+        take_spikes(found.spike_rows);
         take_departures(found);
         take_known_values(found, 0);
         for (const engine::AdoptedTerm& term : found.terms) {
@@ -236,23 +233,17 @@ class DiagnosisRun {
             result_.refused.push_back({term.term, term.reason});
     }
 
-    // What the engine alone sees.
-    void take_faults(const engine::Result& found) {
-        for (const engine::ConverterFault& fault : found.faults) {
-            if (is_among(options_.without, fault.effect) ||
-                std::ranges::any_of(result_.faults, [&](const Fault& known) {
-                    return known.term.effect->name == fault.effect;
-                }))
-                continue;
-            Fault seen{{&find_effect(fault.effect), {}}, fault.rows.size(), {}, {}};
-            for (const Parameter& parameter : seen.term.effect->parameters)
-                seen.term.values.emplace_back(parameter.start);
-            if (fault.size > 0.0) seen.term.values.front() = fault.size;
-            for (const std::size_t row : fault.rows)
-                seen.time_s.push_back({log_.time_s[row], log_.time_s[row]});
-            seen.words = fmt::format("{} samples", fault.rows.size());
-            result_.faults.push_back(std::move(seen));
-        }
+    // Spikes that the engine alone sees.
+    void take_spikes(std::span<const std::size_t> rows) {
+        const Effect& spikes = find_effect("spikes");
+        if (rows.empty() || is_among(options_.without, spikes.name) ||
+            std::ranges::any_of(result_.faults,
+                                [&](const Fault& known) { return known.term.effect == &spikes; }))
+            return;
+        Fault seen{{&spikes, {}}, rows.size(), {}, fmt::format("{} samples", rows.size())};
+        for (const Parameter& parameter : spikes.parameters) seen.term.values.emplace_back(parameter.start);
+        for (const std::size_t row : rows) seen.time_s.push_back({log_.time_s[row], log_.time_s[row]});
+        result_.faults.push_back(std::move(seen));
     }
 
     [[nodiscard]] const Term* own_term(std::string_view name) const {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Faults of the converter, each with what can be taken for it.
-#include "diagnose/answer/log_faults.hpp"
+#include "diagnose/answer/answer.hpp"
 
 #include <fmt/format.h>
 

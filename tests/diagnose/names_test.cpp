@@ -3,7 +3,7 @@
 // contradicts, what the log does not hold.
 #include <algorithm>
 
-#include "diagnose/answer/advice.hpp"
+#include "diagnose/answer/answer.hpp"
 #include "diagnose_fixture.hpp"
 #include "support/catch.hpp"
 

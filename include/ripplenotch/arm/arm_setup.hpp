@@ -14,17 +14,6 @@
 
 namespace ripplenotch {
 
-/// The limits that a fault of an arm has to reach.
-struct ArmSetupLimits {
-    /// Error on held-out fifths, geometric mean over the joints, with a hypothesis to that without: half the
-    /// squares. Measured on arms of six joints: corrected gravity reduces the error to 0.05, no other
-    /// direction or sign of a right one to less than 1.
-    double max_error = 0.7;
-    /// Friction that drives a joint counts where its rms is so much of the fit's error on held-out fifths:
-    /// below, it is part of the residual.
-    double min_friction = 1.0;
-};
-
 /// Torques whose sign is reversed or whose unit is mNm: with that corrected the joints, which share the
 /// links, fit one arm clearly better on held-out fifths of the log; of all signs and their opposites friction
 /// decides. Then, with those torques corrected, whether another direction of gravity along an axis of the
@@ -33,8 +22,7 @@ struct ArmSetupLimits {
 /// directions and each pair of joints. A factor that all torques share cannot be found: heavier links have
 /// it.
 [[nodiscard]] std::vector<SetupFault> suspect_arm(const Chain& chain, const ArmLog& log, const ArmFit& fit,
-                                                  const ArmFitOptions& options = {},
-                                                  const ArmSetupLimits& limits = {});
+                                                  const ArmFitOptions& options = {});
 
 // By how much the torques of an arm are logged later than its motion: one controller has one clock, so that
 // this is one number for all joints.

@@ -7,6 +7,7 @@
 
 #include "arm/fit/arm_fit.hpp"
 #include "core/matrices/factorisations.hpp"
+#include "core/vectors/dot.hpp"
 #include "ripplenotch/arm/arm_fit.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/model/motion.hpp"
@@ -58,17 +59,6 @@ class Kernels {
     std::vector<double> kernel_;
 };
 
-// Four sums side by side: one would wait for itself.
-double weighed(std::span<const double> kernel, const double* values) {
-    double sums[4] = {};
-    std::size_t i = 0;
-    for (; i + 4 <= kernel.size(); i += 4) {
-        for (std::size_t lane = 0; lane < 4; ++lane) sums[lane] += kernel[i + lane] * values[i + lane];
-    }
-    for (; i < kernel.size(); ++i) sums[0] += kernel[i] * values[i];
-    return (sums[0] + sums[1]) + (sums[2] + sums[3]);
-}
-
 }  // namespace
 
 std::vector<std::vector<double>> smooth_along(std::span<const double> time_s,
@@ -79,7 +69,7 @@ std::vector<std::vector<double>> smooth_along(std::span<const double> time_s,
         const auto kernel = kernels.about(k);
         if (kernel.empty()) continue;
         for (std::size_t c = 0; c < columns.size(); ++c)
-            smooth[c][k] = weighed(kernel, columns[c].data() + kernels.first());
+            smooth[c][k] = dot(kernel.data(), columns[c].data() + kernels.first(), kernel.size());
     }
     return smooth;
 }

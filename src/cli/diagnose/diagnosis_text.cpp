@@ -69,13 +69,6 @@ std::string band_table(const std::vector<BandGap>& bands) {
     return text_table(rows, "lr");
 }
 
-// "next: ..." a line a step.
-std::string next_text(const std::vector<std::string>& steps) {
-    std::string text;
-    for (const std::string& step : steps) text += fmt::format("next: {}\n", step);
-    return text;
-}
-
 std::vector<std::string> setup_sentences(const Diagnosis& diagnosis) {
     std::vector<std::string> all;
     for (const SetupFault& fault : diagnosis.setup)
@@ -201,8 +194,9 @@ std::string diagnosis_story(const CommonOptions& common, const Diagnosis& diagno
     text += fmt::format("{} samples, {} used\n", diagnosis.samples, diagnosis.samples_used);
     for (const Fault& fault : diagnosis.faults)
         text += fmt::format("fault of the log: {}, {}\n", fault.term.effect->name, fault.words);
-    return text + findings_text(diagnosis, explain) + accepted_text(diagnosis) + band_table(diagnosis.bands) +
-           next_text(diagnosis.next);
+    text += findings_text(diagnosis, explain) + accepted_text(diagnosis) + band_table(diagnosis.bands);
+    for (const std::string& step : diagnosis.next) text += fmt::format("next: {}\n", step);
+    return text;
 }
 
 namespace {

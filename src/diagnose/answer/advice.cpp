@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "diagnose/answer/advice.hpp"
+#include "diagnose/answer/answer.hpp"
 
 #include <fmt/format.h>
 
@@ -13,6 +13,7 @@
 
 #include "core/rows/second_log.hpp"
 #include "ripplenotch/analysis/fourier.hpp"
+#include "ripplenotch/core/visible_text.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -134,12 +135,9 @@ std::vector<std::string> next_steps(const Diagnosis& diagnosis, const Motion& mo
     }
     std::vector<std::string> steps;
     for (const Tie& tie : diagnosis.ambiguous) {
-        std::string sides, accept;
-        for (const std::string& side : tie.effects) {
-            sides += (sides.empty() ? "" : " or ") + side;
-            accept += (accept.empty() ? "--accept " : " or --accept ") + side;
-        }
-        steps.push_back(fmt::format("{}: {} would decide; {} selects one", sides, tie.advice, accept));
+        const auto accept = [](const std::string& side) { return "--accept " + side; };
+        steps.push_back(fmt::format("{}: {} would decide; {} selects one", joined(tie.effects, " or "),
+                                    tie.advice, joined(tie.effects, " or ", accept)));
     }
     if (std::string words = second_log_of(diagnosis, motion); !words.empty())
         steps.push_back(std::move(words));
@@ -150,8 +148,7 @@ std::string why_not_accepted(const Diagnosis& diagnosis, const std::string& name
     std::set<std::string> uncertain;
     for (const Tie& tie : diagnosis.ambiguous) uncertain.insert(tie.effects.begin(), tie.effects.end());
     for (const RefusedCandidate& refused : diagnosis.refused) uncertain.emplace(refused.term.effect->name);
-    std::string list;
-    for (const std::string& one : uncertain) list += (list.empty() ? "" : ", ") + one;
+    const std::string list = joined(uncertain, ", ");
     const bool is_named = std::ranges::find(diagnosis.named, name) != diagnosis.named.end();
     return fmt::format(
         "--accept {}: {}; uncertain findings: {}", name,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "diagnose/answer/log_faults.hpp"
+#include "diagnose/answer/answer.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -81,7 +81,7 @@ double noise_of(std::span<const double> torque_nm) {
     std::vector<double> off;
     for (std::size_t k = 1; k + 1 < torque_nm.size(); ++k)
         off.push_back(std::abs(torque_nm[k - 1] - 2.0 * torque_nm[k] + torque_nm[k + 1]));
-    return 1.4826 * median_of(off) / std::sqrt(6.0);
+    return deviations_of_median * median_of(off) / std::sqrt(6.0);
 }
 
 // Effects that can be detected in a log, in the order of their detectors.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "diagnose/answer/remaining.hpp"
+#include "diagnose/answer/answer.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -93,15 +93,8 @@ std::pair<double, double> strongest_line(std::span<const double> residual_nm,
 
 std::optional<RemainingResidual> remaining_residual(const Motion& motion, std::span<const double> residual_nm,
                                                     std::span<const unsigned char> use, double noise_nm) {
-    double squares = 0.0, count = 0.0;
-    for (std::size_t k = 0; k < residual_nm.size(); ++k) {
-        if (use[k] == 0) continue;
-        squares += residual_nm[k] * residual_nm[k];
-        count += 1.0;
-    }
-    if (count == 0.0) return std::nullopt;
     RemainingResidual left;
-    left.rms_nm = std::sqrt(squares / count);
+    left.rms_nm = rms_where(residual_nm, use);
     if (left.rms_nm <= least_left * noise_nm) return std::nullopt;
     const auto [hz, share] = strongest_line(residual_nm, use, motion.sample_rate.value());
     if (share > tone_share && hz > least_tone_hz) {

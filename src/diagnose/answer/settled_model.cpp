@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "diagnose/answer/settled_model.hpp"
+#include "diagnose/answer/answer.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -69,16 +69,6 @@ SettledModel settled(const Model& open, const LogAlong& log, std::span<const dou
         std::move(fitted.model), std::move(fitted.values), {departure.begin(), departure.end()}, {}};
     found.residual_nm = left_of(found.model, motion, log);
     return found;
-}
-
-double rms_where(std::span<const double> values, std::span<const unsigned char> use) {
-    double sum = 0.0, count = 0.0;
-    for (std::size_t k = 0; k < values.size(); ++k) {
-        if (use[k] == 0) continue;
-        sum += values[k] * values[k];
-        count += 1.0;
-    }
-    return count > 0.0 ? std::sqrt(sum / count) : 0.0;
 }
 
 std::vector<GivenValue> values_of_given(std::span<const GivenTerm> given, std::span<const double> departure,

@@ -8,7 +8,6 @@
 
 #include "core/vectors/dot.hpp"
 #include "diagnose/engine/gram.hpp"
-#include "diagnose/engine/settings.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch::engine {

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "diagnose/engine/criterion.hpp"
 #include "diagnose/engine/search.hpp"
-#include "diagnose/engine/settings.hpp"
 #include "ripplenotch/core/error.hpp"
 
 namespace ripplenotch::engine {
@@ -25,7 +25,7 @@ struct Prepared {
     std::shared_ptr<const SaturatedFit> noise;
 };
 
-Prepared prepare(RecordedMotion& recorded, const KnownSide& known, std::vector<ConverterFault>& faults) {
+Prepared prepare(RecordedMotion& recorded, const KnownSide& known, std::vector<std::size_t>& spike_rows) {
     std::optional<double> inertia;
     Prepared now;
     const auto measure = [&](double window_s) {
@@ -44,12 +44,10 @@ Prepared prepare(RecordedMotion& recorded, const KnownSide& known, std::vector<C
     measure(best_s);
     now.noise = std::make_shared<const SaturatedFit>(fit_saturated(recorded, now.base, {}, now.noise.get()));
     const FarSamples far = find_spikes(recorded, *now.noise);
-    ConverterFault fault{"spikes", {}};
     for (const std::size_t slot : far.slots) {
         recorded.exclude(slot - 1, 3);
-        fault.rows.push_back(recorded.row_of(slot));
+        if (far.are_spikes) spike_rows.push_back(recorded.row_of(slot));
     }
-    if (far.are_spikes) faults.push_back(std::move(fault));
     if (!far.slots.empty()) measure(recorded.window_s());
     return now;
 }
@@ -91,14 +89,11 @@ AdoptedTerm judged(const Search& search, Criterion& criterion, const SearchedTer
 Result searched(const Input& input) {
     Result result;
     RecordedMotion recorded(input.log, input.simulation);
-    std::vector<unsigned char> good(input.is_good_row.begin(), input.is_good_row.end());
-    good.resize(input.log.size(), 1);
-    if (input.is_good_row.empty()) result.faults = find_converter_faults(input.log.torque_nm, good);
-    recorded.mark_spoiled_rows(good);
+    if (!input.is_good_row.empty()) recorded.mark_spoiled_rows(input.is_good_row);
     recorded.set_others(input.others_deg_s);
     const KnownSide known{&input.model, input.given_terms, input.simulation.has_value(),
                           input.simulation && input.simulation->is_scale_known};
-    Prepared prepared = prepare(recorded, known, result.faults);
+    Prepared prepared = prepare(recorded, known, result.spike_rows);
     if (!(prepared.noise->noise_nm > 0.0)) raise<DataError>("the torque of this log does not change");
     if (recorded.is_position_integrated()) {
         // It spoils every column, so that it comes before the search.
@@ -111,7 +106,7 @@ Result searched(const Input& input) {
                 judged(search, criterion, alone, 0, std::move(valued_terms(criterion, alone)[0])));
             result.rms_before_nm = criterion.rms_nm({});
             recorded.remove_velocity_bias(alone[0].values[0]);
-            prepared = prepare(recorded, known, result.faults);
+            prepared = prepare(recorded, known, result.spike_rows);
         }
     }
     Search search(recorded, prepared.base, prepared.noise, {input.without.begin(), input.without.end()});
@@ -123,7 +118,7 @@ Result searched(const Input& input) {
         // The last of them says least.
         const auto absent = std::find_if(valued.rbegin(), valued.rend(), may_be_absent);
         if (absent == valued.rend()) break;
-        result.nearly_adopted.push_back({absent->term, 0.0, "its size may be none"});
+        result.nearly_adopted.push_back({absent->term, "its size may be none"});
         terms.erase(terms.begin() + (valued.rend() - absent - 1));
         terms = polished(criterion, terms);
         valued = valued_terms(criterion, terms);
@@ -147,21 +142,18 @@ Result searched(const Input& input) {
     for (const RefusedTerm& refused : found.refused) {
         SearchedTerms with = terms;
         with.push_back(refused.term);
-        result.nearly_adopted.push_back({valued_terms(criterion, with).back().term,
-                                         refused.admission.reduction, refused.admission.reason});
+        result.nearly_adopted.push_back(
+            {valued_terms(criterion, with).back().term, refused.admission.reason});
     }
     result.baseline = valued_columns(criterion, terms);
     result.simulated_inertia_nm_per_deg_s2 = criterion.base().simulated_inertia_nm_per_deg_s2;
     if (recorded.removed_bias_deg_s() == 0.0) result.rms_before_nm = criterion.rms_nm({});
     result.rms_after_nm = criterion.rms_nm(terms);
     result.noise_nm = criterion.noise().noise_nm;
-    result.residual_before_nm = per_row(recorded, criterion.residual_nm({}));
     result.residual_after_nm = per_row(recorded, criterion.residual_nm(terms));
     for (const std::size_t slot : recorded.clock().slot_of) result.is_used.push_back(recorded.usable()[slot]);
     result.samples = criterion.blocks().sample.size();
     result.smoothing_s = recorded.window_s();
-    result.is_position_integrated = recorded.is_position_integrated();
-    result.evaluations = found.evaluations;
     return result;
 }
 
@@ -193,7 +185,6 @@ Result find_missing_effects(const Input& input) {
     if (std::ranges::none_of(second.terms, follows_ripple)) return result;
     second.terms.insert(second.terms.begin(), ripples.begin(), ripples.end());
     second.rms_before_nm = result.rms_before_nm;
-    second.residual_before_nm = std::move(result.residual_before_nm);
     return second;
 }
 

@@ -8,9 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "diagnose/engine/converter_faults.hpp"
-#include "diagnose/engine/intervals.hpp"
 #include "diagnose/engine/recorded_motion.hpp"
+#include "diagnose/engine/search.hpp"
 #include "ripplenotch/model/fit.hpp"
 #include "ripplenotch/model/model.hpp"
 
@@ -28,7 +27,7 @@ struct Input {
     /// Velocities of the arm's joints, an entry per row of the log: see Motion.
     std::span<const std::vector<double>> others_deg_s = {};
     std::span<const std::string> without = {};  ///< names of effects that are not tried
-    /// Of each row: 0 where it does not hold the joint's torque; empty: that is found in the torque itself.
+    /// Of each row: 0 where it does not hold the joint's torque; empty: all do.
     std::span<const unsigned char> is_good_row = {};
 };
 
@@ -51,7 +50,6 @@ struct AdoptedTerm {
 
 struct NearlyAdopted {
     Term term;
-    double reduction = 0.0;
     std::string reason;  ///< why not, a clause
 };
 
@@ -63,18 +61,15 @@ struct Result {
     std::vector<ValuedColumn> baseline;  ///< what the columns of the user's side come to
     /// Their factors with the first so many of `terms` and then `corrections`, from none to all.
     std::vector<std::vector<double>> baseline_factors;
-    std::vector<ConverterFault> faults;
+    std::vector<std::size_t> spike_rows;  ///< of the log; empty where nothing stands alone
     double rms_before_nm = 0.0, rms_after_nm = 0.0;
     double noise_nm = 0.0;                         ///< the least that any smooth law leaves
     double simulated_inertia_nm_per_deg_s2 = 0.0;  ///< 0 without a simulation
-    /// Residual of the model as given and of the improved one, an entry per row of the log; 0 where the row
-    /// does not count.
-    std::vector<double> residual_before_nm, residual_after_nm;
-    std::vector<unsigned char> is_used;   ///< of each row: it counts
-    std::size_t samples = 0;              ///< that count
-    double smoothing_s = 0.0;             ///< window of the motion
-    bool is_position_integrated = false;  ///< the log has no position
-    std::size_t evaluations = 0;
+    /// Residual of the improved model, an entry per row of the log; 0 where the row does not count.
+    std::vector<double> residual_after_nm;
+    std::vector<unsigned char> is_used;  ///< of each row: it counts
+    std::size_t samples = 0;             ///< that count
+    double smoothing_s = 0.0;            ///< window of the motion
 };
 
 /// Throws DataError for a log that is too short or does not move.

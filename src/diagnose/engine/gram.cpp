@@ -12,7 +12,7 @@ namespace ripplenotch::engine {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
-void extend_gram(MatrixXd& gram, std::span<const std::vector<double>* const> columns,
+void extend_gram(MatrixXd& gram, std::span<const std::span<const double>> columns,
                  std::span<const unsigned char> use) {
     // Rows that count are copied in chunks that stay in the second cache with all columns.
     constexpr std::size_t chunk = 256;
@@ -28,7 +28,7 @@ void extend_gram(MatrixXd& gram, std::span<const std::vector<double>* const> col
         active.clear();
         for (std::size_t c = 0; c < count; ++c) {
             double* to = &packed[active.size() * chunk];
-            const double* from = columns[c]->data();
+            const double* from = columns[c].data();
             bool any = false;
             for (std::size_t i = 0; i < rows_now.size(); ++i) {
                 to[i] = from[rows_now[i]];
@@ -75,8 +75,8 @@ VectorXd solve_normal_equations(const MatrixXd& gram, std::span<const double> ex
 
 std::vector<double> regress(const std::vector<std::vector<double>>& columns,
                             const std::vector<double>& target, std::span<const unsigned char> use) {
-    std::vector<const std::vector<double>*> with_target = {&target};
-    for (const auto& column : columns) with_target.push_back(&column);
+    std::vector<std::span<const double>> with_target = {target};
+    with_target.insert(with_target.end(), columns.begin(), columns.end());
     MatrixXd gram;
     extend_gram(gram, with_target, use);
     const VectorXd found = solve_normal_equations(gram);

@@ -15,7 +15,7 @@ inline constexpr double ridge = 1e-8;
 
 /// X' X over the rows that count: extends `gram` of the first columns to all of them. Columns may be zero
 /// over long stretches, which cost nothing there.
-void extend_gram(Eigen::MatrixXd& gram, std::span<const std::vector<double>* const> columns,
+void extend_gram(Eigen::MatrixXd& gram, std::span<const std::span<const double>> columns,
                  std::span<const unsigned char> use);
 
 /// Solves the normal equations of a least-squares fit. `gram` has the target as its first row and column.

@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: MIT
-#include "diagnose/engine/intervals.hpp"
+#include "diagnose/engine/search.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <complex>
 
-#include "core/matrices/factorisations.hpp"
 #include "core/matrices/least_squares.hpp"
 #include "core/vectors/dot.hpp"
+#include "diagnose/engine/criterion.hpp"
 #include "diagnose/engine/gram.hpp"
-#include "diagnose/engine/settings.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch::engine {
@@ -94,52 +93,39 @@ Linearised::Linearised(Criterion& criterion, const SearchedTerms& sorted)
             slopes.push_back(std::move(slope));
         }
     }
-    std::vector<double> residual = prediction(criterion, sorted);
-    std::vector<std::span<const double>> all;
+    std::vector<double> left = prediction(criterion, sorted);
+    for (double& value : left) value = -value;
+    std::vector<std::span<const double>> all = {left};
     for (const int place : design_.columns) all.push_back(criterion.white().column(place));
     for (const auto& slope : slopes) all.emplace_back(slope);
-    const auto size = static_cast<Index>(all.size());
-    // Products of all columns and their scores, by stretch.
+    const auto size = static_cast<Index>(all.size() - 1);
+    VectorXd prior = VectorXd::Zero(size);
+    for (std::size_t c = 0; c < design_.columns.size(); ++c)
+        prior[static_cast<Index>(c)] = 1.0 / (design_.deviation[c] * design_.deviation[c]);
+    const VectorXd of_priors = -prior.head(factors_.size()).cwiseProduct(factors_);
+    // Products of all columns with what is left and with each other, by stretch.
     const std::size_t stretches = std::min(blocks.count(), most_stretches);
-    std::vector<MatrixXd> products(stretches, MatrixXd::Zero(size, size));
-    MatrixXd scores = MatrixXd::Zero(size, static_cast<Index>(stretches));
+    std::vector<MatrixXd> products(stretches);
+    MatrixXd whole = MatrixXd::Zero(size + 1, size + 1);
     for (std::size_t s = 0; s < stretches; ++s) {
         const std::size_t from = blocks.first[s * blocks.count() / stretches];
         const std::size_t length = blocks.first[(s + 1) * blocks.count() / stretches] - from;
-        for (Index i = 0; i < size; ++i) {
-            const double* x = &all[static_cast<std::size_t>(i)][from];
-            scores(i, static_cast<Index>(s)) = -dot(x, &residual[from], length);
-            for (Index j = 0; j <= i; ++j)
-                products[s](i, j) = products[s](j, i) =
-                    dot(x, &all[static_cast<std::size_t>(j)][from], length);
-        }
+        std::vector<std::span<const double>> part;
+        for (const auto& column : all) part.push_back(column.subspan(from, length));
+        extend_gram(products[s], part, std::vector<unsigned char>(length, 1));
+        whole += products[s];
     }
-    MatrixXd whole = MatrixXd::Zero(size, size);
-    for (const MatrixXd& part : products) whole += part;
-    const VectorXd scale = whole.diagonal().cwiseMax(1e-300).cwiseSqrt();
-    VectorXd prior = VectorXd::Zero(size);
-    for (std::size_t c = 0; c < design_.columns.size(); ++c) {
-        const double deviation = design_.deviation[c];
-        const auto i = static_cast<Index>(c);
-        if (deviation < std::numeric_limits<double>::infinity()) prior[i] = 1.0 / (deviation * deviation);
-    }
-    const auto solved = [&](MatrixXd matrix, const VectorXd& right) -> VectorXd {
-        for (Index i = 0; i < size; ++i) {
-            for (Index j = 0; j < size; ++j) matrix(i, j) /= scale[i] * scale[j];
-            matrix(i, i) += prior[i] / (scale[i] * scale[i]) + ridge;
-        }
-        return SymmetricFactors(matrix).solve(VectorXd(right.cwiseQuotient(scale))).cwiseQuotient(scale);
+    // The ridge is that of the whole log: a column that acts in one stretch alone is 0 without it.
+    const auto solved = [&](MatrixXd gram) {
+        gram.col(0).segment(1, of_priors.size()) += of_priors;
+        gram.diagonal().tail(size) += prior + ridge * whole.diagonal().tail(size);
+        return solve_normal_equations(gram);
     };
-    VectorXd of_priors = VectorXd::Zero(size);
-    of_priors.head(factors_.size()) = -prior.head(factors_.size()).cwiseProduct(factors_);
-    const VectorXd score = scores.rowwise().sum() + of_priors;
-    step_ = solved(whole, score);
+    step_ = solved(whole);
     // Jackknife: each stretch left out in turn.
     MatrixXd moved(size, static_cast<Index>(stretches));
-    for (std::size_t s = 0; s < stretches; ++s) {
-        const auto column = static_cast<Index>(s);
-        moved.col(column) = solved(whole - products[s], score - scores.col(column));
-    }
+    for (std::size_t s = 0; s < stretches; ++s)
+        moved.col(static_cast<Index>(s)) = solved(whole - products[s]);
     const VectorXd mean = moved.rowwise().mean();
     for (Index s = 0; s < moved.cols(); ++s) moved.col(s) -= mean;
     covariance_ = (1.0 - 1.0 / static_cast<double>(stretches)) * moved * moved.transpose();

@@ -182,6 +182,16 @@ std::vector<double> gradient(std::span<const double> values, double step_s) {
     return slope;
 }
 
+double rms_where(std::span<const double> values, std::span<const unsigned char> use) {
+    double sum = 0.0, count = 0.0;
+    for (std::size_t k = 0; k < values.size(); ++k) {
+        if (use[k] == 0) continue;
+        sum += values[k] * values[k];
+        count += 1.0;
+    }
+    return count > 0.0 ? std::sqrt(sum / count) : 0.0;
+}
+
 RecordedMotion::RecordedMotion(const TraceView& log, const std::optional<Simulation>& simulation)
     : log_(log) {
     if (log.size() < fewest_slots)

@@ -38,6 +38,9 @@ struct SmoothedSignal {
 };
 [[nodiscard]] SmoothedSignal smooth_signal(std::span<const double> values, std::size_t window, double step_s);
 
+/// Root mean square over the rows that count; 0 of none.
+[[nodiscard]] double rms_where(std::span<const double> values, std::span<const unsigned char> use);
+
 /// All vectors have an entry per slot of the clock.
 class RecordedMotion {
   public:

@@ -10,6 +10,7 @@
 #include "core/vectors/dot.hpp"
 #include "diagnose/engine/gram.hpp"
 #include "ripplenotch/analysis/fourier.hpp"
+#include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch::engine {
@@ -28,7 +29,9 @@ constexpr std::size_t most_lines = 4;
 constexpr double line_power = 30.0;
 constexpr double tone_share = 0.1;  // of the squares, that no line of a noise has
 constexpr double lowest_tone_hz = 5.0;
-constexpr double highest_unknown = 1000.0;  // cycles per turn of lines where no gear ratio is known
+constexpr std::size_t fewest_spikes = 4;
+constexpr std::size_t spike_neighbours = 25;  // samples to each side
+constexpr double highest_unknown = 1000.0;    // cycles per turn of lines where no gear ratio is known
 
 double quantile(std::vector<double> values, double share) {
     const double place = share * static_cast<double>(values.size() - 1);
@@ -39,8 +42,6 @@ double quantile(std::vector<double> values, double share) {
     const double high = *std::min_element(values.begin() + below + 1, values.end());
     return low + (place - static_cast<double>(below)) * (high - low);
 }
-
-double median(std::vector<double> values) { return quantile(std::move(values), 0.5); }
 
 // Clamped cubic B-splines of a quantity between its quantiles of 0.1 and 99.9 %.
 Columns splines(const std::vector<double>& x, std::size_t count) {
@@ -100,7 +101,7 @@ std::vector<double> strongest_lines(const RecordedMotion& recorded, const Baseli
     AngleSpectrum spectrum = angle_spectrum(recorded, residual, 3.0, highest);
     std::vector<double> found;
     if (spectrum.power.empty()) return found;
-    const double background = median(spectrum.power) / std::numbers::ln2;
+    const double background = median_of(spectrum.power) / std::numbers::ln2;
     for (std::size_t line = 0; line < most_lines; ++line) {
         const auto top = std::max_element(spectrum.power.begin(), spectrum.power.end());
         if (*top < line_power * background) break;
@@ -116,16 +117,6 @@ std::vector<double> masked(std::vector<double> values, const std::vector<unsigne
     for (std::size_t k = 0; k < values.size(); ++k)
         if (use[k] == 0) values[k] = 0.0;
     return values;
-}
-
-double rms_used(const std::vector<double>& values, const std::vector<unsigned char>& use) {
-    double squares = 0.0, count = 0.0;
-    for (std::size_t k = 0; k < values.size(); ++k) {
-        if (use[k] == 0) continue;
-        squares += values[k] * values[k];
-        count += 1.0;
-    }
-    return std::sqrt(squares / std::max(count, 1.0));
 }
 
 // Autoregression of a residual by Yule and Walker's equations.
@@ -154,7 +145,7 @@ void estimate_whitening(SaturatedFit& fit, const std::vector<unsigned char>& use
         if (use[k] != 0) mean += white[k], count += 1.0;
     mean /= std::max(count, 1.0);
     for (double& value : white) value -= mean;
-    fit.innovation_nm = std::max(rms_used(white, use), 1e-300);
+    fit.innovation_nm = std::max(rms_where(white, use), 1e-300);
 }
 
 }  // namespace
@@ -219,7 +210,7 @@ std::optional<double> find_tone(const RecordedMotion& recorded, const std::vecto
         power[k] = static_cast<double>(k) * unit_hz < lowest_tone_hz ? 0.0 : std::norm(sums[k]);
     const auto top = static_cast<std::size_t>(std::max_element(power.begin(), power.end()) - power.begin());
     const std::size_t from = top - std::min<std::size_t>(top, 200), to = std::min(top + 201, power.size());
-    const double usual = median(
+    const double usual = median_of(
         {power.begin() + static_cast<std::ptrdiff_t>(from), power.begin() + static_cast<std::ptrdiff_t>(to)});
     // Stretches that do not count spread a tone over its neighbours: then its share of the squares tells.
     const double explained = 2.0 * power[top] / std::max(used, 1.0);
@@ -325,8 +316,8 @@ SaturatedFit fit_saturated(const RecordedMotion& recorded, const Baseline& base,
     Eigen::VectorXd factors;
     std::vector<double> residual;
     const auto refit = [&] {
-        std::vector<const std::vector<double>*> all = {&target};
-        for (const auto& column : columns) all.push_back(&column);
+        std::vector<std::span<const double>> all = {target};
+        all.insert(all.end(), columns.begin(), columns.end());
         extend_gram(gram, all, use);
         std::vector<double> weights(columns.size(), ridge);
         if (has_scale) weights.front() = 1.0 / ridge;
@@ -351,7 +342,7 @@ SaturatedFit fit_saturated(const RecordedMotion& recorded, const Baseline& base,
 
     SaturatedFit found;
     found.residual_nm = residual;
-    found.noise_nm = rms_used(residual, use);
+    found.noise_nm = rms_where(residual, use);
     found.inertia_nm_per_deg_s2 =
         base.known_inertia_nm_per_deg_s2 + factors[static_cast<Eigen::Index>(base.inertia_place)];
     found.ripple_nm.assign(count, 0.0);
@@ -377,6 +368,44 @@ SaturatedFit fit_saturated(const RecordedMotion& recorded, const Baseline& base,
     for (double& value : found.load_nm) value = std::abs(value);
     for (double& value : found.sensed_nm) value = std::abs(value);
     estimate_whitening(found, use);
+    return found;
+}
+
+FarSamples find_spikes(const RecordedMotion& recorded, const SaturatedFit& fit) {
+    const std::vector<unsigned char>& use = recorded.usable();
+    std::vector<double> r = fit.residual_nm, sizes;
+    for (std::size_t k = 0; k < r.size(); ++k) {
+        if (use[k] == 0)
+            r[k] = 0.0;
+        else
+            sizes.push_back(std::abs(r[k]));
+    }
+    if (sizes.empty()) return {};
+    const double deviation_nm = deviations_of_median * median_of(sizes);
+    FarSamples found;
+    const std::vector<double>& velocity = recorded.motion().velocity_deg_s;
+    // Between which samples friction changes its sign the log does not say.
+    const auto is_reversal = [&](std::size_t k) { return velocity[k - 2] * velocity[k + 2] <= 0.0; };
+    std::size_t alone = 0, in_motion = 0;
+    for (std::size_t k = 2; k + 2 < r.size(); ++k) {
+        if (std::abs(r[k]) <= 8.0 * deviation_nm) continue;
+        found.slots.push_back(k);
+        double squares = 0.0, count = 0.0;
+        const std::size_t from = k - std::min(k, spike_neighbours);
+        const std::size_t to = std::min(k + spike_neighbours, r.size());
+        for (std::size_t i = from; i < to; ++i) {
+            if (i + 1 >= k && i <= k + 1) continue;
+            squares += r[i] * r[i];
+            count += 1.0;
+        }
+        const bool stands_out = std::abs(r[k]) > 3.0 * std::max(std::abs(r[k - 1]), std::abs(r[k + 1])) &&
+                                std::abs(r[k]) > 6.0 * std::sqrt(squares / count) &&
+                                std::abs(r[k] - 0.5 * (r[k - 1] + r[k + 1])) > 7.0 * deviation_nm;
+        alone += stands_out ? 1 : 0;
+        in_motion += stands_out && !is_reversal(k) ? 1 : 0;
+    }
+    if (alone < fewest_spikes) found.slots.clear();
+    found.are_spikes = in_motion >= fewest_spikes;
     return found;
 }
 

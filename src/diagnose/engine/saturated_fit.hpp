@@ -28,6 +28,13 @@ struct SaturatedFit {
 [[nodiscard]] SaturatedFit fit_saturated(const RecordedMotion& recorded, const Baseline& base,
                                          const SearchedTerms& terms, const SaturatedFit* before);
 
+/// Samples far from what all smooth laws predict and from their neighbours.
+struct FarSamples {
+    std::vector<std::size_t> slots;
+    bool are_spikes = false;  ///< enough of them stand alone while the joint moves in one direction
+};
+[[nodiscard]] FarSamples find_spikes(const RecordedMotion& recorded, const SaturatedFit& fit);
+
 /// Power of lines in a residual against the angle of the joint.
 struct AngleSpectrum {
     std::vector<double> cycles_per_turn, power;

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <numeric>
 
+#include "diagnose/engine/criterion.hpp"
 #include "diagnose/engine/gram.hpp"
-#include "diagnose/engine/intervals.hpp"
-#include "diagnose/engine/settings.hpp"
+#include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch::engine {
@@ -237,11 +237,6 @@ void Search::add_lines(Criterion& criterion, const SearchedTerms& terms,
     const double turns_per_s = recorded_.fastest_deg_s() / 360.0;
     const double highest = 0.45 / recorded_.step_s() / turns_per_s;
     const double ratio = motor_angle(terms, base_.ratio).ratio.value();
-    const auto median_of = [](std::vector<double> values) {
-        const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-        std::nth_element(values.begin(), middle, values.end());
-        return *middle;
-    };
     if (ratio > 0.0) {
         const AngleSpectrum lines =
             angle_spectrum(recorded_, residual, 0.4 * ratio, std::min(13.0 * ratio, highest));
@@ -608,8 +603,6 @@ SearchResult Search::run() {
     const auto first = std::make_shared<Criterion>(recorded_, base_, noise_);
     SearchResult result;
     result.best = path({{}, first}, result.refused);
-    result.evaluations =
-        first->evaluations() + (result.best.criterion != first ? result.best.criterion->evaluations() : 0);
     const auto left = [](const SearchState& state) {
         return state.criterion->fit(state.terms).squares / state.criterion->samples();
     };
@@ -633,6 +626,95 @@ SearchResult Search::run() {
         result.refused = rival_refused[i];
     }
     return result;
+}
+
+namespace {
+
+// Halvings, roughly, of a step of the coordinate search.
+constexpr double shrink = 0.55;
+constexpr double straight_drift_s = 1e3;  // from here on a drift is a line, whatever its time constant
+
+// Steps of both signs about the best value so far, each series shorter than the last.
+struct StepSearch {
+    Criterion& criterion;
+    SearchedTerms& terms;
+    std::size_t place, value;
+    double best;
+
+    template <class Moved>
+    void run(int passes, double step, double shrunk, Moved moved) {
+        for (int pass = 0; pass < passes; ++pass, step *= shrunk) {
+            for (const double signed_step : {-step, step}) {
+                SearchedTerms tried = terms;
+                const auto next = moved(terms[place].values[value], signed_step);
+                if (!next) continue;
+                tried[place].values[value] = *next;
+                const double squares = criterion.fit(tried).squares;
+                if (squares >= best) continue;
+                best = squares;
+                terms = std::move(tried);
+            }
+        }
+    }
+};
+
+}  // namespace
+
+double bias_step_deg_s(const RecordedMotion& recorded, const Baseline& base) {
+    const double cycles_per_deg =
+        *std::max_element(base.orders.begin(), base.orders.end()) * base.ratio.value() / 360.0;
+    return 0.25 / (cycles_per_deg * recorded.motion().time_s.back());
+}
+
+SearchedTerms refined(Criterion& criterion, SearchedTerms terms, std::size_t place) {
+    const TermKind& kind = *terms[place].kind;
+    if (!kind.is_refined) return terms;
+    StepSearch search{criterion, terms, place, 0, criterion.fit(terms).squares};
+    if (kind.effect->name == "gear-ratio") {
+        const std::vector<double>& orders = criterion.base().orders;
+        const double turns = std::max(criterion.recorded().travel_deg() / 360.0, 0.05);
+        const double step = 0.2 / (*std::max_element(orders.begin(), orders.end()) * turns);
+        search.run(7, step, 0.5,
+                   [](double ratio, double by) { return std::optional(rounded(ratio + by, 7)); });
+        return terms;
+    }
+    const bool is_delay = kind.effect->name == "delay";
+    if (kind.effect->name == "velocity-bias") {
+        const double step = bias_step_deg_s(criterion.recorded(), criterion.base());
+        search.run(7, 0.5 * step, shrink,
+                   [](double bias, double by) { return std::optional(rounded(bias + by, 7)); });
+        return terms;
+    }
+    const int sweeps = kind.searched.size() > 1 ? 2 : 1;
+    for (int sweep = 0; sweep < sweeps; ++sweep) {
+        for (std::size_t value = 0; value < kind.searched.size(); ++value) {
+            SearchedValue bounds = kind.searched[value];
+            if (bounds.is_choice) continue;
+            bounds.upper *= width_scale(kind, bounds, criterion.recorded());
+            search.value = value;
+            if (is_delay) {
+                search.run(7, 0.002, shrink, [&](double delay_s, double by) -> std::optional<double> {
+                    const double next = std::nearbyint((delay_s + by) * 1e6) * 1e-6;
+                    if (next < bounds.lower || next > bounds.upper) return std::nullopt;
+                    return next;
+                });
+                continue;
+            }
+            if (kind.effect->name == "drift" && terms[place].values[0] > straight_drift_s) continue;
+            if (bounds.step > 0.0) {
+                search.run(6, bounds.step, shrink, [&](double from, double by) {
+                    return std::optional(rounded(std::clamp(from + by, bounds.lower, bounds.upper), 6));
+                });
+                continue;
+            }
+            search.run(5, 0.35, shrink, [&](double from, double by) {
+                const double size =
+                    std::clamp(std::abs(from) * portable::exp(by), bounds.lower, bounds.upper);
+                return std::optional(rounded(std::copysign(size, from), 5));
+            });
+        }
+    }
+    return terms;
 }
 
 }  // namespace ripplenotch::engine

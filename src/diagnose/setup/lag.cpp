@@ -98,8 +98,7 @@ std::vector<double> SmoothedSeries::times_s() const {
 }
 
 BlockProducts::BlockProducts(const Columns& columns, std::span<const double> weight) {
-    std::vector<const std::vector<double>*> pointers;
-    for (const auto& column : columns) pointers.push_back(&column);
+    const std::vector<std::span<const double>> spans(columns.begin(), columns.end());
     const double all = std::accumulate(weight.begin(), weight.end(), 0.0);
     std::vector<std::size_t> block(weight.size());
     double before = 0.0;
@@ -114,7 +113,7 @@ BlockProducts::BlockProducts(const Columns& columns, std::span<const double> wei
     std::vector<unsigned char> use(weight.size());
     for (std::size_t b = 0; b < blocks; ++b) {
         for (std::size_t k = 0; k < use.size(); ++k) use[k] = block[k] == b ? 1 : 0;
-        engine::extend_gram(products_[b], pointers, use);
+        engine::extend_gram(products_[b], spans, use);
         all_ += products_[b];
     }
 }
