@@ -111,13 +111,13 @@ ExitCode give(const Answer& answer, const CommonOptions& common) {
         each(common.output,
              [&](const Answer& one, const std::string& path) { write_main(one, path, common); });
         // The file is for the next command; people still want to read what came out.
-        const bool has_document = answer.document || !answer.joints.empty();
-        if (has_document && ends_with_json(common.output) && !common.json)
+        if ((answer.document || !answer.joints.empty()) && ends_with_json(common.output) && !common.json)
             write_text("-", answer.text, ByteSink::Overwrite::no);
     }
     if (common.plot)
         each(*common.plot,
              [&](const Answer& one, const std::string& path) { draw_figure(one, path, common); });
+    for (const std::string& line : answer.complaints) talk(line);
     return answer.code;
 }
 

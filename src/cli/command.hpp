@@ -42,7 +42,8 @@ struct Answer {
     /// -o has something else (a log, exported code): text and document go to standard output.
     bool beside_output = false;
     std::vector<File> files = {};
-    std::string joint = {};  ///< that it is about, where the log names it
+    std::vector<std::string> complaints = {};  ///< lines on standard error when all is written
+    std::string joint = {};                    ///< that it is about, where the log names it
     /// Of several joints, each by itself; text, document and code are of all of them.
     std::vector<Answer> joints = {};
     std::shared_ptr<const void> request = {};  ///< what its functions refer to

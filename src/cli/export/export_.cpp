@@ -74,10 +74,10 @@ ReadBack read_back(const Written& written, const CommonOptions& common) {
 }
 
 // What was found out about it: on standard output, unless the file itself went there.
-Answer told(const std::string& text, const CommonOptions& common, ExitCode code = ExitCode::done) {
+Answer told(const std::string& text, const CommonOptions& common) {
     const bool beside = common.output != "-";
     if (!beside && common.verbose) talk_lines(text);
-    return {.text = beside ? text : "", .code = code, .beside_output = true};
+    return {.text = beside ? text : "", .beside_output = true};
 }
 
 // Where a generated file is from, and whose it is.
@@ -169,13 +169,15 @@ CodeCheck run_beside(const Contender& method, Hertz sample_rate, const RunningDe
 }
 
 // Of what runs on other numbers than coefficients: a share of what it comes to.
-ExitCode within_tolerance(double error_nm, double whole_nm, std::string_view whole,
-                          const std::optional<double>& tolerance_percent) {
+Answer within_tolerance(Answer answer, double error_nm, double whole_nm, std::string_view whole,
+                        const std::optional<double>& tolerance_percent) {
     const double percent = 100.0 * error_nm / whole_nm;
-    if (!tolerance_percent || percent <= *tolerance_percent) return ExitCode::done;
-    talk(fmt::format("ripplenotch export: largest error {:.2g} % of the {}, tolerance {} %", percent, whole,
-                     shortest(*tolerance_percent)));
-    return ExitCode::limit_violated;
+    if (!tolerance_percent || percent <= *tolerance_percent) return answer;
+    answer.complaints.push_back(
+        fmt::format("ripplenotch export: largest error {:.2g} % of the {}, tolerance {} %", percent, whole,
+                    shortest(*tolerance_percent)));
+    answer.code = ExitCode::limit_violated;
+    return answer;
 }
 
 // Writes its code, reads it back and runs it beside the method itself over a million samples.
@@ -195,13 +197,14 @@ Answer export_code(const ExportRequest& request, const Contender& method, const 
     const ReadBack again = read_back(written, request.common);
     const LoadedCode code = read_method_code(again.bytes, again.source, design, settings);
     const CodeCheck check = run_beside(method, *request.sample_rate, design, code);
-    return told(fmt::format("{}: {}, read back and compared with the method over {} samples in {}.\nlargest "
-                            "output          {:.4g} Nm\nlargest difference      {:.1e} Nm\n",
-                            again.source, spec.text(), samples, code.arithmetic, check.largest_nm,
-                            check.largest_error_nm),
-                request.common,
-                within_tolerance(check.largest_error_nm, check.largest_nm, "largest output",
-                                 request.tolerance_percent));
+    return within_tolerance(
+        told(fmt::format(
+                 "{}: {}, read back and compared with the method over {} samples in {}.\nlargest output     "
+                 "     {:.4g} Nm\nlargest difference      {:.1e} Nm\n",
+                 again.source, spec.text(), samples, code.arithmetic, check.largest_nm,
+                 check.largest_error_nm),
+             request.common),
+        check.largest_error_nm, check.largest_nm, "largest output", request.tolerance_percent);
 }
 
 // `export` of a ripple map.
@@ -243,14 +246,14 @@ Answer export_map(const ExportRequest& request, const std::string& command_line)
     const ReadBack again = read_back(written, request.common);
     const LoadedMap loaded = target.read(again.bytes, again.source, map, settings);
     const MapCheck check = verify_map_export(map, loaded);
-    return told(
-        fmt::format("{}: {}, read back and run at {} states in {}.\nripple of the map       {:.4g} Nm rms\n"
-                    "not representable       {:.4g} Nm rms\nlargest error           {:.2g} Nm\n",
-                    again.source, target.name, check.states, loaded.arithmetic, check.ripple_nm,
-                    check.not_held_nm, check.largest_error_nm),
-        request.common,
-        within_tolerance(check.largest_error_nm, check.ripple_nm, "map's ripple, rms",
-                         request.tolerance_percent));
+    return within_tolerance(
+        told(fmt::format(
+                 "{}: {}, read back and run at {} states in {}.\nripple of the map       {:.4g} Nm rms\n"
+                 "not representable       {:.4g} Nm rms\nlargest error           {:.2g} Nm\n",
+                 again.source, target.name, check.states, loaded.arithmetic, check.ripple_nm,
+                 check.not_held_nm, check.largest_error_nm),
+             request.common),
+        check.largest_error_nm, check.ripple_nm, "map's ripple, rms", request.tolerance_percent);
 }
 
 // `export` of the model of a joint, to what simulates it.
@@ -384,14 +387,14 @@ std::optional<std::string> left_to_caller(const Target& target, const FilterSet&
         target.name, shortest(design.hysteresis.value()), design.dwell_samples);
 }
 
-void say_violations(const ExportReport& report) {
-    for (std::size_t i = 0; i < std::min(report.violations.size(), max_violations_said); ++i) {
-        talk(fmt::format("ripplenotch export: {}", report.violations[i]));
-    }
-    if (report.violations.size() > max_violations_said) {
-        talk(fmt::format("ripplenotch export: and {} more past a limit",
-                         report.violations.size() - max_violations_said));
-    }
+void add_violations(const ExportReport& report, Answer& answer) {
+    if (report.violations.empty()) return;
+    answer.code = ExitCode::limit_violated;
+    for (std::size_t i = 0; i < std::min(report.violations.size(), max_violations_said); ++i)
+        answer.complaints.push_back(fmt::format("ripplenotch export: {}", report.violations[i]));
+    if (report.violations.size() > max_violations_said)
+        answer.complaints.push_back(fmt::format("ripplenotch export: and {} more past a limit",
+                                                report.violations.size() - max_violations_said));
 }
 
 Answer run_export(const ExportRequest& request, const std::string& command_line) {
@@ -438,10 +441,8 @@ Answer run_export(const ExportRequest& request, const std::string& command_line)
     report.arithmetic = arithmetic_name(loaded.bands.front().front().arithmetic);
     report.violations = export_violations(report.checks, request.tolerance_percent);
 
-    say_violations(report);
-    const ExitCode code = report.violations.empty() ? ExitCode::done : ExitCode::limit_violated;
-    Answer answer = request.common.json ? Answer{.code = code, .beside_output = true}
-                                        : told(export_report_to_text(report), request.common, code);
+    Answer answer = told(export_report_to_text(report), request.common);
+    add_violations(report, answer);
     answer.document = [report = std::move(report), provenance] {
         return export_report_to_json(report, provenance);
     };

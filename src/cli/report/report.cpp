@@ -21,8 +21,6 @@
 #include "cli/options/joint_runs.hpp"
 #include "document/json/json.hpp"
 #include "page/result_section.hpp"
-#include "ripplenotch/analysis/line_search.hpp"
-#include "ripplenotch/analysis/order_map.hpp"
 #include "ripplenotch/analysis/sweeps.hpp"
 #include "ripplenotch/chart/figures.hpp"
 #include "ripplenotch/core/error.hpp"
