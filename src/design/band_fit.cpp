@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -21,10 +20,6 @@ namespace {
 constexpr int points_a_side = 9;        // number of points in the search for the largest gain of a trial band
 constexpr double as_exact = 1e-9;       // share of a Q or a centre to which searches go
 constexpr double edge_as_exact = 1e-7;  // share of a band's edge, from the side on which it still holds
-constexpr int max_secants = 8;          // chosen, not derived: bisection follows
-// Chosen, not derived: checked by its bracket.
-constexpr double secant_as_exact = 1e-6, bracket_width = 1e-10;
-
 // The end of the first stretch, from `low` upward, on which `holds` is true; `high` when it never fails.
 template <class Holds>
 double first_failure(double low, double high, const Holds& holds) {
@@ -45,35 +40,6 @@ double first_failure(double low, double high, const Holds& holds) {
     return high;
 }
 
-// Two Q close to each other, with the one of which the delay is more than `max_s` and with the other not.
-struct Bracket {
-    double beyond, within;
-};
-
-// By secants against 1/Q, with which an analogue notch's delay goes.
-template <class Delay>
-Bracket bracket(const Delay& delay_at, double max_s, Bracket known, std::array<double, 2> delay_s) {
-    const auto look = [&](double q) {
-        const double found_s = delay_at(q);
-        (found_s <= max_s ? known.within : known.beyond) = q;
-        return found_s;
-    };
-    double before = 1.0 / known.beyond, here = 1.0 / known.within;
-    for (int step = 0; step < max_secants; ++step) {
-        const double next = here + (max_s - delay_s[1]) * (here - before) / (delay_s[1] - delay_s[0]);
-        const double q = 1.0 / next;
-        if (!(q > known.beyond && q < known.within)) break;
-        const bool close = std::abs(next - here) < secant_as_exact * next;
-        before = here;
-        here = next;
-        delay_s = {delay_s[1], look(q)};
-        if (close) break;
-    }
-    for (const double q : {(1.0 - bracket_width) / here, (1.0 + bracket_width) / here})
-        if (q > known.beyond && q < known.within) look(q);
-    return known;
-}
-
 }  // namespace
 
 BandFit::BandFit(const TableSpec& spec)
@@ -86,43 +52,20 @@ double BandFit::warped(std::size_t order, double speed_deg_s) const {
     return portable::tan(std::numbers::pi * hz_per_deg_s_[order] * speed_deg_s / spec_.sample_rate.value());
 }
 
-Tuning BandFit::tuned(double center_deg_s, double q) const {
-    Tuning tuning{center_deg_s, q, {}};
+std::optional<Tuning> BandFit::tune(double center_deg_s, const QRule& rule) const {
+    Tuning tuning{center_deg_s, rule.q.value_or(1.0), {}};
     for (std::size_t i = 0; i < hz_per_deg_s_.size(); ++i) tuning.warped.push_back(warped(i, center_deg_s));
+    if (rule.q) return tuning;
+    const double least = delay_s(tuning) / *rule.delay_s;  // a delay goes with 1 / Q
+    if (!(least <= narrowest_q)) return std::nullopt;
+    tuning.q = std::max(widest_q, least);
     return tuning;
 }
 
-std::optional<Tuning> BandFit::tune(double center_deg_s, const QRule& rule) const {
-    if (rule.q) return tuned(center_deg_s, *rule.q);
-    double low = widest_q, high = narrowest_q;
-    const std::vector<double> centres = tuned(center_deg_s, low).warped;
-    const auto delay_at = [&](double q) {
-        double samples = 0.0;
-        for (const double centre : centres) samples += delay_samples(centre, 1.0 / q);
-        return samples / spec_.sample_rate.value();
-    };
-    const double max_s = *rule.delay_s, at_low_s = delay_at(low), at_high_s = delay_at(high);
-    if (at_low_s <= max_s) return tuned(center_deg_s, low);
-    if (!(at_high_s <= max_s)) return std::nullopt;
-    // Bisection converges to one of the Qs that are equally exact. A few secant steps along the delay find it
-    // sooner, so that most halves are known without an evaluation.
-    const Bracket known = bracket(delay_at, max_s, {low, high}, {at_low_s, at_high_s});
-    while (high - low > as_exact * high) {
-        const double middle = std::sqrt(low * high);
-        const bool within = middle >= known.within || (middle > known.beyond && delay_at(middle) <= max_s);
-        (within ? high : low) = middle;
-    }
-    return tuned(center_deg_s, high);
-}
-
 // theory.md, equation 5, with alpha = sin W damping / 2 and sin W / (1 - cos W) = 1 / tan(W/2).
-double BandFit::delay_samples(double warped, double damping) const {
-    return 0.5 * damping * (1.0 - floor_gain_) / warped;
-}
-
 double BandFit::delay_s(const Tuning& tuning) const {
     double samples = 0.0;
-    for (const double centre : tuning.warped) samples += delay_samples(centre, 1.0 / tuning.q);
+    for (const double centre : tuning.warped) samples += 0.5 / tuning.q * (1.0 - floor_gain_) / centre;
     return samples / spec_.sample_rate.value();
 }
 

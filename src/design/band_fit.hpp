@@ -58,12 +58,10 @@ class BandFit {
                                                            std::size_t most) const;
 
   private:
-    [[nodiscard]] Tuning tuned(double center_deg_s, double q) const;
     /// Square of the gain at one speed, with the nominal gear ratio.
     [[nodiscard]] double power(const Tuning& tuning, double speed_deg_s) const;
     [[nodiscard]] double speed_in(double from_deg_s, double to_deg_s, int point) const;
     [[nodiscard]] double warped(std::size_t order, double speed_deg_s) const;
-    [[nodiscard]] double delay_samples(double warped, double damping) const;
 
     const TableSpec& spec_;
     std::vector<double> hz_per_deg_s_;
