@@ -133,7 +133,7 @@ OrderTracks track_orders(const TrackedSignal& signal, const WindowRule& rule) {
             for (const TrackedLine& line : signal.lines) lines.push_back({line.order, part(line.turns)});
             WindowFit fit(part(signal.time_s), {},
                           std::abs(reference.back() - reference.front()) / signal.ratio.value(),
-                          std::move(lines), rule.envelope_degree);
+                          std::move(lines), rule.envelope_degree, WindowFit::Trend::polynomials);
             if (!fit.has_enough_samples()) {
                 ++tracks.windows_too_few_samples;
                 continue;

@@ -55,11 +55,11 @@ std::vector<SampleRun> cut_windows(const SampleRun& run, std::span<const double>
 }
 
 WindowFit::WindowFit(std::span<const double> place, std::span<const double> root_weight, double output_turns,
-                     std::vector<TrackedLine> lines, int envelope_degree)
+                     std::vector<TrackedLine> lines, int envelope_degree, Trend trend)
     : root_weight_(root_weight.begin(), root_weight.end()),
       lines_(std::move(lines)),
       degree_(static_cast<std::size_t>(envelope_degree)),
-      cosines_(!root_weight.empty()),
+      cosines_(trend == Trend::cosines),
       trend_(2 + curved_terms(output_turns, lines_, cosines_ ? fewest_cosines : fewest_polynomials)) {
     root_weight_.resize(place.size(), 1.0);
     weight_ = dot(root_weight_.data(), root_weight_.data(), place.size());

@@ -22,14 +22,15 @@ namespace ripplenotch {
 
 /// Weighted least squares in one window: a trend, and of each line a cosine and a sine whose amplitudes are
 /// polynomials of the place. The trend is a line and cosines of the place: 12 per turn of the joint, but no
-/// more than one for two periods of the slowest line, and never fewer than three. Where all samples count
-/// alike, it is as many polynomials instead, since cosines bend at the ends; never fewer than make a cubic.
+/// more than one for two periods of the slowest line, and never fewer than three; or as many polynomials,
+/// which do not bend at the ends, and never fewer than make a cubic.
 class WindowFit {
   public:
+    enum class Trend { cosines, polynomials };
     /// `place` rises or falls along the window. Of each line the turns at the window's samples. Each sample
     /// counts by the square of its root weight; without any, all count alike.
     WindowFit(std::span<const double> place, std::span<const double> root_weight, double output_turns,
-              std::vector<TrackedLine> lines, int envelope_degree);
+              std::vector<TrackedLine> lines, int envelope_degree, Trend trend = Trend::cosines);
 
     [[nodiscard]] std::size_t unknowns() const { return trend_ + 2 * (degree_ + 1) * lines_.size(); }
     [[nodiscard]] bool has_enough_samples() const { return place_.size() >= 2 * unknowns(); }

@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "filter/map/map_runner.hpp"
-#include "filter/map/ripple_windows.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
@@ -157,19 +156,19 @@ class MapPrediction final : public CausalFilter {
   public:
     MapPrediction(const RippleMap& map, Hertz sample_rate)
         : runner_(with_zero(map, 0.0)),
-          path_(MotorAngle(map.gear_ratio.value(), sample_rate.value(), MotorAngle::Source::best, 0.0)) {}
-    void restart() override { path_.restart(); }
+          angle_(map.gear_ratio.value(), sample_rate.value(), MotorAngle::Source::best, 0.0) {}
+    void restart() override { angle_.restart(); }
     void process(const Samples& in, std::span<double> out) override {
         for (std::size_t k = 0; k < out.size(); ++k) {
-            path_.next(in.velocity_deg_s[k], in.position_deg.empty() ? nullptr : &in.position_deg[k]);
-            runner_.at(in.velocity_deg_s[k], path_.turns());
-            out[k] = runner_.ripple(path_.turns(), path_.step_turns());
+            angle_.next(in.velocity_deg_s[k], in.position_deg.empty() ? nullptr : &in.position_deg[k]);
+            runner_.at(in.velocity_deg_s[k], angle_.turns());
+            out[k] = runner_.ripple(angle_.turns(), angle_.step_turns());
         }
     }
 
   private:
     MapRunner runner_;
-    MotorPath path_;
+    MotorAngle angle_;
 };
 
 }  // namespace

@@ -13,8 +13,9 @@
 #include <random>
 #include <span>
 
+#include "analysis/track/window_fit.hpp"
+#include "core/vectors/dot.hpp"
 #include "filter/map/map_regression.hpp"
-#include "filter/map/ripple_windows.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/core/number.hpp"
@@ -37,35 +38,67 @@ RippleOrders counted_orders(const GearAccount& gear) {
     return gear.orders.empty() ? stated : stated.by_lowest();
 }
 
-std::vector<RippleWindow> windows_of(const TraceView& log, const RippleOrders& counted) {
-    MotorPath path(MotorAngle(counted.gear_ratio, log.sample_rate.value(), MotorAngle::Source::best, 0.0));
-    RippleWindows windows(counted.orders, log.sample_rate.value(), {});
-    for (std::size_t k = 0; k < log.size(); ++k) {
-        if (k > 0 && log.starts_run(k)) {
-            windows.split();
-            path.restart();
-        }
-        path.next(log.velocity_deg_s[k], log.has_position() ? &log.position_deg[k] : nullptr);
-        windows.add(path, log.torque_nm[k]);
-    }
-    return windows.finish();
-}
+// Windows in periods of the lowest order: an amplitude that depends on speed hardly changes in one.
+constexpr double window_turns = 2.5, fewest_window_turns = 2.0;
+constexpr double longest_window_s = 2.5;  // a cubic follows the torque no longer
+constexpr double samples_a_period = 3.0;  // of the highest order
+constexpr double beside_turns = 0.5;      // to both sides of an order, where no ripple is
+constexpr double clear_of_others = 0.35;  // nearer to another order its ripple counts as noise
 
-MapWindow window_of(const RippleWindow& window, const RippleOrders& counted, double zero_deg,
-                    std::size_t log) {
-    const double ratio = counted.gear_ratio;
-    MapWindow one;
-    one.log = log;
-    one.middle = window.middle;
-    one.length = window.length;
-    one.state = {360.0 * window.speed_turns_s / ratio, 360.0 * window.middle_turns / ratio};
-    for (std::size_t i = 0; i < counted.orders.size(); ++i) {
-        const double cycles = counted.orders[i] * ratio * zero_deg / 360.0;
-        const double turned = 2.0 * std::numbers::pi * (cycles - std::floor(cycles));
-        one.value.push_back(window.amplitudes[i] * std::conj(portable::phasor(turned)));
-        one.noise.push_back(std::max(window.background[i], 2.0 * window.variance));
+// The rows of a log between two reversals in windows, each with a cubic and all orders fitted at once, the
+// middle counting most. The angle is that of a position, counted from the map's zero.
+void add_windows(const TraceView& log, std::size_t number, MapData& data) {
+    const RippleOrders& counted = data.counted;
+    const double ratio = counted.gear_ratio, deg_a_turn = 360.0 / ratio,
+                 zero = data.frame.zero_deg / deg_a_turn;
+    std::vector<double> all_turns = output_angle(log).turns;
+    for (double& turns : all_turns) turns = turns * ratio - zero;
+    const double highest = *std::max_element(counted.orders.begin(), counted.orders.end());
+    for (const SampleRun& run : directed_runs(smoothed_speed(log), log.run_starts, {})) {
+        for (const SampleRun& rows : cut_windows(run, all_turns, window_turns, fewest_window_turns, 0.5)) {
+            const auto turns = std::span(all_turns).subspan(rows.first, rows.size());
+            const double turned = turns.back() - turns.front(), size = std::abs(turned);
+            const double seconds = log.time_s[rows.end - 1] - log.time_s[rows.first];
+            if (seconds > longest_window_s ||
+                !(static_cast<double>(rows.size()) > samples_a_period * highest * size))
+                continue;
+            std::vector<double> root_weight;
+            double squares = 0.0, sum = 0.0;
+            for (const double at : turns) {
+                const double along = std::clamp((at - turns.front()) / turned, 0.0, 1.0);
+                const double weight = portable::sin(std::numbers::pi * along);
+                root_weight.push_back(std::sqrt(weight));
+                squares += weight * weight;
+                sum += weight * at;
+            }
+            std::vector<TrackedLine> lines;
+            for (const double order : counted.orders) lines.push_back({order, turns});
+            WindowFit fit(turns, root_weight, 0.0, lines, 0, WindowFit::Trend::polynomials);
+            if (!fit.has_enough_samples()) continue;
+            fit.factorise();
+            const WindowFit::Torque torque = fit.fit(log.torque_nm.subspan(rows.first, rows.size()));
+            MapWindow& window = data.windows.emplace_back();
+            window.log = number;
+            window.rows = rows;
+            window.state = {deg_a_turn * turned / seconds, deg_a_turn * (sum / fit.weight() + zero)};
+            const auto samples = static_cast<double>(rows.size());
+            const double variance = dot(torque.residual.data(), torque.residual.data(), rows.size()) /
+                                    fit.weight() * samples / (samples - static_cast<double>(fit.unknowns()));
+            const double of_fit = 4.0 * variance * squares / (fit.weight() * fit.weight());
+            for (std::size_t i = 0; i < lines.size(); ++i) {
+                double beside = 0.0, places = 0.0;
+                for (const double aside : {-beside_turns, beside_turns}) {
+                    const double power =
+                        fit.power_beside(torque, {lines[i].order + aside, turns}, clear_of_others * size);
+                    if (std::isnan(power)) continue;
+                    beside += power;
+                    places += 1.0;
+                }
+                window.value.push_back(std::conj(fit.amplitude(torque, i)));
+                window.noise.push_back(std::max(places > 0.0 ? beside / places : 0.0, of_fit));
+            }
+        }
     }
-    return one;
 }
 
 template <typename Value>
@@ -90,9 +123,7 @@ void number_blocks(MapData& data) {
     }
     for (std::size_t i = 1; i < windows.size(); ++i) {
         MapWindow &before = windows[i - 1], &after = windows[i];
-        const double apart = after.middle - before.middle, share = 1e-9;
-        const bool overlap = apart < (0.5 - share) * (before.length + after.length);
-        if (after.log == before.log && after.block != before.block && overlap)
+        if (after.log == before.log && after.block != before.block && after.rows.first < before.rows.end)
             before.scored = after.scored = false;
     }
 }
@@ -102,12 +133,10 @@ void number_blocks(MapData& data) {
 MapData map_data(std::span<const TraceView> logs, const GearAccount& gear, double zero_deg) {
     MapData data;
     data.counted = counted_orders(gear);
-    for (std::size_t l = 0; l < logs.size(); ++l)
-        for (const RippleWindow& window : windows_of(logs[l], data.counted))
-            data.windows.push_back(window_of(window, data.counted, zero_deg, l));
     data.frame.gear_ratio = gear.ratio;
     data.frame.orders = gear.orders;
     data.frame.zero_deg = zero_deg;
+    for (std::size_t l = 0; l < logs.size() && !gear.orders.empty(); ++l) add_windows(logs[l], l, data);
     data.frame.speeds_deg_s =
         range_seen(data.windows, [](const MapState& at) { return std::abs(at.speed_deg_s); });
     data.frame.positions_deg = range_seen(data.windows, [](const MapState& at) { return at.position_deg; });

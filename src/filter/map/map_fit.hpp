@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "filter/ripple_keys.hpp"
+#include "ripplenotch/analysis/sweeps.hpp"
 #include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/core/trace.hpp"
 #include "ripplenotch/design/ripple_map.hpp"
@@ -21,7 +22,7 @@ struct MapWindow {
     std::vector<std::complex<double>> value;
     std::vector<double> noise;  ///< by order: mean square of the noise in `value`
     std::size_t block = 0, log = 0;
-    double middle = 0.0, length = 0.0;  ///< in turns along the log, back and forth added up
+    SampleRun rows;
     bool scored = true;                 ///< it shares no sample with another block
 };
 
