@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/rows/row_facts.hpp"
 #include "ripplenotch/analysis/ripple_estimate.hpp"
 #include "ripplenotch/analysis/ripple_meter.hpp"
 #include "ripplenotch/analysis/spectrum.hpp"
@@ -360,13 +361,11 @@ MethodFigures measure_on_signals(const Contender& contender, Hertz sample_rate, 
 }
 
 DegPerSec median_moving_speed(const TraceView& trace) {
-    double fastest = 0.0;
-    for (const double v : trace.velocity_deg_s) fastest = std::max(fastest, std::abs(v));
+    const double slow = moving_share * fastest_of(trace.velocity_deg_s);
     std::vector<double> moving;
     for (const double v : trace.velocity_deg_s) {
-        if (std::abs(v) > moving_share * fastest) moving.push_back(std::abs(v));
+        if (std::abs(v) > slow) moving.push_back(std::abs(v));
     }
-    if (moving.empty()) return DegPerSec(0.0);
     return DegPerSec(median_in(moving));
 }
 
@@ -431,10 +430,8 @@ std::size_t longest_unbroken_run(const TraceView& trace) {
 // Output minus TorqueReference::smooth_nm(), as the blocks of a log go by.
 class ReferenceErrors {
   public:
-    ReferenceErrors(const ComparedLog& log, const std::vector<double>& smooth_nm) : smooth_nm_(smooth_nm) {
-        for (const double velocity : log.trace.velocity_deg_s)
-            fastest_deg_s_ = std::max(fastest_deg_s_, std::abs(velocity));
-    }
+    ReferenceErrors(const ComparedLog& log, const std::vector<double>& smooth_nm)
+        : smooth_nm_(smooth_nm), slow_deg_s_(moving_share * fastest_of(log.trace.velocity_deg_s)) {}
 
     void add(const TraceView& block, std::vector<Runner>& runners) {
         const double step_s = 1.0 / block.sample_rate.value();
@@ -443,7 +440,7 @@ class ReferenceErrors {
             if (std::isnan(smooth)) continue;
             ++rows_;
             const bool starts = moved_s_ < start_seconds;
-            if (std::abs(block.velocity_deg_s[k]) > moving_share * fastest_deg_s_) moved_s_ += step_s;
+            if (std::abs(block.velocity_deg_s[k]) > slow_deg_s_) moved_s_ += step_s;
             if (starts) own_start_ = std::max(own_start_, std::abs(block.torque_nm[k] - smooth));
             for (Runner& runner : runners) {
                 const double error = runner.out[k] - smooth;
@@ -459,7 +456,7 @@ class ReferenceErrors {
 
   private:
     const std::vector<double>& smooth_nm_;
-    double fastest_deg_s_ = 0.0, moved_s_ = 0.0, own_start_ = 0.0;
+    double slow_deg_s_, moved_s_ = 0.0, own_start_ = 0.0;
     std::size_t rows_ = 0;
 };
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <functional>
 
-#include "analysis/motion/encoder_steps.hpp"
+#include "analysis/lines/encoder.hpp"
 #include "analysis/traces.hpp"
 #include "ripplenotch/analysis/identification.hpp"
 #include "support/catch.hpp"

@@ -5,7 +5,6 @@
 #include <numbers>
 #include <random>
 
-#include "analysis/motion/sweep_fit.hpp"
 #include "analysis/traces.hpp"
 #include "ripplenotch/analysis/identification.hpp"
 #include "ripplenotch/analysis/line_search.hpp"
@@ -197,61 +196,6 @@ TEST_CASE("noise of any colour, held and coarse samples give orders in at most o
     }
     INFO(alarms << " of " << runs);
     CHECK(alarms <= runs / 100);
-}
-
-namespace {
-
-// Forth and back over several turns at changing speed, with torque that nothing smooth explains.
-struct Moved {
-    Trace trace;
-    std::vector<Sweep> sweeps;
-
-    Moved() {
-        trace.sample_rate = Hertz(500.0);
-        std::mt19937 random(3);
-        std::normal_distribution<double> noise(0.0, 0.3);
-        for (int k = 0; k < 12'000; ++k) {
-            const double t = k / 500.0, phase = 2.0 * std::numbers::pi * t / 6.0;
-            trace.time_s.push_back(t);
-            trace.position_deg.push_back(300.0 * std::sin(phase));
-            trace.velocity_deg_s.push_back(300.0 * std::cos(phase) * 2.0 * std::numbers::pi / 6.0);
-            trace.torque_nm.push_back(2.0 + 0.01 * trace.position_deg.back() + noise(random));
-        }
-        const TraceView log = trace.view();
-        sweeps = cut_sweeps({&log, 1}, {}).pieces;
-    }
-};
-
-// The smooth terms of a sweep at one of its samples.
-std::vector<double> smooth_at(const Sweep& sweep, std::size_t k) {
-    const double u = std::abs(sweep.turns[k] - sweep.turns.front()) / sweep.length_turns;
-    std::vector<double> terms{1.0, u - 0.5};
-    for (std::size_t m = 1; m + 1 < sweep.trend_terms; ++m)
-        terms.push_back(std::cos(std::numbers::pi * static_cast<double>(m) * u));
-    return terms;
-}
-
-}  // namespace
-
-TEST_CASE("what is left of a sweep is at right angles to its smooth part") {
-    const Moved moved;
-    REQUIRE(moved.sweeps.size() > 3);
-    for (Sweep sweep : moved.sweeps) {
-        take_off_smooth_part(sweep);
-        std::vector<double> with(sweep.trend_terms, 0.0), size(sweep.trend_terms, 0.0);
-        double left = 0.0;
-        for (std::size_t k = 0; k < sweep.value.size(); ++k) {
-            const std::vector<double> terms = smooth_at(sweep, k);
-            left += sweep.weight[k] * sweep.torque_nm[k] * sweep.torque_nm[k];
-            for (std::size_t m = 0; m < terms.size(); ++m) {
-                with[m] += sweep.value[k] * terms[m];
-                size[m] += sweep.weight[k] * terms[m] * terms[m];
-            }
-        }
-        // Line and first cosine are nearly parallel: the fit is held by 1e-10 of itself.
-        for (std::size_t m = 0; m < with.size(); ++m)
-            CHECK(std::abs(with[m]) < 1e-7 * std::sqrt(left * size[m]));
-    }
 }
 
 namespace {

@@ -7,7 +7,6 @@
 #include <random>
 #include <vector>
 
-#include "ripplenotch/analysis/amplitude_by_speed.hpp"
 #include "ripplenotch/analysis/ripple_estimate.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "support/catch.hpp"

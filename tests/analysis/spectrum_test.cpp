@@ -6,7 +6,6 @@
 #include "analysis/traces.hpp"
 #include "ripplenotch/analysis/order_map.hpp"
 #include "ripplenotch/analysis/spectrum.hpp"
-#include "ripplenotch/analysis/stack.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "support/catch.hpp"
 

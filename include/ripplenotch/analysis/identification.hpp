@@ -12,9 +12,9 @@
 #include <string_view>
 #include <vector>
 
-#include "ripplenotch/analysis/amplitude_by_speed.hpp"
 #include "ripplenotch/analysis/gear_ratio.hpp"
-#include "ripplenotch/analysis/velocity_error.hpp"
+#include "ripplenotch/analysis/ripple_estimate.hpp"
+#include "ripplenotch/analysis/sweeps.hpp"
 #include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/core/quantity.hpp"
 #include "ripplenotch/core/trace.hpp"
@@ -190,6 +190,12 @@ struct Identification {
 /// Retracts the orders and the gear ratio in `found` and records why: every line that would turn with the
 /// joint becomes of kind unknown, with its frequencies. The ratios that it would fit stay listed.
 void cast_doubt(Identification& found, Doubt doubt);
+
+/// The verdict as text, reasons against it first.
+[[nodiscard]] std::string verdict_sentence(const Identification& found);
+
+/// What was found of the motors of other joints, a sentence; empty where nothing was.
+[[nodiscard]] std::string other_motors_sentence(const Identification& found);
 
 struct IdentifyOptions {
     std::optional<GearRatio> hint;   ///< checked against the lines

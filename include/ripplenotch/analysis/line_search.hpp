@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "ripplenotch/analysis/identification.hpp"
-#include "ripplenotch/analysis/stack.hpp"
 
 namespace ripplenotch {
 

@@ -7,6 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "ripplenotch/core/trace.hpp"
+
 namespace ripplenotch {
 
 /// A spectrum of power whose noise, at each bin, is the mean of `averages` independent exponential variables
@@ -56,9 +58,17 @@ struct PowerOverFloor {
 /// Chance that noise exceeds that ratio.
 [[nodiscard]] double exceedance(const PowerOverFloor& seen);
 
+/// Smaller lines are not reported: a share of the torque's range, and in any case the rounding error of a
+/// constant.
+[[nodiscard]] double least_amplitude_nm(std::span<const TraceView> logs, double share);
+
 /// Ratio of median to mean of a chi-square variable with 2 * averages degrees of freedom. Source: Choi 1994,
 /// median of the gamma distribution.
 [[nodiscard]] double median_over_mean(double averages);
+
+/// Chance that chi-square with so many degrees of freedom is larger: Wilson and Hilferty's cube root, within
+/// 1 % of the exact quantile.
+[[nodiscard]] double chi_square_chance(double squares, double freedom);
 
 /// By what factor errors are too small, when estimates of one value scatter about their weighted mean with
 /// `squares` = sum (estimate - mean)^2 / variance on `freedom` degrees of freedom: sqrt(squares / freedom)

@@ -1,17 +1,31 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Spectra over speed: frequency against speed (Campbell diagram) and order against speed (order map), as
-// numbers. Also the torque in a band of orders.
+// Spectra over the output angle, stacked or against speed (order map), and frequency against speed (Campbell
+// diagram), as numbers.
 
 #include <cstddef>
 #include <optional>
 #include <span>
 #include <vector>
 
-#include "ripplenotch/analysis/stack.hpp"
+#include "ripplenotch/analysis/sweeps.hpp"
 #include "ripplenotch/core/trace.hpp"
 
 namespace ripplenotch {
+
+/// By bin, from `first` on; the order of a bin is its number times the spacing.
+struct Stack {
+    double spacing = 0.0;
+    double resolution = 0.0;           ///< 1.5 / weighted mean length of the sweeps: width of a Hann line
+    std::size_t first = 0;             ///< lowest bin in use
+    std::vector<double> averages;      ///< independent averages; 0 where no sweep reaches
+    std::vector<double> amplitude_nm;  ///< zero to peak, rms over sweeps
+    std::vector<double> floor_nm;      ///< amplitude of noise alone, rms over sweeps
+};
+
+/// Each sweep that moves, less the trend of the ripple estimates, counts from three cycles in it to half its
+/// sample rate, and by its information. O(samples + sweeps * bins * log bins).
+[[nodiscard]] Stack stack_sweeps(std::span<const Sweep> sweeps);
 
 struct MapOptions {
     Axis axis = Axis::angle;  ///< angle: orders of the shaft given; time: hertz

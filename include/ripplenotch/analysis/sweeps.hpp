@@ -7,10 +7,21 @@
 #include <span>
 #include <vector>
 
-#include "ripplenotch/analysis/velocity_error.hpp"
+#include "ripplenotch/core/quantity.hpp"
 #include "ripplenotch/core/trace.hpp"
 
 namespace ripplenotch {
+
+/// Offset of the logged velocity, with its standard error.
+struct VelocityError {
+    DegPerSec offset, offset_error;
+};
+
+/// Standard deviation of the velocity's noise, row by row, while the joint moves: what makes a supervisor
+/// switch back and forth at the edge of a band. From third differences of rows 10 ms apart, of which motion
+/// of some hertz adds little. Steps of an encoder count as noise. 0 for a log of fewer than a hundred such
+/// rows.
+[[nodiscard]] DegPerSec velocity_noise(const TraceView& log);
 
 // The motion behind a log: the angle of its output shaft, and the stretches in which it turns one way.
 
@@ -57,9 +68,6 @@ struct SweepRule {
     /// Chosen, not derived: a line of four cycles and four neighbouring cells.
     std::size_t fewest_samples = 24;
     double slowest_share = 0.02;  ///< share of the log's highest speed; slower motion belongs to no sweep
-    /// The smooth part of the torque that is removed from a sweep: a line, and cosines up to so many cycles
-    /// in the sweep.
-    double trend_cycles = 2.5;
     std::size_t most_samples =
         300000;                     ///< with more, evenly chosen pieces are used, so that the cost is bounded
     std::size_t most_pieces = 100;  ///< the same
@@ -72,13 +80,12 @@ struct Sweep {
     std::vector<double> turns;            ///< output angle in turns; absolute where the log has a position
     std::vector<double> time_s;           ///< from the piece's middle
     std::span<const double> measured_nm;  ///< as the log has it, and as long as the log is there
-    std::vector<double> torque_nm;        ///< trend removed
+    std::vector<double> torque_nm;        ///< less its smooth part and lines: of who takes these off
     std::vector<double> speed_deg_s;      ///< signed, smoothed
-    std::vector<double> value;            ///< torque_nm * weight, in Nm turns
+    std::vector<double> value;            ///< the same times the weight, in Nm turns
     /// Hann window in angle times the angle that the sample stands for; at standstill in time.
     std::vector<double> weight;
     std::vector<double> share_turns;  ///< angle that a sample stands for; at standstill seconds
-    std::size_t trend_terms = 0;      ///< number of terms in the smooth part removed
     double weight_sum = 0.0, weight_square_sum = 0.0;
     double length_turns = 0.0;
     double duration_s = 0.0;
@@ -103,12 +110,24 @@ struct Sweeps {
     bool absolute_angle = true;       ///< all logs have a position
 };
 
+enum class Axis {
+    angle,  ///< places are output orders: cycles per output turn
+    time,   ///< places are hertz
+};
+/// The places of a sweep's samples on an axis: output turns, or seconds from its middle.
+[[nodiscard]] inline std::span<const double> places(const Sweep& sweep, Axis axis) {
+    return axis == Axis::angle ? sweep.turns : sweep.time_s;
+}
+/// Length of a sweep on an axis: turns or seconds.
+[[nodiscard]] inline double length_of(const Sweep& sweep, Axis axis) {
+    return axis == Axis::angle ? sweep.length_turns : sweep.duration_s;
+}
+
 /// A part of a sweep with a Hann window of its own; for asking whether a line is there in each half.
 [[nodiscard]] Sweep part_of(const Sweep& sweep, std::size_t first, std::size_t count);
 
 /// Angle from position (unwrapped at 360 deg) where there is one, else from integrated velocity, whose drift
-/// does not matter within one sweep. The trend, a line and cosines, is fitted in angle under the same
-/// weights. Where there is no position, the velocity is corrected by `error`. Cost O(n terms^2).
+/// does not matter within one sweep. Where there is no position, the velocity is corrected by `error`. O(n).
 [[nodiscard]] Sweeps cut_sweeps(std::span<const TraceView> logs, const SweepRule& rule,
                                 const VelocityError& error = {});
 

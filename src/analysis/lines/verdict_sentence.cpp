@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The only place where a verdict becomes text.
-#include "ripplenotch/analysis/verdict_sentence.hpp"
+#include "ripplenotch/analysis/identification.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -6,11 +6,14 @@
 
 #include "analysis/lines/line_scan.hpp"
 #include "analysis/motion/velocity_error.hpp"
-#include "analysis/shared_limits.hpp"
+#include "ripplenotch/analysis/line_test.hpp"
 
 namespace ripplenotch {
 
 namespace {
+
+/// Difference in log-likelihood (odds of 150 to 1) by which one explanation of a line has to exceed another.
+constexpr double decisive_nats = 5.0;  // chosen, not derived
 
 struct SpeedRange {
     double slow = 0.0, fast = 0.0;
@@ -418,14 +421,14 @@ constexpr double unseen_cycles = 0.02;
 }  // namespace
 
 MotionLines find_motion_lines(std::span<const TraceView> logs, const MotionLinesOptions& options) {
-    Sweeps cut = cut_sweeps(logs, options.sweeps);
+    const Sweeps cut = cut_sweeps(logs, options.sweeps);
     MotionSearch search = search_sweeps(cut, logs, options);
     MotionLines& found = search.found;
     if (found.absolute_angle) return std::move(found);
     std::vector<double> orders;
     for (const MotionLine* line : orders_among(found.lines)) orders.push_back(line->order_output);
-    std::erase_if(cut.pieces, [](const Sweep& sweep) { return sweep.rest(); });
-    const auto fit = fit_velocity_error(logs, cut.pieces, search.noise, orders);
+    const LineScan scan(cut.pieces, logs, Axis::angle, orders_of(cut.pieces, options));
+    const auto fit = fit_velocity_error(logs, scan.sweeps(), search.noise, orders);
     if (!fit) return std::move(found);
     MotionLines again;
     if (fit->most_cycles > unseen_cycles)

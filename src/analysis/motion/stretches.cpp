@@ -14,8 +14,7 @@
 #include <span>
 #include <utility>
 
-#include "ripplenotch/core/number.hpp"
-#include "ripplenotch/core/portable_math.hpp"
+#include "core/rows/row_facts.hpp"
 
 namespace ripplenotch {
 
@@ -145,14 +144,6 @@ Stretch measured(const TraceView& trace, std::size_t first, std::size_t count) {
     return stretch;
 }
 
-/// Standard deviation of what changes from sample to sample, spikes and steps aside.
-double white_noise_of(std::span<const double> values) {
-    if (values.size() < 2) return 0.0;
-    std::vector<double> changes(values.size() - 1);
-    for (std::size_t k = 0; k < changes.size(); ++k) changes[k] = std::abs(values[k + 1] - values[k]);
-    return deviations_of_median * median_in(changes) / std::sqrt(2.0);
-}
-
 /// True when values range no further than a few times their white noise, or than two of their least steps.
 bool only_trembles(std::span<const double> values) {
     constexpr double trembling = 8.0;  // the range of thousands of draws, in deviations
@@ -162,7 +153,7 @@ bool only_trembles(std::span<const double> values) {
         const double size = std::abs(values[k] - values[k - 1]);
         if (size > 0.0 && (step == 0.0 || size < step)) step = size;
     }
-    return *high - *low <= std::max(trembling * white_noise_of(values), 2.0 * step);
+    return *high - *low <= std::max(trembling * noise_from_differences(values, 1), 2.0 * step);
 }
 
 /// The angle varies no more than its noise: a few times its own deviation where it is measured, `walk_deg` as
@@ -198,14 +189,13 @@ std::vector<double> moving_mean(std::span<const double> values, std::size_t widt
 }
 
 double standstill_deg_s(const TraceView& trace, std::span<const double> smoothed_speed) {
-    double fastest = 0.0;
-    for (const double v : smoothed_speed) fastest = std::max(fastest, std::abs(v));
-    const double noise = white_noise_of(trace.velocity_deg_s), step = 1.0 / trace.sample_rate.value();
+    const double noise = noise_from_differences(trace.velocity_deg_s, 1),
+                 step = 1.0 / trace.sample_rate.value();
     constexpr double far = 4.0;  // deviations, once in some thousand draws
     if (moves_nowhere(trace, far * noise * std::sqrt(static_cast<double>(trace.size())) * step))
         return std::numeric_limits<double>::infinity();
     const double left = noise / std::sqrt(std::max(1.0, smoothing_s / step));
-    return std::max(rest_share * fastest, far * left);
+    return std::max(rest_share * fastest_of(smoothed_speed), far * left);
 }
 
 std::vector<Stretch> steady_stretches(const TraceView& trace, Seconds at_least) {

@@ -7,10 +7,10 @@
 #include <numbers>
 #include <vector>
 
-#include "analysis/motion/encoder_steps.hpp"
-#include "analysis/motion/sweep_fit.hpp"
+#include "analysis/lines/encoder.hpp"
 #include "core/functions/many_numbers.hpp"
 #include "core/process/two_cores.hpp"
+#include "core/rows/row_facts.hpp"
 #include "ripplenotch/analysis/stretches.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
@@ -60,9 +60,7 @@ std::vector<double> smoothed_speed(const TraceView& log) {
 
 std::vector<SampleRun> directed_runs(std::span<const double> speed_deg_s,
                                      std::span<const std::size_t> run_starts, const RunRule& rule) {
-    double fastest = 0.0;
-    for (const double v : speed_deg_s) fastest = std::max(fastest, std::abs(v));
-    const double slowest = std::max(rule.slowest_share * fastest, rule.standstill_deg_s);
+    const double slowest = std::max(rule.slowest_share * fastest_of(speed_deg_s), rule.standstill_deg_s);
     std::vector<SampleRun> runs;
     auto start = run_starts.begin();
     int direction = 0;
@@ -189,7 +187,7 @@ struct Planned {
 };
 
 Sweep make_sweep(const TraceView& log, const Planned& plan, std::span<const double> all_turns,
-                 std::span<const double> all_speed, const SweepRule& rule) {
+                 std::span<const double> all_speed) {
     const SampleRun& span = plan.span;
     const std::size_t n = span.end - span.first;
     const double step = 1.0 / log.sample_rate.value();
@@ -216,7 +214,6 @@ Sweep make_sweep(const TraceView& log, const Planned& plan, std::span<const doub
     }
     if (!plan.rest) sweep.length_turns = std::abs(turns.back() - turns.front());
     sweep.measured_nm = log.torque_nm.subspan(span.first, n);
-    sweep.trend_terms = static_cast<std::size_t>(std::lround(2.0 * rule.trend_cycles)) + 2;
     weigh_sweep(sweep);
     if (!(sweep.weight_sum > 0.0)) return sweep;
     if (!plan.rest) {
@@ -225,7 +222,6 @@ Sweep make_sweep(const TraceView& log, const Planned& plan, std::span<const doub
         sweep.slow_deg_s = shares.quantile(0.25 * sweep.weight_sum);
         sweep.quick_deg_s = shares.quantile(0.75 * sweep.weight_sum);
     }
-    take_off_smooth_part(sweep);
     return sweep;
 }
 
@@ -331,7 +327,7 @@ Sweeps cut_sweeps(std::span<const TraceView> logs, const SweepRule& rule, const 
     sweeps.pieces.resize(planned.size());
     on_two_cores(planned.size(), [&](std::size_t i) {
         const std::size_t log = planned[i].log;
-        sweeps.pieces[i] = make_sweep(logs[log], planned[i], angles[log].turns, speeds[log], rule);
+        sweeps.pieces[i] = make_sweep(logs[log], planned[i], angles[log].turns, speeds[log]);
     });
     std::erase_if(sweeps.pieces, [](const Sweep& sweep) { return !(sweep.weight_sum > 0.0); });
     return sweeps;

@@ -11,6 +11,7 @@
 #include "core/functions/many_numbers.hpp"
 #include "core/matrices/factorisations.hpp"
 #include "core/matrices/linear_algebra.hpp"
+#include "core/rows/row_facts.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
@@ -258,15 +259,13 @@ double of_steps(std::span<const double> velocity_deg_s, Hertz rate) {
 }
 
 /// Variance that the velocity's noise adds to its sum in each second, in deg^2/s: the noise of means over 25
-/// ms, which motion hardly bends, times their length. From third differences of neighbouring means (the
-/// squares of 1, 3, 3, 1 are 20 together), by their median, so that a few jerks do not count; plus the error
-/// of a velocity in coarse steps where it turns. 0 for a log of fewer than a hundred means.
+/// ms, which motion hardly bends, times their length; plus the error of a velocity in coarse steps where it
+/// turns. 0 for a log of fewer than a hundred means.
 double summed_noise(const TraceView& log) {
     // Chosen, not derived: long enough for the noise that a filter passes, short enough for motion of some
     // hertz.
     constexpr double mean_over_s = 0.025;
     constexpr std::size_t fewest_means = 100;  // chosen, not derived: their median is within a tenth
-    constexpr double normal_median = 0.6745;  // median magnitude of a normal variable, in standard deviations
     const auto samples =
         static_cast<std::size_t>(std::max(1.0, std::round(mean_over_s * log.sample_rate.value())));
     std::vector<double> means;
@@ -276,10 +275,7 @@ double summed_noise(const TraceView& log) {
         means.push_back(sum / static_cast<double>(samples));
     }
     if (means.size() < fewest_means) return 0.0;
-    std::vector<double> bends;
-    for (std::size_t i = 3; i < means.size(); ++i)
-        bends.push_back(std::abs(means[i] - 3.0 * means[i - 1] + 3.0 * means[i - 2] - means[i - 3]));
-    const double deviation = median_in(bends) / normal_median / std::sqrt(20.0);
+    const double deviation = noise_from_differences(means, 3);
     return deviation * deviation * static_cast<double>(samples) / log.sample_rate.value() +
            of_steps(log.velocity_deg_s, log.sample_rate);
 }
@@ -336,20 +332,17 @@ DegPerSec velocity_noise(const TraceView& log) {
     constexpr double apart_s = 0.01;       // chosen, not derived: sine motion of 2 Hz adds 0.05 % of itself
     constexpr double moving_share = 0.05;  // of the fastest speed: at rest an encoder has no noise
     constexpr std::size_t fewest_rows = 100;  // chosen, not derived: their median is within a tenth
-    constexpr double normal_median = 0.6745;  // median magnitude of a normal variable, in standard deviations
     const auto apart = static_cast<std::size_t>(std::max(1.0, std::round(apart_s * log.sample_rate.value())));
-    double fastest = 0.0;
-    for (const double v : log.velocity_deg_s) fastest = std::max(fastest, std::abs(v));
-    std::vector<double> differences;
-    std::size_t run = 0;  // first row of the run
-    for (std::size_t k = 0; k < log.size(); ++k) {
-        if (log.starts_run(k)) run = k;
-        if (k < run + 3 * apart || std::abs(log.velocity_deg_s[k]) < moving_share * fastest) continue;
-        const auto v = [&](std::size_t back) { return log.velocity_deg_s[k - back * apart]; };
-        differences.push_back(std::abs(v(0) - 3.0 * v(1) + 3.0 * v(2) - v(3)));
-    }
-    if (differences.size() < fewest_rows) return DegPerSec(0.0);
-    return DegPerSec(median_in(differences) / normal_median / std::sqrt(20.0));
+    const double slow_deg_s = moving_share * fastest_of(log.velocity_deg_s);
+    std::size_t run = 0, rows = 0;  // first row of the run; rows that count
+    const double noise = noise_from_differences(log.velocity_deg_s, 3, apart, [&](std::size_t k) {
+        for (std::size_t at = run + 1; at <= k; ++at)
+            if (log.starts_run(at)) run = at;
+        const bool is = k >= run + 3 * apart && std::abs(log.velocity_deg_s[k]) >= slow_deg_s;
+        rows += is ? 1 : 0;
+        return is;
+    });
+    return DegPerSec(rows < fewest_rows ? 0.0 : noise);
 }
 
 std::optional<VelocityFit> fit_velocity_error(std::span<const TraceView> logs, std::span<const Sweep> sweeps,

@@ -28,9 +28,9 @@ struct VelocityFit {
 /// speed. The errors (sandwich) include noise of torque, the velocity's noise, and the uncertainty of the
 /// other unknowns. Needs at most four lines, the clearest.
 ///
-/// `sweeps` as cut, all in motion, no line removed; `noise` has the power of the noise by order and sweep, 0
-/// where a sweep is not used; `orders` are cycles per output turn, the clearest first. Empty where the power
-/// has no clear maximum. Cost O(samples * orders).
+/// `sweeps`: those of a LineScan over the angle, no line removed; `noise` has the power of the noise by order
+/// and sweep, 0 where a sweep is not used; `orders` are cycles per output turn, the clearest first. Empty
+/// where the power has no clear maximum. Cost O(samples * orders).
 [[nodiscard]] std::optional<VelocityFit> fit_velocity_error(std::span<const TraceView> logs,
                                                             std::span<const Sweep> sweeps,
                                                             std::span<const std::vector<double>> noise,

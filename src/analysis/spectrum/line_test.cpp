@@ -235,13 +235,27 @@ double exceeded(double chance, PowerOverFloor noise) {
     return high;
 }
 
+double chi_square_chance(double squares, double freedom) {
+    const double spread = 2.0 / (9.0 * freedom);
+    const double normal = (portable::cbrt(squares / freedom) - (1.0 - spread)) / std::sqrt(spread);
+    return 0.5 * std::erfc(normal / std::sqrt(2.0));
+}
+
 double excess_scatter(double squares, double freedom) {
-    if (!(freedom >= 1.0)) return 1.0;
-    constexpr double normal_99 = 2.3263;  // 99 % quantile of a normal variable
-    // 99 % quantile of chi-square by the cube root of Wilson and Hilferty, within 1 % of the exact one.
-    const double share = 2.0 / (9.0 * freedom);
-    const double limit = freedom * portable::pow(1.0 - share + normal_99 * std::sqrt(share), 3.0);
-    return squares > limit ? std::sqrt(squares / freedom) : 1.0;
+    constexpr double rare = 0.01;
+    const bool scatters = freedom >= 1.0 && chi_square_chance(squares, freedom) < rare;
+    return scatters ? std::sqrt(squares / freedom) : 1.0;
+}
+
+double least_amplitude_nm(std::span<const TraceView> logs, double share) {
+    double range = 0.0, largest = 0.0;
+    for (const TraceView& log : logs) {
+        const auto [low, high] = std::minmax_element(log.torque_nm.begin(), log.torque_nm.end());
+        if (low == log.torque_nm.end()) continue;
+        range = std::max(range, *high - *low);
+        largest = std::max({largest, std::abs(*low), std::abs(*high)});
+    }
+    return std::max(share * range, 1e-9 * largest);
 }
 
 }  // namespace ripplenotch

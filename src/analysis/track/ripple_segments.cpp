@@ -11,6 +11,7 @@
 #include <span>
 #include <vector>
 
+#include "core/rows/row_facts.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
@@ -112,8 +113,7 @@ std::size_t RippleSegments::add(const TraceView& rows, std::span<const std::span
     if (options_.courses)
         courses_.assign(orders_.size(),
                         {std::vector<std::complex<double>>(rows.size()), std::vector<double>(rows.size())});
-    double fastest = 0.0;
-    for (const double speed : part.speed_deg_s) fastest = std::max(fastest, std::abs(speed));
+    const double fastest = fastest_of(part.speed_deg_s);
     fastest_deg_s_ = std::max(fastest_deg_s_, fastest);
     rate_turns_deg_s_ = std::min(rate_turns_deg_s_, 360.0 * rows.sample_rate.value() / ratio_);
     bool shared = false;

@@ -67,6 +67,24 @@ double rms(std::span<const double> values) {
     return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(values.size(), 1)));
 }
 
+double noise_from_differences(std::span<const double> values, std::size_t order, std::size_t apart,
+                              const std::function<bool(std::size_t)>& counts) {
+    std::vector<double> factors{1.0}, sizes;
+    double squares = 1.0;  // sum of those of the factors
+    for (std::size_t i = 1; i <= order; ++i) {
+        const auto left = static_cast<double>(order + 1 - i), n = static_cast<double>(i);
+        factors.push_back(-factors.back() * left / n);
+        squares += factors.back() * factors.back();
+    }
+    for (std::size_t k = order * apart; k < values.size(); ++k) {
+        if (counts && !counts(k)) continue;
+        double difference = 0.0;
+        for (std::size_t i = 0; i <= order; ++i) difference += factors[i] * values[k - i * apart];
+        sizes.push_back(std::abs(difference));
+    }
+    return deviations_of_median * median_in(sizes) / std::sqrt(squares);
+}
+
 namespace {
 
 /// Lanes that count down by the bits of comparisons.
@@ -188,6 +206,12 @@ struct Widen {
 
 void widen(SpeedExtent& range, std::span<const double> velocity_deg_s) noexcept {
     range = in_lanes<Widen>(range, velocity_deg_s);
+}
+
+double fastest_of(std::span<const double> velocity_deg_s) noexcept {
+    SpeedExtent range{};
+    widen(range, velocity_deg_s);
+    return range.fastest_deg_s;
 }
 
 RepeatCounts& RepeatCounts::operator+=(const RepeatCounts& more) noexcept {

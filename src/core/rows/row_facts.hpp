@@ -3,6 +3,7 @@
 // What is noted of every row besides its filtering, four rows at a time.
 
 #include <cstddef>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -16,12 +17,22 @@ namespace ripplenotch {
 /// Root mean square; 0 of no values.
 [[nodiscard]] double rms(std::span<const double> values);
 
+/// Standard deviation of the white noise in values, by the median size of their differences of an order (1:
+/// of neighbours, 2: of neighbouring differences), of values so far apart: what is smooth, and a few jumps,
+/// do not count. `counts`: whether the difference that ends at a value does; empty: all do. 0 of none, and
+/// where half of the values are held.
+[[nodiscard]] double noise_from_differences(std::span<const double> values, std::size_t order,
+                                            std::size_t apart = 1,
+                                            const std::function<bool(std::size_t)>& counts = {});
+
 /// The range of |velocity|.
 struct SpeedExtent {
     double slowest_deg_s, fastest_deg_s;
 };
 /// A velocity that is not a number widens nothing; a range that is none stays as it is.
 void widen(SpeedExtent& range, std::span<const double> velocity_deg_s) noexcept;
+/// The largest |velocity|; 0 of none.
+[[nodiscard]] double fastest_of(std::span<const double> velocity_deg_s) noexcept;
 
 /// Pairs of a row and the next by what is equal in them; counted where both rows move.
 struct RepeatCounts {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/rows/row_facts.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/model/effect.hpp"
 
@@ -76,14 +77,6 @@ double step_of(std::span<const double> torque_nm, double noise_nm) {
     return rounded >= step_of_noise * noise_nm ? rounded : 0.0;
 }
 
-double noise_of(std::span<const double> torque_nm) {
-    // Second differences take motion and slow torque away; 6 is the sum of the squares of 1, -2, 1.
-    std::vector<double> off;
-    for (std::size_t k = 1; k + 1 < torque_nm.size(); ++k)
-        off.push_back(std::abs(torque_nm[k - 1] - 2.0 * torque_nm[k] + torque_nm[k + 1]));
-    return deviations_of_median * median_of(off) / std::sqrt(6.0);
-}
-
 // Effects that can be detected in a log, in the order of their detectors.
 std::vector<const Effect*> detectable() {
     std::vector<const Effect*> effects;
@@ -117,7 +110,7 @@ Fault fault_of(const Effect& effect, const DetectedFault& found, const Motion& m
 
 std::vector<Fault> find_faults(const Motion& motion, std::span<const double> torque_nm,
                                std::vector<unsigned char>& use) {
-    const double noise_nm = noise_of(torque_nm);
+    const double noise_nm = noise_from_differences(torque_nm, 2);
     const LoggedTorque log{motion,  torque_nm, use, slowest_moving(motion), step_of(torque_nm, noise_nm),
                            noise_nm};
     std::vector<Fault> faults;

@@ -233,13 +233,10 @@ void JointFit::gravity(Descriptor& one) const {
 
 void JointFit::sensor_zero(Descriptor& one) const { estimate(one, "offset", "torque_nm", 1.0, one_way()); }
 
-// Second differences, of which the few at reversals and jumps do not count: their median.
 double JointFit::noise_nm() const {
-    std::vector<double> left = predict_nm(fit_.model, motion_), second;
+    std::vector<double> left = predict_nm(fit_.model, motion_);
     for (std::size_t k = 0; k < left.size(); ++k) left[k] = torque_nm_[k] - left[k];
-    for (std::size_t k = 2; k < left.size(); ++k)
-        second.push_back(std::abs(left[k] - 2.0 * left[k - 1] + left[k - 2]));
-    return deviations_of_median * median_in(second) / std::sqrt(6.0);
+    return noise_from_differences(left, 2);
 }
 
 std::optional<double> JointFit::load_rms_nm() const {

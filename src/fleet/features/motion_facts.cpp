@@ -27,11 +27,7 @@ double mean_square(const std::vector<double>& values) {
 
 // sample_noise() with a median in the place of the rms, which jumps do not change.
 double usual_noise(std::span<const double> values) {
-    std::vector<double> fourth;
-    for (std::size_t k = 4; k < values.size(); ++k)
-        fourth.push_back(std::abs(values[k] - 4.0 * values[k - 1] + 6.0 * values[k - 2] -
-                                  4.0 * values[k - 3] + values[k - 4]));
-    const double usual = deviations_of_median * median_in(fourth) / std::sqrt(70.0);
+    const double usual = noise_from_differences(values, 4);
     return usual > 0.0 ? usual : sample_noise(values);
 }
 
@@ -142,12 +138,10 @@ FittedSamples thinned(const Motion& motion, std::span<const double> torque_nm,
 MotionFacts motion_facts(const Motion& motion, std::span<const double> torque_nm, bool has_position) {
     MotionFacts facts;
     facts.has_position = has_position;
-    double fastest = 0.0;
-    for (const double speed : motion.velocity_deg_s) fastest = std::max(fastest, std::abs(speed));
     const auto samples = static_cast<double>(std::max<std::size_t>(motion.size(), 1));
     facts.speed_rms_deg_s = rms(motion.velocity_deg_s);
     facts.acceleration_rms_rad_s2 = rms(motion.acceleration_deg_s2) * std::numbers::pi / 180.0;
-    facts.moving_deg_s = std::min(moving_most_deg_s, moving_part * fastest);
+    facts.moving_deg_s = std::min(moving_most_deg_s, moving_part * fastest_of(motion.velocity_deg_s));
     std::vector<double> speeds;
     std::size_t forward = 0;
     for (const double speed : motion.velocity_deg_s) {

@@ -14,10 +14,8 @@
 #include <utility>
 #include <vector>
 
-#include "ripplenotch/analysis/amplitude_by_speed.hpp"
 #include "ripplenotch/analysis/identification.hpp"
 #include "ripplenotch/analysis/ripple_estimate.hpp"
-#include "ripplenotch/analysis/verdict_sentence.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/visible_text.hpp"
