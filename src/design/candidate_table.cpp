@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -232,15 +233,8 @@ void check_ripple(const TableSpec& spec) {
 }
 
 std::string_view outside_rule_name(OutsideRule rule) {
-    switch (rule) {
-        case OutsideRule::pass:
-            return "pass";
-        case OutsideRule::hold:
-            return "hold";
-        case OutsideRule::fade:
-            return "fade";
-    }
-    return "pass";
+    constexpr std::array<std::string_view, 3> names{"pass", "hold", "fade"};
+    return names[static_cast<std::size_t>(rule)];
 }
 
 Cascade Band::cascade() const {

@@ -17,7 +17,6 @@
 #include "ripplenotch/evaluate/comparison.hpp"
 #include "ripplenotch/evaluate/contender.hpp"
 #include "ripplenotch/evaluate/filter_metrics.hpp"
-#include "ripplenotch/evaluate/ledger.hpp"
 
 namespace ripplenotch {
 

@@ -8,7 +8,6 @@
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/evaluate/contender.hpp"
-#include "ripplenotch/evaluate/ledger.hpp"
 
 namespace ripplenotch {
 

@@ -3,6 +3,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <tuple>
@@ -13,7 +14,6 @@
 #include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/core/progress.hpp"
 #include "ripplenotch/design/notch.hpp"
-#include "ripplenotch/evaluate/ledger.hpp"
 #include "ripplenotch/evaluate/recommendation.hpp"
 
 namespace ripplenotch {
@@ -249,17 +249,9 @@ std::string name_of(const MethodFigures& figures) {
 }  // namespace
 
 std::string_view recommendation_finding_name(RecommendationFinding finding) {
-    switch (finding) {
-        case RecommendationFinding::recommended:
-            return "recommended";
-        case RecommendationFinding::out_of_reach:
-            return "out-of-reach";
-        case RecommendationFinding::no_ripple:
-            return "no-ripple";
-        case RecommendationFinding::cannot_tell:
-            break;
-    }
-    return "cannot-tell";
+    constexpr std::array<std::string_view, 4> names{"recommended", "out-of-reach", "no-ripple",
+                                                    "cannot-tell"};
+    return names[static_cast<std::size_t>(finding)];
 }
 
 const JudgedMethod* Recommendation::runner_up() const {

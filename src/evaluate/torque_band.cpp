@@ -5,11 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "filter/method.hpp"
 #include "ripplenotch/analysis/spectrum.hpp"
+#include "ripplenotch/analysis/sweeps.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/design/notch.hpp"
-#include "ripplenotch/evaluate/ledger.hpp"
 #include "ripplenotch/evaluate/recommendation.hpp"
 
 namespace ripplenotch {
@@ -40,28 +41,15 @@ double noise_floor(const Spectrum& spectrum) {
     return mean_over_median * median_of({above, spectrum.psd_nm2_hz.end()});
 }
 
-// From the state that is settled at its first value.
-void run_settled(const Cascade& cascade, std::span<double> values) {
-    if (values.empty()) return;
-    std::vector<BiquadState> states(cascade.size());
-    const double origin = values.front();
-    for (double& value : values) {
-        value -= origin;
-        for (std::size_t i = 0; i < cascade.size(); ++i) value = step(cascade[i], states[i], value);
-        value += origin;
-    }
-}
-
 // Without phase, each run of the log on its own, continued at both ends as its point reflection there, so
 // that a level and a slope go on.
 void low_pass(std::vector<double>& values, const TraceView& trace, Hertz cutoff) {
     if (!(cutoff < 0.5 * trace.sample_rate)) return;
-    const Cascade cascade = design_low_pass({cutoff, band_limit_order}, trace.sample_rate);
+    CascadeFilter filter(design_low_pass({cutoff, band_limit_order}, trace.sample_rate));
     const auto forgotten = static_cast<std::size_t>(forgotten_periods * (trace.sample_rate / cutoff));
-    for (std::size_t from = 0, to = 0; from < values.size(); from = to) {
-        for (to = from + 1; to < values.size() && !trace.starts_run(to);) ++to;
+    for (const auto& [from, to] : whole_runs(values.size(), trace.run_starts)) {
         const std::size_t rows = to - from, ends = std::min(forgotten, rows - 1);
-        std::vector<double> part(rows + 2 * ends);
+        std::vector<double> part(rows + 2 * ends), filtered(part.size());
         std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(from), rows,
                     part.begin() + static_cast<std::ptrdiff_t>(ends));
         for (std::size_t k = 1; k <= ends; ++k) {
@@ -69,8 +57,9 @@ void low_pass(std::vector<double>& values, const TraceView& trace, Hertz cutoff)
             part[ends + rows - 1 + k] = 2.0 * values[to - 1] - values[to - 1 - k];
         }
         for (int way = 0; way < 2; ++way) {
-            run_settled(cascade, part);
-            std::reverse(part.begin(), part.end());
+            filter.restart();
+            filter.process({{}, part, {}}, filtered);
+            part.assign(filtered.rbegin(), filtered.rend());
         }
         std::copy_n(part.begin() + static_cast<std::ptrdiff_t>(ends), rows,
                     values.begin() + static_cast<std::ptrdiff_t>(from));

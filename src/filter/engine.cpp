@@ -179,31 +179,21 @@ std::string per_cent(double share) { return percent_text(100.0 * share) + " %"; 
 
 }  // namespace
 
-void refuse_table_rate(const TableAndLogRate& rates, const std::string& source) {
-    const auto [table, log] = rates;
-    const double off = std::abs(log / table - 1.0);
-    if (off <= rate_refused) return;
-    raise<DataError>(
-        "{}: the log runs at {:.6g} Hz, the table was designed for {:.6g} Hz, and its notches would be {} "
-        "off; design "
-        "the table with --sample-rate {:.6g}Hz, or state the log's true rate with --sample-rate",
-        source, log.value(), table.value(), per_cent(off), log.value());
-}
-
 std::optional<std::string> table_rate_warning(const TableAndLogRate& rates, const std::string& source) {
     const auto [table, log] = rates;
     const double off = std::abs(log / table - 1.0);
+    const std::string both =
+        fmt::format("{}: the log runs at {:.6g} Hz, the table was designed for {:.6g} Hz", source,
+                    log.value(), table.value());
+    if (off > rate_refused)
+        raise<DataError>(
+            "{}, and its notches would be {} off; design the table with --sample-rate {:.6g}Hz, or state the "
+            "log's true rate with --sample-rate",
+            both, per_cent(off), log.value());
     if (off <= rate_worth_a_word) return std::nullopt;
     return fmt::format(
-        "{}: the log runs at {:.6g} Hz, the table was designed for {:.6g} Hz: its notches are {} off; design "
-        "the table "
-        "with --sample-rate {:.6g}Hz to have them right",
-        source, log.value(), table.value(), per_cent(off), log.value());
-}
-
-std::optional<std::string> compare_table_rate(const TableAndLogRate& rates, const std::string& source) {
-    refuse_table_rate(rates, source);
-    return table_rate_warning(rates, source);
+        "{}: its notches are {} off; design the table with --sample-rate {:.6g}Hz to have them right", both,
+        per_cent(off), log.value());
 }
 
 struct LogStream::State {

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <iterator>
 
 #include "ripplenotch/core/error.hpp"
@@ -21,6 +22,20 @@ constexpr const Method* list[] = {
 };
 
 }  // namespace
+
+void CascadeFilter::process(const Samples& in, std::span<double> out) {
+    if (out.empty()) return;
+    if (!started_) {
+        origin_nm_ = in.torque_nm.front();
+        std::fill(states_.begin(), states_.end(), BiquadState{});
+        started_ = true;
+    }
+    for (std::size_t k = 0; k < out.size(); ++k) {
+        double signal = in.torque_nm[k] - origin_nm_;
+        for (std::size_t i = 0; i < cascade_.size(); ++i) signal = step(cascade_[i], states_[i], signal);
+        out[k] = origin_nm_ + signal;
+    }
+}
 
 std::span<const Method* const> methods() { return {list, std::size(list)}; }
 

@@ -7,7 +7,6 @@
 #include <complex>
 #include <cstdint>
 #include <numbers>
-#include <optional>
 #include <utility>
 
 #include "core/matrices/factorisations.hpp"
@@ -44,8 +43,7 @@ double RippleModel::share(double order, double step_turns) const noexcept {
     return share_below_rate(order * std::abs(step_turns));
 }
 
-RippleKalman::RippleKalman(RippleModel model, std::vector<AmplitudePrior> priors,
-                           const GainSchedule* schedule)
+RippleKalman::RippleKalman(RippleModel model, std::vector<AmplitudePrior> priors, GainSchedule* schedule)
     : model_(std::move(model)),
       priors_(std::move(priors)),
       schedule_(schedule),
@@ -185,7 +183,7 @@ void RippleKalman::update(double measured) noexcept {
 }
 
 // The schedule's gains are of the frame that turns with the motor; the amplitudes stand still.
-void RippleKalman::update_by_schedule(double measured, double step_turns) noexcept {
+void RippleKalman::update_by_schedule(double measured, double step_turns) {
     schedule_->at(step_turns, ph_);
     double expected = x_[0], taken = ph_[0];
     for (std::size_t i = 2; i < m_; i += 2) {
@@ -331,7 +329,7 @@ namespace {
 // From a motor turn in 30 000 samples, where the ripple's gain is next to nothing, to half a turn a sample of
 // the lowest order.
 constexpr double slowest_turns = 0x1p-15;
-constexpr int points_an_octave = 8;  ///< evenly from an octave's beginning to twice it
+constexpr std::size_t points_an_octave = 8;  ///< evenly from an octave's beginning to twice it
 
 // Orders beyond half the sample rate are ignored and have no gain.
 std::vector<double> gain_of(const RippleModel& model, double step_turns) {
@@ -352,70 +350,38 @@ std::vector<double> gain_of(const RippleModel& model, double step_turns) {
     return gain;
 }
 
-int last_point(const RippleModel& model) {
-    const double lowest = *std::min_element(model.orders.begin(), model.orders.end());
-    const auto octaves =
-        static_cast<int>(std::ceil(std::max(portable::log2(0.5 / lowest / slowest_turns), 1.0)));
-    return octaves * points_an_octave;
-}
-
-std::vector<double> gain_at_point(const RippleModel& model, int point) {
-    const double within = 1.0 + static_cast<double>(point % points_an_octave) / points_an_octave;
-    return gain_of(model, slowest_turns * std::ldexp(within, point / points_an_octave));
-}
-
-// Between which points a speed lies; before the first one there is standstill.
-struct Place {
-    std::optional<std::size_t> before;
-    std::size_t after;
-    double share;
-};
-
-Place place_of(double step_turns, std::size_t last) noexcept {
-    const double share = std::abs(step_turns) / slowest_turns;
-    if (!(share >= 1.0)) return {std::nullopt, 0, share};
-    // The number's own exponent is its octave, its mantissa the place in it.
-    const auto bits = std::bit_cast<std::uint64_t>(share);
-    const auto octave = static_cast<std::size_t>((bits >> 52U) - 1023U);
-    const double within = (share / std::bit_cast<double>(bits & (0x7ffULL << 52U)) - 1.0) * points_an_octave;
-    const auto point = static_cast<std::size_t>(within);
-    const std::size_t at = octave * points_an_octave + point;
-    const std::size_t before = std::min(at, last - 1);
-    return {before, before + 1, at < last ? within - static_cast<double>(point) : 1.0};
-}
-
-void between(const double* before, const double* after, const Place& place, double step_turns,
-             std::span<double> gain) noexcept {
-    for (std::size_t i = 0; i < gain.size(); ++i) gain[i] = before[i] + place.share * (after[i] - before[i]);
-    if (step_turns < 0.0) {
-        for (std::size_t i = 3; i < gain.size(); i += 2) gain[i] = -gain[i];
-    }
-}
-
 }  // namespace
 
-GainSchedule::GainSchedule(const RippleModel& model)
-    : states_(model.states()), standing_(gain_of(model, 0.0)) {
-    for (int i = 0; i <= last_point(model); ++i) {
-        const auto gain = gain_at_point(model, i);
-        gains_.insert(gains_.end(), gain.begin(), gain.end());
+GainSchedule::GainSchedule(RippleModel model) : model_(std::move(model)) {
+    const double lowest = *std::min_element(model_.orders.begin(), model_.orders.end());
+    const double octaves = std::ceil(std::max(portable::log2(0.5 / lowest / slowest_turns), 1.0));
+    gains_.resize(2 + points_an_octave * static_cast<std::size_t>(octaves));
+}
+
+void GainSchedule::at(double step_turns, std::span<double> gain) {
+    // Between which points the speed lies; before the first one there is standstill.
+    double share = std::abs(step_turns) / slowest_turns;
+    std::size_t before = 0;
+    if (share >= 1.0) {
+        // The number's own exponent is its octave, its mantissa the place in it.
+        const auto bits = std::bit_cast<std::uint64_t>(share);
+        const auto octave = static_cast<std::size_t>((bits >> 52U) - 1023U);
+        share = (share / std::bit_cast<double>(bits & (0x7ffULL << 52U)) - 1.0) * points_an_octave;
+        const auto point = static_cast<std::size_t>(share);
+        const std::size_t at = 1 + octave * points_an_octave + point, last = gains_.size() - 1;
+        share = at < last ? share - static_cast<double>(point) : 1.0;
+        before = std::min(at, last - 1);
     }
-}
-
-void GainSchedule::at(double step_turns, std::span<double> gain) const noexcept {
-    const Place place = place_of(step_turns, gains_.size() / states_ - 1);
-    between(place.before ? gains_.data() + *place.before * states_ : standing_.data(),
-            gains_.data() + place.after * states_, place, step_turns, gain.first(states_));
-}
-
-std::vector<double> scheduled_gain(const RippleModel& model, double step_turns) {
-    const Place place = place_of(step_turns, static_cast<std::size_t>(last_point(model)));
-    const auto before =
-        place.before ? gain_at_point(model, static_cast<int>(*place.before)) : gain_of(model, 0.0);
-    const auto after = gain_at_point(model, static_cast<int>(place.after));
-    std::vector<double> gain(model.states());
-    between(before.data(), after.data(), place, step_turns, gain);
-    return gain;
+    const auto known = [&](std::size_t i) -> const std::vector<double>& {
+        const double within = 1.0 + static_cast<double>((i - 1) % points_an_octave) / points_an_octave;
+        const auto octave = static_cast<int>((i - 1) / points_an_octave);
+        if (gains_[i].empty())
+            gains_[i] = gain_of(model_, i == 0 ? 0.0 : slowest_turns * std::ldexp(within, octave));
+        return gains_[i];
+    };
+    const std::vector<double>&low = known(before), &high = known(before + 1);
+    for (std::size_t i = 0; i < low.size(); ++i) gain[i] = low[i] + share * (high[i] - low[i]);
+    for (std::size_t i = 3; step_turns < 0.0 && i < low.size(); i += 2) gain[i] = -gain[i];
 }
 
 }  // namespace ripplenotch

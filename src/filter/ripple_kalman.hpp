@@ -50,8 +50,7 @@ class GainSchedule;
 /// available.
 class RippleKalman {
   public:
-    RippleKalman(RippleModel model, std::vector<AmplitudePrior> priors,
-                 const GainSchedule* schedule = nullptr);
+    RippleKalman(RippleModel model, std::vector<AmplitudePrior> priors, GainSchedule* schedule = nullptr);
 
     /// The first sample, where the torque is anything at all: torque + ripple = 0 is what was measured.
     void start(double motor_turns);
@@ -75,11 +74,11 @@ class RippleKalman {
     void predict(double step_turns) noexcept;
     void forget(double step_turns) noexcept;
     void update(double measured) noexcept;
-    void update_by_schedule(double measured, double step_turns) noexcept;
+    void update_by_schedule(double measured, double step_turns);
 
     RippleModel model_;
     std::vector<AmplitudePrior> priors_;
-    const GainSchedule* schedule_;
+    GainSchedule* schedule_;
     std::size_t m_;
     RippleModel::TorqueNoise torque_noise_;
     std::vector<double> x_, p_, h_, ph_;  ///< p_ is m by m, row by row; ph_ the gain times `scale`
@@ -99,26 +98,22 @@ struct RippleRotation {
 /// where ripple and torque cannot be distinguished (at standstill).
 [[nodiscard]] std::vector<double> settled_gain(const RippleModel& model, double step_turns);
 
-// Settled gains of the ripple's Kalman filter over motor speed, computed once.
+// Settled gains of the ripple's Kalman filter over motor speed.
 
-/// Gains in the frame of ripple_rotation, linear between eight speeds an octave.
+/// Gains in the frame of ripple_rotation, linear between eight speeds an octave, each computed when it is
+/// first needed.
 class GainSchedule {
   public:
-    explicit GainSchedule(const RippleModel& model);
+    explicit GainSchedule(RippleModel model);
 
     /// The gain at `step_turns` motor turns a sample, either direction, into `gain` (RippleModel::states
     /// entries). At standstill the ripple's is 0 and the torque's that of a filter without ripple.
-    void at(double step_turns, std::span<double> gain) const noexcept;
+    void at(double step_turns, std::span<double> gain);
 
   private:
-    std::size_t states_;
-    std::vector<double> standing_;
-    std::vector<double> gains_;  ///< states_ entries a speed, slowest first
+    RippleModel model_;
+    std::vector<std::vector<double>> gains_;  ///< at standstill, then by speed; empty: not known yet
 };
-
-/// The result of GainSchedule::at where only one speed is needed: of the hundred or so gains that a schedule
-/// holds, only the two at neighbouring speeds are computed.
-[[nodiscard]] std::vector<double> scheduled_gain(const RippleModel& model, double step_turns);
 
 // The settled Kalman filter at one speed, written as second-order sections, so that delay and attenuation can
 // be read off as for any other filter.

@@ -62,7 +62,7 @@ TEST_CASE("between the steps of an encoder the angle is known to a fifth of a st
         const double step = std::ldexp(1.0, -bits);
         std::vector<double> turns;
         for (const double position : stepped(exact, bits).position_deg) turns.push_back(position / 360.0);
-        const SteppedAngle angle = between_steps(exact.view(), turns);
+        const OutputAngle angle = between_steps(exact.view(), turns);
         CHECK_THAT(angle.step_turns, WithinRel(step, 1e-6));
         double squares = 0.0;
         for (std::size_t k = 0; k < exact.size(); ++k)

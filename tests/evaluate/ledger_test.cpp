@@ -6,7 +6,6 @@
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/evaluate/contender.hpp"
 #include "ripplenotch/evaluate/filter_metrics.hpp"
-#include "ripplenotch/evaluate/ledger.hpp"
 #include "support/catch.hpp"
 
 using namespace ripplenotch;

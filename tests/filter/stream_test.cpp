@@ -156,10 +156,10 @@ TEST_CASE("a table's rate may be half a per cent off in silence, five with a war
     REQUIRE(warning);
     CHECK_THAT(*warning,
                Catch::Contains("a.csv") && Catch::Contains("978.28 Hz") && Catch::Contains("1000 Hz"));
-    CHECK_NOTHROW(refuse_table_rate({.table = Hertz(1000.0), .log = Hertz(951.0)}, "a.csv"));
-    CHECK_THROWS_AS(refuse_table_rate({.table = Hertz(1000.0), .log = Hertz(949.0)}, "a.csv"), DataError);
+    CHECK_NOTHROW(table_rate_warning({.table = Hertz(1000.0), .log = Hertz(951.0)}, "a.csv"));
+    CHECK_THROWS_AS(table_rate_warning({.table = Hertz(1000.0), .log = Hertz(949.0)}, "a.csv"), DataError);
     CHECK_THROWS_WITH(
-        refuse_table_rate({.table = Hertz(1000.0), .log = Hertz(500.0)}, "a.csv"),
+        table_rate_warning({.table = Hertz(1000.0), .log = Hertz(500.0)}, "a.csv"),
         Catch::Contains("500 Hz") && Catch::Contains("1000 Hz") && Catch::Contains("--sample-rate 500Hz"));
 }
 

@@ -15,7 +15,6 @@
 #include "ripplenotch/core/quantity.hpp"
 #include "ripplenotch/core/trace.hpp"
 #include "ripplenotch/evaluate/contender.hpp"
-#include "ripplenotch/evaluate/ledger.hpp"
 
 namespace ripplenotch {
 

@@ -9,7 +9,6 @@
 #include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/core/quantity.hpp"
 #include "ripplenotch/evaluate/comparison.hpp"
-#include "ripplenotch/evaluate/ledger.hpp"
 #include "ripplenotch/filter/engine.hpp"
 
 namespace ripplenotch {

@@ -29,15 +29,9 @@ namespace ripplenotch {
 struct TableAndLogRate {
     Hertz table, log;
 };
-/// Throws DataError naming both rates and the remedy when a table's rate differs from the log's by more than
-/// rate_refused.
-void refuse_table_rate(const TableAndLogRate& rates, const std::string& source);
-/// A warning when they differ by more than rate_worth_a_word.
+/// A warning when a table's rate differs from the log's by more than rate_worth_a_word. Throws DataError,
+/// naming both rates and the remedy, by more than rate_refused.
 [[nodiscard]] std::optional<std::string> table_rate_warning(const TableAndLogRate& rates,
-                                                            const std::string& source);
-
-/// Both in turn, for a log whose rate is known from the start.
-[[nodiscard]] std::optional<std::string> compare_table_rate(const TableAndLogRate& rates,
                                                             const std::string& source);
 
 struct TimedSwitch {

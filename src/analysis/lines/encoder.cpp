@@ -116,16 +116,12 @@ class BetweenSteps {
 
 }  // namespace
 
-SteppedAngle between_steps(const TraceView& log, std::vector<double> logged_turns) {
-    SteppedAngle angle{std::move(logged_turns), 0.0};
+OutputAngle between_steps(const TraceView& log, std::vector<double> logged_turns) {
+    OutputAngle angle{std::move(logged_turns), true};
     angle.step_turns = step_of(angle.turns);
     if (!(angle.step_turns > 0.0)) return angle;
     BetweenSteps between(angle.turns, angle.step_turns);
-    for (std::size_t first = 0, k = 1; k <= log.size(); ++k) {
-        if (k < log.size() && !log.starts_run(k)) continue;
-        between.smooth({first, k});
-        first = k;
-    }
+    for (const SampleRun& run : whole_runs(log.size(), log.run_starts)) between.smooth(run);
     return angle;
 }
 

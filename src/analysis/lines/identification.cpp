@@ -130,17 +130,6 @@ bool any_of_kind(const Identification& result, LineKind kind) {
                        [kind](const Line& line) { return line.kind == kind; });
 }
 
-Grounds grounds_of(const MotionLines& motion, const IdentifyOptions& options) {
-    Grounds grounds;
-    grounds.false_alarm = options.false_alarm;
-    grounds.sweeps = motion.sweeps;
-    grounds.rests = motion.rests;
-    grounds.sweep_turns = motion.turns;
-    grounds.slowest_deg_s = motion.slowest_deg_s;
-    grounds.fastest_deg_s = motion.fastest_deg_s;
-    return grounds;
-}
-
 RippleFinding finding_in(const Identification& result) {
     if (result.gear_ratio.value && !result.gear_ratio.contradicted) return RippleFinding::ratio;
     if (any_of_kind(result, LineKind::order)) return RippleFinding::orders;
@@ -200,7 +189,8 @@ void conclude(const MotionLines& motion, const IdentifyOptions& options, Identif
             "known, and " +
             of_velocity(result.velocity_error));
     }
-    result.grounds = grounds_of(motion, options);
+    result.grounds = {motion.sweeps,        motion.rests,         motion.turns,
+                      motion.slowest_deg_s, motion.fastest_deg_s, options.false_alarm};
     result.searched = motion.searched;
     settle(result);
 }

@@ -30,28 +30,33 @@ struct Opinion {
     [[nodiscard]] double variance() const { return slope_variance / (curve * curve); }
 };
 
+/// Without the variance of the slope.
+Opinion seen_at(const Sweep& sweep, Axis axis, double noise, double place) {
+    const FourierPoint sum = fourier_point(places(sweep, axis), sweep.value, place);
+    Opinion seen;
+    seen.ratio = std::norm(sum.value) / noise;
+    seen.slope = std::real(std::conj(sum.value) * sum.first) / noise;
+    seen.curve = (std::norm(sum.first) + std::real(std::conj(sum.value) * sum.second)) / noise;
+    seen.reach = 1.0 / length_of(sweep, axis);
+    return seen;
+}
+
 Opinion opinion_of(const Sweep& sweep, Axis axis, double noise, double place) {
     const auto at = places(sweep, axis);
-    const FourierPoint sum = fourier_point(at, sweep.value, place);
     double weights = 0.0, first = 0.0, second = 0.0;
     for (std::size_t k = 0; k < at.size(); ++k) {
         weights += sweep.weight[k];
         first += sweep.weight[k] * at[k];
     }
-    const double middle = first / weights;
     for (std::size_t k = 0; k < at.size(); ++k) {
-        const double arm = sweep.weight[k] * (at[k] - middle);
+        const double arm = sweep.weight[k] * (at[k] - first / weights);
         second += arm * arm;
     }
-    Opinion opinion;
-    opinion.ratio = std::norm(sum.value) / noise;
-    opinion.slope = std::real(std::conj(sum.value) * sum.first) / noise;
-    opinion.curve = (std::norm(sum.first) + std::real(std::conj(sum.value) * sum.second)) / noise;
+    Opinion opinion = seen_at(sweep, axis, noise, place);
     // Slope = Re(conj(X) X'). Noise of power N in X has N full_turn^2 sum w^2 (u - mean)^2 / sum w^2 in X',
     // half of it in phase with X.
     opinion.slope_variance =
         0.5 * std::max(0.0, opinion.ratio - 1.0) * full_turn * full_turn * second / sweep.weight_square_sum;
-    opinion.reach = 1.0 / length_of(sweep, axis);
     return opinion;
 }
 
@@ -123,23 +128,31 @@ double place_error(std::span<const Sweep> sweeps, const LineNoise& noise, double
         noise.resolution);
 }
 
+namespace {
+
+/// Slope, curve and power over noise of all sweeps together.
+Opinion seen_in_all(std::span<const Sweep> sweeps, const LineNoise& noise, double place) {
+    std::vector<Opinion> seen(sweeps.size());
+    on_two_cores(sweeps.size(), [&](std::size_t i) {
+        if (noise.power[i] > 0.0) seen[i] = seen_at(sweeps[i], noise.axis, noise.power[i], place);
+    });
+    Opinion all;
+    for (const Opinion& one : seen) {
+        all.slope += one.slope;
+        all.curve += one.curve;
+        all.ratio += one.ratio;
+    }
+    return all;
+}
+
+}  // namespace
+
 double refined(std::span<const Sweep> sweeps, const LineNoise& noise, double start, double reach) {
     double place = start;
     for (int round = 0; round < 8; ++round) {
-        std::vector<FourierPoint> points(sweeps.size());
-        on_two_cores(sweeps.size(), [&](std::size_t i) {
-            if (noise.power[i] > 0.0)
-                points[i] = fourier_point(places(sweeps[i], noise.axis), sweeps[i].value, place);
-        });
-        double slope = 0.0, curve = 0.0;
-        for (std::size_t i = 0; i < sweeps.size(); ++i) {
-            if (!(noise.power[i] > 0.0)) continue;
-            const FourierPoint& at = points[i];
-            slope += std::real(std::conj(at.value) * at.first) / noise.power[i];
-            curve += (std::norm(at.first) + std::real(std::conj(at.value) * at.second)) / noise.power[i];
-        }
-        if (!(curve < 0.0)) return place;
-        const double next = std::clamp(place - slope / curve, start - reach, start + reach);
+        const Opinion all = seen_in_all(sweeps, noise, place);
+        if (!(all.curve < 0.0)) return place;
+        const double next = std::clamp(place - all.slope / all.curve, start - reach, start + reach);
         const bool settled = std::abs(next - place) < 1e-7 * reach;
         place = next;
         if (settled) break;
@@ -148,13 +161,8 @@ double refined(std::span<const Sweep> sweeps, const LineNoise& noise, double sta
 }
 
 double explained(std::span<const Sweep> sweeps, const LineNoise& noise, double place) {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < sweeps.size(); ++i) {
-        if (!(noise.power[i] > 0.0)) continue;
-        const FourierPoint at = fourier_point(places(sweeps[i], noise.axis), sweeps[i].value, place);
-        sum += std::norm(at.value) / noise.power[i] - 1.0;
-    }
-    return sum;
+    const auto used = std::count_if(noise.power.begin(), noise.power.end(), [](double n) { return n > 0.0; });
+    return seen_in_all(sweeps, noise, place).ratio - static_cast<double>(used);
 }
 
 void measure(std::span<const Sweep> sweeps, const LineNoise& noise, double place,

@@ -2,9 +2,10 @@
 #include "ripplenotch/analysis/sweeps.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "analysis/lines/encoder.hpp"
@@ -46,10 +47,7 @@ std::vector<double> unwrapped_position(const TraceView& log) {
 }  // namespace
 
 OutputAngle output_angle(const TraceView& log) {
-    if (log.has_position()) {
-        SteppedAngle angle = between_steps(log, unwrapped_position(log));
-        return {std::move(angle.turns), true, angle.step_turns};
-    }
+    if (log.has_position()) return between_steps(log, unwrapped_position(log));
     return {integrated_velocity(log), false};
 }
 
@@ -114,52 +112,23 @@ std::vector<SampleRun> pieces_of(const SampleRun& run, const TraceView& log, std
     return pieces;
 }
 
-/// Weight by speed, in steps of speed that are narrow compared with its range.
-class SpeedShares {
-  public:
-    SpeedShares(std::span<const double> speed, std::span<const double> weight)
-        : speed_(speed), weight_(weight) {
-        const auto [least, most] = std::minmax_element(
-            speed.begin(), speed.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
-        low_ = std::abs(*least);
-        const double range = std::abs(*most) - low_;
-        steps_per_deg_s_ = range > 0.0 ? static_cast<double>(sums_.size()) / range : 0.0;
-        for (std::size_t k = 0; k < speed.size(); ++k) sums_[step_of(speed[k])] += weight[k];
+/// |speed| below which lies a quarter of the weight, and three quarters.
+std::pair<double, double> quartiles(std::span<const double> speed, std::span<const double> weight) {
+    std::vector<std::pair<double, double>> sorted;
+    double all = 0.0, below = 0.0;
+    for (std::size_t k = 0; k < speed.size(); ++k) {
+        sorted.emplace_back(std::abs(speed[k]), weight[k]);
+        all += weight[k];
     }
-
-    /// The speed below which lies so much weight.
-    [[nodiscard]] double quantile(double share) const {
-        std::size_t step = 0;
-        double below = 0.0;
-        while (step + 1 < sums_.size() && below + sums_[step] < share) below += sums_[step++];
-        std::vector<std::pair<double, double>> inside;
-        for (std::size_t k = 0; k < speed_.size(); ++k) {
-            if (step_of(speed_[k]) == step) inside.emplace_back(std::abs(speed_[k]), weight_[k]);
-        }
-        auto from = inside.begin(), to = inside.end();
-        while (to - from > 1) {
-            const auto middle = from + (to - from) / 2;
-            std::nth_element(from, middle, to,
-                             [](const auto& a, const auto& b) { return a.first < b.first; });
-            double slower = 0.0;
-            for (auto one = from; one != middle; ++one) slower += one->second;
-            const bool beyond = below + slower < share;
-            if (beyond) below += slower;
-            (beyond ? from : to) = middle;
-        }
-        return from == inside.end() ? low_ : from->first;
-    }
-
-  private:
-    [[nodiscard]] std::size_t step_of(double speed) const {
-        const auto step = static_cast<std::size_t>((std::abs(speed) - low_) * steps_per_deg_s_);
-        return std::min(step, sums_.size() - 1);
-    }
-
-    std::span<const double> speed_, weight_;
-    double low_ = 0.0, steps_per_deg_s_ = 0.0;
-    std::array<double, 512> sums_{};
-};
+    std::sort(sorted.begin(), sorted.end());
+    auto one = sorted.begin();
+    const auto up_to = [&](double share) {
+        while (one + 1 != sorted.end() && below + one->second < share) below += (one++)->second;
+        return one->first;
+    };
+    const double lower = up_to(0.25 * all);
+    return {lower, up_to(0.75 * all)};
+}
 
 /// Hann window over the sweep's own length, times the angle that each sample stands for.
 void weigh_sweep(Sweep& sweep) {
@@ -218,9 +187,7 @@ Sweep make_sweep(const TraceView& log, const Planned& plan, std::span<const doub
     if (!(sweep.weight_sum > 0.0)) return sweep;
     if (!plan.rest) {
         for (std::size_t k = 0; k < n; ++k) sweep.mean_deg_s += sweep.weight[k] * speed[k] / sweep.weight_sum;
-        const SpeedShares shares(speed, sweep.weight);
-        sweep.slow_deg_s = shares.quantile(0.25 * sweep.weight_sum);
-        sweep.quick_deg_s = shares.quantile(0.75 * sweep.weight_sum);
+        std::tie(sweep.slow_deg_s, sweep.quick_deg_s) = quartiles(speed, sweep.weight);
     }
     return sweep;
 }

@@ -53,8 +53,9 @@ class RipplePower {
     struct At {
         double value = 0.0;
         Eigen::VectorXd slope;
-        Eigen::MatrixXd curve;     ///< second derivative of the power, and
-        Eigen::MatrixXd expected;  ///< its expectation where the cells are in phase: never indefinite
+        /// What its second derivative is expected to be, less its sign, where the cells are in phase: never
+        /// indefinite.
+        Eigen::MatrixXd expected;
     };
 
     [[nodiscard]] Eigen::Index unknowns() const { return static_cast<Eigen::Index>(orders_) + 1; }
@@ -62,7 +63,7 @@ class RipplePower {
 
     [[nodiscard]] At at(const Eigen::VectorXd& unknown) const {
         At sum{-0.5 * unknown.dot(certainty_.cwiseProduct(unknown)), -certainty_.cwiseProduct(unknown),
-               -Eigen::MatrixXd(certainty_.asDiagonal()), Eigen::MatrixXd(certainty_.asDiagonal())};
+               Eigen::MatrixXd(certainty_.asDiagonal())};
         for (const DemodulatedSweep& cells : all_) add(cells, unknown, sum);
         return sum;
     }
@@ -103,10 +104,9 @@ void centre(DemodulatedSweep& cells) {
 struct PowerMoments {
     Complex value;
     std::array<Complex, 2> first{};
-    std::array<std::array<Complex, 2>, 2> second{};
 };
 
-/// The sum and its derivatives by the two unknowns that move it.
+/// The sum and its slopes by the two unknowns that move it.
 PowerMoments power_moments(const DemodulatedSweep& cells, const std::array<double, 2>& moved) {
     PowerMoments sum;
     const double rate = full_turn * cells.cycles;
@@ -114,12 +114,7 @@ PowerMoments power_moments(const DemodulatedSweep& cells, const std::array<doubl
         const double off = moved[0] * cells.column[0][i] + moved[1] * cells.column[1][i];
         const Complex z = cells.value[i] * portable::polar(1.0, -rate * off);
         sum.value += z;
-        for (std::size_t a = 0; a < 2; ++a) {
-            const Complex by_a = Complex(0.0, -rate * cells.column[a][i]) * z;
-            sum.first[a] += by_a;
-            for (std::size_t b = 0; b <= a; ++b)
-                sum.second[a][b] += Complex(0.0, -rate * cells.column[b][i]) * by_a;
-        }
+        for (std::size_t a = 0; a < 2; ++a) sum.first[a] += Complex(0.0, -rate * cells.column[a][i]) * z;
     }
     return sum;
 }
@@ -172,17 +167,8 @@ void RipplePower::add(const DemodulatedSweep& cells, const VectorXd& unknown, At
     const double stiff = power / cells.weights * rate * rate;
     for (std::size_t a = 0; a < 2; ++a) {
         sum.slope[place[a]] += std::real(std::conj(m.value) * m.first[a]) / cells.noise;
-        for (std::size_t b = 0; b <= a; ++b) {
-            const double curve =
-                std::real(std::conj(m.first[a]) * m.first[b] + std::conj(m.value) * m.second[a][b]) /
-                cells.noise;
-            const double expected = stiff * spread_of_cells(cells, cells.weight, a, b);
-            sum.curve(place[a], place[b]) += curve;
-            sum.expected(place[a], place[b]) += expected;
-            if (a == b) continue;
-            sum.curve(place[b], place[a]) += curve;
-            sum.expected(place[b], place[a]) += expected;
-        }
+        for (std::size_t b = 0; b < 2; ++b)
+            sum.expected(place[a], place[b]) += stiff * spread_of_cells(cells, cells.weight, a, b);
     }
 }
 
@@ -369,8 +355,7 @@ std::optional<VelocityFit> fit_velocity_error(std::span<const TraceView> logs, s
     const DegPerSec likely_offset(offset_share * fastest);
     const RipplePower power(std::move(all), orders.size(), likely_offset);
     const VectorXd best = best_of_starts(power, likely_offset);
-    const RipplePower::At top = power.at(best);
-    const MatrixXd stiffness = -top.curve;
+    const MatrixXd stiffness = power.at(best).expected;
     const SymmetricFactors factors(stiffness);
     if (!(factors.least_pivot() > 0.0)) return std::nullopt;
     const RipplePower::SlopeVariance slopes = power.slope_variance(best);

@@ -379,8 +379,7 @@ RippleCourse ripple_course(const TraceView& log, GearRatio ratio, std::span<cons
     std::size_t i = 0;
     for (RippleSegments::Course course : all.courses()) {
         const double cycles_a_turn = all.order(i++) * ratio.value();
-        for (std::size_t first = 0, end = 0; first < log.size(); first = end) {
-            for (end = first + 1; end < log.size() && !log.starts_run(end);) ++end;
+        for (const auto& [first, end] : whole_runs(log.size(), log.run_starts)) {
             const bool known = fill_between(course, first, end);
             for (std::size_t k = first; k < end; ++k) {
                 const double cycles = cycles_a_turn * angle.turns[k];

@@ -169,9 +169,9 @@ std::complex<double> WindowFit::amplitude(const Torque& torque, std::size_t line
     return {torque.coefficients[first_of(line)], -torque.coefficients[first_of(line) + 1]};
 }
 
-std::vector<double> WindowFit::terms_in_sum(const Torque& torque, std::size_t from, std::size_t end) const {
+std::vector<double> WindowFit::lines_in_sum(const Torque& torque) const {
     std::vector<double> sum(place_.size(), 0.0);
-    for (std::size_t i = from; i < end; ++i)
+    for (std::size_t i = trend_; i < columns_.size(); ++i)
         add_scaled(torque.coefficients[static_cast<Eigen::Index>(i)], columns_[i].data(), sum.data(),
                    sum.size());
     return sum;

@@ -53,9 +53,7 @@ class WindowFit {
     /// a - ib of a cos + b sin at the middle of the window.
     [[nodiscard]] std::complex<double> amplitude(const Torque& torque, std::size_t line) const;
     /// The torque of all lines, times the root weights.
-    [[nodiscard]] std::vector<double> lines_in_sum(const Torque& torque) const {
-        return terms_in_sum(torque, trend_, columns_.size());
-    }
+    [[nodiscard]] std::vector<double> lines_in_sum(const Torque& torque) const;
     /// Values of the samples between a quarter and three quarters of the window, without their root weights.
     [[nodiscard]] std::vector<double> middle_half(std::span<const double> weighted) const;
     /// Squared amplitude of the residual at a line that was not fitted; nan within `clear_cycles` of a fitted
@@ -67,8 +65,6 @@ class WindowFit {
 
   private:
     [[nodiscard]] Eigen::Index first_of(std::size_t line) const;
-    [[nodiscard]] std::vector<double> terms_in_sum(const Torque& torque, std::size_t from,
-                                                   std::size_t end) const;
     void add_trend();
     void add_wave(const TrackedLine& line);
     void waves(const TrackedLine& line, std::vector<double>& cosine, std::vector<double>& sine) const;

@@ -395,7 +395,7 @@ void check_table_rates(const Field& field, Hertz sample_rate, const std::string&
     for (const Contender& contender : field.contenders) {
         if (!contender.table) continue;
         const auto warning =
-            compare_table_rate({.table = contender.table->spec().sample_rate, .log = sample_rate}, source);
+            table_rate_warning({.table = contender.table->spec().sample_rate, .log = sample_rate}, source);
         if (warning) warn(common, *warning);
     }
 }

@@ -20,8 +20,8 @@
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/visible_text.hpp"
 #include "ripplenotch/document/comparison_json.hpp"
+#include "ripplenotch/evaluate/contender.hpp"
 #include "ripplenotch/evaluate/filter_metrics.hpp"
-#include "ripplenotch/evaluate/ledger.hpp"
 #include "ripplenotch/filter/engine.hpp"
 #include "ripplenotch/log/log.hpp"
 #include "ripplenotch/verdict/gear_choice.hpp"
@@ -224,7 +224,8 @@ JointWork start_work(const FilterRequest& request, const LogStream& stream, cons
     metrics.source = stream.reader().layout().source;
     if (method.table != nullptr) {
         metrics.table_rate = method.table->spec().sample_rate;
-        refuse_table_rate({.table = *metrics.table_rate, .log = stream.design_rate()}, metrics.source);
+        static_cast<void>(
+            table_rate_warning({.table = *metrics.table_rate, .log = stream.design_rate()}, metrics.source));
     }
     refuse_other_joint(method, joint);
     metrics.joint = joint;

@@ -19,7 +19,7 @@
 #include "ripplenotch/core/progress.hpp"
 #include "ripplenotch/core/spec.hpp"
 #include "ripplenotch/core/visible_text.hpp"
-#include "ripplenotch/evaluate/ledger.hpp"
+#include "ripplenotch/evaluate/contender.hpp"
 #include "ripplenotch/log/format.hpp"
 
 namespace ripplenotch {

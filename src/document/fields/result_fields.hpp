@@ -11,7 +11,6 @@
 #include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/diagnose/diagnosis.hpp"
 #include "ripplenotch/evaluate/contender.hpp"
-#include "ripplenotch/evaluate/ledger.hpp"
 #include "ripplenotch/filter/map_fit.hpp"
 #include "ripplenotch/model/model.hpp"
 

@@ -13,7 +13,9 @@
 #include <utility>
 #include <vector>
 
+#include "core/vectors/dot.hpp"
 #include "filter/map/map_runner.hpp"
+#include "ripplenotch/analysis/sweeps.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
@@ -40,57 +42,42 @@ struct Source {
     [[nodiscard]] bool mapped() const { return fit.finding == MapFinding::mapped; }
 };
 
-class Backfitting {
-  public:
-    Backfitting(std::span<const TraceView> logs, std::vector<Source> sources, std::size_t pairs)
-        : logs_(logs),
-          sources_(std::move(sources)),
-          pair_false_alarm_(map_false_alarm / static_cast<double>(std::max<std::size_t>(pairs, 1))) {}
-
-    void run(double zero_deg) {
-        for (std::size_t round = 1; round <= most_rounds; ++round) {
-            const std::vector<bool> before = which_mapped();
-            for (Source& source : sources_) fit(source, zero_deg);
-            const bool own_alone = std::none_of(sources_.begin(), sources_.end(), [](const Source& one) {
-                return !one.is_own && one.mapped();
-            });
-            if (own_alone || (round > 1 && which_mapped() == before)) break;
+void fit_beside(Source& source, std::span<const Source> all, std::span<const TraceView> logs, double zero_deg,
+                double pair_false_alarm) {
+    std::vector<std::vector<double>> torques;
+    std::vector<TraceView> views = source.motion;
+    for (std::size_t l = 0; l < logs.size(); ++l) {
+        torques.emplace_back(logs[l].torque_nm.begin(), logs[l].torque_nm.end());
+        for (const Source& other : all) {
+            if (&other == &source || !other.mapped()) continue;
+            add_scaled(-1.0, other.ripple[l].data(), torques[l].data(), torques[l].size());
         }
+        views[l].torque_nm = torques[l];
     }
-    [[nodiscard]] std::vector<Source>& sources() { return sources_; }
+    source.fit = source.is_own ? fit_ripple_map(views, source.gear, zero_deg)
+                               : fit_ripple_map(views, source.gear, 0.0, pair_false_alarm);
+    source.ripple.clear();
+    if (!source.mapped()) return;
+    for (const TraceView& view : views) source.ripple.push_back(map_along(source.fit.map, view));
+}
 
-  private:
-    [[nodiscard]] std::vector<bool> which_mapped() const {
+// Each to the torque less all other maps, until they stay.
+void fit_all(std::vector<Source>& sources, std::span<const TraceView> logs, double zero_deg,
+             std::size_t pairs) {
+    const double pair_false_alarm = map_false_alarm / static_cast<double>(std::max<std::size_t>(pairs, 1));
+    std::vector<bool> before;
+    for (std::size_t round = 1; round <= most_rounds; ++round) {
         std::vector<bool> mapped;
-        for (const Source& source : sources_) mapped.push_back(source.mapped());
-        return mapped;
-    }
-
-    void fit(Source& source, double zero_deg) const {
-        std::vector<std::vector<double>> torques;
-        std::vector<TraceView> views;
-        for (std::size_t l = 0; l < logs_.size(); ++l) {
-            torques.emplace_back(logs_[l].torque_nm.begin(), logs_[l].torque_nm.end());
-            for (const Source& other : sources_) {
-                if (&other == &source || !other.mapped()) continue;
-                for (std::size_t k = 0; k < torques[l].size(); ++k) torques[l][k] -= other.ripple[l][k];
-            }
+        bool others = false;
+        for (Source& source : sources) {
+            fit_beside(source, sources, logs, zero_deg, pair_false_alarm);
+            mapped.push_back(source.mapped());
+            others = others || (source.mapped() && !source.is_own);
         }
-        for (std::size_t l = 0; l < logs_.size(); ++l) {
-            views.push_back(source.motion[l]);
-            views.back().torque_nm = torques[l];
-        }
-        source.fit = source.is_own ? fit_ripple_map(views, source.gear, zero_deg)
-                                   : fit_ripple_map(views, source.gear, 0.0, pair_false_alarm_);
-        source.ripple.clear();
-        if (!source.mapped()) return;
-        for (const TraceView& view : views) source.ripple.push_back(map_along(source.fit.map, view));
+        if (!others || mapped == before) break;
+        before = std::move(mapped);
     }
-
-    std::span<const TraceView> logs_;
-    std::vector<Source> sources_;
-    double pair_false_alarm_;
-};
+}
 
 /// The share of the power of a line n of one motor that a line m of the other explains along the logs: the
 /// squared mean of exp(i (n a - m b)), a and b being their angles, while the first one turns.
@@ -147,9 +134,16 @@ bool follows_own(const Source& one, std::span<const TraceView> own) {
     });
 }
 
-bool has_positions(const Source& source) {
-    return std::all_of(source.motion.begin(), source.motion.end(),
-                       [](const TraceView& log) { return log.has_position(); });
+bool have_positions(std::span<const TraceView> logs) {
+    return std::all_of(logs.begin(), logs.end(), [](const TraceView& log) { return log.has_position(); });
+}
+
+void doubt(MapFit& fit, const std::string& other) {
+    fit.doubt = fmt::format(
+        "Cannot tell the ripple of the motor of {} from that of {}: in this log one of their angles follows "
+        "from the other.",
+        fit.map.joint, other);
+    fit.conclusive = false;
 }
 
 class MapPrediction final : public CausalFilter {
@@ -180,14 +174,11 @@ std::unique_ptr<CausalFilter> map_prediction(const RippleMap& map, Hertz sample_
 std::vector<double> map_along(const RippleMap& map, const TraceView& log) {
     MapPrediction prediction(map, log.sample_rate);
     std::vector<double> ripple(log.size());
-    std::size_t from = 0;
-    for (std::size_t k = 1; k <= log.size(); ++k) {
-        if (k < log.size() && !log.starts_run(k)) continue;
-        const TraceView run = log.part(from, k - from);
+    for (const SampleRun& rows : whole_runs(log.size(), log.run_starts)) {
+        const TraceView run = log.part(rows.first, rows.size());
         prediction.restart();
         prediction.process({run.velocity_deg_s, run.torque_nm, run.position_deg},
-                           std::span(ripple).subspan(from, run.size()));
-        from = k;
+                           std::span(ripple).subspan(rows.first, rows.size()));
     }
     return ripple;
 }
@@ -195,41 +186,25 @@ std::vector<double> map_along(const RippleMap& map, const TraceView& log) {
 MapFit fit_joint_map(std::span<const TraceView> logs, const GearAccount* own,
                      std::span<const OtherMotor> others, std::size_t pairs, double zero_deg) {
     if (others.empty() && own != nullptr) return fit_ripple_map(logs, *own, zero_deg);
-    std::vector<Source> sources;
-    if (own != nullptr) sources.push_back({*own, {logs.begin(), logs.end()}, true});
+    std::vector<Source> all;
+    if (own != nullptr) all.push_back({*own, {logs.begin(), logs.end()}, true});
     for (const OtherMotor& other : others) {
         for (std::size_t l = 0; l < logs.size(); ++l)
             if (other.motion.size() != logs.size() || other.motion[l].size() != logs[l].size())
                 raise<DataError>("joint {}: its rows are not those of the torque", other.joint);
-        sources.push_back({other.gear, other.motion});
+        all.push_back({other.gear, other.motion});
     }
-    Backfitting backfitting(logs, std::move(sources), pairs);
-    backfitting.run(zero_deg);
-    std::vector<Source>& all = backfitting.sources();
+    fit_all(all, logs, zero_deg, pairs);
     const std::size_t first = own != nullptr ? 1 : 0;
     for (std::size_t j = first; j < all.size(); ++j) all[j].fit.map.joint = others[j - first].joint;
     for (std::size_t j = first; j < all.size(); ++j) {
         Source& one = all[j];
         if (!one.mapped()) continue;
-        for (std::size_t i = 0; i < all.size(); ++i) {
-            if (i == j || !has_positions(all[i]) || !same_angle(one, all[i])) continue;
-            one.fit.doubt = fmt::format(
-                "Cannot tell the ripple of the motor of {} from that of {}: in this log one of their angles "
-                "follows from the other.",
-                one.fit.map.joint, all[i].is_own ? "the joint itself" : all[i].fit.map.joint);
-            one.fit.conclusive = false;
-        }
-    }
-    const bool own_positions =
-        std::all_of(logs.begin(), logs.end(), [](const TraceView& log) { return log.has_position(); });
-    for (Source& one : all) {
-        if (own != nullptr || !own_positions || !one.mapped() || !follows_own(one, logs)) continue;
-        one.fit.doubt = fmt::format(
-            "Cannot tell the ripple of the motor of {} from that of the joint itself, whose gear ratio is "
-            "not known: "
-            "in this log one of their angles follows from the other.",
-            one.fit.map.joint);
-        one.fit.conclusive = false;
+        for (std::size_t i = 0; i < all.size(); ++i)
+            if (i != j && have_positions(all[i].motion) && same_angle(one, all[i]))
+                doubt(one.fit, all[i].is_own ? "the joint itself" : all[i].fit.map.joint);
+        if (own == nullptr && have_positions(logs) && follows_own(one, logs))
+            doubt(one.fit, "the joint itself, whose gear ratio is not known");
     }
     MapFit fit = own != nullptr ? std::move(all.front().fit) : MapFit{};
     for (std::size_t j = first; j < all.size(); ++j) {

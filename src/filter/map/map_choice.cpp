@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "core/process/two_cores.hpp"
-#include "filter/map/map_fit.hpp"
 #include "filter/map/map_regression.hpp"
 #include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/core/number.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "filter/map/map_fit.hpp"
+#include "ripplenotch/filter/map_fit.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -21,7 +21,6 @@
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/core/visible_text.hpp"
-#include "ripplenotch/filter/map_fit.hpp"
 
 namespace ripplenotch {
 

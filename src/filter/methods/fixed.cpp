@@ -5,7 +5,6 @@
 
 #include <array>
 
-#include "filter/cascade_filter.hpp"
 #include "filter/method.hpp"
 #include "ripplenotch/design/notch.hpp"
 

@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 
-#include "filter/cascade_filter.hpp"
 #include "filter/method.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/design/notch.hpp"

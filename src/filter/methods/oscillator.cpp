@@ -215,12 +215,11 @@ std::unique_ptr<CausalFilter> start(const Settings& settings, Hertz sample_rate,
 FrozenFilter frozen(const Settings& settings, Hertz sample_rate, const CandidateTable*, DegPerSec speed) {
     const Plan p = plan(settings, sample_rate, counted_orders("oscillator", settings));
     const double step_turns = p.ripple.gear_ratio * speed.value() / 360.0 / p.sample_rate_hz;
-    std::vector<double> gain;
-    if (p.scheduled) {
-        gain = scheduled_gain(p.model, step_turns);
-    } else {
+    std::vector<double> gain(p.model.states());
+    if (p.scheduled)
+        GainSchedule(p.model).at(step_turns, gain);
+    else
         gain = settled_gain(p.model, step_turns);
-    }
     const std::string note = step_turns == 0.0 ? "standstill: the ripple's amplitudes keep what they were"
                                                : "settled Kalman filter";
     return {settled_cascade(p.model, step_turns, step_turns == 0.0 ? std::vector<double>{} : gain,

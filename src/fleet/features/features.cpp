@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdint>
+#include <regex>
 #include <span>
 #include <string_view>
 
@@ -175,49 +176,26 @@ std::optional<double> seconds_of(const Calendar& when) {
     return static_cast<double>(days * 86400 + hour * 3600 + minute * 60 + second);
 }
 
-// So many digits at the front of the text, which are removed from it.
-std::optional<int> take_digits(std::string_view& text, std::size_t count) {
-    if (text.size() < count) return std::nullopt;
-    int number = 0;
-    for (const char c : text.substr(0, count)) {
-        if (c < '0' || c > '9') return std::nullopt;
-        number = 10 * number + (c - '0');
-    }
-    text.remove_prefix(count);
-    return number;
-}
-
-struct Matched {
-    Calendar when;
-    std::string robot;
-};
-
-// Matches the end of a pattern with the end of a name. Stars try every length, so a pattern has few of them.
-bool fits(std::string_view pattern, std::string_view name, Matched& found) {
-    while (!pattern.empty()) {
-        if (pattern.front() == '%') {
-            const std::size_t field = letters.find(pattern[1]);
-            const auto number = take_digits(name, field == 0 ? 4 : 2);
-            if (!number) return false;
-            found.when.number[field] = *number;
-            pattern.remove_prefix(2);
-            continue;
+// A pattern of names as a regular expression; `groups`: of each of its groups the letter, or r of the robot.
+std::regex name_form(std::string_view pattern, std::string& groups) {
+    std::string text;
+    for (std::size_t i = 0; i < pattern.size(); ++i) {
+        const char c = pattern[i];
+        if (c == '%') {
+            text += pattern[++i] == 'Y' ? "([0-9]{4})" : "([0-9]{2})";
+            groups += pattern[i];
+        } else if (pattern.substr(i).starts_with(robot_word)) {
+            text += "([^/]+?)";
+            groups += 'r';
+            i += robot_word.size() - 1;
+        } else if (c == '*' || c == '?') {
+            text += c == '*' ? ".*?" : ".";
+        } else {
+            if (std::string_view(R"(^$\.+()[]{}|)").find(c) != std::string_view::npos) text += '\\';
+            text += c;
         }
-        const bool robot = pattern.starts_with(robot_word);
-        if (robot || pattern.front() == '*') {
-            const std::string_view rest = pattern.substr(robot ? robot_word.size() : 1);
-            for (std::size_t length = robot ? 1 : 0; length <= name.size(); ++length) {
-                if (robot && name[length - 1] == '/') return false;
-                if (robot) found.robot = name.substr(0, length);
-                if (fits(rest, name.substr(length), found)) return true;
-            }
-            return false;
-        }
-        if (name.empty() || (pattern.front() != '?' && pattern.front() != name.front())) return false;
-        pattern.remove_prefix(1);
-        name.remove_prefix(1);
     }
-    return name.empty();
+    return std::regex(text);
 }
 
 }  // namespace
@@ -233,22 +211,14 @@ std::string date_text(double seconds) {
 }
 
 std::optional<double> date_seconds(std::string_view text) {
-    if (text.ends_with('Z')) text.remove_suffix(1);
+    static const std::regex form(
+        "([0-9]{4})-([0-9]{2})-([0-9]{2})(?:[T ]([0-9]{2}):([0-9]{2})(?::([0-9]{2}))?)?Z?");
+    std::cmatch found;
+    if (!std::regex_match(text.data(), text.data() + text.size(), found, form)) return std::nullopt;
     Calendar when;
-    constexpr std::string_view marks = "--T::";
-    for (std::size_t field = 0; field < letters.size(); ++field) {
-        if (field > 0) {
-            // The text may end with a day or a minute.
-            if (text.empty() && (field == 3 || field == 5)) break;
-            const bool blank = field == 3 && text.starts_with(' ');
-            if (!blank && !text.starts_with(marks[field - 1])) return std::nullopt;
-            text.remove_prefix(1);
-        }
-        const auto number = take_digits(text, field == 0 ? 4 : 2);
-        if (!number) return std::nullopt;
-        when.number[field] = *number;
-    }
-    return text.empty() ? seconds_of(when) : std::nullopt;
+    for (std::size_t field = 0; field < letters.size(); ++field)
+        if (found[field + 1].matched) when.number[field] = std::stoi(found[field + 1]);
+    return seconds_of(when);
 }
 
 NamePattern::NamePattern(std::string pattern) : pattern_(std::move(pattern)) {
@@ -268,12 +238,21 @@ NamePattern::NamePattern(std::string pattern) : pattern_(std::move(pattern)) {
 }
 
 std::optional<NamePattern::Found> NamePattern::match(const std::string& name) const {
+    std::string groups;
+    const std::regex form = name_form(pattern_, groups);
     for (std::size_t at = 0; at != std::string::npos;) {
-        Matched found;
-        if (fits(pattern_, std::string_view(name).substr(at), found)) {
-            const auto seconds = seconds_of(found.when);
-            if (!seconds) return std::nullopt;
-            return Found{date_text(*seconds), found.robot};
+        std::cmatch found;
+        if (std::regex_match(name.data() + at, name.data() + name.size(), found, form)) {
+            Calendar when;
+            std::string robot;
+            for (std::size_t g = 0; g < groups.size(); ++g) {
+                if (groups[g] == 'r')
+                    robot = found[g + 1];
+                else
+                    when.number[letters.find(groups[g])] = std::stoi(found[g + 1]);
+            }
+            const auto seconds = seconds_of(when);
+            return seconds ? std::optional(Found{date_text(*seconds), robot}) : std::nullopt;
         }
         at = name.find('/', at);
         if (at != std::string::npos) ++at;

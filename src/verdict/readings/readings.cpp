@@ -108,29 +108,39 @@ Identification of_the_motor(Identification found, double ratio) {
     return found;
 }
 
+/// Logs as they would be under a reading; those that it leaves as they are have no copy.
+struct LogsRead {
+    std::vector<Trace> traces;
+    std::vector<TraceView> views;
+
+    explicit LogsRead(std::span<const Log> logs, const OtherReading& reading = {}) {
+        const bool as_taken =
+            reading.time_factor == 1.0 && reading.velocity_factor == 1.0 && reading.position_factor == 1.0;
+        traces.reserve(logs.size());
+        for (const Log& log : logs)
+            views.push_back(as_taken ? log.trace.view()
+                                     : traces.emplace_back(read_otherwise(log.trace, reading)).view());
+    }
+};
+
+/// What is before a gear of unknown ratio, as if it were behind the one that stands for it.
+OtherReading behind_stand_in(OtherReading reading) {
+    reading.velocity_factor /= stand_in_ratio;
+    reading.position_factor /= stand_in_ratio;
+    return reading;
+}
+
 Identification identified(std::span<const Log> logs, const IdentifyOptions& options,
                           const OtherReading& reading) {
     const bool motor = in_motor_units(logs) != reading.changes_side;
-    OtherReading read = reading;
-    if (motor) {
-        read.velocity_factor /= stand_in_ratio;
-        read.position_factor /= stand_in_ratio;
-    }
-    const bool as_taken =
-        read.time_factor == 1.0 && read.velocity_factor == 1.0 && read.position_factor == 1.0;
-    std::vector<Trace> traces;
-    std::vector<TraceView> views;
-    for (const Log& log : logs) {
-        if (!as_taken) traces.push_back(read_otherwise(log.trace, read));
-    }
-    for (std::size_t i = 0; i < logs.size(); ++i)
-        views.push_back(as_taken ? logs[i].trace.view() : traces[i].view());
+    const OtherReading read = motor ? behind_stand_in(reading) : reading;
+    const LogsRead under(logs, read);
     IdentifyOptions doubting = options;
     if (motor) doubting.highest_order *= stand_in_ratio;  // to half the sample rate, per turn of the motor
     for (const Log& log : logs) {
         for (Doubt& doubt : log_doubts(log, read)) doubting.doubts.push_back(std::move(doubt));
     }
-    Identification found = identify(views, doubting);
+    Identification found = identify(under.views, doubting);
     return motor ? of_the_motor(std::move(found), stand_in_ratio) : found;
 }
 
@@ -263,29 +273,24 @@ std::string gap_in_words(const Diagnosis& diagnosis) {
 
 Diagnosis diagnose_readings(const Model& model, const Log& log, const Log* validation,
                             const DiagnosisOptions& options) {
+    const std::span own(&log, 1), other(validation, validation == nullptr ? 0U : 1U);
     const auto under = [&](const OtherReading& reading) {
-        const Trace read = read_otherwise(log.trace, reading);
-        const Trace second = validation == nullptr ? Trace{} : read_otherwise(validation->trace, reading);
-        const TraceView view = second.view();
-        return diagnose(model, read.view(), validation == nullptr ? nullptr : &view, options);
+        const LogsRead first(own, reading), second(other, reading);
+        return diagnose(model, first.views.front(), second.views.empty() ? nullptr : &second.views.front(),
+                        options);
     };
-    const TraceView other = validation == nullptr ? TraceView{} : validation->trace.view();
-    Diagnosis taken = diagnose(model, log.trace.view(), validation == nullptr ? nullptr : &other, options);
+    Diagnosis taken = under({});
     std::string doubt;
-    for (OtherReading reading : open_readings({&log, 1})) {
+    for (const OtherReading& reading : open_readings(own)) {
         if (reading.changes_side && model.has_gear_ratio()) continue;
         // The joint's motion is then less than the log's by an unknown ratio.
-        if (reading.changes_side) {
-            reading.velocity_factor /= stand_in_ratio;
-            reading.position_factor /= stand_in_ratio;
-        }
-        const Diagnosis then = under(reading);
+        const Diagnosis then = under(reading.changes_side ? behind_stand_in(reading) : reading);
         if (then.verdict == taken.verdict && then.named == taken.named) continue;
         doubt += fmt::format(". If {}, {}", reading.words, gap_in_words(then));
     }
     if (doubt.empty()) return taken;
-    taken.doubt = fmt::format("Cannot tell: {}, {}{}. {} settles it.", assumed_reading({&log, 1}),
-                              gap_in_words(taken), doubt, settling_options({&log, 1}));
+    taken.doubt = fmt::format("Cannot tell: {}, {}{}. {} settles it.", assumed_reading(own),
+                              gap_in_words(taken), doubt, settling_options(own));
     taken.verdict = DiagnosisVerdict::undecided;
     taken.model = taken.baseline;
     taken.values.clear();
@@ -298,33 +303,21 @@ Diagnosis diagnose_readings(const Model& model, const Log& log, const Log* valid
     return taken;
 }
 
-namespace {
-
-MapFit map_under(const OtherReading& reading, std::span<const Log> logs, const GearAccount& gear,
-                 Degrees zero) {
-    std::vector<Trace> traces;
-    for (const Log& log : logs) traces.push_back(read_otherwise(log.trace, reading));
-    std::vector<TraceView> views;
-    for (const Trace& trace : traces) views.push_back(trace.view());
-    return fit_ripple_map(views, gear, zero.value());
-}
-
-}  // namespace
-
 // A reading under which something turns with the motor is confirmed by that; where two have it, or none of
 // several, the log does not decide which one holds.
 MapFit map_readings(std::span<const Log> logs, const GearAccount& gear, Degrees zero,
                     const OtherMotors& others) {
-    MapFit fit = map_under({}, logs, gear, zero);
+    const auto under = [&](const OtherReading& reading) {
+        return fit_ripple_map(LogsRead(logs, reading).views, gear, zero.value());
+    };
+    MapFit fit = under({});
     const std::string doubt = reading_doubt(logs, [&](const OtherReading& reading) {
-        return !reading.changes_side && (fit.finding != MapFinding::mapped ||
-                                         map_under(reading, logs, gear, zero).finding == MapFinding::mapped);
+        return !reading.changes_side &&
+               (fit.finding != MapFinding::mapped || under(reading).finding == MapFinding::mapped);
     });
     if (doubt.empty()) {
         if (others.motors.empty()) return fit;
-        std::vector<TraceView> views;
-        for (const Log& log : logs) views.push_back(log.trace.view());
-        return fit_joint_map(views, &gear, others.motors, others.pairs(), zero.value());
+        return fit_joint_map(LogsRead(logs).views, &gear, others.motors, others.pairs(), zero.value());
     }
     fit.doubt = fmt::format("Cannot tell: {}. {}:", doubt, assumed_reading(logs));
     fit.conclusive = false;
@@ -418,8 +411,7 @@ std::vector<Order> separable_orders(const Identification& found) {
 void add_amplitudes(Identification& found, std::span<const Log> logs, std::optional<GearRatio> stated) {
     const bool known = found.gear_ratio.value.has_value();
     if (!found.doubts.empty() || (!known && !stated)) return;
-    std::vector<TraceView> views;
-    for (const Log& log : logs) views.push_back(log.trace.view());
+    const std::vector<TraceView> views = LogsRead(logs).views;
     found.by_speed =
         known ? amplitude_by_speed(views, GearRatio(*found.gear_ratio.value), separable_orders(found))
               : amplitude_by_speed(views, *stated, default_orders());
@@ -431,8 +423,7 @@ Identification identify_among(std::span<const Log> logs, Identification alone, c
         alone.other_motors_not_known = others.not_known;
         return alone;
     }
-    std::vector<TraceView> views;
-    for (const Log& log : logs) views.push_back(log.trace.view());
+    const std::vector<TraceView> views = LogsRead(logs).views;
     const std::optional<GearAccount> own = found_gear(alone);
     const MapFit fit = fit_joint_map(views, own ? &*own : nullptr, others.motors, others.pairs());
     Identification found = std::move(alone);
