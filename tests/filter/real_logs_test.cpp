@@ -9,8 +9,10 @@
 #include <complex>
 #include <cstdlib>
 #include <filesystem>
+#include <numbers>
 #include <optional>
 
+#include "core/matrices/least_squares.hpp"
 #include "filter/tables.hpp"
 #include "ripplenotch/analysis/sweeps.hpp"
 #include "ripplenotch/filter/engine.hpp"
@@ -56,12 +58,30 @@ LineLevel level(const std::vector<Sweep>& sweeps, double order) {
     return found;
 }
 
+// With their torque less its trend.
 std::vector<Sweep> sweeps_of(const Trace& trace, const std::vector<double>& torque) {
     Trace other = trace;
     other.torque_nm = torque;
     const TraceView view = other.view();
     // Short sweeps would smear the lines over what is taken for the floor.
-    return cut_sweeps({&view, 1}, {.shortest_turns = 0.06}).pieces;
+    std::vector<Sweep> sweeps = cut_sweeps({&view, 1}, {.shortest_turns = 0.06}).pieces;
+    for (Sweep& sweep : sweeps) {
+        std::vector<std::vector<double>> columns(6);  // cosines up to 2.5 cycles in the sweep
+        sweep.value.clear();
+        for (std::size_t k = 0; k < sweep.weight.size(); ++k) {
+            const double root = std::sqrt(sweep.weight[k]);
+            for (std::size_t m = 0; m < columns.size(); ++m)
+                columns[m].push_back(root *
+                                     std::cos(std::numbers::pi * static_cast<double>(m) * sweep.progress(k)));
+            sweep.value.push_back(root * sweep.measured_nm[k]);
+        }
+        const std::vector<double> values = least_squares(columns, sweep.value);
+        for (std::size_t k = 0; k < sweep.value.size(); ++k) {
+            for (std::size_t m = 0; m < columns.size(); ++m) sweep.value[k] -= values[m] * columns[m][k];
+            sweep.value[k] *= std::sqrt(sweep.weight[k]);
+        }
+    }
+    return sweeps;
 }
 
 // Forward and backward through a low-pass: no delay, 5 Hz.

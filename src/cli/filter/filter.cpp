@@ -20,7 +20,6 @@
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/visible_text.hpp"
 #include "ripplenotch/document/comparison_json.hpp"
-#include "ripplenotch/evaluate/contender.hpp"
 #include "ripplenotch/evaluate/filter_metrics.hpp"
 #include "ripplenotch/filter/engine.hpp"
 #include "ripplenotch/log/log.hpp"
