@@ -15,6 +15,7 @@
 #include "diagnose/answer/answer.hpp"
 #include "diagnose/engine/criterion.hpp"
 #include "diagnose/engine/engine.hpp"
+#include "diagnose/engine/search.hpp"
 #include "diagnose/engine/terms.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/portable_math.hpp"
@@ -418,6 +419,7 @@ class DiagnosisRun {
         const std::size_t count = result_.rounds.size();
         improved_ = settled_with(count);
         settle_sizes();
+        withdraw_sizes_of_none();
         settle_shapes();
         if (other_) withdraw_on_other();
         while (grows()) {
@@ -471,6 +473,24 @@ class DiagnosisRun {
             ++place;
         }
         improved_ = std::move(found);
+    }
+
+    // What the search found with a load or a motion that the improved model does not have may be nothing
+    // there.
+    void withdraw_sizes_of_none() {
+        for (;;) {
+            const auto none =
+                std::find_if(result_.rounds.rbegin(), result_.rounds.rend(), [&](const Finding& finding) {
+                    return finding.status == FindingStatus::confirmed && !is_replaced(finding) &&
+                           engine::may_be_absent({finding.term, finding.values});
+                });
+            if (none == result_.rounds.rend()) return;
+            none->status = FindingStatus::not_reproduced;
+            none->reason = "in the model its size may be none";
+            is_withdrawn_ = true;
+            improved_ = settled_with(result_.rounds.size());
+            settle_sizes();
+        }
     }
 
     // A shape that the catalogue assumes is as assumed where that leaves less of all rows.

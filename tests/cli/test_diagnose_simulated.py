@@ -69,7 +69,6 @@ class Simulated(Case):
         done = ended(0, self.run_tool("simulate", *words, "-o", "again.csv", "--force", "--json", "-q"))
         return json.loads(done.stdout)["along_log"]["residual_rms_nm"]
 
-    @unittest.expectedFailure  # the search does not reach it yet
     def test_the_improved_model_leaves_what_was_said_and_diagnosed_again_begins_there(self):
         for name, scale in (("tried", ""), ("kept", ",scale=1")):
             with self.subTest(name):

@@ -103,7 +103,12 @@ DiagnosisVerdict verdict_of(const Diagnosis& diagnosis) {
     const bool is_named = !diagnosis.named.empty() || !diagnosis.ambiguous.empty();
     if (!diagnosis.remaining && diagnosis.setup.empty())
         return is_named ? DiagnosisVerdict::explained : DiagnosisVerdict::matches;
-    return is_named ? DiagnosisVerdict::partly_explained : DiagnosisVerdict::unexplained;
+    // A fault of the log explains nothing of what is left elsewhere.
+    const bool is_found =
+        !diagnosis.ambiguous.empty() || std::ranges::any_of(diagnosis.rounds, [](const Finding& finding) {
+            return finding.status == FindingStatus::confirmed;
+        });
+    return is_found ? DiagnosisVerdict::partly_explained : DiagnosisVerdict::unexplained;
 }
 
 void name_findings(Diagnosis& diagnosis) {

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
+#include <cmath>
 #include <string>
+#include <utility>
 
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/visible_text.hpp"
@@ -19,12 +21,14 @@ std::string size_text(const Finding& finding) {
         if (effect.parameters[p].left_out == LeftOut::refused)
             text += fmt::format(" {} {:.4g}", effect.parameters[p].name, *finding.term.values[p]);
     }
+    // Of several factors the one that its error leaves least in doubt.
+    const auto rank = [&](const FittedValue& value) {
+        return std::pair(effect.parameters[value.parameter].linear,
+                         std::abs(value.value) / value.standard_error.value_or(std::abs(value.value)));
+    };
     const FittedValue* size = nullptr;
-    for (const FittedValue& value : finding.values) {
-        const bool larger = size == nullptr || (effect.parameters[value.parameter].linear &&
-                                                !effect.parameters[size->parameter].linear);
-        if (larger) size = &value;
-    }
+    for (const FittedValue& value : finding.values)
+        if (size == nullptr || rank(value) > rank(*size)) size = &value;
     if (size == nullptr) return text;
     const Parameter& parameter = effect.parameters[size->parameter];
     text += " " + (size->ci95 ? with_error(size->value, 0.5 * (size->ci95->high - size->ci95->low))
@@ -43,7 +47,6 @@ std::string diagnosis_sentence(const Diagnosis& diagnosis) {
     if (!diagnosis.doubt.empty()) return diagnosis.doubt;
     std::string names;
     const auto add = [&](const std::string& name) { names += (names.empty() ? "" : ", ") + name; };
-    for (const Fault& fault : diagnosis.faults) add(std::string(fault.term.effect->name));
     for (const Finding& finding : diagnosis.rounds) {
         if (finding.status != FindingStatus::confirmed) continue;
         add(fmt::format(
@@ -58,9 +61,12 @@ std::string diagnosis_sentence(const Diagnosis& diagnosis) {
                              : diagnosis.model.has_gear_ratio()
                                  ? "Nothing is missing"
                                  : "Nothing is missing of what was examined, which ripple is not";
+    std::string faults;
+    for (const Fault& fault : diagnosis.faults)
+        faults += fmt::format("{}{}", faults.empty() ? "; the log has " : ", ", fault.term.effect->name);
     // Of a thousand samples, which logs have, an rms is known to 2 %.
-    return fmt::format("{}; residual {:.3g} to {:.3g} Nm rms, noise {:.3g} Nm rms.", head, gap.before_nm,
-                       gap.after_nm, gap.noise_floor_nm);
+    return fmt::format("{}{}; residual {:.3g} to {:.3g} Nm rms, noise {:.3g} Nm rms.", head, faults,
+                       gap.before_nm, gap.after_nm, gap.noise_floor_nm);
 }
 
 }  // namespace ripplenotch

@@ -263,13 +263,13 @@ bool may_be_absent(const ValuedTerm& valued) {
     // Where the other joint's share may be none, nothing is shared.
     if (valued.term.effect->other_joint && std::ranges::any_of(valued.values, [&](const FittedValue& value) {
             return parameters[value.parameter].name == "ratio" &&
-                   std::abs(value.value) < shared_ratio_errors * *value.standard_error;
+                   std::abs(value.value) < shared_ratio_errors * value.standard_error.value_or(0.0);
         }))
         return true;
     return std::ranges::all_of(valued.values, [&](const FittedValue& value) {
         const Parameter& parameter = parameters[value.parameter];
         if (has_factor ? !parameter.linear : &value != &valued.values.front()) return true;
-        return value.ci95->low <= parameter.neutral && parameter.neutral <= value.ci95->high;
+        return value.ci95 && value.ci95->low <= parameter.neutral && parameter.neutral <= value.ci95->high;
     });
 }
 
